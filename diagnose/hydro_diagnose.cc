@@ -229,7 +229,8 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   runs.insert(runs.end(), held_out.begin(), held_out.end());
   for (const runs::MeasuredRun& run : runs) {
     std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);
-    for (const ChecklistLine& line : Checklist(model, run)) std::fputs((Written(line) + "\n").c_str(), out);
+    for (const ChecklistLine& line : Checklist(model, run, request.si))
+      std::fputs((Written(line) + "\n").c_str(), out);
     std::fputs("\n", out);
   }
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);

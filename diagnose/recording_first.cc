@@ -7,6 +7,7 @@
 
 #include "base/word_list.h"
 #include "diagnose/data/alignment.h"
+#include "diagnose/data/contradictions.h"
 #include "diagnose/data/recording_damage.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
@@ -61,6 +62,21 @@ std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vect
          "look at columns, shaft, bypass and the model's units";
 }
 
+// Of the runs in which nothing else was found, which may say the same. Whether there is one that is not of a sign only.
+bool AddContradictions(const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs,
+                       const std::vector<RecordingFinding>& findings, std::vector<std::string>* mistakes) {
+  bool any = false;
+  for (size_t r = 0; r < runs.size(); ++r) {
+    if (std::any_of(findings.begin(), findings.end(), [r](const auto& one) { return one.run == r; }))
+      continue;
+    for (Contradiction& one : Contradictions(model, runs[r])) {
+      any |= !one.only_sign;
+      mistakes->push_back(std::move(one.text));
+    }
+  }
+  return any;
+}
+
 std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
@@ -100,8 +116,9 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
-  checked.mend_first =
-      !twins.empty() || (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
+  const bool contradicts = AddContradictions(model, all, findings, &checked.mistakes);
+  checked.mend_first = !twins.empty() || contradicts ||
+                       (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
   return checked;
 }
 

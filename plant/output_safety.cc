@@ -27,6 +27,7 @@ std::string Line(const std::string& text, const char* key) {
 OutputSafety::OutputSafety(process::Participant& participant, const settings::StackConfig& config)
     : participant_(participant),
       limits_(config.limits),
+      units_(config.model.description.units),
       ticks_per_s_(config.plant.rate_hz * config.time.speed),
       guard_(config.limits.rearm),
       suspended_(participant.clock().Suspended()) {
@@ -47,8 +48,9 @@ OutputSafety::OutputSafety(process::Participant& participant, const settings::St
 void OutputSafety::CheckMeasured(const state_t& state) {
   const double pressure = std::fmax(state.p1, state.p2);
   Set(Cause::kPressureLimit, pressure > limits_.pressure_psi, [&] {
-    return Finding{fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)",
-                               state.tick, state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi),
+    return Finding{fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure_psi)",
+                               state.tick, state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi,
+                               fmt::arg("unit", units_.UnitFor("psi"))),
                    pressure, limits_.pressure_psi};
   });
   const double speed = std::fabs(state.motor_speed);
@@ -60,9 +62,10 @@ void OutputSafety::CheckMeasured(const state_t& state) {
   });
   const double angle = std::fabs(state.arm_angle);
   Set(Cause::kArmAngleLimit, angle > limits_.arm_angle_rad, [&] {
-    return Finding{fmt::format("tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+    return Finding{fmt::format("tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
                                "(limits.arm_angle_rad)",
-                               state.tick, state.arm_angle, limits_.arm_angle_rad),
+                               state.tick, state.arm_angle, limits_.arm_angle_rad,
+                               fmt::arg("unit", units_.UnitFor("rad", 1))),
                    angle, limits_.arm_angle_rad};
   });
 }

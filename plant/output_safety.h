@@ -97,6 +97,7 @@ class OutputSafety {
   process::Participant& participant_;
   std::function<std::string()> why_no_rearm_;
   settings::LimitsSection limits_;
+  const UnitSystem units_;    // of the model, for texts
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
   int64_t newest_cause_tick_ = -1;  // when one has begun last

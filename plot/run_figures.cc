@@ -1,5 +1,6 @@
 #include "plot/run_figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -20,6 +21,20 @@ const std::vector<double>& ColumnOf(const tables::Table& run, const std::string&
   }
   return column->values;
 }
+
+// The unit of a quantity by its column's name, which hydro-log export ends otherwise with --si; without such a column the first.
+std::string UnitOf(const tables::Table& run, const std::string& quantity,
+                   const std::vector<std::string>& units) {
+  const auto found = std::find_if(units.begin(), units.end(), [&](const std::string& unit) {
+    return run.Find(quantity + "_" + unit) != nullptr;
+  });
+  return found == units.end() ? units.front() : *found;
+}
+
+std::string PressureUnit(const tables::Table& run) { return UnitOf(run, "p1", {"psi", "MPa", "kPa", "Pa"}); }
+
+// A length is the coordinate of a cylinder.
+std::string ArmUnit(const tables::Table& run) { return UnitOf(run, "arm_angle", {"rad", "mm", "m", "in"}); }
 
 // A picture over time needs two times, and each after the one before.
 const std::vector<double>& TimesOf(const tables::Table& run) {
@@ -52,10 +67,11 @@ page::Figure Panels(std::vector<page::Panel> panels, double panel_height) {
 
 page::Figure ArmFigure(const tables::Table& run) {
   const std::vector<double>& time = TimesOf(run);
-  page::Panel angle = TimePanel(run, "Arm angle", "rad");
+  const std::string unit = ArmUnit(run);
+  page::Panel angle = TimePanel(run, unit == "rad" ? "Arm angle" : "Arm position", unit);
   angle.curves = {
-      page::Line("reference", time, ColumnOf(run, "arm_ref_rad"), kReference, page::Stroke::kSteps),
-      page::Line("measured", time, ColumnOf(run, "arm_angle_rad"), kMeasured)};
+      page::Line("reference", time, ColumnOf(run, "arm_ref_" + unit), kReference, page::Stroke::kSteps),
+      page::Line("measured", time, ColumnOf(run, "arm_angle_" + unit), kMeasured)};
   page::Panel speed = TimePanel(run, "Motor speed", "rad/s");
   speed.curves = {page::Line("", time, ColumnOf(run, "motor_speed_rad_s"), kMeasured)};
   speed.height = 0.7;
@@ -64,16 +80,17 @@ page::Figure ArmFigure(const tables::Table& run) {
 
 page::Figure PressureFigure(const tables::Table& run) {
   const std::vector<double>& time = TimesOf(run);
-  const std::vector<double>& p1 = ColumnOf(run, "p1_psi");
-  const std::vector<double>& p2 = ColumnOf(run, "p2_psi");
+  const std::string unit = PressureUnit(run);
+  const std::vector<double>& p1 = ColumnOf(run, "p1_" + unit);
+  const std::vector<double>& p2 = ColumnOf(run, "p2_" + unit);
   std::vector<double> difference(p1.size());
   for (size_t i = 0; i < p1.size(); ++i) difference[i] = p2[i] - p1[i];
 
-  page::Panel loop = TimePanel(run, "Pressure difference p_2 - p_1", "psi");
+  page::Panel loop = TimePanel(run, "Pressure difference p_2 - p_1", unit);
   loop.curves = {
-      page::Line("reference", time, ColumnOf(run, "pressure_ref_psi"), kReference, page::Stroke::kSteps),
+      page::Line("reference", time, ColumnOf(run, "pressure_ref_" + unit), kReference, page::Stroke::kSteps),
       page::Line("measured", time, difference, kMeasured)};
-  page::Panel sides = TimePanel(run, "Pressures", "psi");
+  page::Panel sides = TimePanel(run, "Pressures", unit);
   sides.curves = {page::Line("p_1", time, p1, kOther), page::Line("p_2", time, p2, kMeasured)};
   page::Panel voltage = TimePanel(run, "Amplifier voltage", "V");
   voltage.curves = {page::Line("", time, ColumnOf(run, "voltage_V"), kMeasured, page::Stroke::kSteps)};

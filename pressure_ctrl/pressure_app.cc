@@ -40,6 +40,7 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       stale_ticks_(settings::OldestPressureCommandTicks(config)),
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
       k_2_(config.model.description.parameters.k_2),
+      units_(config.model.description.units),
       half_dac_step_(config.position.dac_bits > 0
                          ? std::ldexp(config.position.dac_range_psi, -config.position.dac_bits)
                          : 0),
@@ -243,11 +244,11 @@ void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
   const PressureLawOutput output = Law(state, command->pressure_ref);
   if (!std::isfinite(
           output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
-    participant_.Raise(
-        "nonfinite_motor_command",
-        fmt::format("tick {}: {} gives {} V for a reference of {} psi, must be finite", state.tick,
-                    own_ ? "the loop's own law" : "eq. (16)", output.voltage, command->pressure_ref),
-        output.voltage, NAN, false);
+    participant_.Raise("nonfinite_motor_command",
+                       fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",
+                                   state.tick, own_ ? "the loop's own law" : "eq. (16)", output.voltage,
+                                   command->pressure_ref, units_.UnitFor("psi")),
+                       output.voltage, NAN, false);
     return;  // the command stays SAFE
   }
   command->status = motor_command_t::LAW;

@@ -74,6 +74,7 @@ class PressureApp : public process::App {
   const int64_t stale_ticks_;        // a pressure command older than this is stale
   const int64_t ramp_ticks_;         // its reference then goes to zero within this many ticks
   const double k_2_;                 // in-lbf/psi
+  const UnitSystem units_;           // of the model, for texts
   const double half_dac_step_;       // psi
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;

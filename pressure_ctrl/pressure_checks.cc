@@ -50,8 +50,9 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
   safe &= CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure,
                      values_.limits.pressure_psi, [&] {
                        return fmt::format(
-                           "tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
-                           state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi);
+                           "tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure_psi)",
+                           state.tick, state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi,
+                           fmt::arg("unit", units_.UnitFor("psi")));
                      });
   const double speed = std::fabs(state.motor_speed);
   safe &= CheckLimit(
@@ -65,9 +66,10 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
   safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle,
                      values_.limits.arm_angle_rad, [&] {
                        return fmt::format(
-                           "tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+                           "tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
                            "(limits.arm_angle_rad)",
-                           state.tick, state.arm_angle, values_.limits.arm_angle_rad);
+                           state.tick, state.arm_angle, values_.limits.arm_angle_rad,
+                           fmt::arg("unit", units_.UnitFor("rad", 1)));
                      });
   safe &= PressureCommandIsSafe(state);
   safe &= Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()),
@@ -104,9 +106,9 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
   safe &= Check(!finite || std::fabs(reference) <= largest, "excessive_pressure_command", reference, largest,
                 [&] {
                   return fmt::format(
-                      "tick {}: pressure reference {:.6g} psi, allowed are +/- {:.6g} psi "
+                      "tick {}: pressure reference {:.6g} {unit}, allowed are +/- {:.6g} {unit} "
                       "(limits.arm_torque_in_lbf / k_2)",
-                      pressure_command_->tick, reference, largest);
+                      pressure_command_->tick, reference, largest, fmt::arg("unit", units_.UnitFor("psi")));
                 });
   safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),
                 static_cast<double>(state.tick), [&] {

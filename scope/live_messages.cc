@@ -54,6 +54,12 @@ json Noise(const Run& run) {
   return noise;
 }
 
+// Those of the run's model, with its units of time and angle: what `limits` and `noise` are in.
+std::string Units(const UnitSystem& units) {
+  return std::string(units.length) + ", " + std::string(units.force) + ", s, " + units.UnitFor("psi") +
+         ", rad";
+}
+
 json Described(const Run& run) {
   json channels = json::array();
   for (const ChannelInfo& channel : run.Channels()) channels.push_back(Described(channel));
@@ -67,6 +73,7 @@ json Described(const Run& run) {
               {"channels", channels},
               {"limits", Limits(run)},
               {"noise", Noise(run)}};
+  if (run.config != nullptr) object["units"] = Units(run.config->model.description.units);
   if (!run.config_problem.empty()) object["problem"] = run.config_problem;
   return object;
 }
@@ -89,7 +96,6 @@ std::string HelloMessage(const std::vector<const Run*>& runs, bool control) {
   return Text({{"op", "hello"},
                {"program", "hydro-scope " + settings::ProgramVersion()},
                {"control", control},
-               {"units", "in, lbf, s, psi, rad"},
                {"runs", Described(runs)}});
 }
 

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "base/number_text.h"
+#include "base/units.h"
+#include "diagnose/data/interval_means.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
@@ -15,9 +17,6 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
-// Long enough to average noise, short enough to follow the motion.
-constexpr size_t kIntervals = 150;
-constexpr size_t kSamplesOfOne = 4;  // of an interval
 // A balance that holds correlates by 0.8 and more; one with a wrong sign by the same, negative.
 constexpr double kClear = 0.5;
 
@@ -45,42 +44,6 @@ std::string Text(const Range& range, const std::string& unit) {
   if (range.missing > 0) text += ", " + std::to_string(range.missing) + " missing";
   return text;
 }
-
-// The run in intervals of as many samples each: means, and changes from one to the next.
-class Intervals {
- public:
-  explicit Intervals(const MeasuredRun& run)
-      : length_(std::max(kSamplesOfOne, run.samples() / kIntervals)),
-        count_(run.samples() / length_),
-        time_(Means(run.time)) {}
-
-  std::vector<double> Means(const std::vector<double>& values) const {
-    std::vector<double> means(count_, std::numeric_limits<double>::quiet_NaN());
-    for (size_t i = 0; i < count_; ++i) {
-      double sum = 0;
-      size_t present = 0;
-      for (size_t k = i * length_; k < (i + 1) * length_ && k < values.size(); ++k) {
-        if (std::isnan(values[k])) continue;
-        sum += values[k];
-        ++present;
-      }
-      if (present > 0) means[i] = sum / static_cast<double>(present);
-    }
-    return means;
-  }
-
-  // Per second, by the neighbours on both sides.
-  std::vector<double> Rates(const std::vector<double>& means) const {
-    std::vector<double> rates(count_, std::numeric_limits<double>::quiet_NaN());
-    for (size_t i = 1; i + 1 < count_; ++i)
-      rates[i] = (means[i + 1] - means[i - 1]) / (time_[i + 1] - time_[i - 1]);
-    return rates;
-  }
-
- private:
-  size_t length_, count_;
-  std::vector<double> time_;
-};
 
 // Of the pairs in which both are known; nothing where too few are, or one is constant.
 std::optional<double> Correlation(const std::vector<double>& a, const std::vector<double>& b) {
@@ -113,8 +76,8 @@ ChecklistLine SignLine(const std::string& item, const std::optional<double>& cor
 
 class RunChecklist {
  public:
-  RunChecklist(const model::ModelDescription& model, const MeasuredRun& run)
-      : p_(model.parameters), units_(model.units), run_(run), intervals_(run) {}
+  RunChecklist(const model::ModelDescription& model, const MeasuredRun& run, bool si)
+      : p_(model.parameters), units_(model.units), si_(si), run_(run), intervals_(run) {}
 
   std::vector<ChecklistLine> Lines() {
     AddSamples();
@@ -129,6 +92,9 @@ class RunChecklist {
  private:
   void Add(State state, const std::string& item, const std::string& text) {
     lines_.push_back({state, item, text});
+  }
+  std::optional<SiUnit> InSi(const std::string& unit, double size) const {
+    return si_ ? FindSiUnit(unit, size) : std::nullopt;
   }
   std::vector<double> MeansOf(const MeasuredSignal& signal) const { return intervals_.Means(signal.values); }
 
@@ -150,9 +116,13 @@ class RunChecklist {
       if (name.signal != &MeasuredRun::pressure_ref) Add(State::kAbsent, name.ours, "not recorded");
       return;
     }
-    const Range range = RangeIn(signal.values);
-    const std::string unit = name.signal == &MeasuredRun::voltage ? "V (the command that k_1 takes)"
-                                                                  : units_.UnitFor(name.unit, name.arm);
+    Range range = RangeIn(signal.values);
+    std::string unit = units_.UnitFor(name.unit, name.arm);
+    if (const auto shown = InSi(unit, std::max(std::abs(range.low), std::abs(range.high)))) {
+      range = {range.low * shown->factor, range.high * shown->factor};
+      unit = shown->to;
+    }
+    if (name.signal == &MeasuredRun::voltage) unit = "V (the command that k_1 takes)";
     const bool moves = range.high > range.low;
     Add(moves ? State::kGood : State::kLook, name.ours,
         Text(range, unit) + (moves ? "" : ": it never changes"));
@@ -161,14 +131,24 @@ class RunChecklist {
   // The lowest pressure of a closed circuit is its charge pressure, whatever moves.
   void AddPressures() {
     if (!run_.p1.measured() || !run_.p2.measured()) return;
-    const double low = std::min(RangeIn(run_.p1.values).low, RangeIn(run_.p2.values).low);
-    const std::string unit = units_.UnitFor("psi");
+    const double low1 = RangeIn(run_.p1.values).low, low2 = RangeIn(run_.p2.values).low;
+    std::string unit = units_.UnitFor("psi");
+    double factor = 1;
+    if (const auto shown = InSi(unit, std::max({low1, low2, p_.p_3}))) {
+      factor = shown->factor;
+      unit = shown->to;
+    }
     // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
+    const double low = std::min(low1, low2);
     const bool near = low > 0.85 * p_.p_3 && low < 3 * p_.p_3;
-    Add(near ? State::kGood : State::kLook, "charge pressure",
-        "the lowest pressure is " + ShortNumber(low) + " " + unit + ", the model's p_3 is " +
-            ShortNumber(p_.p_3) + " " + unit +
-            (near ? "" : ": another unit, gauge against absolute, or another charge?"));
+    const bool same = std::max(low1, low2) < 1.5 * low;
+    Add(near && same ? State::kGood : State::kLook, "charge pressure",
+        "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
+            ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +
+            " " + unit +
+            (!near  ? ": another unit, gauge against absolute, or another charge?"
+             : same ? ""
+                    : ": is one side under load all the time, or its sensor's scale another?"));
   }
 
   void AddShaft() {
@@ -235,15 +215,16 @@ class RunChecklist {
 
   const model::Parameters& p_;
   const UnitSystem& units_;
+  bool si_;
   const MeasuredRun& run_;
-  Intervals intervals_;
+  IntervalMeans intervals_;
   std::vector<ChecklistLine> lines_;
 };
 
 }  // namespace
 
-std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const MeasuredRun& run) {
-  return RunChecklist(model, run).Lines();
+std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const MeasuredRun& run, bool si) {
+  return RunChecklist(model, run, si).Lines();
 }
 
 std::string Written(const ChecklistLine& line) {

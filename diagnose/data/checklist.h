@@ -24,7 +24,8 @@ struct ChecklistLine {
 // The lines of one run, in the order in which they are best settled: samples, ranges, then signs. A sign is judged by the
 // correlation of two sides of an equation over a hundred or so intervals of the run, with the model's numbers: the torque balance,
 // eq. (4), and the flow balance, eqs. (11) to (14).
-std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const runs::MeasuredRun& run);
+std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const runs::MeasuredRun& run,
+                                     bool si = false);
 
 // "ok       samples              1301 in 1.3 s, ..."
 std::string Written(const ChecklistLine& line);

@@ -18,14 +18,14 @@ using Source = settings::SensorSection::Source;
 constexpr auto kReadPeriod = 5ms;
 constexpr auto kTablePeriod = 500ms;
 
-const char* UnitOf(const std::string& name) {
-  if (name == "p1" || name == "p2") return "psi";
-  return name.ends_with("speed") ? "rad/s" : "rad";
+std::string UnitOf(const std::string& name, const UnitSystem& units) {
+  if (name == "p1" || name == "p2") return units.UnitFor("psi");
+  return units.UnitFor(name.ends_with("speed") ? "rad/s" : "rad", name.starts_with("arm_") ? 1 : 0);
 }
 
 }  // namespace
 
-std::string DescribeReading(const BoardSensor& sensor, double value) {
+std::string DescribeReading(const BoardSensor& sensor, double value, const UnitSystem& units) {
   const BoardChannel& channel = sensor.channel();
   const bool analog = sensor.section().source == Source::kAnalog;
   std::string from = "not measured";
@@ -37,7 +37,8 @@ std::string DescribeReading(const BoardSensor& sensor, double value) {
     code = fmt::format("{}", sensor.code());
   }
   if (analog) volts = fmt::format("{:.4f} V", channel.converter.Volts(sensor.code()));
-  const std::string signal = std::isnan(value) ? "-" : fmt::format("{:.5g} {}", value, UnitOf(sensor.name()));
+  const std::string signal =
+      std::isnan(value) ? "-" : fmt::format("{:.5g} {}", value, UnitOf(sensor.name(), units));
   const std::string fault = sensor.fault() ? "  FAULT: " + sensor.fault()->text : "";
   return fmt::format("{:<12} {:<18} {:>10} {:>11} {:>18}{}", sensor.name(), from, code, volts, signal, fault);
 }
@@ -62,7 +63,7 @@ int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock) {
       std::printf("after %.1f s\n", bus::ToSeconds(now - start));
       for (size_t i = 0; i < values.size(); ++i) {
         const BoardSensor& sensor = *sensors.all()[i];
-        std::printf("%s\n", DescribeReading(sensor, values[i]).c_str());
+        std::printf("%s\n", DescribeReading(sensor, values[i], config.model.description.units).c_str());
         fault = fault || sensor.fault().has_value();
       }
       std::fflush(stdout);

@@ -16,6 +16,6 @@ int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock);
 
 // One line of that table: the signal's name, its source, the board's code, the volts, the signal with its
 // unit, and the fault if there is one.
-std::string DescribeReading(const BoardSensor& sensor, double value);
+std::string DescribeReading(const BoardSensor& sensor, double value, const UnitSystem& units);
 
 }  // namespace hydro::plant

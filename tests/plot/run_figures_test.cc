@@ -36,6 +36,20 @@ TEST(RunFigures, ShowTheTable) {
   }
 }
 
+// Tests that a table of hydro-log export --si is drawn in its units, with a cylinder's arm as a length.
+TEST(RunFigures, Si) {
+  tables::Table run = SmallRun();
+  for (tables::Column& column : run.columns) {
+    if (column.name.ends_with("_psi")) column.name.replace(column.name.size() - 3, 3, "MPa");
+    if (column.name.starts_with("arm_")) column.name.replace(column.name.size() - 3, 3, "mm");
+  }
+  const page::Figure pressure = PressureFigure(run), arm = ArmFigure(run);
+  EXPECT_EQ(pressure.panels[0].y.label, "MPa");
+  EXPECT_EQ(pressure.panels[1].y.label, "MPa");
+  EXPECT_EQ(arm.panels[0].y.label, "mm");
+  EXPECT_EQ(arm.panels[0].title, "Arm position");
+}
+
 // Tests that any other table is refused, naming the column that it lacks.
 TEST(RunFigures, ColumnMissing) {
   tables::Table run = SmallRun();

@@ -6,45 +6,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/actuator.h"
-#include "tests/table1.h"
+#include "base/number_text.h"
+#include "tests/diagnose/data/swing.h"
 
 namespace hydro::diagnose {
 namespace {
 
 using State = ChecklistLine::State;
+using testing::Table1Model;
 
-model::ModelDescription Table1Model() {
-  model::ModelDescription model;
-  model.parameters = testing::Table1();
-  return model;
-}
-
-// A second of a rig at 1 kHz that is driven to and fro.
+// A recording without what can be worked out from the rest.
 runs::MeasuredRun Swing(model::Shaft shaft, bool bypass = false) {
-  model::ActuatorOptions options;
-  options.shaft = shaft;
-  options.bypass = bypass;
-  model::Actuator rig(Table1Model(), options);
-  runs::MeasuredRun run;
-  run.name = "swing";
-  run.shaft = shaft;
-  run.bypass = bypass;
-  for (int k = 0; k < 1000; ++k) {
-    if (k > 0) rig.Advance(run.voltage.values.back(), 1e-3 * k);
-    const model::Measurement m = rig.Measure();
-    run.time.push_back(1e-3 * k);
-    run.voltage.values.push_back(4 * std::sin(0.02 * k));
-    run.motor_speed.values.push_back(m.motor_speed);
-    run.p1.values.push_back(m.p1);
-    run.p2.values.push_back(m.p2);
-    if (shaft == model::Shaft::kFree) run.arm_angle.values.push_back(m.arm_angle);
-  }
+  runs::MeasuredRun run = testing::Swing(shaft, bypass);
+  run.motor_angle = run.arm_speed = {};
   return run;
 }
 
-std::string LineOf(const runs::MeasuredRun& run, const std::string& item) {
-  for (const ChecklistLine& line : Checklist(Table1Model(), run)) {
+std::string LineOf(const runs::MeasuredRun& run, const std::string& item, bool si = false) {
+  for (const ChecklistLine& line : Checklist(Table1Model(), run, si)) {
     if (line.item == item) return Written(line);
   }
   return "no line";
@@ -64,6 +43,25 @@ TEST(ChecklistTest, GoodRuns) {
       }
     }
   }
+}
+
+// Tests --si: ranges and pressures in the units that a reader of SI expects, one unit in a line.
+TEST(ChecklistTest, Si) {
+  const runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  EXPECT_THAT(LineOf(run, "p1"), ::testing::EndsWith(" psi"));
+  EXPECT_THAT(LineOf(run, "p1", true), ::testing::ContainsRegex(" [kM]Pa$"));
+  const std::string charge = LineOf(run, "charge pressure", true);
+  EXPECT_THAT(charge, ::testing::HasSubstr("kPa, the model's p_3 is " + ShortNumber(100 * 6.894757293168361) +
+                                           " kPa"));
+  EXPECT_THAT(charge, ::testing::Not(::testing::HasSubstr("psi")));
+}
+
+// Tests that one side whose scale is wrong is worth a look, though the other side is at the charge pressure.
+TEST(ChecklistTest, SidesDiffer) {
+  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("ok"));
+  for (double& p1 : run.p1.values) p1 *= 2.5;
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("look"));
 }
 
 // Tests that each turned sign is seen where it shows.

@@ -365,12 +365,13 @@ TEST_F(BoardRigTest, CheckSensorsLines) {
   board_->counters[1] = 100;
   const model::Measurement measured = sensors.Read();
   const auto all = sensors.all();
-  EXPECT_THAT(DescribeReading(*all[0], measured.p1),
+  EXPECT_THAT(DescribeReading(*all[0], measured.p1, {}),
               ::testing::ContainsRegex("p1 +analog 0/0 .* 2.000. V +750.* psi$"));
-  EXPECT_THAT(DescribeReading(*all[1], measured.p2), HasSubstr("FAULT: p2 reads 10 V"));
-  EXPECT_THAT(DescribeReading(*all[2], measured.motor_angle),
+  EXPECT_THAT(DescribeReading(*all[0], measured.p1, kSiUnits), HasSubstr(" Pa"));
+  EXPECT_THAT(DescribeReading(*all[1], measured.p2, {}), HasSubstr("FAULT: p2 reads 10 V"));
+  EXPECT_THAT(DescribeReading(*all[2], measured.motor_angle, {}),
               ::testing::ContainsRegex("motor_angle +counter 3/1 +100 +-1 rad$"));
-  EXPECT_THAT(DescribeReading(*all[4], measured.arm_angle), HasSubstr("not measured"));
+  EXPECT_THAT(DescribeReading(*all[4], measured.arm_angle, {}), HasSubstr("not measured"));
   EXPECT_EQ(board_->writes + board_->line_writes + board_->directions, 0);
 }
 
