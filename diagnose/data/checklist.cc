@@ -142,13 +142,26 @@ class RunChecklist {
     const double low = std::min(low1, low2);
     const bool near = low > 0.85 * p_.p_3 && low < 3 * p_.p_3;
     const bool same = std::max(low1, low2) < 1.5 * low;
-    Add(near && same ? State::kGood : State::kLook, "charge pressure",
+    Add(near && same && !LooksLikeCurrents() ? State::kGood : State::kLook, "charge pressure",
         "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
             ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +
             " " + unit +
-            (!near  ? ": another unit, gauge against absolute, or another charge?"
-             : same ? ""
-                    : ": is one side under load all the time, or its sensor's scale another?"));
+            (LooksLikeCurrents()
+                 ? ": another unit, or currents of 4 to 20 mA that want a scale and an offset?"
+             : !near ? ": another unit, gauge against absolute, or another charge?"
+             : same  ? ""
+                     : ": is one side under load all the time, or its sensor's scale another?"));
+  }
+
+  // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
+  bool LooksLikeCurrents() const {
+    for (const MeasuredSignal* signal : {&run_.p1, &run_.p2}) {
+      const Range range = RangeIn(signal->values);
+      const double low = (range.low - signal->source.offset) / signal->source.scale,
+                   high = (range.high - signal->source.offset) / signal->source.scale;
+      if (!(low > 3.8 && low < 8 && high < 20.5)) return false;
+    }
+    return true;
   }
 
   void AddShaft() {

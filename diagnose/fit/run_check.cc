@@ -17,6 +17,7 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
+constexpr double kSameGain = 1;  // a logarithm: a command in its right unit does far more than that
 constexpr size_t kWindows = 12;
 constexpr size_t kFewestWindows = 4;
 // Without its mistakes, every signal must be predicted this well: half its movement. A model that lacks an effect
@@ -87,6 +88,20 @@ MistakeTrial RunCheck::Try(const Mistakes& mistakes) const {
   return Tried(own);
 }
 
+// Whether a command that is made smaller explains no more than its opposite: then it is taken away, and no unit is shown by that.
+bool RunCheck::OnlyTakesTheCommand(const Mistakes& mistakes, double gain) const {
+  Mistakes turned = mistakes;
+  bool smaller = false;
+  for (RecordingMistake& mistake : turned) {
+    for (auto& [signal, factor] : mistake.factors) {
+      if (signal != &runs::MeasuredRun::voltage || std::abs(factor) >= 1) continue;
+      factor = -factor;
+      smaller = true;
+    }
+  }
+  return smaller && Gain(given_, Predict(turned, windows_.size(), WindowStart::kFitted)) > gain - kSameGain;
+}
+
 MistakeTrial RunCheck::Tried(const Mistakes& mistakes) const {
   const Errors errors = Predict(mistakes, windows_.size(), WindowStart::kFitted);
   MistakeTrial trial{mistakes, Gain(given_, errors), WorstSignal(errors), 0, 0};
@@ -94,6 +109,7 @@ MistakeTrial RunCheck::Tried(const Mistakes& mistakes) const {
   const Errors freely =
       free ? PredictWith(Load::kGiven, mistakes, windows_.size(), WindowStart::kFitted) : Errors();
   if (with_own_load_ && trial.worst > kInOrder) trial.worst = kUnpredicted;
+  if (trial.Explains() && OnlyTakesTheCommand(mistakes, trial.gain)) trial.worst = kUnpredicted;
   trial.free_badness = free ? MedianBadness(freely) : std::numeric_limits<double>::quiet_NaN();
   trial.free_worst = free ? WorstSignal(freely) : std::numeric_limits<double>::quiet_NaN();
   return trial;

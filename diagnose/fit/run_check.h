@@ -65,6 +65,7 @@ class RunCheck {
                      WindowStart start) const;
   double WorstSignal(const Errors& errors) const;
   MistakeTrial Tried(const std::vector<RecordingMistake>& mistakes) const;
+  bool OnlyTakesTheCommand(const std::vector<RecordingMistake>& mistakes, double gain) const;
   std::vector<std::vector<RecordingMistake>> Candidates() const;
   std::vector<RecordingMistake> OneByOne() const;
   std::optional<RecordingMistake> BestNext(const std::vector<RecordingMistake>& found) const;

@@ -64,6 +64,17 @@ TEST(ChecklistTest, SidesDiffer) {
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("look"));
 }
 
+// Tests that raw currents of sensors are seen, and still when somebody has called them a pressure.
+TEST(ChecklistTest, Currents) {
+  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
+    for (double& value : signal->values) value = 145.0377 * (4 + 16 * value / 5000);
+  }
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::Not(::testing::HasSubstr("mA")));
+  run.p1.source.scale = run.p2.source.scale = 145.0377;
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*currents of 4 to 20 mA"));
+}
+
 // Tests that each turned sign is seen where it shows.
 TEST(ChecklistTest, TurnedSigns) {
   runs::MeasuredRun run = Swing(model::Shaft::kFree);
