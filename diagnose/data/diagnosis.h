@@ -90,6 +90,7 @@ struct FoundEffect {
   double weight = 0;  // of all explanations that have it
 };
 
+// A base parameter ("J"), or one of an effect that the model as given has ("valve.relief.set").
 struct ChangedParameter {
   Estimated fitted;
   double model = 0;  // as given

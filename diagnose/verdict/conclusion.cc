@@ -88,8 +88,9 @@ void NameRuns(const SearchContext& context, Diagnosis* d) {
 void RemarkOnRivals(const std::map<std::string, double>& weights, Diagnosis* d) {
   constexpr double kWorthAWord = 0.2;
   for (const auto& [claim, weight] : weights) {
-    if (d->verdict != Verdict::kParameters || claim.find('.') == std::string::npos || weight < kWorthAWord)
-      continue;
+    // Values of an effect that the model has are values too.
+    const bool rival = claim.find('.') != std::string::npos && !claim.starts_with("parameters of ");
+    if (d->verdict != Verdict::kParameters || !rival || weight < kWorthAWord) continue;
     d->remarks.push_back(claim + " explains the runs about as well as other values (weight " +
                          ShortNumber(weight, 2) + ")");
   }

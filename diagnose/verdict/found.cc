@@ -100,11 +100,22 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
   return found;
 }
 
-ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval,
-                                   const model::ModelDescription& given) {
+// The value that the model as given has: a base parameter's, or that of an effect it has; nothing of an effect that was found.
+std::optional<double> ValueGiven(const FreeParameter& fitted, const model::ModelDescription& given) {
+  if (fitted.unknown.kind == model::Unknown::Kind::kBase)
+    return given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
+  model::ModelDescription model = given;
+  for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
+    if (given.effects[parameter.effect].id + "." + parameter.Label() == fitted.name)
+      return parameter.In(&model);
+  }
+  return std::nullopt;
+}
+
+ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval, double given) {
   ChangedParameter changed;
   changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
-  changed.model = given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
+  changed.model = given;
   changed.why = WhyRemarkable(changed);
   changed.implausible = !changed.why.empty();
   return changed;
@@ -181,8 +192,9 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
   }
   std::vector<std::string> unsure;
   for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].unknown.kind != model::Unknown::Kind::kBase) continue;
-    const ChangedParameter changed = DescribeParameter(free[i], intervals[i], context.given);
+    const std::optional<double> given = ValueGiven(free[i], context.given);
+    if (!given.has_value()) continue;
+    const ChangedParameter changed = DescribeParameter(free[i], intervals[i], *given);
     // Of a refit of all values only those that are surely others.
     const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
     if (best.fitted.hypothesis.known == nullptr || !as_given) {

@@ -126,6 +126,21 @@ TEST(Diagnose, WrongParameter) {
   EXPECT_EQ(d.model.parameters.beta, d.parameters[0].fitted.value);
 }
 
+// Tests that a wrong value of an effect that the model has is reported like any other, and corrected.
+TEST(Diagnose, WrongParameterOfAnEffect) {
+  model::ModelDescription given = Dragged();
+  given.effects[0].parameters["k"] = 1e-4;
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, RunsOf(Dragged()), {}, Few(), {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
+  ASSERT_EQ(d.parameters.size(), 1) << d.sentence;
+  EXPECT_EQ(d.parameters[0].fitted.name, "pump.quadratic_drag.k");
+  EXPECT_EQ(d.parameters[0].model, 1e-4);
+  EXPECT_LT(d.parameters[0].fitted.low, 2e-4);
+  EXPECT_GT(d.parameters[0].fitted.high, 2e-4);
+  EXPECT_GT(d.held_out.before, 2);
+  EXPECT_LT(d.held_out.after, 1.1);
+}
+
 // Tests that the report is the same to the bit for any number of threads.
 TEST(Diagnose, SameForAnyNumberOfThreads) {
   diagnose::DiagnoseOptions options = Few();
