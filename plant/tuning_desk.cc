@@ -65,6 +65,8 @@ void TuningDesk::OnRequest(const tuning_request_t& request) {
     return;
   }
   if (pending_ || aside_.busy()) return;  // one at a time: the other asks again
+  // So does who asks before the loops have said that they take part.
+  if (IsYoung() && !WhoIsMissing(request).empty()) return;
   Begin(request);
 }
 
@@ -80,7 +82,7 @@ void TuningDesk::Begin(const tuning_request_t& request) {
   }
   try {
     const std::vector<std::string> changes = tuning::ParseChanges(request.changes);
-    if (const std::string missing = WhoIsMissing(changes); !missing.empty()) return Refuse(missing);
+    if (const std::string missing = WhoIsMissing(request); !missing.empty()) return Refuse(missing);
     aside_.Begin([configured = configured_, in_force = in_force_.config, changes, situation] {
       return tuning::PrepareChange(*configured, *in_force, changes, situation);
     });

@@ -79,7 +79,8 @@ class TuningDesk {
   void OnStatus(const tuning_status_t& status);
   void Begin(const tuning_request_t& request);
   std::string WhyNot(const tuning_request_t& request) const;
-  std::string WhoIsMissing(const std::vector<std::string>& changes) const;
+  bool IsYoung() const;
+  std::string WhoIsMissing(const tuning_request_t& request) const;
   void Propose(tuning::PreparedChange change);
   void AwaitControllers();
   std::string NotReady(bool* impossible) const;
@@ -108,6 +109,7 @@ class TuningDesk {
   std::vector<int64_t> asked_;                  // these sessions, oldest first
   std::vector<tuned_settings_t> followed_;      // reversed: the next one last
   bus::Clock::TimePoint next_report_;
+  std::optional<bus::Clock::TimePoint> begun_;  // the first tick
 };
 
 }  // namespace hydro::plant

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/input_error.h"
 #include "plant/tuning_desk.h"
 
 namespace hydro::plant {
@@ -12,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kAlive = 2500ms;   // a controller reports once a second
+constexpr auto kYoung = 1500ms;   // of a run: a loop reports once a second, and soon after it has heard the plant
 constexpr double kLead_s = 0.02;  // from the decision to its effect: several repeats
 constexpr size_t kMostUndo = 100;
 constexpr size_t kMostControllers = 16;
@@ -60,7 +62,10 @@ void TuningDesk::Decide() {
   Accept(message, pending_->text);
 }
 
+bool TuningDesk::IsYoung() const { return !begun_ || participant_.clock().Now() - *begun_ < kYoung; }
+
 void TuningDesk::OnTick(int64_t tick) {
+  if (!begun_) begun_ = participant_.clock().Now();
   if (!followed_.empty()) FollowAt(tick);
   if (!pending_ || !pending_->version) return;
   const int64_t acts_at = pending_->version->message.acts_at;
@@ -116,7 +121,14 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
 }
 
 // A controller of the user's own may know nothing of this: what concerns it cannot be changed.
-std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) const {
+std::string TuningDesk::WhoIsMissing(const tuning_request_t& request) const {
+  if (request.kind != tuning_request_t::SET) return "";
+  std::vector<std::string> changes;
+  try {
+    changes = tuning::ParseChanges(request.changes);
+  } catch (const InputError&) {
+    return "";  // refused for that
+  }
   for (const auto& [section, role] :
        {std::pair{"pressure.", "pressure_ctrl"}, std::pair{"position.", "position_ctrl"},
         std::pair{"reference.", "position_ctrl"}}) {
