@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace hydro::diagnose {
 
@@ -91,6 +92,15 @@ void Hypothesis::Set(const std::vector<double>& values) {
 
 bool Hypothesis::Has(const Change& change) const {
   return std::find(changes.begin(), changes.end(), change) != changes.end();
+}
+
+bool Hypothesis::FreesTheSame(const Hypothesis& other) const {
+  const auto of_the_model = [](const Hypothesis& one) {
+    std::set<std::string> names(one.effects.begin(), one.effects.end());
+    for (const Change& change : one.changes) names.erase(change.effect);
+    return std::pair(std::set<size_t>(one.base.begin(), one.base.end()), names);
+  };
+  return of_the_model(*this) == of_the_model(other);
 }
 
 const Change* Hypothesis::OneBeyond(const Hypothesis& other) const {

@@ -61,6 +61,8 @@ struct Hypothesis {
   // Sets the model to these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
+  // Whether both have the same values of the model as given free: base parameters, and those of effects that it has.
+  bool FreesTheSame(const Hypothesis& other) const;
   // The one change that this hypothesis has and the other lacks; null if there is none or more than one.
   const Change* OneBeyond(const Hypothesis& other) const;
   // The same with nothing free.

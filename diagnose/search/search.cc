@@ -298,7 +298,7 @@ class Searcher {
   Fitted FitWithout(const Change& change) const {
     const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
     for (const Fitted& one : without_) {
-      if (SameChanges(one.hypothesis, less) && one.hypothesis.base == less.base) return one;
+      if (SameChanges(one.hypothesis, less) && one.hypothesis.FreesTheSame(less)) return one;
     }
     return Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
   }

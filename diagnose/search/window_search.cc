@@ -45,14 +45,14 @@ void AddExtremes(model::Channel channel, double sign, SearchWindows* windows) {
 
 bool IsSame(const Explanation& a, const Explanation& b) {
   return SameChanges(a.fitted.hypothesis, b.fitted.hypothesis) &&
-         a.fitted.hypothesis.base == b.fitted.hypothesis.base;
+         a.fitted.hypothesis.FreesTheSame(b.fitted.hypothesis);
 }
 
 // Whether `more` is `less` with further changes that gain nothing: whole runs have no part for it either, and what shows on them
 // alone is searched for from the best of them.
 bool AddsNothing(const Explanation& more, const Explanation& less) {
   const Hypothesis& hypothesis = less.fitted.hypothesis;
-  if (less.changes().size() >= more.changes().size() || hypothesis.base != more.fitted.hypothesis.base)
+  if (less.changes().size() >= more.changes().size() || !hypothesis.FreesTheSame(more.fitted.hypothesis))
     return false;
   const bool within = std::all_of(less.changes().begin(), less.changes().end(),
                                   [&](const Change& change) { return more.fitted.hypothesis.Has(change); });

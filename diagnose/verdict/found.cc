@@ -51,7 +51,7 @@ Fitted WithoutIt(const SearchContext& context, const SearchResult& search, const
   for (const Explanation& one : windows.tried) {
     const Change* more = best.fitted.hypothesis.OneBeyond(one.fitted.hypothesis);
     const bool less = one.changes().size() + 1 == best.changes().size() && more != nullptr && *more == change;
-    if (less && one.fitted.ok() && one.fitted.hypothesis.base == best.fitted.hypothesis.base)
+    if (less && one.fitted.ok() && one.fitted.hypothesis.FreesTheSame(best.fitted.hypothesis))
       return one.fitted;
   }
   Fitted none;

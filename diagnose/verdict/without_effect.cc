@@ -15,14 +15,11 @@ namespace {
 
 // What was tried with the same changes and the same free values; null when nothing was.
 const Explanation* Find(const std::vector<const Explanation*>& tried, const Hypothesis& hypothesis) {
-  std::vector<size_t> base = hypothesis.base;
-  std::sort(base.begin(), base.end());
   const Explanation* found = nullptr;
   for (const Explanation* one : tried) {
-    std::vector<size_t> its = one->fitted.hypothesis.base;
-    std::sort(its.begin(), its.end());
-    if (!one->fitted.ok() || one->blocks.sums.empty() || its != base) continue;
-    if (!SameChanges(one->fitted.hypothesis, hypothesis)) continue;
+    if (!one->fitted.ok() || one->blocks.sums.empty()) continue;
+    if (!one->fitted.hypothesis.FreesTheSame(hypothesis) || !SameChanges(one->fitted.hypothesis, hypothesis))
+      continue;
     if (found == nullptr || one->squared_gap() < found->squared_gap()) found = one;
   }
   return found;
