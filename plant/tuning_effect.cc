@@ -12,8 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kAlive = 2500ms;   // a controller reports once a second
-constexpr auto kYoung = 1500ms;   // of a run: a loop reports once a second, and soon after it has heard the plant
+constexpr auto kAlive = 2500ms;  // a controller reports once a second
+constexpr auto kYoung =
+    1500ms;  // of a run: a loop reports once a second, and soon after it has heard the plant
 constexpr double kLead_s = 0.02;  // from the decision to its effect: several repeats
 constexpr size_t kMostUndo = 100;
 constexpr size_t kMostControllers = 16;

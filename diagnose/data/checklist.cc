@@ -8,6 +8,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/data/interval_means.h"
+#include "diagnose/data/run_data.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
@@ -19,6 +20,8 @@ using runs::MeasuredSignal;
 
 // A balance that holds correlates by 0.8 and more; one with a wrong sign by the same, negative.
 constexpr double kClear = 0.5;
+constexpr double kFarOff =
+    6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
 
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -140,8 +143,9 @@ class RunChecklist {
     }
     // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
     const double low = std::min(low1, low2);
-    const bool near = low > 0.85 * p_.p_3 && low < 3 * p_.p_3;
-    const bool same = std::max(low1, low2) < 1.5 * low;
+    const double noise = kFarOff * std::max(EstimateNoise(run_.p1.values), EstimateNoise(run_.p2.values));
+    const bool near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise;
+    const bool same = std::max(low1, low2) < 1.5 * low + noise;
     Add(near && same && !LooksLikeCurrents() ? State::kGood : State::kLook, "charge pressure",
         "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
             ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +

@@ -18,7 +18,8 @@ using Run = runs::MeasuredRun;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLikeATurn = 0.05;   // relative
-constexpr double kSmallStep = 0.1;    // rad: samples that follow a motion are nearer to each other
+constexpr double kLikeAUnit = 0.05;   // relative
+constexpr double kSmallStep = 1;      // rad: samples that follow a motion are nearer to each other
 constexpr double kFollows = 0.9;      // correlation of a speed with the rate of its angle
 constexpr double kOtherUnit = 1.5;    // ratio; no sensor's gain is as wrong as any unit
 constexpr double kTakesTorque = 0.5;  // share that what is left of the flow through a bypass never takes
@@ -38,18 +39,26 @@ struct Pairing {
 // How often the angle jumps by a turn and stays there; 0 where it moves so fast that a turn could be motion.
 size_t JumpsByATurn(const std::vector<double>& angle) {
   std::vector<double> steps;
+  for (size_t i = 1; i < angle.size(); ++i) {
+    if (const double step = angle[i] - angle[i - 1]; !std::isnan(step)) steps.push_back(std::abs(step));
+  }
+  const double usual = steps.empty() ? kTurn : maths::Median(steps);
+  if (usual > kSmallStep) return 0;
+  // The motion goes on while it jumps.
+  const double apart = std::max(kLikeATurn * kTurn, 2 * usual);
   size_t jumps = 0;
   for (size_t i = 1; i < angle.size(); ++i) {
     const double step = angle[i] - angle[i - 1];
-    if (std::isnan(step)) continue;
-    steps.push_back(std::abs(step));
-    if (std::abs(std::abs(step) / kTurn - 1) > kLikeATurn) continue;
+    if (!(std::abs(std::abs(step) - kTurn) < apart)) continue;
     // A single wrong sample jumps back.
-    const bool back = i + 1 < angle.size() && std::abs(angle[i + 1] - angle[i] + step) < kSmallStep * kTurn;
-    if (!back) ++jumps;
-    if (back) ++i;
+    const bool back = i + 1 < angle.size() && std::abs(angle[i + 1] - angle[i] + step) < 2 * apart;
+    if (back) {
+      ++i;
+    } else {
+      ++jumps;
+    }
   }
-  return !steps.empty() && maths::Median(steps) < kSmallStep ? jumps : 0;
+  return jumps;
 }
 
 // "as degrees are to radians"
@@ -64,7 +73,7 @@ std::string LikeUnits(double ratio) {
                 {60, "minutes are to seconds"},
                 {1000, "mm are to m"}};
   for (const auto& known : kKnown) {
-    if (std::abs(std::max(ratio, 1 / ratio) / known.ratio - 1) < kLikeATurn)
+    if (std::abs(std::max(ratio, 1 / ratio) / known.ratio - 1) < kLikeAUnit)
       return std::string(", as ") + known.units;
   }
   return "";

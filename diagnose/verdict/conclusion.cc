@@ -22,6 +22,7 @@
 #include "diagnose/verdict/run_curves.h"
 #include "diagnose/verdict/sentence.h"
 #include "diagnose/verdict/shown_noise.h"
+#include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
 
@@ -96,6 +97,17 @@ void RemarkOnRivals(const std::map<std::string, double>& weights, Diagnosis* d) 
   }
 }
 
+// Says of the user's own effects (--effect) which were never refitted, so that nobody takes them to be ruled out.
+void RemarkOnUsersOwn(Diagnosis* d) {
+  for (const Candidate& candidate : d->candidates) {
+    const std::string id = candidate.id.substr(0, candidate.id.find(' '));
+    const bool tried = std::isfinite(candidate.fit);
+    if (tried || model::FindEffect(id) == nullptr || model::IsBuiltIn(id)) continue;
+    d->remarks.push_back(candidate.id + " was not refitted (" + candidate.rejected_because +
+                         "), so it is not ruled out: --effects with a list of it alone tries it first");
+  }
+}
+
 // Whether what was found predicts held-out runs worse than the model as given does.
 bool IsWorse(const BeforeAfter& held_out) {
   constexpr double kNoticeable = 1.01;
@@ -141,7 +153,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.horizons = HorizonGaps(context, SearchHorizon(context.runs), given, refit, best);
   if (IsWorse(d.held_out)) kept.doubts.emplace_back("held-out runs are predicted worse with it than without");
   d.verdict = VerdictOn(context, kept, d);
-  const bool changed = !best.changes().empty() || !best.fitted.hypothesis.base.empty();
+  const bool changed = !best.changes().empty() || !best.fitted.hypothesis.Free().empty();
   if (d.verdict == Verdict::kUnexplained && changed && IsWorseAlmostEverywhere(d)) {
     SearchResult nothing = search;
     nothing.best = search.given;
@@ -154,6 +166,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);
   d.candidates = Ranking(context, kept.search, weights, windows);
+  RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, given, best);
   ClosedModel closed;
   if (d.verdict != Verdict::kNothingMissing) {

@@ -223,9 +223,13 @@ bool FormulaCompiler::IsFixed(const Expression& expression, Context& context) co
     if (OwnPlace(info_, expression.name, false)) return true;
     const NameMeaning meaning = MeaningOf(expression.name, expression.column, context.hook);
     if (meaning.formula == nullptr) return meaning.fixed;
+    // Names may stand for each other many times over: each is looked at once.
+    if (const auto asked = context.fixed.find(expression.name); asked != context.fixed.end())
+      return asked->second;
     if (!context.within.insert(expression.name).second) return false;  // reported where it is emitted
     const bool fixed = IsFixed(*meaning.formula, context);
     context.within.erase(expression.name);
+    context.fixed[expression.name] = fixed;
     return fixed;
   }
   return std::all_of(expression.operands.begin(), expression.operands.end(),

@@ -52,8 +52,9 @@ class FormulaCompiler {
   struct Context {
     Hook hook = Hook::kProperties;
     Program* program = nullptr;
-    std::map<std::string, uint16_t> known;  // what has been computed, by its text; forgotten at each store
-    std::set<std::string> within;           // names of `where` that are being expanded
+    std::map<std::string, uint16_t> known;   // what has been computed, by its text; forgotten at each store
+    std::set<std::string> within;            // names of `where` that are being expanded
+    std::map<std::string, bool> fixed = {};  // of `where`, as far as it was asked
   };
 
   void AddWhere();

@@ -11,6 +11,7 @@
 namespace hydro::model {
 namespace {
 
+constexpr size_t kLongest = 8192;  // characters; what is longer has too many operations anyway
 // No formula that a person writes nests deeper; a text that does must not exhaust the stack.
 constexpr int kDeepest = 64;
 
@@ -32,7 +33,13 @@ bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; 
 
 class Parser {
  public:
-  explicit Parser(const std::string& text) : text_(text) { Advance(); }
+  explicit Parser(const std::string& text) : text_(text) {
+    if (text.size() > kLongest) {
+      throw FormulaError(kLongest + 1, std::to_string(text.size()) + " characters",
+                         std::to_string(kLongest) + " at most; [where] gives parts of a formula names");
+    }
+    Advance();
+  }
 
   Expression Whole() {
     Expression expression = Or();

@@ -140,6 +140,19 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertGreater(answers, 100)
         self.assertIn(f": identical, {answers} pressure commands from ", replay.stdout)
 
+    # Tests that our loop's values can be changed as soon as the stack is ready, and what is the foreign loop's is refused with the reason.
+    def test_tuning(self):
+        config = self.config_of(f'["{sys.executable}", "-B", "{PID}"]')
+        launch = self.launch(config, "--duration", "0", "--log", self.path("run.lcmlog"))
+        launch.wait_for("processes ready")
+        ours = self.start("hydro-set", config, "--set", f"bus.url={self.url}", "pressure.natural_frequency_rad_s=90")
+        self.assertEqual(ours.wait(), 0, ours.report())
+        own = self.start("hydro-set", config, "--set", f"bus.url={self.url}", "position.c2=400")
+        self.assertEqual(own.wait(), 1, own.report())
+        self.assertIn("position_ctrl does not take part in tuning", own.stderr)
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(), 0, launch.report())
+
     # Tests that the run ends at zero volts, with 1 and a reason, when it is killed, fails, or leaves; and that what it has started
     # ends with it.
     def test_launched_dies(self):

@@ -67,6 +67,11 @@ TEST(Contradictions, Turns) {
   runs::MeasuredRun run = Swing(model::Shaft::kFree);
   for (double& angle : run.motor_angle.values) angle -= kTurn * std::floor((angle + 3) / kTurn);
   EXPECT_THAT(Found(run), ElementsAre(HasSubstr("motor_angle jumps by a turn, ")));
+  // At 225 rad/s and 1 kHz.
+  for (size_t i = 0; i < run.samples(); ++i)
+    run.motor_angle.values[i] = std::fmod(0.225 * static_cast<double>(i), kTurn);
+  run.motor_speed = {};
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("motor_angle jumps by a turn, 35 times")));
   run = Swing(model::Shaft::kFree);
   run.motor_angle.values[500] += kTurn;
   EXPECT_THAT(Found(run), IsEmpty());
