@@ -242,6 +242,15 @@ TEST_F(EffectFileTest, ErrorsNameLineAndSymbol) {
               HasSubstr("\"arm_load\", which this effect does not set"));
   EXPECT_THAT(ErrorOfEquation("arm_torque -= a", "where = { a = 'b_', b_ = 'a' }\n"),
               HasSubstr("which stands for itself"));
+  // 60 names, each twice the one before: read once each, not 2^60 times.
+  std::string doubled = "where = { n_0 = 'alpha'";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "n_" + std::to_string(i - 1);
+    doubled += ", n_" + std::to_string(i) + " = '" + before + " + " + before + "'";
+  }
+  EXPECT_EQ(ErrorOfEquation("arm_torque -= n_59", doubled + " }\n"), "no error");
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= " + std::string(9000, '1')),
+              HasSubstr("found 9014 characters at column 8193, allowed 8192 at most"));
   EXPECT_THAT(ErrorOfEquation("arm_torque -= alpha", "where = { load = '3' }\n"),
               HasSubstr("where.load: found \"load\", which the model has already"));
   EXPECT_THAT(ErrorOfEquation("arm_torque -= \"p1\""), HasSubstr("found the text \"p1\" at column 15"));
