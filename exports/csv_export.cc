@@ -1,8 +1,11 @@
-// CSV holds one table: the run's, or the messages of one channel; of several runs with a first column that names the run.
+// A file of CSV holds one table: the run's, or the messages of one channel; of several runs with a first column that names the run. A
+// folder holds a file for each.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/input_error.h"
+#include "base/new_folder.h"
 #include "base/number_text.h"
 #include "exports/output.h"
 #include "exports/sheet_units.h"
@@ -114,31 +117,50 @@ void CheckOneSheet(const std::vector<ExportedRun>& runs) {
     if (run.sheets.size() == 1) continue;
     std::string names;
     for (const Sheet& sheet : run.sheets) names += (names.empty() ? "" : ", ") + sheet.name;
-    throw InputError("found " + std::to_string(run.sheets.size()) + " tables to export (" + names +
-                     "), allowed is one in CSV; take mat, hdf5 or mcap, or --channel for one after another");
+    throw InputError(
+        "found " + std::to_string(run.sheets.size()) + " tables to export (" + names +
+        "), allowed is one in a file of CSV; take -o FOLDER/ for a file of each, or mat, hdf5 or mcap");
   }
+}
+
+// The sheets of that name, of the runs that have one.
+void WriteTable(const std::vector<ExportedRun>& runs, const std::string& name, const std::string& file) {
+  Output out(file, true);
+  std::string head, first;
+  for (const ExportedRun& run : runs) {
+    const auto sheet = std::find_if(run.sheets.begin(), run.sheets.end(),
+                                    [&](const Sheet& one) { return one.name == name; });
+    if (sheet == run.sheets.end()) continue;
+    const std::vector<SheetColumn> columns = ColumnsOf(*sheet);
+    const std::string line = HeadLine(columns, runs.size() > 1);
+    if (head.empty()) {
+      head = line;
+      first = run.files.front();
+      out.Write(head);
+    } else if (line != head) {
+      throw InputError(run.files.front() + ": found other units than in " + first +
+                       ", allowed in one CSV are runs of the same");
+    }
+    WriteRows(run, columns, runs.size() > 1, sheet->rows(), &out);
+  }
+  out.Finish();
 }
 
 }  // namespace
 
 void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& file) {
-  CheckOneSheet(runs);
-  const bool several = runs.size() > 1;
-  Output out(file, true);
-  std::string head;
-  for (const ExportedRun& run : runs) {
-    const std::vector<SheetColumn> columns = ColumnsOf(run.sheets.front());
-    const std::string line = HeadLine(columns, several);
-    if (head.empty()) {
-      head = line;
-      out.Write(head);
-    } else if (line != head) {
-      throw InputError(run.files.front() + ": found other units than in " + runs.front().files.front() +
-                       ", allowed in one CSV are runs of the same");
-    }
-    WriteRows(run, columns, several, run.sheets.front().rows(), &out);
+  if (!IsFolder(file)) {
+    CheckOneSheet(runs);
+    WriteTable(runs, runs.front().sheets.front().name, file);
+    return;
   }
-  out.Finish();
+  NewFolder folder(file);
+  std::set<std::string> names;
+  for (const ExportedRun& run : runs) {
+    for (const Sheet& sheet : run.sheets) names.insert(sheet.name);
+  }
+  for (const std::string& name : names) WriteTable(runs, name, folder.path() + "/" + name + ".csv");
+  folder.Finish();
 }
 
 }  // namespace hydro::exports

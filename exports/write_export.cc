@@ -58,20 +58,25 @@ const char* NameOf(Format format) {
       ->name;
 }
 
+bool IsFolder(const std::string& file) { return file.ends_with('/'); }
+
 Format FormatFor(const std::string& file, const std::optional<std::string>& name) {
   const std::optional<Format> by_ending = FormatOf(EndingOf(file));
   if (name.has_value()) {
     const Format named = FormatNamed(*name);
+    if (IsFolder(file) && named != Format::kCsv) {
+      throw InputError(file + ": found a folder with --format " + *name + ", allowed is one for csv");
+    }
     const bool same = by_ending == named || (by_ending == Format::kMat && named == Format::kMat73);
     if (!by_ending || same) return named;
     throw InputError(file + ": found an ending of " + NameOf(*by_ending) + " with --format " + *name +
                      ", allowed is one that fits it");
   }
-  if (file == kStandardOutput) return Format::kCsv;
+  if (file == kStandardOutput || IsFolder(file)) return Format::kCsv;
   if (by_ending) return *by_ending;
   throw InputError(file +
                    ": found a name that tells no format, allowed are names that end in .csv, .mat, .h5, " +
-                   ".hdf5 or .mcap, or any with --format");
+                   ".hdf5 or .mcap, any with --format, or a folder, FOLDER/, for CSV");
 }
 
 void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std::string& program,

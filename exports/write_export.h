@@ -14,7 +14,10 @@ enum class Format { kCsv, kMat, kMat73, kHdf5, kMcap };
 // "csv", "mat", "mat73", "hdf5", "mcap".
 const char* NameOf(Format format);
 
-// The format of a file: that named, or that of its ending (.csv, .mat, .h5, .hdf5, .mcap), or CSV for the standard output. Throws InputError for an
+// Whether the name is a folder's, which ends in a slash: it takes a file of CSV for each table.
+bool IsFolder(const std::string& file);
+
+// The format of a file: that named, or that of its ending (.csv, .mat, .h5, .hdf5, .mcap), or CSV for the standard output and a folder. Throws InputError for an
 // unknown name, an ending that tells nothing, and one that tells another format than the name.
 Format FormatFor(const std::string& file, const std::optional<std::string>& name);
 

@@ -4,6 +4,7 @@
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/new_folder.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "exports/export_runs.h"
@@ -17,7 +18,8 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
       "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels.");
   verb.AddPositional("LOG", &logs_, "FILE the log; several: runs, or one that a recorder split");
   verb.AddOption("-o,--output", &out_,
-                 "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, or - for the standard output",
+                 "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, FOLDER/ for a CSV of each table, "
+                 "or - for the standard output",
                  true);
   verb.AddOption("--format", &format_,
                  "NAME csv, mat (version 5), mat73, hdf5 or mcap, where the file's name does not tell");
@@ -46,7 +48,9 @@ int ExportVerb::Run() const {
   // A file of messages holds all of them unless some are chosen.
   const bool messages = format == exports::Format::kMcap;
   if (messages && selection.channels.empty()) selection.all = true;
-  if (out_ != exports::kStandardOutput) {
+  if (exports::IsFolder(out_)) {
+    const NewFolder attempt(out_);
+  } else if (out_ != exports::kStandardOutput) {
     CheckKeeps(out_, logs_);
     CheckCanBeCreated(out_);
   }

@@ -216,6 +216,9 @@ TEST(FormatTest, FromName) {
   EXPECT_EQ(FormatFor("a.mcap", std::nullopt), Format::kMcap);
   EXPECT_EQ(FormatFor("-", std::nullopt), Format::kCsv);
   EXPECT_EQ(FormatFor("-", "mcap"), Format::kMcap);
+  EXPECT_EQ(FormatFor("tables/", std::nullopt), Format::kCsv);
+  EXPECT_THAT(log::InputErrorOf([] { FormatFor("tables/", "hdf5"); }),
+              HasSubstr("tables/: found a folder with --format hdf5, allowed is one for csv"));
   EXPECT_EQ(FormatFor("/dev/null", "hdf5"), Format::kHdf5);
   EXPECT_THAT(log::InputErrorOf([] { FormatFor("a.txt", std::nullopt); }),
               HasSubstr("a.txt: found a name that tells no format"));

@@ -330,6 +330,20 @@ class ForeignReadersTest(unittest.TestCase):
         two = pandas.read_csv(self.path("two.csv"), float_precision="round_trip")
         self.assert_same(list(two.query("run == 'odd'")["p1_psi"]), self.channel("HYDRO_STATE")["p1"], "p1_psi")
         self.assertEqual(len(two.query("run == 'sim'")), 101)
+        # A folder has a table for each, and of several runs in each.
+        self.export(self.log, "--all-channels", "-o", self.path("tables/"))
+        files = sorted(os.listdir(self.path("tables")))
+        self.assertIn("table.csv", files)
+        self.assertIn("HYDRO_FAULT.csv", files)
+        for name, column in (("table", "p2_psi"), ("HYDRO_STATE", "p2_psi"), ("HYDRO_MOTOR_COMMAND", "voltage_V")):
+            read = pandas.read_csv(self.path(f"tables/{name}.csv"), float_precision="round_trip")
+            expected = self.table if name == "table" else self.channel(name)
+            self.assert_same(list(read[column]), expected[column if name == "table" else column.rsplit("_", 1)[0]], name)
+        self.export(self.log, self.sim, "--channel", "HYDRO_STATE", "--channel", "table", "-o", self.path("both/"))
+        self.assertEqual(sorted(os.listdir(self.path("both"))), ["HYDRO_STATE.csv", "table.csv"])
+        self.assertEqual(set(pandas.read_csv(self.path("both/table.csv"))["run"]), {"odd", "sim"})
+        refused = self.export(self.log, "--all-channels", "-o", self.path("both/"), expect=2)
+        self.assertIn(b"there already", refused.stderr)
 
     # Tests --si in every format: pressures in MPa, to the last bit the same, and the names and units say so.
     @needs("h5py")

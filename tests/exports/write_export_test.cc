@@ -88,7 +88,7 @@ TEST_F(WriteExportTest, MatIsRead) {
 TEST_F(WriteExportTest, Csv) {
   ExportedRun run = EveryKind(2);
   EXPECT_THAT(log::InputErrorOf([&] { WriteExport({run}, Format::kCsv, "test", Path("x")); }),
-              HasSubstr("found 2 tables to export (table, HYDRO_X), allowed is one in CSV"));
+              HasSubstr("found 2 tables to export (table, HYDRO_X), allowed is one in a file of CSV"));
   run.sheets.erase(run.sheets.begin());
   run.sheets[0].columns[1].field.unit = "rad/s";
   WriteExport({run, run}, Format::kCsv, "test", Path("x"));
