@@ -29,7 +29,7 @@ bool IsSimpler(const Evidence& one, const Evidence& than) {
          std::includes(than.parts.begin(), than.parts.end(), one.parts.begin(), one.parts.end());
 }
 
-struct Rated {
+struct RatedChoice {
   const Evidence* one = nullptr;
   double gap = std::numeric_limits<double>::infinity();
 
@@ -37,22 +37,23 @@ struct Rated {
 };
 
 // Where an explanation was fitted in several ways, the way that predicts best.
-const Rated* BestOf(const std::vector<Rated>& rated, const std::string& id) {
-  const Rated* best = nullptr;
-  for (const Rated& one : rated) {
+const RatedChoice* BestOf(const std::vector<RatedChoice>& rated, const std::string& id) {
+  const RatedChoice* best = nullptr;
+  for (const RatedChoice& one : rated) {
     if (one.one->id == id && (best == nullptr || one.gap < best->gap)) best = &one;
   }
   return best;
 }
 
 std::string Choice(const Contest& contest, const std::string& found, const std::string& run) {
-  std::vector<Rated> rated;
+  std::vector<RatedChoice> rated;
   for (const Evidence& one : contest.evidence) rated.push_back({&one, GapWithout(contest, one, run)});
-  const Rated* of_found = BestOf(rated, found);
-  const auto least = std::min_element(rated.begin(), rated.end(),
-                                      [](const Rated& a, const Rated& b) { return a.Cost() < b.Cost(); });
+  const RatedChoice* of_found = BestOf(rated, found);
+  const auto least =
+      std::min_element(rated.begin(), rated.end(),
+                       [](const RatedChoice& a, const RatedChoice& b) { return a.Cost() < b.Cost(); });
   if (Material(of_found->gap, least->gap)) return least->one->id;
-  for (const Rated& other : rated) {
+  for (const RatedChoice& other : rated) {
     const bool else_said = other.one->id != found;
     if (else_said && IsSimpler(*other.one, *of_found->one) && !Material(other.gap, of_found->gap))
       return other.one->id;
