@@ -168,6 +168,24 @@ class PackagingTest(unittest.TestCase):
                 if "://" not in target:
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(self.prefix)}: {target} is not installed")
 
+    def test_installed_pages_are_of_an_installation(self):
+        """Tests that their commands are those that a shell finds, and that nothing of the markers or of a checkout's first steps is left."""
+        pages = {page.name if page.parent.name == "docs" else f"/{page.name}": page.read_text()
+                 for page in (self.prefix / "share/doc/hydro").rglob("*.md") if page.parent.name in ("docs", "hydro")}
+        for name, text in pages.items():
+            for word in ("build/bin/", "scripts/plot-run", "<!-- sources", "<!-- /sources", "<!-- installed"):
+                self.assertNotIn(word, text, name)
+        for name in ("/README.md", "start.md"):
+            self.assertNotIn("./demo", pages[name], name)
+            self.assertNotIn("./scripts/build", pages[name], name)
+        self.assertIn("\nhydro-launch config/demo.toml --set position.c2=600", pages["/README.md"])
+        self.assertIn("A run of `config/demo.toml` ends with", pages["/README.md"])
+        self.assertIn("\nhydro-experiment fig3", pages["experiments.md"])
+        self.assertIn(f"`cp -r {self.prefix}/share/hydro/config .`", pages["start.md"])
+        blocks = re.findall(r"^```[a-z]*\n(.*?)^```", pages["/README.md"], re.DOTALL | re.MULTILINE)
+        self.assertEqual(pages["/README.md"].count("\n```") % 2, 0)
+        self.assertGreater(len(blocks), 6)
+
     def test_metadata(self):
         """Tests that the package has the project's version, and that its build has the packages of install-dependencies."""
         changelog = (SOURCE / "debian/changelog").read_text()
