@@ -15,6 +15,7 @@ const Target* FindTarget(std::string_view name) {
       {"points", Points},
       {"stack_toml", StackToml},
       {"model_toml", ModelToml},
+      {"effect", Effect},
       {"overrides", Overrides},
       {"url", Url},
       {"key", Key},

@@ -31,6 +31,7 @@ void MeasuredRun(const uint8_t* data, size_t size);  // a CSV with its sidecar
 void Points(const uint8_t* data, size_t size);       // the CSV of a trajectory
 void StackToml(const uint8_t* data, size_t size);
 void ModelToml(const uint8_t* data, size_t size);
+void Effect(const uint8_t* data, size_t size);     // a file of an effect as text, and a model that has it
 void Overrides(const uint8_t* data, size_t size);  // --set
 void Url(const uint8_t* data, size_t size);        // bus.url
 void Key(const uint8_t* data, size_t size);        // bus.key_file
