@@ -28,59 +28,43 @@ std::string Dimensions(const matvar_t& variable) {
   return text;
 }
 
-// Its elements, or why there are none.
-void Read(const matvar_t& variable, size_t count, MatVector* vector) {
-  const auto take = [&]<class Number>(Number) { vector->values = ToDoubles<Number>(variable, count); };
-  switch (variable.class_type) {
-    case MAT_C_DOUBLE:
-      return take(double{});
-    case MAT_C_SINGLE:
-      return take(float{});
-    case MAT_C_INT8:
-      return take(int8_t{});
-    case MAT_C_UINT8:
-      return take(uint8_t{});
-    case MAT_C_INT16:
-      return take(int16_t{});
-    case MAT_C_UINT16:
-      return take(uint16_t{});
-    case MAT_C_INT32:
-      return take(int32_t{});
-    case MAT_C_UINT32:
-      return take(uint32_t{});
-    case MAT_C_INT64:
-      return take(int64_t{});
-    case MAT_C_UINT64:
-      return take(uint64_t{});
-    default:
-      return;
-  }
-}
+using ToNumbers = std::vector<double> (*)(const matvar_t& variable, size_t count);
 
-bool IsNumbers(const matvar_t& variable) {
-  switch (variable.class_type) {
+// What reads the elements of a variable of this class; null where they are no numbers.
+ToNumbers ReaderOf(matio_classes type) {
+  switch (type) {
     case MAT_C_DOUBLE:
+      return ToDoubles<double>;
     case MAT_C_SINGLE:
+      return ToDoubles<float>;
     case MAT_C_INT8:
+      return ToDoubles<int8_t>;
     case MAT_C_UINT8:
+      return ToDoubles<uint8_t>;
     case MAT_C_INT16:
+      return ToDoubles<int16_t>;
     case MAT_C_UINT16:
+      return ToDoubles<uint16_t>;
     case MAT_C_INT32:
+      return ToDoubles<int32_t>;
     case MAT_C_UINT32:
+      return ToDoubles<uint32_t>;
     case MAT_C_INT64:
+      return ToDoubles<int64_t>;
     case MAT_C_UINT64:
-      return true;
+      return ToDoubles<uint64_t>;
     default:
-      return false;
+      return nullptr;
   }
 }
 
 // `mat` is null for what has been read already, with the struct that it is in.
 MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
   MatVector vector{name, {}, {}};
+  const ToNumbers to_numbers = ReaderOf(variable->class_type);
   if (variable->isComplex != 0) {
     vector.wrong = "found complex numbers; real ones are needed";
-  } else if (!IsNumbers(*variable)) {
+  } else if (to_numbers == nullptr) {
     vector.wrong =
         "found text, a structure, a cell array, a sparse matrix or an object of MATLAB's; a vector of "
         "numbers is needed";
@@ -91,7 +75,7 @@ MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
         variable->nbytes != count * static_cast<size_t>(variable->data_size)) {
       vector.wrong = "found damaged or missing data; " + std::to_string(count) + " numbers are needed";
     } else {
-      Read(*variable, count, &vector);
+      vector.values = to_numbers(*variable, count);
     }
   }
   return vector;
