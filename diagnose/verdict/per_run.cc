@@ -198,16 +198,19 @@ std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::M
 }
 
 std::string RemarkOn(const ValueByRun& value) {
-  if (!(value.Spread() > kLeastSpread)) return value.name + " does not differ from run to run";
+  // A single recording was cut into a part to fit and a part to hold out.
+  const bool parts = value.values.size() == 2 && value.values[1].name.starts_with(value.values[0].name + ",");
+  const std::string between = parts ? "from one part of the recording to the other" : "from run to run";
+  if (!(value.Spread() > kLeastSpread)) return value.name + " does not differ " + between;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Estimated& run : value.values) {
     if (std::isnan(run.value)) continue;
     low = std::min(low, run.value);
     high = std::max(high, run.value);
   }
-  return value.name + " differs from run to run by " + ShortNumber(100 * value.Spread(), 2) + " % (" +
+  return value.name + " differs " + between + " by " + ShortNumber(100 * value.Spread(), 2) + " % (" +
          ShortNumber(low, 3) + " to " + ShortNumber(high, 3) + " " + value.unit +
-         "): with a value of its own for each run, the typical gap of its windows is " +
+         "): with a value of its own for each, the typical gap of its windows is " +
          ShortNumber(value.after, 3) + " instead of " + ShortNumber(value.before, 3) + " noise units";
 }
 

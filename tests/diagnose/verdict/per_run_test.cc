@@ -53,6 +53,11 @@ TEST(ValuesByRun, FrictionOfTheDay) {
   EXPECT_NEAR(found[0].Spread(), 0.2, 0.02);
   EXPECT_LT(found[0].after, 0.8 * found[0].before);
   EXPECT_THAT(diagnose::RemarkOn(found[0]), HasSubstr("T_s differs from run to run by 20 %"));
+  // The parts of a single recording are no runs.
+  const diagnose::ValueByRun parts{
+      "T_s", "in-lbf", {{"rig", 4, 4, 4, ""}, {"rig, last third", 6, 6, 6, ""}}, 2, 1};
+  EXPECT_THAT(diagnose::RemarkOn(parts),
+              HasSubstr("T_s differs from one part of the recording to the other by"));
 }
 
 // Tests that runs of one rig have no values of their own, unless they are asked for.
