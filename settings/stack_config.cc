@@ -6,9 +6,11 @@
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "settings/agreed_entries.h"
+#include "settings/joint_documents.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_checks.h"
+#include "settings/stack_document.h"
 #include "settings/stack_sections.h"
 #include "settings/trajectory_spec.h"
 
@@ -49,9 +51,38 @@ ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
                  "a path that counts from the configuration's folder");
 }
 
+// What a program of a single stack runs of a configuration with joints.
+TomlNode DocumentOfJoint(TomlNode root, const std::vector<std::string>& overrides,
+                         const std::optional<std::string>& joint) {
+  if (!HasJoints(root)) {
+    throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
+                     root.place + " does not have");
+  }
+  ApplyOverrides(overrides, &root);
+  const std::vector<std::string> names = JointNames(root);
+  if (!joint) {
+    throw KeyError(root.Find("joint")->items.front().place, "joint", "joints (" + QuotedList(names) + ")",
+                   "a stack with one: choose it with --joint NAME; hydro-limb and hydro-sim run them all");
+  }
+  for (JointDocument& document : SplitJoints(root, overrides)) {
+    if (document.name == *joint) return std::move(document.root);
+  }
+  throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
+}
+
+// A stack has one joint.
+void CheckHasNoJoints(const StackConfig& config) {
+  for (const ProcessSection& process : config.processes) {
+    if (process.joint.empty() && process.program != "hydro-limb") continue;
+    throw KeyError(process.place, process.joint.empty() ? "process.program" : "process.joint",
+                   Quoted(process.joint.empty() ? process.program : process.joint),
+                   "it in a configuration with [[joint]] sections only");
+  }
+}
+
 }  // namespace
 
-StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
+TomlNode ReadConfigDocument(const std::string& file) {
   TomlNode root = ParseToml(ReadTextFile(file), file);
   root.place = file;
   if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
@@ -60,19 +91,33 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
                      "model: [model] file = " +
                      Quoted(file));
   }
-  ApplyOverrides(overrides, &root);
-  CheckKeysHaveSections(root);
-  StackConfig config = ReadDocument(&root, file);
+  return root;
+}
+
+StackConfig StackOf(TomlNode* root, const std::string& file) {
+  CheckKeysHaveSections(*root);
+  StackConfig config = ReadDocument(root, file);
   if (config.model.file.empty()) {
-    throw KeyError(root, "model.file", "nothing", "the path of a model file");
+    throw KeyError(*root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  ModelWithText model = ReadModel(root, config.model);
+  ModelWithText model = ReadModel(*root, config.model);
   config.model.text = std::move(model.text);
   config.model.description = std::move(model.description);
-  CheckAgainstModel(root, &config);
+  CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
   RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does
+  return config;
+}
+
+StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
+  TomlNode root = ReadConfigDocument(file);
+  std::vector<std::string> others = overrides;
+  const std::optional<std::string> joint = TakeJointChoice(&others);
+  if (HasJoints(root) || joint) root = DocumentOfJoint(root, others, joint);
+  else ApplyOverrides(others, &root);
+  StackConfig config = StackOf(&root, file);
+  CheckHasNoJoints(config);
   return config;
 }
 

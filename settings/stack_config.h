@@ -153,7 +153,7 @@ struct LoggerSection {
 };
 
 struct ProcessSection {
-  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl or hydro-logger; empty: `command`
+  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-limb or hydro-logger; empty: `command`
   std::string program;
   std::string host;          // empty: any (started by a launch without --host, or on "localhost")
   int cpu = -1;              // processor to run on; -1: any
@@ -163,6 +163,9 @@ struct ProcessSection {
   std::vector<std::string> command = {};
   std::string role = {};   // whose place it takes in the stack, e.g. position_ctrl; of our programs their own
   std::string place = {};  // "file:line" of the section; empty where there is none
+  // In a configuration with [[joint]] sections only (settings/limb_config.h):
+  std::string joint = {};                // whose part this is; empty: it is hydro-limb or hydro-logger
+  std::vector<std::string> joints = {};  // of hydro-limb; empty: all that no other process has
 };
 
 struct StackConfig {
@@ -183,6 +186,7 @@ struct StackConfig {
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).
   int64_t position_interval_ticks = 1;
@@ -192,8 +196,8 @@ struct StackConfig {
 };
 
 // Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), reads the model
-// file that it names, and checks everything. Throws InputError (exit 2) naming file, line or key, what was
-// found, what is allowed.
+// file that it names, and checks everything. Of a file with [[joint]] sections, the stack of the joint that "joint=NAME" chooses.
+// Throws InputError (exit 2) naming file, line or key, what was found, what is allowed.
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.

@@ -11,6 +11,7 @@
 #include "runs/run_log.h"
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
+#include "settings/joint_documents.h"
 #include "settings/process_sections.h"
 #include "sim/simulation.h"
 
@@ -31,13 +32,35 @@ hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig&
   return hydro::settings::WithoutOwnPrograms(config);
 }
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file,
-        const std::string& tunings_of) {
-  const hydro::settings::StackConfig config =
-      WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides));
-  hydro::CheckKeeps(file);
+bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  return !hydro::settings::TakeJointChoice(&overrides) && hydro::settings::IsLimbFile(options.config);
+}
+
+// What is simulated, given where its messages go.
+using Simulation =
+    std::function<hydro::sim::SimulationResult(const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
+
+Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of) {
+  if (IsWholeLimb(options)) {
+    if (!tunings_of.empty()) {
+      throw hydro::InputError("--tuning: found it with joints, allowed is one joint's stack (--joint NAME)");
+    }
+    const auto limb = std::make_shared<const hydro::settings::LimbConfig>(
+        hydro::settings::LoadLimbConfig(options.config, options.overrides));
+    return [limb](const auto& tap) { return hydro::sim::SimulateLimb(*limb, tap); };
+  }
+  const auto config = std::make_shared<const hydro::settings::StackConfig>(
+      WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
+  return [config, tunings](const auto& tap) { return hydro::sim::Simulate(*config, tap, tunings); };
+}
+
+int Run(const hydro::settings::CommonOptions& options, const std::string& file,
+        const std::string& tunings_of) {
+  const Simulation simulate = SimulationOf(options, tunings_of);
+  hydro::CheckKeeps(file);
   hydro::process::CatchStopSignals();
   std::unique_ptr<hydro::log::LogWriter> writer;
   if (!file.empty()) writer = std::make_unique<hydro::log::LogWriter>(file, hydro::Opening::kTemporary);
@@ -48,7 +71,7 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file,
     };
   }
   const auto start = std::chrono::steady_clock::now();
-  const hydro::sim::SimulationResult result = hydro::sim::Simulate(config, tap, tunings);
+  const hydro::sim::SimulationResult result = simulate(tap);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bus/bus.h"
+#include "settings/limb_config.h"
 #include "settings/stack_config.h"
 
 namespace hydro::sim {
@@ -27,5 +28,9 @@ struct SimulationResult {
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
                           const std::vector<tuned_settings_t>& tunings = {});
+
+// The same for all joints of a limb, each on channels of its own suffix.
+SimulationResult SimulateLimb(const settings::LimbConfig& config,
+                              const std::function<void(const bus::RawMessage&)>& tap);
 
 }  // namespace hydro::sim
