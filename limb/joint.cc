@@ -6,9 +6,11 @@
 namespace hydro::limb {
 namespace {
 
-// All parts of a limb run with what this process has read: there is nothing to compare.
+// All parts of a limb run with what this process has read: there is nothing to compare. And the limb itself looks after its joints'
+// faults.
 settings::StackConfig InsideALimb(settings::StackConfig config) {
   config.agreed.clear();
+  config.siblings.clear();
   return config;
 }
 

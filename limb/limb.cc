@@ -65,10 +65,12 @@ bool Limb::StepLockstep() {
   return !over_;
 }
 
-bool Limb::StepRealtime(int64_t elapsed, int64_t skipped) {
-  tick_ += elapsed;
+bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
+  tick_ += wake_up.elapsed;
   for (auto& joint : joints_) {
-    if (!joint->ended()) joint->plant().Safely([&] { joint->plant().Wake(elapsed, skipped); });
+    if (joint->ended()) continue;
+    joint->plant().participant().statistics().RecordCycle(wake_up.at, wake_up.late);
+    joint->plant().Safely([&] { joint->plant().Wake(wake_up); });
   }
   CheckAll();
   DriveAll();
@@ -128,10 +130,13 @@ void Limb::NoteEnds() {
   over_ = over_ || std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->ended(); });
 }
 
-int Limb::End() {
+int Limb::End(const std::function<void()>& after_each) {
   for (auto& joint : joints_) joint->rig().Zero();
   int exit_code = 0;
-  for (auto& joint : joints_) exit_code = std::max(exit_code, joint->End());
+  for (auto& joint : joints_) {
+    exit_code = std::max(exit_code, joint->End());
+    if (after_each) after_each();
+  }
   return exit_code;
 }
 

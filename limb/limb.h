@@ -25,19 +25,21 @@ class Limb {
   Limb(const settings::LimbConfig& config, const LimbOptions& options);
 
   std::vector<std::unique_ptr<Joint>>& joints() { return joints_; }
+  size_t joint_count() const { return joints_.size(); }
 
   // Lockstep: the whole state of a tick, and on to the next. False: the run is over. Begin() comes first.
   bool Begin();
   bool StepLockstep();
 
-  // Real time: `elapsed` ticks later; `skipped`: how many the pacer has missed in all. False: the run is over.
-  bool StepRealtime(int64_t elapsed, int64_t skipped);
+  // Real time: as many ticks later as have elapsed. False: the run is over.
+  bool StepRealtime(const plant::WakeUp& wake_up);
 
   // While `text` is not empty, all joints are at zero volts: a fault elsewhere (a joint in another process).
   void HoldForOthers(std::string text) { elsewhere_ = std::move(text); }
 
-  // Ends all joints: zero volts for each before anything else. Returns the exit code: 0 when every joint's run ended well.
-  int End();
+  // Ends all joints: zero volts for each before anything else. `after_each` (may be empty) is called when one has said so. Returns the exit
+  // code: 0 when every joint's run ended well.
+  int End(const std::function<void()>& after_each);
 
   int64_t tick() const { return tick_; }
   // Why the first joint that failed did so: "knee: plant: ..."; empty when none has.

@@ -41,6 +41,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                .held = [this] { return !safety_.Latched().empty(); }}),
       logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
+      siblings_(participant_, config.siblings),
       roll_call_(WithControllers(expected)),
       program_(program),
       heartbeat_(std::move(heartbeat)),

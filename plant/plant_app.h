@@ -31,12 +31,21 @@
 #include "plant/output_safety.h"
 #include "plant/rig.h"
 #include "plant/roll_call.h"
+#include "plant/sibling_faults.h"
 #include "plant/tuning_desk.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
 #include "timing/round_trip_monitor.h"
 
 namespace hydro::plant {
+
+// A tick of wall time, as its pacer meets it (timing/fixed_rate_loop.h).
+struct WakeUp {
+  int64_t elapsed = 1;  // ticks since the last one
+  int64_t skipped = 0;  // ticks for which the pacer woke too late, in all
+  bus::Clock::TimePoint at{};
+  bus::Clock::Duration late{};
+};
 
 class PlantApp {
  public:
@@ -68,8 +77,8 @@ class PlantApp {
   void Start();  // at tick 0
   void Advance(int64_t to_tick);
   void PublishState(int64_t skipped_ticks);
-  // Real time: both, `elapsed` ticks later; `skipped`: ticks for which the pacer woke too late, in all.
-  void Wake(int64_t elapsed, int64_t skipped);
+  // Real time: both, as many ticks later as have elapsed.
+  void Wake(const WakeUp& wake_up);
   void Poll();
   // Whether somebody has asked for the end.
   bool Ended() const;
@@ -118,6 +127,7 @@ class PlantApp {
   OutputSafety safety_;
   TuningDesk tuning_;
   LoggerWatch logger_watch_;
+  SiblingFaults siblings_;
   RollCall roll_call_;
   std::string program_;
   std::function<bool()> heartbeat_;

@@ -87,6 +87,7 @@ void PlantApp::Check() {
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
+  if (!siblings_.empty()) HoldForOthers(siblings_.Text());
 }
 
 // The voltage of the command in force, or zero while any check fails. Drive() puts it out first and publishes the faults second.

@@ -98,7 +98,7 @@ void PlantApp::RunRealtime() {
   while (!Ended() && tick_ != config_.last_tick) {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    Wake(elapsed, loop.skipped());
+    Wake({elapsed, loop.skipped(), loop.woke(), loop.late()});
     Check();
     ChooseVoltage();
     Drive();
@@ -107,8 +107,9 @@ void PlantApp::RunRealtime() {
   }
 }
 
-void PlantApp::Wake(int64_t elapsed, int64_t skipped) {
-  participant_.statistics().set_missed_deadlines(skipped);
+void PlantApp::Wake(const WakeUp& wake_up) {
+  const int64_t elapsed = wake_up.elapsed;
+  participant_.statistics().set_missed_deadlines(wake_up.skipped);
   const double slept = static_cast<double>(elapsed - 1) / (config_.plant.rate_hz * config_.time.speed);
   Advance(tick_ + elapsed);  // under the voltage that was held all that time
   if (bus::FromSeconds(slept) > stale_time_) awake_again_ = tick_;

@@ -40,6 +40,17 @@ void ReadLimb(SectionReader section, double rate_hz, LimbSection* limb) {
   }
 }
 
+LimbSection LimbOf(const TomlNode& root, double rate_hz) {
+  LimbSection limb;
+  SectionReader document(root, "");
+  ReadLimb(document.Section("limb"), rate_hz, &limb);
+  return limb;
+}
+
+std::string SuffixOf(const JointDocument& document) {
+  return document.root.Find("bus")->Find("channel_suffix")->text;
+}
+
 // Without [[process]] sections, one process has all joints.
 void PutProcesses(const TomlNode& root, TomlNode* common) {
   common->Erase("process");
@@ -112,14 +123,6 @@ TomlNode WholeDocument(const TomlNode& root, const LimbConfig& limb) {
 
 }  // namespace
 
-std::vector<std::string> ChannelSuffixes(const StackConfig& config) {
-  std::vector<std::string> suffixes{config.bus.channel_suffix};
-  for (const std::string& joint : config.joints) {
-    suffixes.push_back(JointSuffix(config.bus.channel_suffix, joint));
-  }
-  return suffixes;
-}
-
 std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common) {
   if (!process.joint.empty()) return {process.joint};
   std::vector<std::string> joints;
@@ -134,6 +137,33 @@ std::vector<std::string> JointsOf(const ProcessSection& process, const StackConf
     if (mine) joints.push_back(joint);
   }
   return joints;
+}
+
+StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
+                         const std::optional<std::string>& joint) {
+  if (!HasJoints(root)) {
+    throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
+                     root.place + " does not have");
+  }
+  ApplyOverrides(overrides, &root);
+  const std::vector<std::string> names = JointNames(root);
+  if (!joint) {
+    throw KeyError(root.Find("joint")->items.front().place, "joint", "joints (" + QuotedList(names) + ")",
+                   "a stack with one: choose it with --joint NAME; hydro-limb and hydro-sim run them all");
+  }
+  std::optional<StackConfig> chosen;
+  std::vector<Sibling> siblings;
+  for (JointDocument& document : SplitJoints(root, overrides)) {
+    if (document.name == *joint) {
+      chosen = StackOf(&document.root, root.place);
+    } else {
+      siblings.push_back({document.name, SuffixOf(document)});
+    }
+  }
+  if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
+  const LimbSection limb = LimbOf(root, chosen->plant.rate_hz);
+  if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
+  return *chosen;
 }
 
 bool IsLimbFile(const std::string& file) { return HasJoints(ReadConfigDocument(file)); }
@@ -158,9 +188,11 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   if (bus != nullptr) common.members.push_back({"bus", *bus});
   PutProcesses(root, &common);
   limb.common = StackOf(&common, file);
-  for (const JointConfig& joint : limb.joints) limb.common.joints.push_back(joint.name);
-  SectionReader document(root, "");
-  ReadLimb(document.Section("limb"), limb.common.plant.rate_hz, &limb.limb);
+  for (const JointConfig& joint : limb.joints) {
+    limb.common.joints.push_back(joint.name);
+    limb.common.bus.joint_suffixes.push_back(joint.config.bus.channel_suffix);
+  }
+  limb.limb = LimbOf(root, limb.common.plant.rate_hz);
   CheckProcesses(limb.common);
   limb.common.agreed = AgreedByAll(limb.joints);
   limb.common.text = FormatToml(WholeDocument(root, limb));

@@ -45,9 +45,6 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
 // limb have in common. Throws InputError.
 StackConfig LoadCommonConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
-// The suffixes of the channels that belong to `config`: its own and, of a limb's, those of its joints.
-std::vector<std::string> ChannelSuffixes(const StackConfig& config);
-
 // The joints that a process of a limb has, in the order of the configuration.
 std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common);
 

@@ -51,25 +51,6 @@ ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
                  "a path that counts from the configuration's folder");
 }
 
-// What a program of a single stack runs of a configuration with joints.
-TomlNode DocumentOfJoint(TomlNode root, const std::vector<std::string>& overrides,
-                         const std::optional<std::string>& joint) {
-  if (!HasJoints(root)) {
-    throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
-                     root.place + " does not have");
-  }
-  ApplyOverrides(overrides, &root);
-  const std::vector<std::string> names = JointNames(root);
-  if (!joint) {
-    throw KeyError(root.Find("joint")->items.front().place, "joint", "joints (" + QuotedList(names) + ")",
-                   "a stack with one: choose it with --joint NAME; hydro-limb and hydro-sim run them all");
-  }
-  for (JointDocument& document : SplitJoints(root, overrides)) {
-    if (document.name == *joint) return std::move(document.root);
-  }
-  throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
-}
-
 // A stack has one joint.
 void CheckHasNoJoints(const StackConfig& config) {
   for (const ProcessSection& process : config.processes) {
@@ -114,8 +95,8 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   TomlNode root = ReadConfigDocument(file);
   std::vector<std::string> others = overrides;
   const std::optional<std::string> joint = TakeJointChoice(&others);
-  if (HasJoints(root) || joint) root = DocumentOfJoint(root, others, joint);
-  else ApplyOverrides(others, &root);
+  if (HasJoints(root) || joint) return StackOfJoint(root, others, joint);
+  ApplyOverrides(others, &root);
   StackConfig config = StackOf(&root, file);
   CheckHasNoJoints(config);
   return config;
@@ -131,6 +112,10 @@ StackConfig Changed(const StackConfig& config, const std::vector<std::string>& c
   TomlNode root = ParseToml(config.text, config.file);
   ApplyOverrides(changes, &root);
   return WithModel(&root, config.file, config.model.text, config.model.resolved_file);
+}
+
+std::vector<std::string> JointSuffixes(const StackConfig& config) {
+  return config.joints.empty() ? std::vector{config.bus.channel_suffix} : config.bus.joint_suffixes;
 }
 
 int64_t OldestPressureCommandTicks(const StackConfig& config) {

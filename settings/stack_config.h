@@ -56,6 +56,7 @@ struct ModelSection {
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   std::string channel_suffix;     // appended to every channel name
+  std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
   std::string key_file;           // "": messages are not authenticated; docs/security.md
   std::string resolved_key_file;  // path to read it from
 };
@@ -168,6 +169,12 @@ struct ProcessSection {
   std::vector<std::string> joints = {};  // of hydro-limb; empty: all that no other process has
 };
 
+// Another joint of the same limb.
+struct Sibling {
+  std::string name;
+  std::string suffix;  // of its channels
+};
+
 struct StackConfig {
   std::string file;    // as given on the command line
   std::string text;    // effective TOML: the file with every override applied
@@ -186,6 +193,7 @@ struct StackConfig {
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  std::vector<Sibling> siblings;    // of one joint's stack: those whose faults take its voltage to zero too
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).
@@ -216,6 +224,9 @@ std::string ReferenceText(const StackConfig& config);
 
 // The most ticks that a pressure command may be old at a state and still count (limits.stale_input_s beyond what is usual).
 int64_t OldestPressureCommandTicks(const StackConfig& config);
+
+// The suffixes of the channels on which states and commands are: those of a limb's joints, or the stack's own.
+std::vector<std::string> JointSuffixes(const StackConfig& config);
 
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);

@@ -64,7 +64,7 @@ SimulationResult SimulateLimb(const settings::LimbConfig& config,
     }
   }
   SimulationResult result;
-  result.exit_code = limb.End();
+  result.exit_code = limb.End({});
   result.ticks = limb.tick();
   result.duration = static_cast<double>(limb.tick()) / config.common.plant.rate_hz;
   result.failure = limb.failure();
