@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <hydro/arm_reference_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
@@ -16,6 +17,7 @@
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "tests/limb/limb_fixture.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::sim {
@@ -159,6 +161,25 @@ TEST(SimulationTest, NeedsADuration) {
   settings::StackConfig config = Step();
   config.last_tick = -1;
   EXPECT_THROW(Simulate(config, nullptr), InputError);
+}
+
+// Tests that each joint of a limb says, message by message and bit by bit, what it says alone.
+TEST(SimulateLimbTest, EachJointAsAlone) {
+  const settings::LimbConfig limb = testing::SmallLimb({"hip", "knee", "ankle"});
+  Recording together;
+  const SimulationResult result = SimulateLimb(limb, together.Tap());
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.ticks, 100);
+  for (const settings::JointConfig& joint : limb.joints) {
+    Recording alone;
+    EXPECT_EQ(Simulate(joint.config, alone.Tap()).exit_code, 0);
+    const bus::Channels channels("_" + joint.name);
+    for (const std::string& channel : {channels.Of<state_t>(), channels.Of<motor_command_t>(),
+                                       channels.Of<pressure_command_t>(), channels.Of<arm_reference_t>()}) {
+      EXPECT_EQ(together.Bytes(channel), alone.Bytes(channel)) << channel;
+      EXPECT_FALSE(alone.Bytes(channel).empty());
+    }
+  }
 }
 
 }  // namespace
