@@ -21,12 +21,12 @@ constexpr uint64_t NameKey(std::string_view name) {
   return key;
 }
 
-// A standard normal number that depends on `key` alone: Box-Muller on two outputs of SplitMix64. At most 8.6 in size.
-// Its last bits are those of the C library's log and cos.
+// A standard normal number that depends on `key` alone: Box-Muller on two outputs of SplitMix64. At most 8.6
+// in size. Its last bits are those of the C library's log and cos.
 double StandardNormal(uint64_t key);
 
-// A sequence: SplitMix64. Cheap to make: everything that draws has one of its own, so that leaving out what one of
-// them draws changes nothing that the others draw.
+// A sequence: SplitMix64. Cheap to make: everything that draws has one of its own, so that leaving out what
+// one of them draws changes nothing that the others draw.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}

@@ -8,8 +8,8 @@
 namespace hydro {
 namespace {
 
-// Tests the sequence against the numbers that the authors' program prints for seed 1234567, and that a number of it
-// needs none of those before.
+// Tests the sequence against the numbers that the authors' program prints for seed 1234567, and that a number
+// of it needs none of those before.
 TEST(RandomTest, IsSplitMix64) {
   const uint64_t published[] = {6457827717110365317u, 3203168211198807973u, 9817491932198370423u,
                                 4593380528125082431u, 16408922859458223821u};

@@ -27,8 +27,8 @@ model::ModelDescription Known() {
   return known;
 }
 
-// Tests that each parameter's logarithm is normal about its value, with the stated deviation or that of its kind: mean,
-// variance, third and fourth moment.
+// Tests that each parameter's logarithm is normal about its value, with the stated deviation or that of its
+// kind: mean, variance, third and fourth moment.
 TEST(DrawnModel, HasTheStatedDeviations) {
   const model::ModelDescription known = Known();
   std::vector<std::vector<double>> deviations(BaseParameters().size());
@@ -79,7 +79,8 @@ TEST(DrawnModel, AreIndependent) {
   }
 }
 
-// Tests that draws are the same bits in any order, and that a parameter's is the same whatever is known of the others.
+// Tests that draws are the same bits in any order, and that a parameter's is the same whatever is known of
+// the others.
 TEST(DrawnModel, DependOnNothingElse) {
   const model::ModelDescription known = Known();
   const model::Parameters fifth = DrawnModel(known, 3, 5).parameters;
