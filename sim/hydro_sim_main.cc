@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
+#include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "log/log_writer.h"
@@ -11,6 +13,7 @@
 #include "runs/run_log.h"
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
+#include "settings/model_file.h"
 #include "settings/process_sections.h"
 #include "sim/simulation.h"
 
@@ -31,10 +34,23 @@ hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig&
   return hydro::settings::WithoutOwnPrograms(config);
 }
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file,
-        const std::string& tunings_of) {
+// In the units of the model that the controllers know, which state and command.
+hydro::model::ModelDescription LoadMachine(const std::string& file,
+                                           const hydro::settings::StackConfig& config) {
+  hydro::model::ModelDescription machine = hydro::settings::LoadModelFile(file);
+  if (machine.units != config.model.description.units) {
+    throw hydro::InputError(file + ": units: found others than those of " + config.model.resolved_file +
+                            ", allowed the same");
+  }
+  return machine;
+}
+
+int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of,
+        const std::string& machine_file) {
   const hydro::settings::StackConfig config =
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides));
+  std::optional<hydro::model::ModelDescription> machine;
+  if (!machine_file.empty()) machine = LoadMachine(machine_file, config);
   hydro::CheckKeeps(file);
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
@@ -48,7 +64,8 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file,
     };
   }
   const auto start = std::chrono::steady_clock::now();
-  const hydro::sim::SimulationResult result = hydro::sim::Simulate(config, tap, tunings);
+  const hydro::sim::SimulationResult result =
+      hydro::sim::Simulate(config, tap, tunings, machine ? &*machine : nullptr);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
@@ -64,15 +81,17 @@ int main(int argc, char** argv) {
                                             "The whole stack in one process on a simulated clock.");
   command_line.AddExamples({"hydro-sim config/demo.toml -o run.lcmlog"}, "README.md");
   hydro::settings::CommonOptions options;
-  std::string file, tunings_of;
+  std::string file, tunings_of, machine;
   command_line.AddCommon(&options);
   command_line.AddOption(
       "-o,--output", &file,
       "FILE where to record the run; short for --log. Without either, nothing is recorded");
   command_line.AddOption("--tuning", &tunings_of,
                          "LOG change values as was done in that run (hydro-set), at the same ticks");
+  command_line.AddOption("--machine", &machine,
+                         "MODEL simulate this machine, under controllers that know that of CONFIG");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::settings::RunProgram("hydro-sim", [&] {
-    return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of);
+    return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of, machine);
   });
 }

@@ -11,7 +11,8 @@ namespace hydro::sim {
 
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
-                          const std::vector<tuned_settings_t>& tunings) {
+                          const std::vector<tuned_settings_t>& tunings,
+                          const model::ModelDescription* machine) {
   if (config.last_tick < 0) {
     throw InputError(config.file +
                      ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
@@ -22,7 +23,9 @@ SimulationResult Simulate(const settings::StackConfig& config,
   bus::SimulatedClock clock;
   bus::InProcessBus bus(&clock);
   if (tap) bus.SubscribeAll(tap);
-  plant::SimulatedRig rig(lockstep);
+  settings::StackConfig simulated = lockstep;
+  if (machine != nullptr) simulated.model.description = *machine;
+  plant::SimulatedRig rig(simulated);
   plant::PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
   pressure_ctrl::PressureApp pressure(bus, clock, lockstep);
   position_ctrl::PositionApp position(bus, clock, lockstep);
