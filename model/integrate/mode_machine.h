@@ -35,7 +35,7 @@ template <Form kForm>
 struct FormSize {
   static int states(const EquationData& m) {
     if constexpr (kForm == Form::kPlainClamped) return 4;
-    if constexpr (kForm == Form::kPlainFree) return 6;
+    if constexpr (kForm == Form::kPlainFree || kForm == Form::kPlainLoaded) return 6;
     return m.states;
   }
   static int switches(const EquationData& m) {
@@ -75,9 +75,24 @@ class ModeMachine {
 
   const PointOf<T>& now() const { return *now_; }
   const Mode& mode() const { return mode_; }
+  double voltage() const { return voltage_; }
   const StateHistory<T>* history() const { return remembers() ? &history_ : nullptr; }
   int64_t mode_changes() const { return mode_changes_; }
   Integrator in_use() const { return stepper_.in_use(); }
+
+  // Only with a free shaft: puts the arm here, or has its load changed. The next Advance begins afresh.
+  void MoveArm(const T& angle, const T& speed) {
+    {
+      const Parameters& p = data().parameters;
+      const T d = angle - now_->state[kArmAngle];
+      if (!mode_.valve_1) now_->state[kP1] += p.beta * p.c / (p.V_ms - p.c * angle) * d;
+      if (!mode_.valve_2) now_->state[kP2] -= p.beta * p.c / (p.V_ms + p.c * angle) * d;
+    }
+    now_->state[kArmAngle] = angle;
+    now_->state[kArmSpeed] = speed;
+    started_ = false;
+  }
+  void NewLoad() { started_ = false; }
 
   // As Actuator::Advance.
   void Advance(double voltage, double until) {
@@ -139,12 +154,15 @@ class ModeMachine {
   void EvaluateHere() { Evaluate(now_); }
 
   void Command(double voltage) {
-    voltage_ = voltage;
     fresh_ = true;
     if constexpr (kForm == Form::kGeneral) {
-      equations_.Command(now_->time, voltage);
-      PassStop();
+      if (voltage != voltage_ || !commanded_) {
+        equations_.Command(now_->time, voltage);
+        PassStop();
+      }
+      commanded_ = true;
     }
+    voltage_ = voltage;
     EvaluateHere();
     const bool settled = Settle();
     if constexpr (kDerivatives) {
@@ -373,6 +391,7 @@ class ModeMachine {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
+  bool commanded_ = false;  // the equations know a voltage
   bool fresh_ = true;  // mode or voltage is new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
