@@ -1,10 +1,11 @@
-// Each joint's actuator integrates its own equations, modes and events; the arm couples them. Between two exchanges of loads joint i
-// moves by
-//   m_i alpha_i'' = tau_i + W_i + W_i' (t - t_0),   m_i = 1/(M^-1)_ii,
-// with its own torque tau_i exact at every instant and what the others do to it, W_i = m_i alpha_i'' - tau_i of the whole arm's
-// M alpha'' + bias = tau, as a straight line. At the end of the step W and W' are known too; the cubic through both ends gives
-// what the straight line has missed, and angle and speed are corrected by its integrals. So the method is of third order and
-// looks back at nothing: events inside a step cost accuracy in that step only.
+// Each joint's actuator integrates its own equations, modes and events; the arm couples them. From one exchange of loads, at t_0,
+// to the next, joint i moves by
+//   m_i alpha_i'' = tau_i + W_i(t),   m_i = 1/(M^-1)_ii at t_0,
+// with its own torque tau_i exact at every instant. W_i is what the others do to it (arm/arm_coupling.h): it continues as a parabola,
+// from W and W' at t_0 and the change of W' since the exchange before. At the end W and W' are known too, and the cubic
+// through both ends says what the parabola has missed: angle and speed are corrected by its integrals, and the fluid is compressed by the
+// angle's. The method is of third order. A jump in a rate (a valve, a pump that sticks, a new voltage) costs accuracy in
+// the step in which it lies and the one after.
 
 #include "model/coupled_arm.h"
 
@@ -12,45 +13,39 @@
 #include <cmath>
 #include <string>
 
-#include "model/arm/factor.h"
-#include "model/arm/planar_arm.h"
+#include "model/arm/arm_coupling.h"
 #include "model/loaded_actuator.h"
 
 namespace hydro::model {
+namespace {
+
+// Calls `act`, whose errors then say which joint's they are.
+template <class Act>
+void Named(int joint, const Act& act) {
+  try {
+    act();
+  } catch (const ModelError& error) {
+    throw ModelError("joint " + std::to_string(joint + 1) + ": " + error.what());
+  }
+}
+
+}  // namespace
+
 class CoupledArm::Impl {
  public:
-  // What couples the joints at one instant.
-  struct Coupling {
-    explicit Coupling(size_t n)
-        : angle(n), speed(n), torque(n), torque_rate(n), acceleration(n), jerk(n), inertia(n), load(n),
-          load_rate(n), held(n) {}
-
-    std::vector<double> angle, speed;
-    std::vector<double> torque, torque_rate;  // tau and its rate: what the actuators give
-    std::vector<double> acceleration, jerk;
-    std::vector<double> inertia;          // m
-    std::vector<double> load, load_rate;  // W, W'
-    std::vector<bool> held;               // clamped, or held by friction of its own
-  };
-
   Impl(const ArmDescription& description, const std::vector<ArmJoint>& joints,
        const CoupledArmOptions& options)
-      : arm_(description),
-        options_(options),
-        now_(description.links.size()),
-        next_(description.links.size()),
-        matrix_(description.links.size() * description.links.size()),
-        work_(description.links.size()) {
-    if (joints.size() != description.links.size()) {
+      : coupling_(PlanarArm(description)), options_(options), now_(n()), other_(n()), loads_(joints.size()) {
+    if (static_cast<int>(joints.size()) != n()) {
       throw ModelError("found " + std::to_string(joints.size()) + " joints for an arm of " +
-                       std::to_string(description.links.size()) + " links; allowed is one for each link");
+                       std::to_string(n()) + " links; allowed is one for each link");
     }
     if (!(options.longest_step > 0) || !(options.steps_per_radian > 0)) {
       throw ModelError("longest_step and steps_per_radian of a coupled arm must be above 0");
     }
     for (const ArmJoint& joint : joints) {
-      Named(static_cast<int>(actuators_.size()),
-            [&] { actuators_.emplace_back(joint.model, joint.options); });
+      const int number = static_cast<int>(actuators_.size());
+      Named(number, [&] { actuators_.emplace_back(joint.model, joint.options); });
       clamped_.push_back(joint.options.shaft == Shaft::kClamped);
       parameters_.push_back(joint.model.parameters);
     }
@@ -74,22 +69,12 @@ class CoupledArm::Impl {
   }
 
   double time() const { return actuators_[0].time(); }
-  int n() const { return arm_.links(); }
+  int n() const { return coupling_.joints(); }
   const LoadedActuator& actuator(int joint) const { return actuators_.at(static_cast<size_t>(joint)); }
-  const Coupling& now() const { return now_; }
+  const JointCoupling& now() const { return now_; }
 
  private:
-  // Calls `act`, whose errors then say which joint's they are.
-  template <class Act>
-  static void Named(int joint, const Act& act) {
-    try {
-      act();
-    } catch (const ModelError& error) {
-      throw ModelError("joint " + std::to_string(joint + 1) + ": " + error.what());
-    }
-  }
-
-  // The fastest oscillation is no faster than the root of the sum of all joints' squares, which is the trace of M^-1 K.
+  // No oscillation of the arm on the fluid is faster than the root of the trace of M^-1 K.
   double LongestStep() const {
     double squares = 0;
     for (int i = 0; i < n(); ++i) {
@@ -106,32 +91,40 @@ class CoupledArm::Impl {
   void Step(std::span<const double> voltages, double until) {
     const double h = until - time();
     for (int i = 0; i < n(); ++i) {
+      loads_[i] = {now_.inertia[i], now_.load[i], now_.load_rate[i], Curve(i)};
       Named(i, [&] {
-        if (!clamped_[i]) {
-          actuators_[i].SetLoad({.inertia = now_.inertia[i], .torque = now_.load[i], .torque_rate = now_.load_rate[i]});
-        }
+        if (!clamped_[i]) actuators_[i].SetLoad(loads_[i]);
         actuators_[i].Advance(voltages[i], until);
       });
     }
-    Couple(&next_);
+    Couple(&other_);
     for (int i = 0; i < n(); ++i) {
-      if (!next_.held[i]) Correct(i, h);
+      if (!other_.held[i]) Correct(i, h);
     }
-    std::swap(now_, next_);
+    std::swap(now_, other_);
+    last_step_ = h;
   }
 
-  // With x = (t - t_0)/h the line has missed missed (3 x^2 - 2 x^3) + missed_rate h (x^3 - x^2).
+  // Half of W'', from the rates now and at the exchange before (other_), both with the inertia of now.
+  double Curve(int i) const {
+    if (last_step_ == 0 || now_.held != other_.held) return 0;
+    const double before = now_.held[i] ? other_.load_rate[i]
+                                       : now_.inertia[i] * other_.jerk[i] - other_.torque_rate[i];
+    return (now_.load_rate[i] - before) / (2 * last_step_);
+  }
+
+  // With s = (t - t_0)/h the parabola has missed missed (3 s^2 - 2 s^3) + h missed_rate (s^3 - s^2).
   void Correct(int i, double h) {
-    const double m = now_.inertia[i];
+    const auto& [m, torque, torque_rate, curve] = loads_[i];
     const double missed =
-        m * next_.acceleration[i] - next_.torque[i] - (now_.load[i] + h * now_.load_rate[i]);
-    const double missed_rate = m * next_.jerk[i] - next_.torque_rate[i] - now_.load_rate[i];
-    next_.speed[i] += h / m * (missed / 2 - h * missed_rate / 12);
-    next_.angle[i] += h * h / m * (0.15 * missed - h * missed_rate / 30);
-    actuators_[i].MoveArm(next_.angle[i], next_.speed[i]);
+        m * other_.acceleration[i] - other_.torque[i] - (torque + h * (torque_rate + h * curve));
+    const double missed_rate = m * other_.jerk[i] - other_.torque_rate[i] - (torque_rate + 2 * h * curve);
+    other_.speed[i] += h / m * (missed / 2 - h * missed_rate / 12);
+    other_.angle[i] += h * h / m * (0.15 * missed - h * missed_rate / 30);
+    actuators_[i].MoveArm(other_.angle[i], other_.speed[i]);
   }
 
-  void Couple(Coupling* at) {
+  void Couple(JointCoupling* at) {
     for (int i = 0; i < n(); ++i) {
       at->angle[i] = actuators_[i].arm_angle();
       at->speed[i] = actuators_[i].arm_speed();
@@ -139,80 +132,20 @@ class CoupledArm::Impl {
       at->torque[i] = torque;
       at->held[i] = clamped_[i] || held;
     }
-    const ArmPose pose = arm_.PoseAt(at->angle);
-    FactorMass(pose, at);
-    arm_.Bias(pose, at->speed, work_);
-    Solve(*at, at->torque, &at->acceleration);
+    coupling_.FindAccelerations(at);
     for (int i = 0; i < n(); ++i) at->torque_rate[i] = actuators_[i].ArmTorqueRate(at->acceleration[i]);
-    std::fill(at->jerk.begin(), at->jerk.end(), 0.0);
-    arm_.JointTorqueRates(pose, at->speed, at->acceleration, at->jerk, work_);
-    Solve(*at, at->torque_rate, &at->jerk);
-    for (int i = 0; i < n(); ++i) {
-      at->load[i] = at->inertia[i] * at->acceleration[i] - at->torque[i];
-      at->load_rate[i] = at->inertia[i] * at->jerk[i] - at->torque_rate[i];
-    }
-    LoadHeld(pose, at);
+    coupling_.FindLoads(at);
   }
 
-  // The matrix's factors, with the held joints taken out, and the inertia that each joint has while the others' torques are held.
-  void FactorMass(const ArmPose& pose, Coupling* at) {
-    arm_.MassMatrix(pose, matrix_);
-    bool any = false;
-    for (int i = 0; i < n(); ++i) {
-      if (!at->held[i]) continue;
-      any = true;
-      at->inertia[i] = matrix_[i + i * n()];
-      for (int k = 0; k < n(); ++k) matrix_[std::max(i, k) + std::min(i, k) * n()] = 0;
-      matrix_[i + i * n()] = 1;
-    }
-    if (!Factor(n(), matrix_)) throw ModelError("the arm's mass matrix is not positive definite");
-    InverseDiagonal(n(), matrix_, work_);
-    for (int i = 0; i < n(); ++i) {
-      if (!at->held[i]) at->inertia[i] = 1 / work_[i];
-    }
-    if (any) FreeHeld(pose, at);
-  }
-
-  // The inertia that a held joint has once it moves, when the other held ones stay.
-  void FreeHeld(const ArmPose& pose, Coupling* at) {
-    std::vector<double> whole(matrix_.size());
-    arm_.MassMatrix(pose, whole);
-    for (int i = 0; i < n(); ++i) {
-      if (!at->held[i] || clamped_[i]) continue;
-      const double* column = whole.data() + i * n();
-      for (int k = 0; k < n(); ++k) work_[k] = at->held[k] ? 0 : column[k];
-      SolveFactored(n(), matrix_, work_);
-      for (int k = 0; k < n(); ++k) at->inertia[i] -= column[k] * work_[k];
-    }
-  }
-
-  // M x = torques - work_, where held joints have x = 0.
-  void Solve(const Coupling& at, const std::vector<double>& torques, std::vector<double>* x) const {
-    for (int i = 0; i < n(); ++i) (*x)[i] = at.held[i] ? 0 : torques[i] - work_[i];
-    SolveFactored(n(), matrix_, *x);
-  }
-
-  // What a held joint has to hold is its load.
-  void LoadHeld(const ArmPose& pose, Coupling* at) {
-    if (std::none_of(at->held.begin(), at->held.end(), [](bool held) { return held; })) return;
-    arm_.JointTorques(pose, at->speed, at->acceleration, work_);
-    for (int i = 0; i < n(); ++i) {
-      if (at->held[i]) at->load[i] = -work_[i];
-    }
-    arm_.JointTorqueRates(pose, at->speed, at->acceleration, at->jerk, work_);
-    for (int i = 0; i < n(); ++i) {
-      if (at->held[i]) at->load_rate[i] = -work_[i];
-    }
-  }
-
-  PlanarArm arm_;
+  ArmCoupling coupling_;
   CoupledArmOptions options_;
   std::vector<LoadedActuator> actuators_;
   std::vector<bool> clamped_;
   std::vector<Parameters> parameters_;
-  Coupling now_, next_;
-  std::vector<double> matrix_;
-  std::vector<double> work_;
+  JointCoupling now_;
+  JointCoupling other_;  // at the exchange before, then at the next
+  double last_step_ = 0;
+  std::vector<ArmLoad> loads_;  // as they were set last
 };
 
 CoupledArm::CoupledArm(const ArmDescription& arm, const std::vector<ArmJoint>& joints,
@@ -223,15 +156,20 @@ CoupledArm::CoupledArm(CoupledArm&&) noexcept = default;
 CoupledArm& CoupledArm::operator=(CoupledArm&&) noexcept = default;
 
 void CoupledArm::Advance(std::span<const double> voltages, double until) { impl_->Advance(voltages, until); }
+
 double CoupledArm::time() const { return impl_->time(); }
 int CoupledArm::joints() const { return impl_->n(); }
+
 Measurement CoupledArm::Measure(int joint) const { return impl_->actuator(joint).Measure(); }
+
 double CoupledArm::ActuatorTorque(int joint) const {
   return impl_->now().torque.at(static_cast<size_t>(joint));
 }
+
 double CoupledArm::Acceleration(int joint) const {
   return impl_->now().acceleration.at(static_cast<size_t>(joint));
 }
+
 Power CoupledArm::PowerBalance(int joint) const { return impl_->actuator(joint).PowerBalance(); }
 
 }  // namespace hydro::model

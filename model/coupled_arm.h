@@ -19,9 +19,10 @@ struct ArmJoint {
 };
 
 struct CoupledArmOptions {
-  double longest_step = 1e-3;  // s, between exchanges of loads
-  // Exchanges per radian of the fastest oscillation that coupled joints can have: the arm's inertia on the compressed fluid.
-  double steps_per_radian = 4;
+  double longest_step = 1e-3;  // s, from one exchange of loads to the next
+  // Exchanges per radian of the fastest oscillation that the arm can have on the fluid it compresses. More is more accurate
+  // (docs/model.md).
+  double steps_per_radian = 2;
 };
 
 class CoupledArm {

@@ -23,7 +23,7 @@ class LoadedActuator {
   // The arm's load from time() on. Throws ModelError.
   void SetLoad(const ArmLoad& load);
 
-  // Puts the arm here at time(): a correction, small enough not to compress the fluid. Pressures stay.
+  // Puts the arm nearby at time(): a correction. The fluid is compressed as if the arm had turned there.
   void MoveArm(double angle, double speed);
 
   // As those of Actuator.

@@ -310,13 +310,31 @@ void Equations::SetLoad(double time, const ArmLoad& load) {
   if (!(load.inertia > 0) || !std::isfinite(load.inertia)) {
     throw ModelError("inertia of the arm's load = " + Number(load.inertia) + "; allowed is above 0");
   }
-  if (!std::isfinite(load.torque) || !std::isfinite(load.torque_rate)) {
+  if (!std::isfinite(load.torque + load.torque_rate + load.torque_curve)) {
     throw ModelError("the torque of the arm's load is not finite");
   }
   data_.loaded = true;
   data_.load = load;
   data_.load_since = time;
   data_.inverse_load_inertia = 1 / load.inertia;
+}
+
+void Equations::MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
+                        double* state) const {
+  const Parameters& p = data_.parameters;
+  const double turned = p.c * (angle - state[kArmAngle]);
+  if (plain()) {
+    if (!mode.valve_1) state[kP1] += p.beta / (p.V_ms - p.c * angle) * turned;
+    if (!mode.valve_2) state[kP2] -= p.beta / (p.V_ms + p.c * angle) * turned;
+  } else if (!data_.bypass && data_.actuator_angle_state == kArmAngle) {
+    double rate[kMaxStates];
+    Terms<double> x;
+    Evaluate(time, voltage, mode, state, rate, &x);
+    if (!mode.valve_1) state[kP1] += x.beta_1 / x.V_1 * turned;
+    if (!mode.valve_2) state[kP2] -= x.beta_2 / x.V_2 * turned;
+  }
+  state[kArmAngle] = angle;
+  state[kArmSpeed] = speed;
 }
 
 Measurement Equations::Measure(double time, const double* state, const StateHistory<double>* history) const {

@@ -124,6 +124,11 @@ class Equations {
   // From `time` on the arm has this load; before the first integration step this makes the arm a loaded one. Throws ModelError.
   void SetLoad(double time, const ArmLoad& load);
 
+  // Puts a free arm nearby. The fluid is compressed as by that motion, but where a valve is open, or the arm is not what compresses it
+  // (bypass, arm.flexure).
+  void MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
+               double* state) const;
+
   // Known stops: times at which the right-hand side jumps by itself. An integrator calls Command when the
   // voltage changes, steps no further than NextStop, and calls PassStop there; until then the earlier
   // formulas hold.

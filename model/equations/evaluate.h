@@ -53,7 +53,8 @@ template <Form kForm>
 }
 
 [[gnu::always_inline]] inline double LoadTorque(const EquationData& m, double time) {
-  return m.load.torque + m.load.torque_rate * (time - m.load_since);
+  const double since = time - m.load_since;
+  return m.load.torque + since * (m.load.torque_rate + since * m.load.torque_curve);
 }
 
 // Calls `change(effect)` for each effect, with its parameters in x.own.

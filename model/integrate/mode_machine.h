@@ -80,16 +80,9 @@ class ModeMachine {
   int64_t mode_changes() const { return mode_changes_; }
   Integrator in_use() const { return stepper_.in_use(); }
 
-  // Only with a free shaft: puts the arm here, or has its load changed. The next Advance begins afresh.
-  void MoveArm(const T& angle, const T& speed) {
-    {
-      const Parameters& p = data().parameters;
-      const T d = angle - now_->state[kArmAngle];
-      if (!mode_.valve_1) now_->state[kP1] += p.beta * p.c / (p.V_ms - p.c * angle) * d;
-      if (!mode_.valve_2) now_->state[kP2] -= p.beta * p.c / (p.V_ms + p.c * angle) * d;
-    }
-    now_->state[kArmAngle] = angle;
-    now_->state[kArmSpeed] = speed;
+  // As Simulation. The next Advance begins afresh.
+  void MoveArm(double angle, double speed) requires(!kDerivatives) {
+    equations_.MoveArm(now_->time, voltage_, mode_, angle, speed, now_->state);
     started_ = false;
   }
   void NewLoad() { started_ = false; }
