@@ -4,8 +4,8 @@
 // with its own torque tau_i exact at every instant. W_i is what the others do to it (arm/arm_coupling.h): it continues as a parabola,
 // from W and W' at t_0 and the change of W' since the exchange before. At the end W and W' are known too, and the cubic
 // through both ends says what the parabola has missed: angle and speed are corrected by its integrals, and the fluid is compressed by the
-// angle's. The method is of third order. A jump in a rate (a valve, a pump that sticks, a new voltage) costs accuracy in
-// the step in which it lies and the one after.
+// angle's. In smooth motion the method is of fourth order. A jump in a rate (a valve, a pump that sticks) costs accuracy in the step in
+// which it lies.
 
 #include "model/coupled_arm.h"
 

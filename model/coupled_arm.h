@@ -15,7 +15,8 @@ namespace hydro::model {
 // for a joint that is locked at options.arm_angle.
 struct ArmJoint {
   ModelDescription model;
-  ActuatorOptions options;
+  // The exchange of loads leaves more than this tolerance does; a finer one costs time and gains nothing.
+  ActuatorOptions options = {.relative_tolerance = 1e-5};
 };
 
 struct CoupledArmOptions {

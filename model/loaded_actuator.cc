@@ -15,6 +15,7 @@ class LoadedActuator::Impl {
     if (loaded()) equations.SetLoad(0, {.inertia = description.parameters.J_a});
     simulation =
         MakeSimulation(&equations, options.integrator, options.initial_pressure, options.relative_tolerance);
+    simulation->Advance(0, 0);  // so that rates are known before the first voltage
   }
 
   bool loaded() const { return equations.data().shaft == Shaft::kFree; }

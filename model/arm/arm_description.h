@@ -21,7 +21,7 @@ struct ArmLink {
 struct ArmDescription {
   double gravity = 0;  // in/s^2, down; 0: the plane is horizontal
   double payload = 0;  // lbf-s^2/in, a point mass at the tip
-  std::vector<ArmLink> links;
+  std::vector<ArmLink> links = {};
 
   // Throws ModelError for a value that no arm has: "arm.link 2: mass = -0.1; allowed is above 0". Links count
   // from 1, from the base.
