@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "base/multiples.h"
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
@@ -67,23 +68,28 @@ class PlantApp {
   void RunLockstep();
   void RunRealtime();
   bool AwaitAnswers();
-  std::string Unanswered() const;
+  bool MayGoOn(const char* who, bool late);
+  const char* Unanswered() const;
+  bool LoggersKeepUp() const;
   void Advance(int64_t to_tick);
+  void SetTick(int64_t tick);
   void Drive();
-  void PublishRigFaults();
+  [[gnu::cold]] void PublishRigFaults(const std::vector<RigFault>& faults);
   void PublishState(int64_t skipped_ticks);
   void DescribeRun();
-  void PublishDescription();
+  [[gnu::cold]] void PublishDescription();
   void PublishOutputLeft(const OutputLeft& left);
-  void ChooseVoltage();
-  void CheckCommand(const motor_command_t& command);
+  void ChooseVoltage(bus::Clock::TimePoint now);
+  bool CommandIsWell(bus::Clock::TimePoint now) const;
+  [[gnu::cold]] void CheckAll(bus::Clock::TimePoint now);
+  void CheckCommand(bus::Clock::TimePoint now);
   void CheckCommandIsFresh();
-  void CheckSupervisor();
+  void CheckSupervisor(bus::Clock::TimePoint now);
   void OnMotorCommand(const motor_command_t& command);
   void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration AgeOfAnswer() const;
-  void Poll();
+  void Poll(bus::Clock::TimePoint now);
   bool Ended() const;
 
   settings::StackConfig config_;
@@ -99,9 +105,13 @@ class PlantApp {
   bus::Clock::TimePoint next_heartbeat_check_;
   bus::Publisher<state_t> state_publisher_;
   const bus::Clock::Duration stale_time_;
+  const bus::Clock::Duration stall_time_;
+  const bool realtime_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
+  Multiples pressure_ticks_, position_ticks_;  // at which each loop answers
+  bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
   model::Measurement measured_;          // at tick_
   std::vector<std::string> rig_faults_;  // codes of those that are active
