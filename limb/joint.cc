@@ -43,7 +43,7 @@ bus::Clock::TimePoint Joint::DueTime(int64_t tick) const {
 }
 
 void Joint::Poll() {
-  plant_.Poll();
+  plant_.Poll(clock_.Now());
   pressure_.Poll();
   position_.Poll();
 }

@@ -93,7 +93,7 @@ Joint* Limb::FirstFault(const Joint* besides) const {
 // All are checked before any voltage is chosen: a fault of the last joint zeroes the first in the same tick.
 void Limb::CheckAll() {
   for (auto& joint : joints_) {
-    if (!joint->ended()) joint->plant().Check();
+    if (!joint->ended()) joint->plant().Check(joint->clock().Now());
   }
   if (on_joint_fault_ == settings::OnJointFault::kOthersGoOn) return;
   Joint* const first = FirstFault(nullptr);

@@ -1,5 +1,6 @@
 #include "plant/sensor_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
@@ -9,6 +10,13 @@ namespace hydro::plant {
 double StandardNormal(uint64_t seed, int64_t tick, int channel) {
   return hydro::StandardNormal(Scatter(Scatter(seed) ^ static_cast<uint64_t>(tick)) +
                                static_cast<uint64_t>(channel));
+}
+
+bool ReadsExactly(const settings::NoiseSection& noise) {
+  return std::max({noise.p1_psi, noise.p1_resolution_psi, noise.p2_psi, noise.p2_resolution_psi,
+                   noise.motor_angle_rad, noise.motor_angle_resolution_rad, noise.motor_speed_rad_s,
+                   noise.motor_speed_resolution_rad_s, noise.arm_angle_rad, noise.arm_angle_resolution_rad,
+                   noise.arm_speed_rad_s, noise.arm_speed_resolution_rad_s}) <= 0;
 }
 
 model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "base/input_error.h"
-#include "plant/sensor_noise.h"
 
 namespace hydro::plant {
 
 SimulatedRig::SimulatedRig(const settings::StackConfig& config)
     : noise_(config.noise),
+      exact_(ReadsExactly(config.noise)),
       seed_(config.seed),
       rate_hz_(config.plant.rate_hz),
       largest_angle_(config.limits.arm_angle_rad),
@@ -35,15 +35,20 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
   read_ = tick;
   try {
     if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
-    return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
+    const model::Measurement measurement = actuator_->Measure();
+    return exact_ ? measurement : ReadSensors(measurement, noise_, seed_, tick);
   } catch (const model::ModelError& error) {
-    const double angle = actuator_->Measure().arm_angle;
-    if (!late || !(std::fabs(angle) > largest_angle_)) throw RigError("model_error", error.what());
-    throw RigError("arm_angle_limit",
-                   fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
-                               "(limits.arm_angle_rad), and left its cylinder while the plant was late",
-                               tick, angle, largest_angle_));
+    throw Explained(error, tick, late);
   }
+}
+
+RigError SimulatedRig::Explained(const model::ModelError& error, int64_t tick, bool late) const {
+  const double angle = actuator_->Measure().arm_angle;
+  if (!late || !(std::fabs(angle) > largest_angle_)) return {"model_error", error.what()};
+  return {"arm_angle_limit",
+          fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+                      "(limits.arm_angle_rad), and left its cylinder while the plant was late",
+                      tick, angle, largest_angle_)};
 }
 
 }  // namespace hydro::plant

@@ -7,6 +7,7 @@
 
 #include "model/actuator.h"
 #include "plant/rig.h"
+#include "plant/sensor_noise.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
@@ -22,12 +23,18 @@ class SimulatedRig : public Rig {
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override { return voltage_ = voltage; }
-  void SetNoise(const settings::NoiseSection& noise) override { noise_ = noise; }
+  void SetNoise(const settings::NoiseSection& noise) override {
+    noise_ = noise;
+    exact_ = ReadsExactly(noise);
+  }
   bool simulated() const override { return true; }
   OutputLeft Zero() noexcept override { return {.accepted = true, .voltage = voltage_ = 0}; }
 
  private:
+  [[gnu::cold]] RigError Explained(const model::ModelError& error, int64_t tick, bool late) const;
+
   settings::NoiseSection noise_;
+  bool exact_;  // the sensors have none
   int64_t seed_;
   double rate_hz_;
   double largest_angle_;  // rad
