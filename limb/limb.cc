@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/input_error.h"
+#include "limb/jointed_arm.h"
 #include "plant/simulated_rig.h"
 
 namespace hydro::limb {
@@ -16,21 +17,28 @@ bool IsWanted(const std::string& name, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
+void CheckSimulated(const settings::JointConfig& joint) {
+  if (!joint.config.driver) return;
+  throw InputError(joint.config.file + ": joint." + joint.name +
+                   ".driver: found a board, allowed is a simulated joint: one on a board runs as processes "
+                   "of its own ([[process]] joint = \"" + joint.name + "\")");
+}
+
 }  // namespace
 
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
-  for (settings::JointConfig joint : config.joints) {
+  std::vector<std::unique_ptr<plant::SimulatedMachine>> machines;
+  if (config.arm) machines = MakeJointedArm(config);
+  for (size_t i = 0; i < config.joints.size(); ++i) {
+    settings::JointConfig joint = config.joints[i];
     if (!IsWanted(joint.name, options.joints)) continue;
-    if (joint.config.driver) {
-      throw InputError(config.common.file + ": joint." + joint.name +
-                       ".driver: found a board, allowed is a simulated joint: one on a board runs as processes "
-                       "of its own ([[process]] joint = \"" + joint.name + "\")");
-    }
+    CheckSimulated(joint);
     joint.config.time.mode =
         options.clock == nullptr ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
-    joints_.push_back(std::make_unique<Joint>(joint, std::make_unique<plant::SimulatedRig>(joint.config),
-                                              options.clock, options.program, options.heartbeat));
+    auto rig = config.arm ? std::make_unique<plant::SimulatedRig>(joint.config, std::move(machines[i]))
+                          : std::make_unique<plant::SimulatedRig>(joint.config);
+    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), options.clock, options.program, options.heartbeat));
   }
 }
 
