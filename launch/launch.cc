@@ -15,6 +15,7 @@
 #include "launch/terminal_report.h"
 #include "process/own_program.h"
 #include "process/stack_bus.h"
+#include "settings/limb_config.h"
 
 namespace hydro::launch {
 namespace {
@@ -52,7 +53,7 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const La
 }
 
 int LaunchStack(const LaunchRequest& request) {
-  const settings::StackConfig config = settings::LoadStackConfig(request.config_file, request.overrides);
+  const settings::StackConfig config = settings::LoadCommonConfig(request.config_file, request.overrides);
   const LaunchPlan plan = PlanLaunch(config, request, process::OwnFolder());
   CheckLog(plan, request.log_file);
   if (!plan.timing_file.empty()) {

@@ -8,6 +8,7 @@
 
 #include "process/own_program.h"
 #include "process/role.h"
+#include "settings/limb_config.h"
 #include "settings/process_sections.h"
 
 namespace hydro::launch {
@@ -39,7 +40,17 @@ std::string Join(const std::set<std::string>& names) {
   return text;
 }
 
-bool SetsThePace(const std::string& program) { return program == "hydro-plant" || program == "hydro-driver"; }
+// Waits for the logger before the run begins. A joint's own stack beside a limb does not: the logger is the limb's.
+bool AwaitsLogger(const settings::ProcessSection& process) {
+  return process.joint.empty() && process::IsPlant(process::RoleOf(process.program));
+}
+
+// Which joints a limb's process has, where it does not have them all.
+std::vector<std::string> ChosenJoints(const settings::ProcessSection& process, const settings::StackConfig& config) {
+  std::vector<std::string> joints = settings::JointsOf(process, config);
+  if (process.role != "limb" || joints == config.joints) return {};
+  return joints;
+}
 
 std::set<std::string> HostsOf(const settings::StackConfig& config) {
   std::set<std::string> hosts;
@@ -93,20 +104,25 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
   return here;
 }
 
-ChildSpec ChildFor(const std::string& program, const LaunchRequest& request,
-                   const std::string& programs_folder) {
+ChildSpec ChildFor(const settings::ProcessSection& process, const settings::StackConfig& config,
+                   const LaunchRequest& request, const std::string& programs_folder) {
+  const std::string& program = process.program;
   ChildSpec child;
-  child.label = process::RoleOf(program);
+  child.label = process::RoleOf(program) + (process.joint.empty() ? "" : "_" + process.joint);
   child.argv = {FindProgram(program, programs_folder), request.config_file};
   for (const std::string& override : request.overrides) {
     child.argv.push_back("--set");
     child.argv.push_back(override);
   }
+  if (!process.joint.empty()) child.argv.insert(child.argv.end(), {"--joint", process.joint});
+  for (const std::string& joint : ChosenJoints(process, config)) {
+    child.argv.insert(child.argv.end(), {"--joints", joint});
+  }
   const bool with_log = !request.log_file.empty();
   if (program == kLogger) {
     child.last = true;
     child.argv.insert(child.argv.end(), {"-o", request.log_file});
-  } else if (with_log && SetsThePace(program)) {
+  } else if (with_log && AwaitsLogger(process)) {
     child.argv.insert(child.argv.end(), {"--expect", "logger"});
   }
   return child;
@@ -150,7 +166,7 @@ LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& 
       config.processes.begin(), config.processes.end(),
       [&](const settings::ProcessSection& process) { return !Matches(process.host, request.host); });
   for (const settings::ProcessSection& process : here) {
-    plan.children.push_back(process.command.empty() ? ChildFor(process.program, request, programs_folder)
+    plan.children.push_back(process.command.empty() ? ChildFor(process, config, request, programs_folder)
                                                     : OwnChildFor(process, config, request, programs_folder));
   }
   return plan;

@@ -7,6 +7,7 @@
 #include "base/text_file.h"
 #include "logger/logger_app.h"
 #include "process/process_main.h"
+#include "settings/limb_config.h"
 
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line("hydro-logger",
@@ -35,5 +36,6 @@ int main(int argc, char** argv) {
         logger.rotate_bytes = static_cast<int64_t>(rotate_mb * 1e6);
         hydro::logger::LoggerApp app(bus, clock, config, logger);
         return hydro::process::RunApp(bus, clock, app);
-      });
+      },
+      hydro::settings::LoadCommonConfig);
 }

@@ -34,8 +34,12 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       options_(options),
       plant_alive_(bus::FromSeconds(std::max(0.3, 5 / (config.plant.rate_hz * config.time.speed)))),
       recording_({options.file, options.rotate_bytes, static_cast<size_t>(config.logger.memory_mb * 1e6)},
-                 participant_.channels().Of<run_description_t>(), clock) {
-  if (config.time.mode == settings::TimeMode::kLockstep) {
+                 participant_.channels().Of<run_description_t>(), clock),
+      limb_(!config.joints.empty()),
+      progress_ticks_(std::max<int64_t>(1, kProgressTicks / std::max<int64_t>(1, std::ssize(config.joints)))) {
+  FindStacks(config);
+  // A limb's messages come from one process, in order.
+  if (config.time.mode == settings::TimeMode::kLockstep && !limb_) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
                    config.plant.command_delay_ticks == 0, [this](const log::RecordedMessage& message) {
                      Enqueue(message.channel, message.data.data(), message.data.size(), message.utime,
@@ -46,6 +50,20 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
                                   [this](const process_status_t& status) { OnStatus(status); });
   if (!options_.disk_is_ready) thread_.emplace(recording_);
   participant_.Announce(process_status_t::READY);
+}
+
+void LoggerApp::FindStacks(const settings::StackConfig& config) {
+  for (const std::string& suffix : settings::JointSuffixes(config)) stacks_.push_back({bus::Channels(suffix)});
+  for (size_t i = 0; i < stacks_.size(); ++i) {
+    bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>& row) {
+      if (row.part != bus::LoopPart::kNone) stack_of_channel_.emplace(stacks_[i].channels.Of<Message>(), i);
+    });
+  }
+}
+
+LoggerApp::Stack* LoggerApp::StackOf(std::string_view channel) {
+  const auto found = stack_of_channel_.find(channel);
+  return found == stack_of_channel_.end() ? nullptr : &stacks_[found->second];
 }
 
 bus::Bus& LoggerApp::Tap(bus::Bus& bus) {
@@ -62,17 +80,11 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
     return;
   }
   ++received_;
-  const std::optional<bus::LoopNumbers> numbers = bus::ReadLoopNumbers(message, participant_.channels());
+  Stack* const stack = StackOf(message.channel);
+  std::optional<bus::LoopNumbers> numbers;
+  if (stack != nullptr) numbers = bus::ReadLoopNumbers(message, stack->channels);
   if (numbers) CountSequence(*numbers);
-  if (numbers && numbers->part == bus::LoopPart::kState) {
-    FollowPlant(numbers->session);
-    state_tick_ = numbers->tick;
-    participant_.set_tick(state_tick_);
-    if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-    // A state that is sent again asks for the answer again; it may have been lost.
-    if (state_tick_ >= SaturatingSum(reported_tick_, kProgressTicks) || state_tick_ <= reported_tick_)
-      ReportProgress();
-  }
+  if (numbers && numbers->part == bus::LoopPart::kState) OnState(*stack, *numbers);
   if (order_ && numbers) {
     const auto now = participant_.clock().Now();
     log::RecordedMessage event{std::string(message.channel),
@@ -84,6 +96,19 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
     Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
             participant_.clock().Now());
   }
+}
+
+void LoggerApp::OnState(Stack& stack, const bus::LoopNumbers& numbers) {
+  if (!limb_) FollowPlant(numbers.session);  // a limb's joints have sessions of their own
+  stack.state_tick = numbers.tick;
+  state_tick_ = std::min_element(stacks_.begin(), stacks_.end(), [](const Stack& a, const Stack& b) {
+                  return a.state_tick < b.state_tick;
+                })->state_tick;
+  participant_.set_tick(state_tick_);
+  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
+  // A state that is sent again asks for the answer again; it may have been lost.
+  const bool again = !limb_ && state_tick_ <= reported_tick_;
+  if (state_tick_ >= SaturatingSum(reported_tick_, progress_ticks_) || again) ReportProgress();
 }
 
 // The logger records every plant on the bus, but takes part in one run: another's end is not its own.

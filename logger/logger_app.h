@@ -14,6 +14,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <vector>
 
 #include "log/causal_order.h"
 #include "logger/recording.h"
@@ -42,7 +44,16 @@ class LoggerApp : public process::App {
   int Finish() override;
 
  private:
+  // What is known of a stack, or of a joint's.
+  struct Stack {
+    bus::Channels channels;
+    int64_t state_tick = -1;  // newest received
+  };
+
   bus::Bus& Tap(bus::Bus& bus);
+  void FindStacks(const settings::StackConfig& config);
+  Stack* StackOf(std::string_view channel);
+  void OnState(Stack& stack, const bus::LoopNumbers& numbers);
   void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived);
   void FollowPlant(int64_t session);
@@ -71,7 +82,11 @@ class LoggerApp : public process::App {
   int64_t received_ = 0;
   int64_t largest_queue_ = 0;  // since the last statistics report
   int64_t largest_queue_total_ = 0;
-  int64_t state_tick_ = -1;  // newest tick received
+  std::vector<Stack> stacks_;                                           // one, or a limb's joints
+  std::unordered_map<std::string_view, size_t> stack_of_channel_;       // of the loops
+  const bool limb_;
+  const int64_t progress_ticks_;
+  int64_t state_tick_ = -1;  // newest tick received of every stack
   int64_t reported_tick_ = -1;
   bus::Clock::TimePoint report_again_;  // from then on even fewer than kProgressTicks new ticks are reported
   std::optional<log::CausalOrder> order_;  // lockstep: restores the order of the numbered messages

@@ -132,6 +132,14 @@ std::string OutputSafety::Latched() const {
   return codes;
 }
 
+std::string OutputSafety::OwnCause() const {
+  for (size_t i = 0; i < findings_.size(); ++i) {
+    const Cause cause = static_cast<Cause>(i);
+    if (cause != Cause::kOtherJoint && guard_.active(cause)) return VoltageGuard::CodeOf(cause);
+  }
+  return "";
+}
+
 // LCM receivers hear every multicast group on their port, so the other stack may use another group.
 void OutputSafety::OnDescription(const run_description_t& description) {
   if (description.session == participant_.session()) return;

@@ -79,6 +79,10 @@ class OutputSafety {
   double Voltage(double commanded) const { return guard_.Voltage(commanded); }
   bool holds() const { return guard_.any(); }
 
+  // Whether it holds for a fault of this rig's own, not only for one elsewhere in its limb; and that fault's code, empty without one.
+  bool holds_by_itself() const { return guard_.any_but(Cause::kOtherJoint); }
+  std::string OwnCause() const;
+
   // Publishes the faults that began or ended; call it after the output is safe. With limits.rearm = "restart"
   // an exceeded limit ends the run.
   void PublishFaults();

@@ -41,6 +41,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                .held = [this] { return !safety_.Latched().empty(); }}),
       logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
+      siblings_(participant_, config.siblings),
       roll_call_(WithControllers(expected)),
       program_(program),
       heartbeat_(std::move(heartbeat)),
@@ -85,33 +86,35 @@ void PlantApp::DescribeRun() {
 }
 
 int PlantApp::Run() {
+  if (Begin()) {
+    Safely([this] { config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime(); });
+  }
+  return End();
+}
+
+bool PlantApp::Begin() {
   DescribeRun();
   participant_.Announce(process_status_t::READY);
   PublishDescription();
-  if (WaitForParticipants()) {
-    participant_.Announce(process_status_t::RUNNING);
-    PublishDescription();
-    took_part_ = roll_call_.Participants();
-    for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
-    DriveRig();
-  }
+  if (!WaitForParticipants()) return false;
+  participant_.Announce(process_status_t::RUNNING);
+  PublishDescription();
+  took_part_ = roll_call_.Participants();
+  for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
+  return true;
+}
+
+int PlantApp::End() {
   const OutputLeft left = rig_.Zero();
   RequestStop();
   PublishOutputLeft(left);
   return participant_.Leave();
 }
 
-void PlantApp::DriveRig() {
-  try {
-    config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
-  } catch (const RigError& error) {
-    rig_.Zero();  // zero volts first, explanation second
-    participant_.Raise(error.code(), error.what(), NAN, NAN, true);
-    participant_.RequestStop(error.what(), 1);
-  } catch (...) {
-    rig_.Zero();
-    throw;
-  }
+void PlantApp::OnRigError(const RigError& error) {
+  rig_.Zero();  // zero volts first, explanation second
+  participant_.Raise(error.code(), error.what(), NAN, NAN, true);
+  participant_.RequestStop(error.what(), 1);
 }
 
 // Ends the run for every process and gives the reason, unless somebody has done so already.
@@ -185,6 +188,11 @@ bool PlantApp::WaitForParticipants() {
     Poll();
   }
   return false;
+}
+
+void PlantApp::Start() {
+  measured_ = rig_.Read(0);
+  PublishState(0);
 }
 
 // Puts out the chosen voltage first and publishes the faults second.

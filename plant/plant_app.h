@@ -31,12 +31,21 @@
 #include "plant/output_safety.h"
 #include "plant/rig.h"
 #include "plant/roll_call.h"
+#include "plant/sibling_faults.h"
 #include "plant/tuning_desk.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
 #include "timing/round_trip_monitor.h"
 
 namespace hydro::plant {
+
+// A tick of wall time, as its pacer meets it (timing/fixed_rate_loop.h).
+struct WakeUp {
+  int64_t elapsed = 1;  // ticks since the last one
+  int64_t skipped = 0;  // ticks for which the pacer woke too late, in all
+  bus::Clock::TimePoint at{};
+  bus::Clock::Duration late{};
+};
 
 class PlantApp {
  public:
@@ -54,6 +63,39 @@ class PlantApp {
   // The changes that were decided in another run, to be made again at the same ticks (TuningDesk). Before Run().
   void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
+  // The run in steps, for who paces several rigs at once (limb/). Run() takes the same ones, in the order of these lines:
+
+  // Waits until everyone who is expected is there. False: the run is over before it has begun.
+  bool Begin();
+  // Lockstep, each tick: true once all that is due at this tick has arrived.
+  bool AwaitAnswers();
+  // Both: the checks of the command in force and of what is measured; then the voltage that follows from them; then puts it out.
+  void Check();
+  void ChooseVoltage();
+  void Drive();
+  // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and publishes the state.
+  void Start();  // at tick 0
+  void Advance(int64_t to_tick);
+  void PublishState(int64_t skipped_ticks);
+  // Real time: both, as many ticks later as have elapsed.
+  void Wake(const WakeUp& wake_up);
+  void Poll();
+  // Whether somebody has asked for the end.
+  bool Ended() const;
+  // Zero volts, and everyone is told. Returns the process's exit code.
+  int End();
+  // Takes a step that touches the rig. When the rig fails: zero volts, a fault, the end of the run, and false.
+  template <class Step>
+  bool Safely(Step&& step);
+
+  // Whether a fault of this joint zeroes its voltage, by the last Check(); and what, for people.
+  bool HasOwnFault() const;
+  std::string OwnFault() const;
+  // While `text` is not empty, a fault elsewhere in the limb holds this rig at zero volts (after Check()).
+  void HoldForOthers(const std::string& text);
+
+  process::Participant& participant() { return participant_; }
+
   // Why the run failed; empty when it did not.
   std::string failure() const;
   int64_t tick() const { return tick_; }
@@ -62,20 +104,15 @@ class PlantApp {
   bool WaitForParticipants();
   bool AllHaveSaidTheirConfiguration() const;
   void OnRefusal(int64_t session, const std::string& text);
-  void DriveRig();
+  void OnRigError(const RigError& error);
   void RequestStop();
   void RunLockstep();
   void RunRealtime();
-  bool AwaitAnswers();
   std::string Unanswered() const;
-  void Advance(int64_t to_tick);
-  void Drive();
   void PublishRigFaults();
-  void PublishState(int64_t skipped_ticks);
   void DescribeRun();
   void PublishDescription();
   void PublishOutputLeft(const OutputLeft& left);
-  void ChooseVoltage();
   void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
   void CheckSupervisor();
@@ -83,8 +120,6 @@ class PlantApp {
   void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration AgeOfAnswer() const;
-  void Poll();
-  bool Ended() const;
 
   settings::StackConfig config_;
   Rig& rig_;
@@ -92,6 +127,7 @@ class PlantApp {
   OutputSafety safety_;
   TuningDesk tuning_;
   LoggerWatch logger_watch_;
+  SiblingFaults siblings_;
   RollCall roll_call_;
   std::string program_;
   std::function<bool()> heartbeat_;
@@ -122,5 +158,19 @@ class PlantApp {
   run_description_t description_;            // published once a second
   bus::Clock::TimePoint next_description_;
 };
+
+template <class Step>
+bool PlantApp::Safely(Step&& step) {
+  try {
+    step();
+    return true;
+  } catch (const RigError& error) {
+    OnRigError(error);
+  } catch (...) {
+    rig_.Zero();
+    throw;
+  }
+  return false;
+}
 
 }  // namespace hydro::plant

@@ -73,9 +73,7 @@ bus::Clock::Duration PlantApp::AgeOfAnswer() const {
   return bus::FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
-// Chooses the voltage of the command in force, or zero while any check fails. Drive() puts it out first and
-// publishes the faults second.
-void PlantApp::ChooseVoltage() {
+void PlantApp::Check() {
   const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
     command_ = waiting_commands_.front();
@@ -89,6 +87,11 @@ void PlantApp::ChooseVoltage() {
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
+  if (!siblings_.empty()) HoldForOthers(siblings_.Text());
+}
+
+// The voltage of the command in force, or zero while any check fails. Drive() puts it out first and publishes the faults second.
+void PlantApp::ChooseVoltage() {
   // What was commanded before or while the voltage was held at zero does not come back.
   const bool held = safety_.holds() || !rig_.faults().empty();
   if (held) obeyed_from_ = tick_;
@@ -96,6 +99,23 @@ void PlantApp::ChooseVoltage() {
   const bool obeys = !held && command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
   command_tick_ = obeys ? command_->tick : -1;
+}
+
+// The pressure loop's faults are told by its commands.
+bool PlantApp::HasOwnFault() const {
+  return safety_.holds_by_itself() || !rig_.faults().empty() ||
+         (command_ && command_->status == motor_command_t::SAFE);
+}
+
+std::string PlantApp::OwnFault() const {
+  if (!rig_.faults().empty()) return rig_.faults().front().code;
+  const std::string cause = safety_.OwnCause();
+  return cause.empty() ? "the pressure loop commands a safe output" : cause;
+}
+
+void PlantApp::HoldForOthers(const std::string& text) {
+  safety_.Set(VoltageGuard::Cause::kOtherJoint, !text.empty(),
+              [&] { return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN}; });
 }
 
 void PlantApp::CheckCommand(const motor_command_t& command) {

@@ -23,9 +23,9 @@ void PlantApp::RunLockstep() {
   const bool simulated = participant_.clock().simulated();
   const auto start = participant_.clock().Now();
   const double rate = config_.plant.rate_hz;
-  measured_ = rig_.Read(0);
-  PublishState(0);
+  Start();
   while (AwaitAnswers() && tick_ != config_.last_tick) {
+    Check();
     ChooseVoltage();
     Drive();
     if (participant_.stop()) break;  // a limit was exceeded
@@ -94,21 +94,26 @@ void PlantApp::RunRealtime() {
   const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
   timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics(),
                              config_.last_tick);
-  measured_ = rig_.Read(0);
-  PublishState(0);
+  Start();
   while (!Ended() && tick_ != config_.last_tick) {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    participant_.statistics().set_missed_deadlines(loop.skipped());
-    const auto slept = bus::FromSeconds(static_cast<double>(elapsed - 1) * period.count());
-    Advance(tick_ + elapsed);  // under the voltage that was held all that time
-    if (slept > stale_time_) awake_again_ = tick_;
-    PublishState(elapsed - 1);
+    Wake({elapsed, loop.skipped(), loop.woke(), loop.late()});
+    Check();
     ChooseVoltage();
     Drive();
     logger_watch_.Poll();
     Poll();
   }
+}
+
+void PlantApp::Wake(const WakeUp& wake_up) {
+  const int64_t elapsed = wake_up.elapsed;
+  participant_.statistics().set_missed_deadlines(wake_up.skipped);
+  const double slept = static_cast<double>(elapsed - 1) / (config_.plant.rate_hz * config_.time.speed);
+  Advance(tick_ + elapsed);  // under the voltage that was held all that time
+  if (bus::FromSeconds(slept) > stale_time_) awake_again_ = tick_;
+  PublishState(elapsed - 1);
 }
 
 }  // namespace hydro::plant

@@ -26,6 +26,8 @@ const char* VoltageGuard::CodeOf(Cause cause) {
       return "rig_fault";
     case Cause::kSupervisorGone:
       return "supervisor_gone";
+    case Cause::kOtherJoint:
+      return "other_joint";
     case Cause::kSuspended:
       return "machine_suspended";
     case Cause::kPressureLimit:
@@ -46,12 +48,13 @@ void VoltageGuard::Set(Cause cause, bool present) {
     return;
   }
   present_ |= Bit(cause);
-  if (rearm_ == settings::Rearm::kExplicit || Trips(cause)) latched_ |= Bit(cause);
+  const bool latches = rearm_ == settings::Rearm::kExplicit && cause != Cause::kOtherJoint;
+  if (latches || Trips(cause)) latched_ |= Bit(cause);
 }
 
 std::vector<VoltageGuard::Cause> VoltageGuard::Release(std::vector<Cause>* present) {
-  *present = Listed(present_);
-  if (present_ != 0) return {};
+  *present = Listed(present_ & ~Bit(Cause::kOtherJoint));
+  if (!present->empty()) return {};
   std::vector<Cause> ended = Listed(latched_);
   latched_ = 0;
   return ended;

@@ -23,6 +23,7 @@ class VoltageGuard {
     kControllerFault,
     kRigFault,
     kSupervisorGone,
+    kOtherJoint,
     kSuspended,
     kPressureLimit,
     kMotorSpeedLimit,
@@ -38,20 +39,22 @@ class VoltageGuard {
   // Causes that latch in either rearm mode: a good next input does not undo an exceeded limit or a suspend.
   static bool Trips(Cause cause) { return cause >= Cause::kSuspended; }
 
-  // Records whether this tick's check found the cause. One that latches stays active after it has gone.
+  // Records whether this tick's check found the cause. One that latches stays active after it has gone. kOtherJoint never latches: the
+  // joint that has the fault does.
   void Set(Cause cause, bool present);
 
   bool present(Cause cause) const { return (present_ & Bit(cause)) != 0; }
   bool latched(Cause cause) const { return (latched_ & Bit(cause)) != 0; }
   bool active(Cause cause) const { return present(cause) || latched(cause); }
   bool any() const { return (present_ | latched_) != 0; }
+  bool any_but(Cause cause) const { return ((present_ | latched_) & ~Bit(cause)) != 0; }
   bool any_latched() const { return latched_ != 0; }
 
   // The part of the commanded voltage that may reach the motor: all or nothing.
   double Voltage(double commanded) const { return any() ? 0 : commanded; }
 
-  // Ends all latched causes and returns them, unless any cause is still present: then it ends nothing,
-  // returns nothing and fills `present`.
+  // Ends all latched causes and returns them, unless any cause but kOtherJoint is still present (two joints would wait for each other):
+  // then it ends nothing, returns nothing and fills `present`.
   std::vector<Cause> Release(std::vector<Cause>* present);
 
  private:

@@ -36,6 +36,7 @@ class PositionApp : public process::App {
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
   bool finished() const override;
   int Finish() override;
+  int64_t session() const { return participant_.session(); }  // its identity on the bus
 
  private:
   void OnState(const state_t& state);

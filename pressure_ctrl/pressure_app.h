@@ -38,6 +38,7 @@ class PressureApp : public process::App {
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
   bool finished() const override;
   int Finish() override;
+  int64_t session() const { return participant_.session(); }  // its identity on the bus
 
  private:
   void OnState(const state_t& state);

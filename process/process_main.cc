@@ -38,7 +38,7 @@ timing::RealTimeRequest RealTimeRequestOf(const settings::ProcessSection& sectio
 // Without a key, anyone who can reach the multicast group can drive the actuator. Only the process that obeys
 // commands warns.
 void WarnOfOpenNetwork(const std::string& program, const settings::BusSection& bus) {
-  const bool obeys_commands = program == "hydro-plant" || program == "hydro-driver";
+  const bool obeys_commands = IsPlant(RoleOf(program));
   const int ttl = bus::ParseUdpmUrl(bus.url).ttl;
   if (!obeys_commands || ttl == 0 || !bus.key_file.empty()) return;
   spdlog::warn(
@@ -102,10 +102,11 @@ class Recording {
 
 }  // namespace
 
-int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body) {
+int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body,
+               const ConfigLoader& load) {
   return settings::RunProgram(program, [&] {
     const StderrLog log(program);  // stdout is for results
-    const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
+    const settings::StackConfig config = load(options.config, options.overrides);
     CheckKeeps(options.log);
     CatchStopSignals();
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));

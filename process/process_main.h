@@ -15,10 +15,15 @@ namespace hydro::process {
 // A process's work, given its bus and configuration; returns the exit code.
 using ProcessBody = std::function<int(bus::Bus&, bus::Clock&, const settings::StackConfig&)>;
 
+// How a program reads its configuration: as settings::LoadStackConfig, which it is unless a limb is meant.
+using ConfigLoader =
+    std::function<settings::StackConfig(const std::string& file, const std::vector<std::string>& overrides)>;
+
 // Loads the configuration that `options` names, sets up real-time scheduling as the [[process]] section of
 // `program` asks, opens the UDP bus and runs `body`. With --log FILE it also records everything on the bus.
 // Catches stop signals. Returns the process's exit code; an error is one line on stderr (2: bad input, 1: the
 // work failed).
-int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body);
+int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body,
+               const ConfigLoader& load = settings::LoadStackConfig);
 
 }  // namespace hydro::process

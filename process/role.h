@@ -13,7 +13,7 @@ inline std::string RoleOf(const std::string& program) {
   return role;
 }
 
-// Whether that role holds the rig and sets the pace of a run.
-inline bool IsPlant(const std::string& role) { return role == "plant" || role == "driver"; }
+// Whether that role holds the rig, or the rigs of a limb, and sets the pace of a run.
+inline bool IsPlant(const std::string& role) { return role == "plant" || role == "driver" || role == "limb"; }
 
 }  // namespace hydro::process

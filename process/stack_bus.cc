@@ -6,9 +6,10 @@
 namespace hydro::process {
 
 std::unique_ptr<bus::UdpmBus> OpenStackBus(const settings::BusSection& section) {
-  return bus::OpenUdpmBus(
-      section.url, bus::MakeAuthenticator(section.resolved_key_file, bus::Channels(section.channel_suffix),
-                                          bus::ParseUdpmUrl(section.url).port));
+  std::vector<bus::Channels> channels{bus::Channels(section.channel_suffix)};
+  for (const std::string& suffix : section.joint_suffixes) channels.emplace_back(suffix);
+  return bus::OpenUdpmBus(section.url, bus::MakeAuthenticator(section.resolved_key_file, channels,
+                                                              bus::ParseUdpmUrl(section.url).port));
 }
 
 }  // namespace hydro::process

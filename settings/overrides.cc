@@ -17,6 +17,25 @@ void SetOrigin(TomlNode* node, const std::string& place) {
   for (TomlNode& item : node->items) SetOrigin(&item, place);
 }
 
+void MarkAsOption(TomlNode* node, bool option) {
+  node->from_option = option;
+  for (auto& member : node->members) MarkAsOption(&member.second, option);
+  for (TomlNode& item : node->items) MarkAsOption(&item, option);
+}
+
+void LayOver(const TomlNode& own, TomlNode* under) {
+  for (const auto& [key, node] : own.members) {
+    TomlNode* below = under->Find(key);
+    if (below != nullptr && below->is(Kind::kTable) && node.is(Kind::kTable)) {
+      LayOver(node, below);
+    } else if (below != nullptr) {
+      *below = node;
+    } else {
+      under->members.push_back({key, node});
+    }
+  }
+}
+
 std::string Trimmed(const std::string& text) {
   const size_t first = text.find_first_not_of(' ');
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
@@ -32,6 +51,19 @@ TomlNode ParseValue(const std::string& value) {
   return StringNode(Trimmed(value));
 }
 
+// The [[joint]] section of that name.
+TomlNode* FindJoint(TomlNode* joints, const std::string& name, const std::string& place) {
+  std::vector<std::string> names;
+  for (TomlNode& joint : joints->items) {
+    const TomlNode* own = joint.is(Kind::kTable) ? joint.Find("name") : nullptr;
+    if (own == nullptr || !own->is(Kind::kString)) continue;
+    if (own->text == name) return &joint;
+    names.push_back(own->text);
+  }
+  throw InputError(place + ": joint: found " + Quoted(name) + ", allowed " +
+                   (names.empty() ? "no joint: the configuration has none with a name" : QuotedList(names)));
+}
+
 void ApplyOne(const std::string& option, TomlNode* root) {
   const std::string place = "--set " + Quoted(option).substr(1, Quoted(option).size() - 2);
   const size_t equals = option.find('=');
@@ -44,6 +76,11 @@ void ApplyOne(const std::string& option, TomlNode* root) {
     const size_t end = std::min(path.find('.', begin), path.size());
     const std::string key = path.substr(begin, end - begin);
     if (key.empty()) throw InputError(place + ": found " + Quoted(path) + ", allowed section.key=value");
+    if (node->is(Kind::kArray) && path.substr(0, begin) == "joint." && end < path.size()) {
+      node = FindJoint(node, key, place);
+      begin = end + 1;
+      continue;
+    }
     if (!node->is(Kind::kTable)) {
       throw InputError(place + ": " + path.substr(0, begin - 1) + ": found " + node->Shown() + " at " +
                        node->place + ", allowed a section");
@@ -120,6 +157,15 @@ void DropAlternatives(TomlNode* root) {
 }
 
 }  // namespace
+
+void Overlay(const TomlNode& own, TomlNode* root) {
+  TomlNode chosen = own;
+  MarkAsOption(root, false);
+  MarkAsOption(&chosen, true);
+  LayOver(chosen, root);
+  DropAlternatives(root);
+  MarkAsOption(root, false);
+}
 
 void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root) {
   for (const std::string& option : overrides) ApplyOne(option, root);

@@ -15,6 +15,12 @@ namespace hydro::settings {
 // of another kind when reference.kind (or model.motion.kind) is set, k_p and k_v against
 // natural_frequency_rad_s and damping_ratio, points against file and column, motion and arm_angle_rad when
 // model.shaft is set.
+//
+// "joint.NAME.section.key=value" is for the [[joint]] of that name.
 void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root);
+
+// Lays the sections of `own` over those of `root`, key by key: a joint's over what all have in common. A choice among alternatives
+// drops the others, as by option.
+void Overlay(const TomlNode& own, TomlNode* root);
 
 }  // namespace hydro::settings

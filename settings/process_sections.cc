@@ -6,7 +6,7 @@ namespace hydro::settings {
 namespace {
 
 constexpr char kPlant[] = "plant", kDriver[] = "driver", kLogger[] = "logger";
-constexpr char kPressure[] = "pressure_ctrl", kPosition[] = "position_ctrl";
+constexpr char kPressure[] = "pressure_ctrl", kPosition[] = "position_ctrl", kLimb[] = "limb";
 
 // What our program for a role is called.
 struct OurProgram {
@@ -17,6 +17,7 @@ constexpr OurProgram kOurs[] = {{kPlant, "hydro-plant"},
                                 {kDriver, "hydro-driver"},
                                 {kPressure, "hydro-pressure-ctrl"},
                                 {kPosition, "hydro-position-ctrl"},
+                                {kLimb, "hydro-limb"},
                                 {kLogger, "hydro-logger"}};
 constexpr char kExample[] = "the program and its arguments as a list of texts, e.g. [\"./pid.py\"]";
 
@@ -67,6 +68,21 @@ void ReadProgram(SectionReader& section, ProcessSection* process) {
                   "the program's name, e.g. \"hydro-plant\", or a command of your own with its role");
 }
 
+void ReadJoints(SectionReader& section, ProcessSection* process) {
+  section.Text("joint", &process->joint);
+  const TomlNode* joints = section.Take("joints");
+  if (joints == nullptr) return;
+  constexpr char kNames[] = "a list of joints' names";
+  if (process->role != kLimb) throw section.Error("joints", joints->Shown(), "it for hydro-limb only");
+  if (!joints->is(TomlNode::Kind::kArray) || joints->items.empty()) {
+    throw section.Error("joints", joints->Shown(), kNames);
+  }
+  for (const TomlNode& name : joints->items) {
+    if (!name.is(TomlNode::Kind::kString)) throw section.Error("joints", name.Shown() + " in it", kNames);
+    process->joints.push_back(name.text);
+  }
+}
+
 ProcessSection ReadProcess(SectionReader section) {
   ProcessSection process;
   process.place = section.place();
@@ -82,6 +98,7 @@ ProcessSection ReadProcess(SectionReader section) {
       throw section.Error("role", "it without command", "it with command: a program of ours has its role");
     }
   }
+  ReadJoints(section, &process);
   section.Text("host", &process.host);
   section.Integer("cpu", &process.cpu, -1, 1023);
   section.Integer("priority", &process.priority, 0, 99);
@@ -100,12 +117,13 @@ void CheckBeside(const ProcessSection& process, const std::vector<ProcessSection
   const std::string key = process.command.empty() ? "process.program" : "process.command";
   const std::string twin = process.role == kDriver ? kPlant : process.role == kPlant ? kDriver : "";
   for (const ProcessSection& other : others) {
+    if (other.joint != process.joint) continue;  // each joint has a stack of its own
     if (other.role == twin) {
       throw KeyError(process.place, key, process.program + " beside " + other.program,
                      "one of the two: both send states");
     }
     // Several loggers do no harm; two of any other role would contradict each other on the bus.
-    if (other.role != process.role || process.role == kLogger) continue;
+    if (other.role != process.role || process.role == kLogger || process.role == kLimb) continue;
     if (other.program == process.program && process.command.empty()) {
       throw KeyError(process.place, key, "a second " + process.program, "one of it in a stack");
     }

@@ -11,15 +11,6 @@
 namespace hydro::settings {
 namespace {
 
-// How many whole `unit`s `value` is; 0 when it is not a whole number of at least one. Decimal fractions such
-// as 0.005 are not exact in binary, hence the tolerance, far below any difference that anyone could mean.
-int64_t WholeMultiple(double value, double unit) {
-  const double ratio = value / unit;
-  const double whole = std::round(ratio);
-  const bool fits = whole >= 1 && whole < 9e15 && std::abs(ratio - whole) <= 1e-9 * whole;
-  return fits ? static_cast<int64_t>(whole) : 0;
-}
-
 std::string Ticks(double rate_hz) {
   return "ticks of " + ShortestNumber(1 / rate_hz) + " s (plant.rate_hz = " + ShortestNumber(rate_hz) + ")";
 }
@@ -65,6 +56,14 @@ void CheckAngles(const TomlNode& root, const std::string& section, const Traject
 }
 
 }  // namespace
+
+// Decimal fractions such as 0.005 are not exact in binary, hence the tolerance, far below any difference that anyone could mean.
+int64_t WholeMultiple(double value, double unit) {
+  const double ratio = value / unit;
+  const double whole = std::round(ratio);
+  const bool fits = whole >= 1 && whole < 9e15 && std::abs(ratio - whole) <= 1e-9 * whole;
+  return fits ? static_cast<int64_t>(whole) : 0;
+}
 
 void CheckTimes(const TomlNode& root, StackConfig* config) {
   const double rate = config->plant.rate_hz;

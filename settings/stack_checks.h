@@ -1,10 +1,15 @@
 // Checks that involve several keys of the configuration, or a key and the model.
 #pragma once
 
+#include <cstdint>
+
 #include "settings/stack_config.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::settings {
+
+// How many whole `unit`s `value` is, but for rounding; 0 when it is not a whole number of at least one.
+int64_t WholeMultiple(double value, double unit);
 
 // Checks the times against the tick and fills in the intervals in ticks and the last tick. Throws InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);

@@ -6,9 +6,11 @@
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "settings/agreed_entries.h"
+#include "settings/joint_documents.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_checks.h"
+#include "settings/stack_document.h"
 #include "settings/stack_sections.h"
 #include "settings/trajectory_spec.h"
 
@@ -49,9 +51,19 @@ ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
                  "a path that counts from the configuration's folder");
 }
 
+// A stack has one joint.
+void CheckHasNoJoints(const StackConfig& config) {
+  for (const ProcessSection& process : config.processes) {
+    if (process.joint.empty() && process.program != "hydro-limb") continue;
+    throw KeyError(process.place, process.joint.empty() ? "process.program" : "process.joint",
+                   Quoted(process.joint.empty() ? process.program : process.joint),
+                   "it in a configuration with [[joint]] sections only");
+  }
+}
+
 }  // namespace
 
-StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
+TomlNode ReadConfigDocument(const std::string& file) {
   TomlNode root = ParseToml(ReadTextFile(file), file);
   root.place = file;
   if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
@@ -60,19 +72,33 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
                      "model: [model] file = " +
                      Quoted(file));
   }
-  ApplyOverrides(overrides, &root);
-  CheckKeysHaveSections(root);
-  StackConfig config = ReadDocument(&root, file);
+  return root;
+}
+
+StackConfig StackOf(TomlNode* root, const std::string& file) {
+  CheckKeysHaveSections(*root);
+  StackConfig config = ReadDocument(root, file);
   if (config.model.file.empty()) {
-    throw KeyError(root, "model.file", "nothing", "the path of a model file");
+    throw KeyError(*root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  ModelWithText model = ReadModel(root, config.model);
+  ModelWithText model = ReadModel(*root, config.model);
   config.model.text = std::move(model.text);
   config.model.description = std::move(model.description);
-  CheckAgainstModel(root, &config);
+  CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
   RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does
+  return config;
+}
+
+StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
+  TomlNode root = ReadConfigDocument(file);
+  std::vector<std::string> others = overrides;
+  const std::optional<std::string> joint = TakeJointChoice(&others);
+  if (HasJoints(root) || joint) return StackOfJoint(root, others, joint);
+  ApplyOverrides(others, &root);
+  StackConfig config = StackOf(&root, file);
+  CheckHasNoJoints(config);
   return config;
 }
 
@@ -86,6 +112,10 @@ StackConfig Changed(const StackConfig& config, const std::vector<std::string>& c
   TomlNode root = ParseToml(config.text, config.file);
   ApplyOverrides(changes, &root);
   return WithModel(&root, config.file, config.model.text, config.model.resolved_file);
+}
+
+std::vector<std::string> JointSuffixes(const StackConfig& config) {
+  return config.joints.empty() ? std::vector{config.bus.channel_suffix} : config.bus.joint_suffixes;
 }
 
 int64_t OldestPressureCommandTicks(const StackConfig& config) {

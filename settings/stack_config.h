@@ -56,6 +56,7 @@ struct ModelSection {
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   std::string channel_suffix;     // appended to every channel name
+  std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
   std::string key_file;           // "": messages are not authenticated; docs/security.md
   std::string resolved_key_file;  // path to read it from
 };
@@ -153,7 +154,7 @@ struct LoggerSection {
 };
 
 struct ProcessSection {
-  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl or hydro-logger; empty: `command`
+  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-limb or hydro-logger; empty: `command`
   std::string program;
   std::string host;          // empty: any (started by a launch without --host, or on "localhost")
   int cpu = -1;              // processor to run on; -1: any
@@ -163,6 +164,15 @@ struct ProcessSection {
   std::vector<std::string> command = {};
   std::string role = {};   // whose place it takes in the stack, e.g. position_ctrl; of our programs their own
   std::string place = {};  // "file:line" of the section; empty where there is none
+  // In a configuration with [[joint]] sections only (settings/limb_config.h):
+  std::string joint = {};                // whose part this is; empty: it is hydro-limb or hydro-logger
+  std::vector<std::string> joints = {};  // of hydro-limb; empty: all that no other process has
+};
+
+// Another joint of the same limb.
+struct Sibling {
+  std::string name;
+  std::string suffix;  // of its channels
 };
 
 struct StackConfig {
@@ -183,6 +193,8 @@ struct StackConfig {
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  std::vector<Sibling> siblings;    // of one joint's stack: those whose faults take its voltage to zero too
+  std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).
   int64_t position_interval_ticks = 1;
@@ -192,8 +204,8 @@ struct StackConfig {
 };
 
 // Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), reads the model
-// file that it names, and checks everything. Throws InputError (exit 2) naming file, line or key, what was
-// found, what is allowed.
+// file that it names, and checks everything. Of a file with [[joint]] sections, the stack of the joint that "joint=NAME" chooses.
+// Throws InputError (exit 2) naming file, line or key, what was found, what is allowed.
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.
@@ -212,6 +224,9 @@ std::string ReferenceText(const StackConfig& config);
 
 // The most ticks that a pressure command may be old at a state and still count (limits.stale_input_s beyond what is usual).
 int64_t OldestPressureCommandTicks(const StackConfig& config);
+
+// The suffixes of the channels on which states and commands are: those of a limb's joints, or the stack's own.
+std::vector<std::string> JointSuffixes(const StackConfig& config);
 
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);

@@ -13,6 +13,7 @@
 #include "runs/run_log.h"
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
+#include "settings/joint_documents.h"
 #include "settings/model_file.h"
 #include "settings/process_sections.h"
 #include "sim/simulation.h"
@@ -45,15 +46,43 @@ hydro::model::ModelDescription LoadMachine(const std::string& file,
   return machine;
 }
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of,
-        const std::string& machine_file) {
-  const hydro::settings::StackConfig config =
-      WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides));
+bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  return !hydro::settings::TakeJointChoice(&overrides) && hydro::settings::IsLimbFile(options.config);
+}
+
+// What is simulated, given where its messages go.
+using Simulation = std::function<hydro::sim::SimulationResult(
+    const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
+
+Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of,
+                        const std::string& machine_file) {
+  if (IsWholeLimb(options)) {
+    if (!tunings_of.empty()) {
+      throw hydro::InputError("--tuning: found it with joints, allowed is one joint's stack (--joint NAME)");
+    }
+    if (!machine_file.empty()) {
+      throw hydro::InputError("--machine: found it with joints, allowed is one joint's stack (--joint NAME)");
+    }
+    const auto limb = std::make_shared<const hydro::settings::LimbConfig>(
+        hydro::settings::LoadLimbConfig(options.config, options.overrides));
+    return [limb](const auto& tap) { return hydro::sim::SimulateLimb(*limb, tap); };
+  }
+  const auto config = std::make_shared<const hydro::settings::StackConfig>(
+      WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
   std::optional<hydro::model::ModelDescription> machine;
-  if (!machine_file.empty()) machine = LoadMachine(machine_file, config);
-  hydro::CheckKeeps(file);
+  if (!machine_file.empty()) machine = LoadMachine(machine_file, *config);
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
+  return [config, tunings, machine](const auto& tap) {
+    return hydro::sim::Simulate(*config, tap, tunings, machine ? &*machine : nullptr);
+  };
+}
+
+int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of,
+        const std::string& machine_file) {
+  const Simulation simulate = SimulationOf(options, tunings_of, machine_file);
+  hydro::CheckKeeps(file);
   hydro::process::CatchStopSignals();
   std::unique_ptr<hydro::log::LogWriter> writer;
   if (!file.empty()) writer = std::make_unique<hydro::log::LogWriter>(file, hydro::Opening::kTemporary);
@@ -64,8 +93,7 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
     };
   }
   const auto start = std::chrono::steady_clock::now();
-  const hydro::sim::SimulationResult result =
-      hydro::sim::Simulate(config, tap, tunings, machine ? &*machine : nullptr);
+  const hydro::sim::SimulationResult result = simulate(tap);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());

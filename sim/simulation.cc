@@ -2,6 +2,7 @@
 
 #include "base/input_error.h"
 #include "bus/in_process_bus.h"
+#include "limb/limb.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -9,15 +10,22 @@
 
 namespace hydro::sim {
 
+namespace {
+
+void CheckEnds(const settings::StackConfig& config) {
+  if (config.last_tick >= 0) return;
+  throw InputError(config.file +
+                   ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
+                   "--duration S)");
+}
+
+}  // namespace
+
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
                           const std::vector<tuned_settings_t>& tunings,
                           const model::ModelDescription* machine) {
-  if (config.last_tick < 0) {
-    throw InputError(config.file +
-                     ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
-                     "--duration S)");
-  }
+  CheckEnds(config);
   settings::StackConfig lockstep = config;
   lockstep.time.mode = settings::TimeMode::kLockstep;
   bus::SimulatedClock clock;
@@ -44,6 +52,25 @@ SimulationResult Simulate(const settings::StackConfig& config,
   result.ticks = plant.tick();
   result.duration = static_cast<double>(plant.tick()) / config.plant.rate_hz;
   result.failure = plant.failure();
+  return result;
+}
+
+SimulationResult SimulateLimb(const settings::LimbConfig& config,
+                              const std::function<void(const bus::RawMessage&)>& tap) {
+  CheckEnds(config.common);
+  limb::Limb limb(config, {.joints = {}, .program = "hydro-sim"});
+  if (tap) {
+    for (auto& joint : limb.joints()) joint->bus().SubscribeAll(tap);
+  }
+  if (limb.Begin()) {
+    while (limb.StepLockstep()) {
+    }
+  }
+  SimulationResult result;
+  result.exit_code = limb.End({});
+  result.ticks = limb.tick();
+  result.duration = static_cast<double>(limb.tick()) / config.common.plant.rate_hz;
+  result.failure = limb.failure();
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bus/bus.h"
+#include "settings/limb_config.h"
 #include "settings/stack_config.h"
 
 namespace hydro::sim {
@@ -29,5 +30,9 @@ SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
                           const std::vector<tuned_settings_t>& tunings = {},
                           const model::ModelDescription* machine = nullptr);
+
+// The same for all joints of a limb, each on channels of its own suffix.
+SimulationResult SimulateLimb(const settings::LimbConfig& config,
+                              const std::function<void(const bus::RawMessage&)>& tap);
 
 }  // namespace hydro::sim

@@ -45,7 +45,9 @@ int64_t FixedRateLoop::Wait() {
   tick_ += elapsed;
   skipped_ += elapsed - 1;
   statistics_.AddMissedDeadlines(elapsed - 1);
-  statistics_.RecordCycle(now, now - due);
+  woke_ = now;
+  late_ = now - due;
+  statistics_.RecordCycle(woke_, late_);
   return elapsed;
 }
 

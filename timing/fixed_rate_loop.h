@@ -29,6 +29,8 @@ class FixedRateLoop {
 
   int64_t tick() const { return tick_; }        // the newest tick that was due
   int64_t skipped() const { return skipped_; }  // ticks for which Wait() did not return
+  bus::Clock::TimePoint woke() const { return woke_; }  // when Wait() returned last
+  bus::Clock::Duration late() const { return late_; }   // how long after that tick was due
 
  private:
   bus::Clock::TimePoint DueTime(int64_t tick) const;
@@ -41,6 +43,8 @@ class FixedRateLoop {
   bus::Clock::TimePoint start_;
   int64_t tick_ = 0;
   int64_t skipped_ = 0;
+  bus::Clock::TimePoint woke_{};
+  bus::Clock::Duration late_{};
 };
 
 }  // namespace hydro::timing

@@ -29,17 +29,14 @@ int64_t NowUtime() {
 
 Authenticator::Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session)
     : key_(key), channels_(std::move(channels)), session_(session) {
-  if (channels_.empty() || channels_.size() > kMostChannels) {
-    throw std::invalid_argument("an authenticator takes 1 to 32 channels");
-  }
-  admitted_[session_] = {};  // multicast brings our own messages back
+  if (channels_.empty()) throw std::invalid_argument("an authenticator takes at least one channel");
+  for (size_t i = 0; i < channels_.size(); ++i) index_of_.emplace(channels_[i], i);
+  admitted_[session_].resize(channels_.size());  // multicast brings our own messages back
 }
 
 std::optional<size_t> Authenticator::IndexOf(std::string_view channel) const {
-  for (size_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i] == channel) return i;
-  }
-  return std::nullopt;
+  const auto found = index_of_.find(channel);
+  return found == index_of_.end() ? std::nullopt : std::optional(found->second);
 }
 
 int Authenticator::Seal(std::string_view channel, std::vector<uint8_t>* bytes, int size) {
@@ -113,7 +110,7 @@ std::optional<introduction_t> Authenticator::Hear(const introduction_t& introduc
   const bool answers_us = introduction.answers == session_;
   if (answers_us && !admitted_.contains(opened.session) && admitted_.size() < kMostAdmitted) {
     // Nothing proves that what the sender sent before is new.
-    admitted_[opened.session].fill(opened.counter);
+    admitted_[opened.session].assign(channels_.size(), opened.counter);
     waiting_.erase(opened.session);
     *admitted = true;
   }
@@ -127,11 +124,16 @@ std::optional<introduction_t> Authenticator::Ask(int64_t session, TimePoint now)
   return Introduction(session);
 }
 
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels,
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const std::vector<Channels>& channels,
                                                  int port) {
   if (key_file.empty()) return nullptr;
+  std::vector<std::string> sealed;
+  for (const Channels& one : channels) {
+    const std::vector<std::string> names = AuthenticatedChannels(one);
+    sealed.insert(sealed.end(), names.begin(), names.end());
+  }
   return std::make_unique<Authenticator>(KeyForPort(ReadBusKey(key_file), port),
-                                         AuthenticatedChannels(channels));
+                                         sealed);
 }
 
 }  // namespace hydro::bus

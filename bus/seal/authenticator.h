@@ -12,7 +12,6 @@
 // Pure: the caller passes the time in and sends what is returned.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <hydro/introduction_t.hpp>
@@ -50,7 +49,7 @@ class Authenticator {
     uint64_t counter = 0;
   };
 
-  // `channels`: the authenticated ones, at most 32, that of the introductions first.
+  // `channels`: the authenticated ones, that of the introductions first.
   // `session`: of this process's bus; only a simulation gives it one that is not fresh.
   Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session = RandomSession());
 
@@ -78,8 +77,7 @@ class Authenticator {
   const RefusedMessages& refused() const { return refused_; }
 
  private:
-  static constexpr size_t kMostChannels = 32;
-  using Counters = std::array<uint64_t, kMostChannels>;  // the newest accepted, by channel
+  using Counters = std::vector<uint64_t>;  // the newest accepted, by channel
 
   std::optional<size_t> IndexOf(std::string_view channel) const;
   Opened Refuse(int64_t RefusedMessages::*reason, std::string_view channel, int size);
@@ -88,6 +86,7 @@ class Authenticator {
 
   BusKey key_;
   std::vector<std::string> channels_;
+  std::unordered_map<std::string_view, size_t> index_of_;  // their texts
   int64_t session_;
   uint64_t counter_ = 0;
   std::unordered_map<int64_t, Counters>
@@ -99,7 +98,8 @@ class Authenticator {
 
 // The authenticator of a stack with that key file; null when `key_file` is empty. Throws InputError
 // (bus_key.h).
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels,
+// `channels`: the stack's own first, then those of its joints.
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const std::vector<Channels>& channels,
                                                  int port);
 
 }  // namespace hydro::bus

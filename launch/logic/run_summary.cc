@@ -15,7 +15,8 @@ constexpr double kMostOfASecond = 0.5;
 // A stack has five processes and some forty codes; a flood of made-up ones is not kept.
 constexpr size_t kMostLoops = 64;
 constexpr size_t kMostFaults = 256;
-constexpr size_t kMostOutputs = 4;
+constexpr size_t kMostOutputs = 256;
+constexpr size_t kListedOutputs = 4;  // of more, those at zero are counted
 constexpr size_t kLongestText = 500;
 constexpr size_t kWidestLine = 79;  // of a terminal of 80 columns
 
@@ -43,7 +44,8 @@ void RunSummary::Add(const loop_statistics_t& report) {
 
 void RunSummary::Add(const fault_t& fault) {
   auto known = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& other) {
-    return other.first.session == fault.session && other.first.code == fault.code;
+    return other.first.session == fault.session && other.first.code == fault.code &&
+           other.first.source == fault.source;
   });
   if (known == faults_.end()) {
     if (faults_.size() == kMostFaults) return;
@@ -56,7 +58,9 @@ void RunSummary::Add(const fault_t& fault) {
 
 void RunSummary::Add(const output_left_t& left) {
   const auto known = std::find_if(outputs_left_.begin(), outputs_left_.end(),
-                                  [&](const output_left_t& one) { return one.session == left.session; });
+                                  [&](const output_left_t& one) {
+                                    return one.session == left.session && one.role == left.role;
+                                  });
   if (known != outputs_left_.end()) {
     *known = left;
   } else if (outputs_left_.size() < kMostOutputs) {
@@ -84,8 +88,21 @@ std::vector<std::string> RunSummary::Lines() const {
                                 fault.active ? ", still there at the end" : "",
                                 fault.first.text.substr(0, kLongestText)));
   }
-  for (const output_left_t& left : outputs_left_) lines.push_back(process::OutputLeftText(left));
+  AppendOutputs(&lines);
   return lines;
+}
+
+void RunSummary::AppendOutputs(std::vector<std::string>* lines) const {
+  int64_t at_zero = 0;
+  for (const output_left_t& left : outputs_left_) {
+    const bool zero = outputs_left_.size() > kListedOutputs && left.accepted && left.voltage == 0;
+    if (zero) {
+      ++at_zero;
+    } else {
+      lines->push_back(process::OutputLeftText(left));
+    }
+  }
+  if (at_zero > 0) lines->push_back(fmt::format("{} outputs read back 0 V", at_zero));
 }
 
 std::vector<ProcessStatus> RunSummary::Status() const {

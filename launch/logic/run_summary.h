@@ -46,6 +46,8 @@ class RunSummary {
   std::vector<std::string> FaultsLeft() const;
 
  private:
+  void AppendOutputs(std::vector<std::string>* lines) const;
+
   struct Loop {
     loop_statistics_t shown;  // whose percentiles are printed
     int64_t cycles = 0;

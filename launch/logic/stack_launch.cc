@@ -29,7 +29,7 @@ StackLaunch::StackLaunch(bus::Bus& bus, bus::Clock& clock, Children& children, L
       config_(config),
       plan_(plan),
       timing_(timing),
-      watch_(bus, clock, bus::Channels(config.bus.channel_suffix), plan.spread, !plan.timing_file.empty()),
+      watch_(bus, clock, config, plan.spread, !plan.timing_file.empty()),
       stop_announcer_(clock,
                       [this](const std::string& reason, int exit_code) { PublishStop(reason, exit_code); }) {}
 
@@ -64,6 +64,7 @@ int StackLaunch::Run() {
 void StackLaunch::RefuseIfOneRuns() {
   std::vector<std::string> roles = RolesOf(plan_);
   if (plan_.spread) std::erase(roles, "logger");  // another host's, which was started a moment before
+  if (!config_.joints.empty()) roles.insert(roles.end(), {"limb", "plant", "driver"});  // that has one of the joints
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();
     for (const TimePoint until = clock_.Now() + kAnswerTime; clock_.Now() < until;) {

@@ -10,40 +10,63 @@
 namespace hydro::launch {
 namespace {
 
-constexpr size_t kMostStatuses = 256;  // a stack has five processes; a flood of made-up ones is not kept
+// A stack has five processes, and so has each joint; a flood of made-up ones is not kept.
+constexpr size_t kMostStatuses = 256;
+constexpr size_t kMostStatusesOfAJoint = 8;
 
 }  // namespace
 
-StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread,
+StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config, bool spread,
                        bool keep_timing)
-    : bus_(bus), clock_(clock), channels_(channels), spread_(spread), identity_(bus::IdentityOn(bus, clock)) {
-  bus.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
-    const std::pair key(status.role, status.pid);
+    : bus_(bus), clock_(clock), spread_(spread), identity_(bus::IdentityOn(bus, clock)) {
+  stacks_.push_back({"", bus::Channels(config.bus.channel_suffix)});
+  for (size_t i = 0; i < config.joints.size(); ++i) {
+    stacks_.push_back({config.joints[i], bus::Channels(config.bus.joint_suffixes.at(i))});
+  }
+  for (size_t i = 0; i < stacks_.size(); ++i) Listen(i, keep_timing);
+}
+
+void StackWatch::Listen(size_t stack, bool keep_timing) {
+  const bus::Channels& channels = stacks_[stack].channels;
+  const std::string& joint = stacks_[stack].joint;
+  bus_.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this, stack](const process_status_t& status) {
+    const Key key(stack, status.role, status.pid);
     if (status.session == identity_.session) return;
-    if (statuses_.size() < kMostStatuses || statuses_.contains(key)) statuses_[key] = status;
+    const size_t most = kMostStatuses + stacks_.size() * kMostStatusesOfAJoint;
+    if (statuses_.size() < most || statuses_.contains(key)) statuses_[key] = {stack, status};
   });
-  bus.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
+  bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this](const stop_t& stop) {
     if (!stop_ && stop.session != identity_.session && IsForThisStack(stop)) stop_ = stop;
   });
-  bus.Subscribe<loop_statistics_t>(channels_.Of<loop_statistics_t>(),
-                                   [this, keep_timing](const loop_statistics_t& report) {
-                                     summary_.Add(report);
-                                     if (keep_timing) timing_.Add(report);
-                                   });
-  if (keep_timing) {
-    bus.Subscribe<loop_histogram_t>(channels_.Of<loop_histogram_t>(),
-                                    [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
-  }
-  bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
-  bus.Subscribe<output_left_t>(channels_.Of<output_left_t>(), [this](const output_left_t& left) {
-    if (IsOfAPlant(left.session)) summary_.Add(left);
+  bus_.Subscribe<fault_t>(channels.Of<fault_t>(), [this, joint](const fault_t& heard) {
+    fault_t fault = heard;
+    fault.source = Named(joint, heard.source);
+    summary_.Add(fault);
   });
+  bus_.Subscribe<output_left_t>(channels.Of<output_left_t>(), [this, joint](const output_left_t& heard) {
+    output_left_t left = heard;
+    left.role = Named(joint, heard.role);
+    if (IsOfAPlant(heard.session)) summary_.Add(left);
+  });
+  if (!joint.empty()) return;  // the limb's own loop is the one that keeps time
+  bus_.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(),
+                                    [this, keep_timing](const loop_statistics_t& report) {
+                                      summary_.Add(report);
+                                      if (keep_timing) timing_.Add(report);
+                                    });
+  if (!keep_timing) return;
+  bus_.Subscribe<loop_histogram_t>(channels.Of<loop_histogram_t>(),
+                                   [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
+}
+
+std::string StackWatch::Named(const std::string& joint, const std::string& source) const {
+  return joint.empty() ? source : joint + " " + source;
 }
 
 bool StackWatch::IsOfAPlant(int64_t session) const {
   return std::any_of(statuses_.begin(), statuses_.end(), [&](const auto& entry) {
-    const auto& [role, status] = entry;
-    return process::IsPlant(role.first) && status.session == session;
+    const process_status_t& status = entry.second.status;
+    return process::IsPlant(status.role) && status.session == session;
   });
 }
 
@@ -57,7 +80,8 @@ bool StackWatch::Is(const Expected& expected, const process_status_t& status) {
 
 const process_status_t* StackWatch::StatusOf(const Expected& expected) const {
   const process_status_t* newest = nullptr;
-  for (const auto& [key, status] : statuses_) {
+  for (const auto& [key, heard] : statuses_) {
+    const process_status_t& status = heard.status;
     if (Is(expected, status) && (newest == nullptr || status.utime > newest->utime)) newest = &status;
   }
   return newest;
@@ -93,12 +117,13 @@ void StackWatch::AskWhoIsThere() {
   question.pid = identity_.id;
   question.state = process_status_t::READY;
   question.text = "asks who is there";
-  bus_.Publish(channels_.Of<process_status_t>(), question);
+  for (const Stack& stack : stacks_) bus_.Publish(stack.channels.Of<process_status_t>(), question);
 }
 
 std::vector<std::string> StackWatch::Present(const std::vector<std::string>& roles) const {
   std::vector<std::string> names;
-  for (const auto& [key, status] : statuses_) {
+  for (const auto& [key, heard] : statuses_) {
+    const process_status_t& status = heard.status;
     if (process::HasLeft(status) || std::find(roles.begin(), roles.end(), status.role) == roles.end())
       continue;
     names.push_back(process::ProcessName(status));
@@ -115,19 +140,20 @@ bool StackWatch::BelongsHere(const process_status_t& status) const {
 bool StackWatch::IsForThisStack(const stop_t& stop) const {
   if (stop.addressee == 0) return true;
   return std::any_of(statuses_.begin(), statuses_.end(), [&](const auto& entry) {
-    return entry.second.session == stop.addressee && BelongsHere(entry.second);
+    const process_status_t& status = entry.second.status;
+    return status.session == stop.addressee && BelongsHere(status);
   });
 }
 
-// The plant, which stands for its run; while none has been heard, each process by itself.
-std::vector<int64_t> StackWatch::Addressees() const {
-  std::vector<int64_t> all;
-  for (const auto& [key, status] : statuses_) {
-    if (!BelongsHere(status) || process::HasLeft(status)) continue;
-    if (process::IsPlant(status.role)) return {status.session};
-    all.push_back(status.session);
+// The plants, which stand for their runs; while none has been heard, each process by itself.
+std::vector<const StackWatch::Heard*> StackWatch::Addressees() const {
+  std::vector<const Heard*> all, plants;
+  for (const auto& [key, heard] : statuses_) {
+    if (!BelongsHere(heard.status) || process::HasLeft(heard.status)) continue;
+    all.push_back(&heard);
+    if (process::IsPlant(heard.status.role)) plants.push_back(&heard);
   }
-  return all;
+  return plants.empty() ? all : plants;
 }
 
 void StackWatch::PublishStop(const std::string& reason, int exit_code) {
@@ -138,9 +164,9 @@ void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   stop.source = "launch";
   stop.reason = reason;
   stop.exit_code = exit_code;
-  for (const int64_t addressee : Addressees()) {
-    stop.addressee = addressee;
-    bus_.Publish(channels_.Of<stop_t>(), stop);
+  for (const Heard* addressee : Addressees()) {
+    stop.addressee = addressee->status.session;
+    bus_.Publish(stacks_[addressee->stack].channels.Of<stop_t>(), stop);
   }
 }
 

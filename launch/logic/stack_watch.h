@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,16 +18,17 @@
 #include "bus/hosted_process.h"
 #include "launch/logic/child.h"
 #include "launch/logic/run_summary.h"
+#include "settings/stack_config.h"
 #include "timing/report/timing_record.h"
 
 namespace hydro::launch {
 
 class StackWatch {
  public:
-  // Subscribes. Create it before the processes are started, so that no announcement is missed. `spread`:
-  // processes on other hosts belong to the stack too. `keep_timing`: for timing(), which grows by a report a second and
-  // process.
-  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread,
+  // Subscribes to the channels of the stack or limb that `config` describes, and to those of its joints. Create it before the
+  // processes are started, so that no announcement is missed. `spread`: processes on other hosts belong to the stack too.
+  // `keep_timing`: for timing(), which grows by a report a second and process.
+  StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config, bool spread,
              bool keep_timing);
 
   // Asks every process on the bus to say that it is there. Answers come within milliseconds.
@@ -43,7 +45,7 @@ class StackWatch {
   std::vector<std::string> NotReady() const;
 
   // Whether a plant or driver has been heard, on whatever host, and has not left.
-  bool HasPlant() const { return !Present({"plant", "driver"}).empty(); }
+  bool HasPlant() const { return !Present({"plant", "driver", "limb"}).empty(); }
 
   // Why a process of this launch failed, in its own words; empty when it gave no reason.
   std::string FailureText(const std::string& program, int32_t pid) const;
@@ -71,19 +73,33 @@ class StackWatch {
   static bool Is(const Expected& expected, const process_status_t& status);
   const process_status_t* StatusOf(const Expected& expected) const;  // null: it has said nothing
 
+  // A stack that this one consists of: its own channels, or those of a joint.
+  struct Stack {
+    std::string joint;  // empty: the stack itself
+    bus::Channels channels;
+  };
+  // A process that has been heard.
+  struct Heard {
+    size_t stack = 0;  // on whose channels
+    process_status_t status;
+  };
+  // A process of another role may have the same id on another host, and one process may have several joints.
+  using Key = std::tuple<size_t, std::string, int32_t>;  // stack, role, process id
+
+  void Listen(size_t stack, bool keep_timing);
+  std::string Named(const std::string& joint, const std::string& source) const;
   bool IsOfAPlant(int64_t session) const;
   bool BelongsHere(const process_status_t& status) const;
   bool IsForThisStack(const stop_t& stop) const;
-  std::vector<int64_t> Addressees() const;
+  std::vector<const Heard*> Addressees() const;
 
   bus::Bus& bus_;
   const bus::Clock& clock_;
-  const bus::Channels channels_;
+  std::vector<Stack> stacks_;  // the stack's own first
   const bool spread_;
   const bus::HostedProcess identity_;
   std::vector<Expected> expected_;
-  // The latest of each role and process id: a process of another role may have the same id on another host.
-  std::map<std::pair<std::string, int32_t>, process_status_t> statuses_;
+  std::map<Key, Heard> statuses_;  // the latest of each
   std::optional<stop_t> stop_;
   RunSummary summary_;
   timing::TimingRecord timing_;

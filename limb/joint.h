@@ -1,0 +1,68 @@
+// One joint of a limb: its rig, its plant and its two loops on a bus of its own, in the process of the limb. The classes are those of
+// the separate processes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/clock.h"
+#include "bus/in_process_bus.h"
+#include "plant/plant_app.h"
+#include "plant/rig.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
+#include "settings/limb_config.h"
+
+namespace hydro::limb {
+
+class Joint {
+ public:
+  // `clock`: null for lockstep, in which the joint has a simulated clock of its own; else that of the process. `program`, `heartbeat`:
+  // as PlantApp's.
+  Joint(const settings::JointConfig& joint, std::unique_ptr<plant::Rig> rig, bus::Clock* clock,
+        const std::string& program, std::function<bool()> heartbeat);
+
+  const std::string& name() const { return name_; }
+  const settings::StackConfig& config() const { return config_; }
+  bus::InProcessBus& bus() { return bus_; }
+  plant::Rig& rig() { return *rig_; }
+  plant::PlantApp& plant() { return plant_; }
+  const plant::PlantApp& plant() const { return plant_; }
+
+  // Whether this session is the joint's own: its plant's, or a loop's.
+  bool IsOwn(int64_t session) const;
+
+  // Delivers all that waits on the joint's bus, and what answers it. On a simulated clock, time then is `until`.
+  void Dispatch(bus::Clock::TimePoint until);
+
+  // Lockstep: when `tick` is due on the joint's clock.
+  bus::Clock::TimePoint DueTime(int64_t tick) const;
+  void StartClock() { start_ = clock_.Now(); }
+
+  // Watchdogs, statistics, announcements of all three. At least every process::kPollPeriod.
+  void Poll();
+
+  // Its run is over: zero volts, the ends are announced. Later calls do nothing and return the same exit code.
+  int End();
+  bool ended() const { return ended_; }
+
+ private:
+  std::string name_;
+  settings::StackConfig config_;
+  bus::SimulatedClock simulated_;
+  bus::Clock& clock_;
+  bus::InProcessBus bus_;
+  std::unique_ptr<plant::Rig> rig_;
+  plant::PlantApp plant_;
+  pressure_ctrl::PressureApp pressure_;
+  position_ctrl::PositionApp position_;
+  std::vector<int64_t> sessions_;
+  bus::Clock::TimePoint start_;
+  bool ended_ = false;
+  int exit_code_ = 0;
+};
+
+}  // namespace hydro::limb

@@ -1,0 +1,77 @@
+// What of a joint's messages leaves its process: states and commands at a chosen rate, faults and ends at once, the rest in between.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/messages.h"
+
+namespace hydro::limb {
+
+// Which of a joint's messages go out.
+enum class Passage {
+  kSampled,    // of the loops: one per interval, with sequence numbers of their own
+  kAtOnce,     // faults, ends, answers to an operator: if the joint itself has sent them
+  kInBetween,  // descriptions, statistics
+  kNever,      // comes from outside
+};
+
+class Telemetry {
+ public:
+  // `out`: where messages go. `interval`: ticks from one sampled message to the next on a channel; 1: every message goes out as it is.
+  Telemetry(bus::Bus& out, int64_t interval);
+
+  // What a joint publishes on `joint` goes out from now on. `phase`: ticks by which its samples are early, so that not all joints
+  // send at one tick. `is_own`: whether a session is the joint's. Must outlive `joint`.
+  void Add(bus::Bus& joint, const std::string& suffix, int64_t phase,
+           std::function<bool(int64_t session)> is_own);
+
+  // From now on everything goes out: the run is ending.
+  void PassAll() { interval_ = 1; }
+
+  // Sends what waits while `goes_on` allows; at least one message.
+  void Send(const std::function<bool()>& goes_on);
+  // Sends all that waits.
+  void SendAll();
+
+  size_t waiting() const { return end_ - first_; }
+  int64_t left_out() const { return left_out_; }  // messages that found the queue full
+
+ private:
+  struct Channel {
+    std::string name;
+    bus::LoopPart part = bus::LoopPart::kNone;
+    Passage passage = Passage::kNever;
+    bus::NumberPlaces places;
+    int64_t slot = -1;      // of the newest sample
+    int64_t sequence = 0;   // of the next
+    int64_t skipped = 0;    // ticks, of the states since the newest sample
+  };
+  struct Stack {
+    std::vector<Channel> channels;  // of the loops first
+    int64_t phase = 0;
+    std::function<bool(int64_t)> is_own;
+  };
+  struct Waiting {
+    const Channel* channel = nullptr;
+    std::vector<uint8_t> bytes;  // reused
+  };
+
+  void OnMessage(Stack& stack, const bus::RawMessage& message);
+  void OnSample(const Stack& stack, Channel& channel, const bus::RawMessage& message);
+  std::vector<uint8_t>* Enqueue(const Channel& channel, const bus::RawMessage& message);
+
+  bus::Bus& out_;
+  int64_t interval_;
+  std::vector<std::unique_ptr<Stack>> stacks_;
+  std::vector<Waiting> queue_;  // ring; its size is a power of 2
+  size_t first_ = 0;
+  size_t end_ = 0;
+  int64_t left_out_ = 0;
+};
+
+}  // namespace hydro::limb

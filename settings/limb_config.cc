@@ -1,0 +1,208 @@
+#include "settings/limb_config.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "settings/joint_documents.h"
+#include "settings/overrides.h"
+#include "settings/process_sections.h"
+#include "settings/stack_checks.h"
+#include "settings/stack_document.h"
+#include "settings/toml/section_reader.h"
+
+namespace hydro::settings {
+namespace {
+
+void ReadLimb(SectionReader section, double rate_hz, LimbSection* limb) {
+  section.Choice<OnJointFault>(
+      "on_joint_fault",
+      {{"all_to_zero", OnJointFault::kAllToZero}, {"others_go_on", OnJointFault::kOthersGoOn}},
+      &limb->on_joint_fault);
+  if (const TomlNode* rate = section.Take("telemetry_hz")) {
+    if (rate->is(TomlNode::Kind::kString) && rate->text == "every_tick") {
+      limb->telemetry_hz = rate_hz;
+    } else if (rate->is_number() && kPositive.Holds(rate->AsDouble())) {
+      limb->telemetry_hz = rate->AsDouble();
+    } else {
+      throw section.Error("telemetry_hz", rate->Shown(), kPositive.Allowed() + " or \"every_tick\"");
+    }
+  } else {
+    limb->telemetry_hz = std::min(limb->telemetry_hz, rate_hz);
+  }
+  section.Finish();
+  limb->telemetry_interval_ticks = WholeMultiple(rate_hz, limb->telemetry_hz);
+  if (limb->telemetry_interval_ticks == 0) {
+    throw section.Error("telemetry_hz", ShortestNumber(limb->telemetry_hz),
+                        "plant.rate_hz = " + ShortestNumber(rate_hz) +
+                            " divided by a whole number, or \"every_tick\"");
+  }
+}
+
+LimbSection LimbOf(const TomlNode& root, double rate_hz) {
+  LimbSection limb;
+  SectionReader document(root, "");
+  ReadLimb(document.Section("limb"), rate_hz, &limb);
+  return limb;
+}
+
+std::string SuffixOf(const JointDocument& document) {
+  return document.root.Find("bus")->Find("channel_suffix")->text;
+}
+
+// Without [[process]] sections, one process has all joints.
+void PutProcesses(const TomlNode& root, TomlNode* common) {
+  common->Erase("process");
+  TomlNode processes = ArrayNode({});
+  if (const TomlNode* given = root.Find("process")) {
+    processes = *given;
+  } else {
+    TomlNode limb;
+    limb.place = root.place;
+    limb.members.push_back({"program", StringNode("hydro-limb")});
+    processes.items.push_back(std::move(limb));
+  }
+  common->members.push_back({"process", std::move(processes)});
+}
+
+void CheckJoint(const std::string& joint, const ProcessSection& process, const StackConfig& common) {
+  if (std::find(common.joints.begin(), common.joints.end(), joint) != common.joints.end()) return;
+  throw KeyError(process.place, "process." + std::string(process.joint.empty() ? "joints" : "joint"), Quoted(joint),
+                 QuotedList(common.joints));
+}
+
+// Each joint is run by one process, or by one stack of them.
+void CheckProcesses(const StackConfig& common) {
+  std::vector<std::string> taken;
+  for (const ProcessSection& process : common.processes) {
+    const bool whole = process.role == "limb" || process.role == "logger";
+    if (whole && !process.joint.empty()) {
+      throw KeyError(process.place, "process.joint", Quoted(process.joint), "none for " + NameOf(process));
+    }
+    if (!whole && process.joint.empty()) {
+      throw KeyError(process.place, "process.program", NameOf(process) + " without a joint",
+                     "joint = \"NAME\" beside it, or hydro-limb, which has the joints that no other process has");
+    }
+    if (!process.joint.empty()) CheckJoint(process.joint, process, common);
+    if (process.role != "limb") continue;
+    for (const std::string& joint : process.joints) CheckJoint(joint, process, common);
+    for (const std::string& joint : JointsOf(process, common)) {
+      if (std::find(taken.begin(), taken.end(), joint) != taken.end()) {
+        throw KeyError(process.place, "process.joints", "a second process with the joint " + Quoted(joint),
+                       "one process for each joint");
+      }
+      taken.push_back(joint);
+    }
+  }
+}
+
+// What the parts of a limb must have in common: all of every joint.
+std::string AgreedByAll(const std::vector<JointConfig>& joints) {
+  std::string text;
+  for (const JointConfig& joint : joints) text += "joint " + joint.name + "\n" + joint.config.agreed;
+  return text;
+}
+
+// The whole limb as one document: each joint's effective sections in its own.
+TomlNode WholeDocument(const TomlNode& root, const LimbConfig& limb) {
+  TomlNode whole = root;
+  TomlNode* joints = whole.Find("joint");
+  for (size_t i = 0; i < limb.joints.size(); ++i) {
+    const TomlNode document = ParseToml(limb.joints[i].config.text, limb.joints[i].name);
+    TomlNode& joint = joints->items[i];
+    for (const char* key : {"model", "pressure", "position", "reference", "limits", "noise", "driver"}) {
+      const TomlNode* section = document.Find(key);
+      joint.Erase(key);
+      if (section != nullptr) joint.members.push_back({key, *section});
+    }
+  }
+  for (const char* key : {"model", "pressure", "position", "reference", "limits", "noise", "driver"}) whole.Erase(key);
+  return whole;
+}
+
+}  // namespace
+
+std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common) {
+  if (!process.joint.empty()) return {process.joint};
+  std::vector<std::string> joints;
+  for (const std::string& joint : common.joints) {
+    const auto has = [&](const ProcessSection& other) {
+      return other.joint == joint ||
+             std::find(other.joints.begin(), other.joints.end(), joint) != other.joints.end();
+    };
+    const bool mine = !process.joints.empty()
+                          ? has(process)
+                          : std::none_of(common.processes.begin(), common.processes.end(), has);
+    if (mine) joints.push_back(joint);
+  }
+  return joints;
+}
+
+StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
+                         const std::optional<std::string>& joint) {
+  if (!HasJoints(root)) {
+    throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
+                     root.place + " does not have");
+  }
+  ApplyOverrides(overrides, &root);
+  const std::vector<std::string> names = JointNames(root);
+  if (!joint) {
+    throw KeyError(root.Find("joint")->items.front().place, "joint", "joints (" + QuotedList(names) + ")",
+                   "a stack with one: choose it with --joint NAME; hydro-limb and hydro-sim run them all");
+  }
+  std::optional<StackConfig> chosen;
+  std::vector<Sibling> siblings;
+  for (JointDocument& document : SplitJoints(root, overrides)) {
+    if (document.name == *joint) {
+      chosen = StackOf(&document.root, root.place);
+    } else {
+      siblings.push_back({document.name, SuffixOf(document)});
+    }
+  }
+  if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
+  const LimbSection limb = LimbOf(root, chosen->plant.rate_hz);
+  if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
+  return *chosen;
+}
+
+bool IsLimbFile(const std::string& file) { return HasJoints(ReadConfigDocument(file)); }
+
+LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string>& overrides) {
+  TomlNode root = ReadConfigDocument(file);
+  std::vector<std::string> others = overrides;
+  if (const auto joint = TakeJointChoice(&others)) {
+    throw InputError("--joint: found " + Quoted(*joint) + ", allowed for a program of one joint's stack");
+  }
+  ApplyOverrides(others, &root);
+  if (!HasJoints(root)) throw InputError(file + ": found no [[joint]] section, allowed one or more");
+  std::vector<JointDocument> documents = SplitJoints(root, others);
+  LimbConfig limb;
+  for (JointDocument& document : documents) {
+    TomlNode joint = document.root;
+    limb.joints.push_back({document.name, StackOf(&joint, file)});
+  }
+  TomlNode common = documents.front().root;
+  const TomlNode* bus = root.Find("bus");
+  common.Erase("bus");
+  if (bus != nullptr) common.members.push_back({"bus", *bus});
+  PutProcesses(root, &common);
+  limb.common = StackOf(&common, file);
+  for (const JointConfig& joint : limb.joints) {
+    limb.common.joints.push_back(joint.name);
+    limb.common.bus.joint_suffixes.push_back(joint.config.bus.channel_suffix);
+  }
+  limb.limb = LimbOf(root, limb.common.plant.rate_hz);
+  CheckProcesses(limb.common);
+  limb.common.agreed = AgreedByAll(limb.joints);
+  limb.common.text = FormatToml(WholeDocument(root, limb));
+  return limb;
+}
+
+StackConfig LoadCommonConfig(const std::string& file, const std::vector<std::string>& overrides) {
+  std::vector<std::string> others = overrides;
+  if (TakeJointChoice(&others) || !IsLimbFile(file)) return LoadStackConfig(file, overrides);
+  return LoadLimbConfig(file, overrides).common;
+}
+
+}  // namespace hydro::settings

@@ -1,0 +1,51 @@
+// The configuration of a limb: joints whose plants and loops run in one process (hydro-limb, hydro-sim).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "settings/stack_config.h"
+
+namespace hydro::settings {
+
+// What the other joints of a limb do while a fault of one holds its voltage at zero.
+enum class OnJointFault {
+  kAllToZero,  // their voltages are zero too, until that fault has ended
+  kOthersGoOn,
+};
+
+struct LimbSection {
+  OnJointFault on_joint_fault = OnJointFault::kAllToZero;  // "all_to_zero" | "others_go_on"
+  // How often a joint's states and commands are on the bus, in real time; faults are at once. In lockstep every one is.
+  double telemetry_hz = 50;  // divides plant.rate_hz; or "every_tick"
+  int64_t telemetry_interval_ticks = 20;
+};
+
+struct JointConfig {
+  std::string name;
+  StackConfig config;  // of a stack with this joint alone, on channels of its own suffix
+};
+
+struct LimbConfig {
+  // Bus, time, plant and logger of the limb as a whole, its processes, and the names of its joints; the rest is the first joint's.
+  // The text is that of the whole limb.
+  StackConfig common;
+  LimbSection limb;
+  std::vector<JointConfig> joints;
+};
+
+// Whether `file` is the configuration of a limb. Throws InputError.
+bool IsLimbFile(const std::string& file);
+
+// As LoadStackConfig, for a file with [[joint]] sections. Throws InputError.
+LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string>& overrides = {});
+
+// For programs that serve a stack or a limb as a whole (logger, launcher): the configuration of the stack, or what the joints of the
+// limb have in common. Throws InputError.
+StackConfig LoadCommonConfig(const std::string& file, const std::vector<std::string>& overrides = {});
+
+// The joints that a process of a limb has, in the order of the configuration.
+std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common);
+
+}  // namespace hydro::settings
