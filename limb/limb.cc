@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/input_error.h"
+#include "base/text_file.h"
 #include "limb/jointed_arm.h"
 #include "plant/simulated_rig.h"
 
@@ -17,6 +18,17 @@ bool IsWanted(const std::string& name, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
+void CheckWanted(const settings::LimbConfig& config, const std::vector<std::string>& wanted) {
+  const std::vector<std::string>& names = config.common.joints;
+  for (const std::string& name : wanted) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw InputError("--joints: found " + Quoted(name) + ", allowed " + QuotedList(names));
+  }
+  if (config.arm && !wanted.empty() && wanted.size() < names.size()) {
+    throw InputError("--joints: found some of the joints of an [arm], allowed all of them: it couples their loads");
+  }
+}
+
 void CheckSimulated(const settings::JointConfig& joint) {
   if (!joint.config.driver) return;
   throw InputError(joint.config.file + ": joint." + joint.name +
@@ -28,6 +40,7 @@ void CheckSimulated(const settings::JointConfig& joint) {
 
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
+  CheckWanted(config, options.joints);
   std::vector<std::unique_ptr<plant::SimulatedMachine>> machines;
   if (config.arm) machines = MakeJointedArm(config);
   for (size_t i = 0; i < config.joints.size(); ++i) {
