@@ -8,6 +8,7 @@ root or not. When it ends, so does every process that it or a job of it has star
 By hand: python3 -B tests/e2e/slurm_cluster.py COMMAND [ARGUMENT...] runs a command beside a cluster.
 """
 
+import ctypes
 import getpass
 import os
 import shutil
@@ -155,7 +156,8 @@ class Cluster:
         label = label or program
         with open(self._path("log", label + ".out"), "ab") as out:
             self._daemons[label] = subprocess.Popen([shutil.which(program, path=PATH), *arguments], cwd=self.folder, env=self.environment,
-                                                    stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True)
+                                                    stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True,
+                                                    preexec_fn=_end_with_parent)
 
     def start_node(self, node):
         self._launch("slurmd", "-D", "-N", node, "-f", self._path("slurm.conf"), label=node)
@@ -234,6 +236,11 @@ class Cluster:
             with open(self._path("log", name), encoding="utf-8", errors="replace") as file:
                 parts.append(f"--- {name}\n{file.read()[-3000:]}")
         return "\n".join(parts)
+
+
+def _end_with_parent():
+    """A cluster does not outlive a test that was killed."""
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
 
 
 def _environment(pid):
