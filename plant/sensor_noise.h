@@ -10,7 +10,7 @@
 
 namespace hydro::plant {
 
-// A standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
+// A standard normal number for (seed, tick, channel), whatever is drawn besides.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
 
 // `measurement` as the sensors read it at `tick`: with noise, then rounded to a multiple of the resolution.
