@@ -1,0 +1,52 @@
+#include "batch/slurm/grouping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydro::batch {
+namespace {
+
+// Cases of a job that may last `seconds`.
+int64_t CasesIn(double seconds, double case_s, int64_t most) {
+  const double cases = case_s > 0 ? std::ceil(seconds / case_s) : static_cast<double>(most);
+  return static_cast<int64_t>(std::clamp(cases, 1.0, static_cast<double>(std::max<int64_t>(most, 1))));
+}
+
+std::string Times(int64_t count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+Grouping ChooseGrouping(const GroupingQuestion& question) {
+  Grouping grouping;
+  const int64_t missing = std::max<int64_t>(question.missing, 1);
+  std::string because;
+  if (question.cases_wished > 0) {
+    grouping.cases = std::min(question.cases_wished, missing);
+    grouping.jobs = (missing + grouping.cases - 1) / grouping.cases;
+    because = "as --cases-per-job asks";
+  } else {
+    grouping.cases = CasesIn(question.start_s / kMostStartShare, question.case_s, missing);
+    bool limited = false;
+    // Half of what a job may take, because cases differ.
+    if (question.limit_s > 0 && static_cast<double>(grouping.cases) * question.case_s > question.limit_s / 2) {
+      grouping.cases = std::max<int64_t>(1, static_cast<int64_t>(question.limit_s / 2 / question.case_s));
+      limited = true;
+    }
+    // What is left over is shared among the jobs rather than a short job of its own, unless they may not be longer.
+    grouping.jobs = limited ? (missing + grouping.cases - 1) / grouping.cases : std::max<int64_t>(1, missing / grouping.cases);
+    grouping.cases = (missing + grouping.jobs - 1) / grouping.jobs;
+    grouping.jobs = (missing + grouping.cases - 1) / grouping.cases;
+    because = limited ? "as half of the time limit allows" : "so that starting a job costs less than a twentieth of it";
+  }
+  const double job_s = static_cast<double>(grouping.cases) * question.case_s;
+  grouping.why = fmt::format("{} with {} each, {}: a case takes {:.2g} s, starting a job up to {:.2g} s of {:.2g} s",
+                             Times(grouping.jobs, "job"), Times(grouping.cases, "case"), because, question.case_s,
+                             question.start_s, job_s + question.start_s);
+  return grouping;
+}
+
+}  // namespace hydro::batch
