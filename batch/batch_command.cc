@@ -9,11 +9,14 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "base/terminal_line.h"
 #include "base/text_file.h"
 #include "batch/finish.h"
 #include "batch/prepare.h"
+#include "batch/progress.h"
+#include "batch/run/missing_cases.h"
 #include "batch/run/run_cases.h"
+#include "batch/status.h"
+#include "batch/store/study_lock.h"
 #include "process/stop_signal.h"
 
 namespace hydro::batch {
@@ -66,16 +69,28 @@ int Told(const Study& study, const std::string& folder, const TableCounts& count
   return counts.failed == 0 && counts.missing == 0 ? 0 : 1;
 }
 
+RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::string& folder) {
+  RunRequest request = Request(options, folder);
+  request.end = study.cases();
+  const CaseCount there = CountCases(CaseStore(folder), 0, study.cases());
+  Progress progress(stderr, isatty(STDERR_FILENO) != 0, study.cases(),
+                    there.done + (options.failed_again ? 0 : there.failed));
+  request.progress = [&](const RunProgress& now) { progress.Show(now); };
+  return RunCases(study, request);
+}
+
 int RunStudy(const BatchOptions& options) {
   const Study study = ReadStudy(options.study);
   const std::string folder =
       options.out.empty() ? "out/batch/" + std::filesystem::path(options.study).stem().string() : options.out;
   PrepareStudy(study, folder);
-  RunRequest request = Request(options, folder);
-  request.end = study.cases();
-  const RunOutcome outcome = RunCases(study, request);
-  if (outcome.stopped) return 1;
-  return Told(study, folder, FinishStudy(folder, request.jobs));
+  const StudyLock lock(folder);
+  const RunOutcome outcome = RunAll(study, options, folder);
+  if (outcome.stopped) {
+    std::fprintf(stderr, "hydro-batch: stopped; the same command goes on with the cases that are missing\n");
+    return 1;
+  }
+  return Told(study, folder, FinishStudy(folder, Jobs(options)));
 }
 
 }  // namespace
@@ -101,6 +116,10 @@ int Run(BatchOptions options) {
   if (!options.finish.empty()) {
     const Study study = OpenStudy(options.finish);
     return Told(study, options.finish, FinishStudy(options.finish, Jobs(options)));
+  }
+  if (!options.status.empty()) {
+    std::fputs(StatusText(ReadStatus(options.status)).c_str(), stdout);
+    return 0;
   }
   if (options.study.empty()) throw InputError("STUDY: found nothing, allowed FILE the study, TOML");
   return RunStudy(options);

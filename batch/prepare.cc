@@ -5,8 +5,6 @@
 
 #include "base/new_file.h"
 #include "base/text_file.h"
-#include "base/text_lines.h"
-#include "batch/store/small_file.h"
 #include "batch/study/study_difference.h"
 
 namespace hydro::batch {

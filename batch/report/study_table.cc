@@ -16,7 +16,7 @@ std::string StatusText(CaseStatus status) {
 std::string CsvCell(const std::string& text) {
   if (text.find_first_of(",\"\n\r#") == std::string::npos) return text;
   std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "'" : std::string(1, c);
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 
@@ -31,8 +30,8 @@ std::string LastLine(const std::string& path) {
   size_t end = text.find_last_not_of(" \t\r\n");
   if (end == std::string::npos) return "";
   const size_t begin = text.find_last_of('\n', end);
-  std::string line = text.substr(begin == std::string::npos ? 0 : begin + 1);
-  line = Trimmed(line);
+  const size_t start = begin == std::string::npos ? 0 : begin + 1;
+  const std::string line = Trimmed(text.substr(start, end + 1 - start));
   return Printable(line.size() > kMost ? line.substr(0, kMost) + "..." : line);
 }
 
@@ -65,8 +64,7 @@ CaseRunner::CaseRunner(const Study& study, const CaseInputs& case_inputs, std::s
     const std::string& name = step.argv.front();
     programs_.push_back(name.find_first_of("/{") == std::string::npos ? ProgramPath(name) : "");
   }
-  if (mkdir(scratch_.c_str(), 0700) != 0)
-    throw StoreError(scratch_ + ": cannot be created: " + std::strerror(errno));
+  if (mkdir(scratch_.c_str(), 0700) != 0) ThrowCannotWrite(scratch_);
 }
 
 CaseRunner::~CaseRunner() {
@@ -79,8 +77,7 @@ void CaseRunner::Empty() const {
   for (const auto& entry : fs::directory_iterator(folder_, failed)) {
     if (unlink(entry.path().c_str()) != 0) fs::remove_all(entry.path(), failed);
   }
-  if (mkdir(folder_.c_str(), 0700) != 0 && errno != EEXIST)
-    throw StoreError(folder_ + ": cannot be created: " + std::strerror(errno));
+  if (mkdir(folder_.c_str(), 0700) != 0 && errno != EEXIST) ThrowCannotWrite(folder_);
 }
 
 void CaseRunner::Prepare(const std::vector<Value>& values) const {
@@ -88,8 +85,7 @@ void CaseRunner::Prepare(const std::vector<Value>& values) const {
   if (!study_.config_text.empty()) WriteSmallFile(folder_ + "/config.toml", case_inputs_.Config(values));
   if (!study_.model_text.empty()) WriteSmallFile(folder_ + "/model.toml", case_inputs_.Model(values));
   // So that commands and configurations name files alike wherever they run.
-  if (symlink(inputs_.c_str(), (folder_ + "/inputs").c_str()) != 0)
-    throw StoreError(folder_ + ": cannot be written: " + std::strerror(errno));
+  if (symlink(inputs_.c_str(), (folder_ + "/inputs").c_str()) != 0) ThrowCannotWrite(folder_);
 }
 
 std::optional<std::string> CaseRunner::RunStep(size_t step, int64_t index, const std::vector<Value>& values,

@@ -13,7 +13,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "batch/store/case_store.h"
+#include "batch/store/store_error.h"
 #include "process/process_end.h"
 #include "process/spawn.h"
 
@@ -38,7 +38,7 @@ class OwnedDescriptor {
 
 int OpenOutput(const std::string& path) {
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw StoreError(path + ": cannot be written: " + std::strerror(errno));
+  if (descriptor < 0) ThrowCannotWrite(path);
   return descriptor;
 }
 

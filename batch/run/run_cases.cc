@@ -69,7 +69,8 @@ class Pool {
         const auto start = Clock::now();
         const double began = WallClock();
         const auto result = runner.Run(*index, bell_);
-        if (!result) break;
+        // A child that was stopped together with this process may have ended as if all were well.
+        if (!result || (request_.stop && request_.stop())) break;
         Keep(*index, *result, runner.Kept(), slot);
         times_.Add(*index, result->failed, result->attempts, began, SecondsSince(start));
       }

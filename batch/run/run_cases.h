@@ -21,8 +21,8 @@ struct RunRequest {
   int64_t first = 0;   // cases from this one
   int64_t end = 0;     // to the one before this
   int jobs = 1;
-  bool failed_again = false;                              // failed cases count as missing
-  std::function<bool()> stop = {};                        // asked ten times a second
+  bool failed_again = false;        // failed cases count as missing
+  std::function<bool()> stop = {};  // asked ten times a second and after each case, by any thread
   std::function<void(const RunProgress&)> progress = {};  // called ten times a second
 };
 

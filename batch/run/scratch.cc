@@ -5,11 +5,10 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
-#include "batch/store/case_store.h"
 #include "batch/store/owner.h"
+#include "batch/store/store_error.h"
 
 namespace hydro::batch {
 
@@ -19,8 +18,7 @@ Scratch::Scratch() {
   const char* place = std::getenv("TMPDIR");
   const std::string all = fs::absolute(place == nullptr || *place == '\0' ? "/tmp" : place).string() +
                           "/hydro-batch-" + std::to_string(getuid());
-  if (mkdir(all.c_str(), 0700) != 0 && errno != EEXIST)
-    throw StoreError(all + ": cannot be created: " + std::strerror(errno));
+  if (mkdir(all.c_str(), 0700) != 0 && errno != EEXIST) ThrowCannotWrite(all);
   // Somebody else may have made it first, to see or change what runs there.
   struct stat status = {};
   if (lstat(all.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != getuid())
@@ -28,8 +26,7 @@ Scratch::Scratch() {
   std::error_code ignored;
   for (const std::string& path : LeftBehind(all)) fs::remove_all(path, ignored);
   path_ = all + "/" + NewOwnerName();
-  if (mkdir(path_.c_str(), 0700) != 0)
-    throw StoreError(path_ + ": cannot be created: " + std::strerror(errno));
+  if (mkdir(path_.c_str(), 0700) != 0) ThrowCannotWrite(path_);
 }
 
 Scratch::~Scratch() {

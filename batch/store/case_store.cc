@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -18,10 +17,6 @@ namespace hydro::batch {
 namespace {
 
 constexpr std::string_view kFailed = ".failed";
-
-[[noreturn]] void ThrowStoreError(const std::string& path, int error) {
-  throw StoreError(path + ": cannot be written: " + std::strerror(error));
-}
 
 std::string Digits(int64_t number) {
   std::string text = std::to_string(number);
@@ -42,9 +37,9 @@ int NumberOf(std::string_view name) {
 // Several processes may make it at the same time.
 void MakeFolders(const std::string& path) {
   if (mkdir(path.c_str(), 0777) == 0 || errno == EEXIST) return;
-  if (errno != ENOENT) ThrowStoreError(path, errno);
+  if (errno != ENOENT) ThrowCannotWrite(path);
   MakeFolders(path.substr(0, path.rfind('/')));
-  if (mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) ThrowStoreError(path, errno);
+  if (mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) ThrowCannotWrite(path);
 }
 
 bool Exists(const std::string& path) { return access(path.c_str(), F_OK) == 0; }
@@ -103,7 +98,7 @@ std::string CaseStore::StagingFolder(int slot) {
   } else {
     MakeFolders(folder_ + "/staging");
   }
-  if (mkdir(path.c_str(), 0777) != 0) ThrowStoreError(path, errno);
+  if (mkdir(path.c_str(), 0777) != 0) ThrowCannotWrite(path);
   return path;
 }
 
@@ -124,7 +119,7 @@ bool CaseStore::Store(int64_t index, bool failed, const std::string& result,
       if (rename(staging.c_str(), place.c_str()) == 0) return true;
     }
     // Somebody else was first.
-    if (errno != ENOTEMPTY && errno != EEXIST) ThrowStoreError(place, errno);
+    if (errno != ENOTEMPTY && errno != EEXIST) ThrowCannotWrite(place);
   } catch (...) {
     RemoveAll(staging);
     throw;
@@ -137,13 +132,13 @@ void CaseStore::Remove(int64_t index, bool failed, int slot) {
   // Away in one step first, so that no half of it is seen.
   const std::string away = StagingFolder(slot) + "/removed";
   const std::string place = CaseFolder(index, failed);
-  if (rename(place.c_str(), away.c_str()) != 0 && errno != ENOENT) ThrowStoreError(place, errno);
+  if (rename(place.c_str(), away.c_str()) != 0 && errno != ENOENT) ThrowCannotWrite(place);
   RemoveAll(folder_ + "/staging/" + own_ + "." + std::to_string(slot));
 }
 
 void CaseStore::Sync() {
   if (descriptor_ < 0) descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 || syncfs(descriptor_) != 0) ThrowStoreError(folder_, errno);
+  if (descriptor_ < 0 || syncfs(descriptor_) != 0) ThrowCannotWrite(folder_);
 }
 
 void CaseStore::SweepStaging() const {

@@ -11,19 +11,14 @@
 #include <bitset>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "batch/store/store_error.h"
 
 namespace hydro::batch {
 
 inline constexpr int64_t kShard = 1000;  // cases in a folder
-
-// The folder cannot be written (disk full, no permission). what() is one line.
-class StoreError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // Which cases of a shard are there, by their number within it.
 struct ShardCases {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "batch/store/case_store.h"
+#include "batch/store/store_error.h"
 
 namespace hydro::batch {
 namespace {
@@ -33,10 +33,6 @@ class Descriptor {
  private:
   int number_;
 };
-
-[[noreturn]] void ThrowCannotWrite(const std::string& path) {
-  throw StoreError(path + ": cannot be written: " + std::strerror(errno));
-}
 
 void WriteAll(int descriptor, const char* data, size_t size, const std::string& path) {
   while (size > 0) {
