@@ -85,8 +85,10 @@ int RunStudy(const BatchOptions& options) {
       options.out.empty() ? "out/batch/" + std::filesystem::path(options.study).stem().string() : options.out;
   PrepareStudy(study, folder);
   const StudyLock lock(folder);
-  const RunOutcome outcome = RunAll(study, options, folder);
-  if (outcome.stopped) {
+  if (options.slurm.on) {
+    const SlurmEnd end = RunOnSlurm(study, folder, options.slurm, options.failed_again);
+    if (end == SlurmEnd::kStopped) return options.slurm.detach && process::StopSignal() == 0 ? 0 : 1;
+  } else if (RunAll(study, options, folder).stopped) {
     std::fprintf(stderr, "hydro-batch: stopped; the same command goes on with the cases that are missing\n");
     return 1;
   }
@@ -107,11 +109,13 @@ void AddOptions(settings::CommandLine* line, BatchOptions* options) {
   line->AddOption("--worker", &options->worker, "DIR run cases of a prepared study, without table and page");
   line->AddOption("--cases", &options->cases,
                   "A:B with --worker: the cases from A to the one before B (all)");
+  AddSlurmOptions(line, &options->slurm);
 }
 
 int Run(BatchOptions options) {
   if (options.jobs < 0 || options.jobs > 4096)
     throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
+  CheckSlurmOptions(options.slurm);
   if (!options.worker.empty()) return RunWorker(options);
   if (!options.finish.empty()) {
     const Study study = OpenStudy(options.finish);
@@ -119,6 +123,7 @@ int Run(BatchOptions options) {
   }
   if (!options.status.empty()) {
     std::fputs(StatusText(ReadStatus(options.status)).c_str(), stdout);
+    std::fputs(SlurmStatusText(options.status).c_str(), stdout);
     return 0;
   }
   if (options.study.empty()) throw InputError("STUDY: found nothing, allowed FILE the study, TOML");

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "batch/slurm_command.h"
 #include "settings/command_line.h"
 
 namespace hydro::batch {
@@ -16,6 +17,7 @@ struct BatchOptions {
   std::string finish;  // folder of a study to make the table of
   std::string worker;  // folder of a prepared study to run cases of
   std::string cases;   // "A:B", which ones
+  SlurmOptions slurm;
 };
 
 void AddOptions(settings::CommandLine* line, BatchOptions* options);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text_file.h"
 #include "batch/status.h"
 
 namespace hydro::batch {
@@ -19,8 +20,14 @@ std::string ProgressText(const RunProgress& progress, int64_t total, int64_t the
   return text + ", " + DurationText(each * static_cast<double>(progress.to_run - progress.ran)) + " left";
 }
 
-void Progress::Show(const RunProgress& progress) {
-  const std::string text = ProgressText(progress, total_, there_);
+void Progress::Say(const std::string& text) {
+  line_.Wipe();
+  std::fprintf(out_, "hydro-batch: %s\n", Printable(text).c_str());
+  std::fflush(out_);
+}
+
+void Progress::Show(const RunProgress& progress, const std::string& more) {
+  const std::string text = ProgressText(progress, total_, there_) + more;
   if (terminal_) {
     line_.Draw(static_cast<double>(there_ + progress.ran) / static_cast<double>(total_), text);
   } else if (progress.elapsed_s - told_s_ >= kPeriod) {

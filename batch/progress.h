@@ -14,7 +14,10 @@ class Progress {
   // `total`: cases of the study; `there`: those that were there before. The caller keeps `out`.
   Progress(std::FILE* out, bool terminal, int64_t total, int64_t there);
 
-  void Show(const RunProgress& progress);
+  // `more`: what follows the text.
+  void Show(const RunProgress& progress, const std::string& more = "");
+  // A line that stays.
+  void Say(const std::string& text);
 
  private:
   std::FILE* out_;

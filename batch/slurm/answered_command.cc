@@ -38,7 +38,8 @@ class Descriptor {
 std::string ContentsOf(const Descriptor& file) {
   std::string text;
   std::array<char, 65536> part;
-  for (ssize_t size; (size = pread(file.number(), part.data(), part.size(), static_cast<off_t>(text.size()))) > 0;)
+  for (ssize_t size;
+       (size = pread(file.number(), part.data(), part.size(), static_cast<off_t>(text.size()))) > 0;)
     text.append(part.data(), static_cast<size_t>(size));
   return text;
 }

@@ -15,7 +15,9 @@ namespace {
 using std::chrono::milliseconds;
 
 // Squeue is asked rarely: everybody's commands go to the same slurmctld. At the beginning a study may be over soon.
-milliseconds NextWait(milliseconds waited) { return std::clamp(waited / 20, milliseconds(200), milliseconds(10000)); }
+milliseconds NextWait(milliseconds waited) {
+  return std::clamp(waited / 20, milliseconds(200), milliseconds(10000));
+}
 
 const QueuedArray* Named(const std::vector<QueuedArray>& queue, const std::string& name) {
   const auto found = std::ranges::find(queue, name, &QueuedArray::name);
@@ -83,8 +85,8 @@ void ArrayDriver::Adopt() {
       record.released = true;
       folders_.Write(record);
     }
-    request_.say(fmt::format("found array {} of {} jobs, submitted before: {} running, {} waiting", record.id, record.jobs,
-                             queued->running, queued->pending));
+    request_.say(fmt::format("found array {} of {} jobs, submitted before: {} running, {} waiting", record.id,
+                             record.jobs, queued->running, queued->pending));
     active_.push_back(record);
     if (record.pass == pass_) cursor_ = record.end;
   }
@@ -130,8 +132,9 @@ bool ArrayDriver::StartsPass() {
   if (!ended_.empty()) {
     barren_ = there > there_before_ ? 0 : barren_ + 1;
     const std::string complaint = folders_.LastComplaint(ended_.back());
-    request_.say(fmt::format("{} of {} cases are missing, and no job has them any more{}{}", request_.cases - there,
-                             request_.cases, complaint.empty() ? "" : "; a job said: ", complaint));
+    request_.say(fmt::format("{} of {} cases are missing, and no job has them any more{}{}",
+                             request_.cases - there, request_.cases,
+                             complaint.empty() ? "" : "; a job said: ", complaint));
     if (barren_ >= request_.barren_passes) return false;
   }
   // On a full disk the next jobs would fail like those before.
@@ -148,7 +151,8 @@ bool ArrayDriver::StartsPass() {
 bool ArrayDriver::MayAdd() const {
   if (cursor_ >= request_.cases) return false;
   if (request_.at_once > 0) return active_.empty();
-  return progress_.running + progress_.pending + limits_.array_jobs <= std::max(limits_.all_jobs / 2, limits_.array_jobs);
+  return progress_.running + progress_.pending + limits_.array_jobs <=
+         std::max(limits_.all_jobs / 2, limits_.array_jobs);
 }
 
 void ArrayDriver::TryToAdd() {
@@ -268,8 +272,8 @@ void ArrayDriver::SayWaits() const {
     weight += static_cast<double>(spans.size());
   }
   if (weight == 0) return;
-  request_.say(fmt::format("between two jobs a processor waited {:.2g} s, {:.2g} % of a job's {:.3g} s", waits / weight,
-                           100 * waits / (waits + busy), busy / weight));
+  request_.say(fmt::format("between two jobs a processor waited {:.2g} s, {:.2g} % of a job's {:.3g} s",
+                           waits / weight, 100 * waits / (waits + busy), busy / weight));
 }
 
 }  // namespace hydro::batch

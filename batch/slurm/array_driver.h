@@ -34,8 +34,9 @@ struct DriveRequest {
   int64_t at_once = 0;                 // most jobs at the same time; 0: any number
   int64_t cases_per_job = 0;           // 0: chosen (grouping.h)
   double limit_s = 0;                  // of a job; 0: none
-  int barren_passes = 3;  // so many times in a row what is missing is submitted and not one more case gets there: give up
-  bool detach = false;    // submit and leave
+  int barren_passes =
+      3;  // so many times in a row what is missing is submitted and not one more case gets there: give up
+  bool detach = false;             // submit and leave
   std::function<double()> case_s;  // how long a case takes, s, as far as is known by now
   std::function<StopWish()> stop;
   std::function<void(std::chrono::milliseconds)> wait;  // may return early

@@ -42,8 +42,9 @@ std::optional<ArrayRecord> ParseRecord(const std::string& text, int64_t number) 
 }
 
 std::string RecordText(const ArrayRecord& record) {
-  return fmt::format("name = {}\nid = {}\nreleased = {}\npass = {}\nend = {}\njobs = {}\n", settings::TomlString(record.name),
-                     record.id, record.released, record.pass, record.end, record.jobs);
+  return fmt::format("name = {}\nid = {}\nreleased = {}\npass = {}\nend = {}\njobs = {}\n",
+                     settings::TomlString(record.name), record.id, record.released, record.pass, record.end,
+                     record.jobs);
 }
 
 // Not by time or process alone: several hosts may make arrays for folders of the same name.
@@ -64,7 +65,9 @@ void WriteOrThrow(const std::string& path, const std::string& text) {
 
 ArrayFolders::ArrayFolders(std::string folder) : folder_(std::move(folder)) {}
 
-std::string ArrayFolders::ArrayFolder(int64_t number) const { return fmt::format("{}/slurm/{:03}", folder_, number); }
+std::string ArrayFolders::ArrayFolder(int64_t number) const {
+  return fmt::format("{}/slurm/{:03}", folder_, number);
+}
 
 std::vector<ArrayRecord> ArrayFolders::Read() const {
   std::vector<ArrayRecord> records;
@@ -79,7 +82,8 @@ std::vector<ArrayRecord> ArrayFolders::Read() const {
   return records;
 }
 
-ArrayRecord ArrayFolders::Make(const std::string& study, const std::vector<CaseRange>& cases, int64_t pass) const {
+ArrayRecord ArrayFolders::Make(const std::string& study, const std::vector<CaseRange>& cases,
+                               int64_t pass) const {
   ArrayRecord record;
   std::error_code failed;
   fs::create_directories(folder_ + "/slurm", failed);

@@ -22,10 +22,16 @@ std::string PlainName(const std::string& text) {
 
 std::string ArrayScript(const ScriptRequest& request) {
   return "#!/bin/sh\n"
-         "# Written by hydro-batch for sbatch: each job of the array runs the cases of its line in the file `cases`.\n"
-         "program=" + ShellWord(request.program) + "\n"
-         "study=" + ShellWord(request.study) + "\n"
-         "array=" + ShellWord(request.array) + R"(
+         "# Written by hydro-batch for sbatch: each job of the array runs the cases of its line in the file "
+         "`cases`.\n"
+         "program=" +
+         ShellWord(request.program) +
+         "\n"
+         "study=" +
+         ShellWord(request.study) +
+         "\n"
+         "array=" +
+         ShellWord(request.array) + R"(
 job=$SLURM_ARRAY_TASK_ID
 # A full disk must not keep a job from saying so with its exit code.
 log=$array/log/$job

@@ -33,7 +33,7 @@ struct ArrayRequest {
   std::string script;  // path
   std::string folder;  // that it runs in
   int64_t jobs = 0;
-  int64_t at_once = 0;  // most of its jobs at the same time; 0: any number
+  int64_t at_once = 0;                 // most of its jobs at the same time; 0: any number
   std::vector<std::string> arguments;  // further ones of sbatch
 };
 

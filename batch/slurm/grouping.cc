@@ -32,20 +32,24 @@ Grouping ChooseGrouping(const GroupingQuestion& question) {
     grouping.cases = CasesIn(question.start_s / kMostStartShare, question.case_s, missing);
     bool limited = false;
     // Half of what a job may take, because cases differ.
-    if (question.limit_s > 0 && static_cast<double>(grouping.cases) * question.case_s > question.limit_s / 2) {
+    if (question.limit_s > 0 &&
+        static_cast<double>(grouping.cases) * question.case_s > question.limit_s / 2) {
       grouping.cases = std::max<int64_t>(1, static_cast<int64_t>(question.limit_s / 2 / question.case_s));
       limited = true;
     }
     // What is left over is shared among the jobs rather than a short job of its own, unless they may not be longer.
-    grouping.jobs = limited ? (missing + grouping.cases - 1) / grouping.cases : std::max<int64_t>(1, missing / grouping.cases);
+    grouping.jobs = limited ? (missing + grouping.cases - 1) / grouping.cases
+                            : std::max<int64_t>(1, missing / grouping.cases);
     grouping.cases = (missing + grouping.jobs - 1) / grouping.jobs;
     grouping.jobs = (missing + grouping.cases - 1) / grouping.cases;
-    because = limited ? "as half of the time limit allows" : "so that starting a job costs less than a twentieth of it";
+    because = limited ? "as half of the time limit allows"
+                      : "so that starting a job costs less than a twentieth of it";
   }
   const double job_s = static_cast<double>(grouping.cases) * question.case_s;
-  grouping.why = fmt::format("{} with {} each, {}: a case takes {:.2g} s, starting a job up to {:.2g} s of {:.2g} s",
-                             Times(grouping.jobs, "job"), Times(grouping.cases, "case"), because, question.case_s,
-                             question.start_s, job_s + question.start_s);
+  grouping.why =
+      fmt::format("{} with {} each, {}: a case takes {:.2g} s, starting a job up to {:.2g} s of {:.2g} s",
+                  Times(grouping.jobs, "job"), Times(grouping.cases, "case"), because, question.case_s,
+                  question.start_s, job_s + question.start_s);
   return grouping;
 }
 

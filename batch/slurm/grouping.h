@@ -10,10 +10,10 @@ namespace hydro::batch {
 inline constexpr double kMostStartShare = 1.0 / 20;
 
 struct GroupingQuestion {
-  int64_t missing = 0;     // cases to run
-  double case_s = 0;       // a case takes
-  double start_s = 0;      // a processor waits for its next job
-  double limit_s = 0;      // a job may take; 0: any time
+  int64_t missing = 0;       // cases to run
+  double case_s = 0;         // a case takes
+  double start_s = 0;        // a processor waits for its next job
+  double limit_s = 0;        // a job may take; 0: any time
   int64_t cases_wished = 0;  // in a job; 0: to be chosen
 };
 

@@ -39,7 +39,8 @@ ClusterLimits ParseLimits(const std::string& text) {
   std::map<std::string, std::string> values;
   for (const std::string& line : Split(text, '\n')) {
     const size_t equals = line.find('=');
-    if (equals != std::string::npos) values[Trimmed(line.substr(0, equals))] = Trimmed(line.substr(equals + 1));
+    if (equals != std::string::npos)
+      values[Trimmed(line.substr(0, equals))] = Trimmed(line.substr(equals + 1));
   }
   const auto take = [&](const std::string& name, int64_t* out) {
     const auto number = ParseInteger(values[name]);

@@ -37,7 +37,8 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
   if (!answer.ended_itself) throw ClusterError(program + ": no answer", false);
   const std::string line = LastLine(answer.err.empty() ? answer.out : answer.err);
   // slurmctld is away, or has too many jobs, for now.
-  const bool later = line.find("contact") != std::string::npos || line.find("timed out") != std::string::npos ||
+  const bool later = line.find("contact") != std::string::npos ||
+                     line.find("timed out") != std::string::npos ||
                      line.find("temporarily unavailable") != std::string::npos;
   throw ClusterError(line.starts_with(program) ? Printable(line) : program + ": " + Printable(line), !later);
 }
@@ -56,8 +57,12 @@ std::vector<std::string> SbatchArguments(const ArrayRequest& request) {
   std::string array = "--array=0-" + std::to_string(request.jobs - 1);
   if (request.at_once > 0) array += "%" + std::to_string(request.at_once);
   // What a job prints goes where the script says. A job whose node is lost begins again, unless an argument that follows says otherwise.
-  std::vector<std::string> arguments = {"sbatch", "--parsable", "--requeue", "--output=/dev/null",
-                                        "--job-name=" + request.name, "--chdir=" + request.folder};
+  std::vector<std::string> arguments = {"sbatch",
+                                        "--parsable",
+                                        "--requeue",
+                                        "--output=/dev/null",
+                                        "--job-name=" + request.name,
+                                        "--chdir=" + request.folder};
   arguments.insert(arguments.end(), request.arguments.begin(), request.arguments.end());
   arguments.insert(arguments.end(), {"--hold", array, request.script});
   return arguments;
