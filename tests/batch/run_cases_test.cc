@@ -2,7 +2,6 @@
 
 #include <thread>
 
-#include "base/text_lines.h"
 #include "batch/finish.h"
 #include "batch/prepare.h"
 #include "batch/run/case_command.h"
@@ -234,12 +233,12 @@ TEST(ChildTest, EndsWithTheBell) {
   const StopBell bell;
   std::string pid;
   std::thread ringer([&] {
-    while (pid.empty()) pid = Trimmed(ReadSmallFile(folder / "pid").value_or(""));
+    while (pid.empty()) pid = ReadSmallFile(folder / "pid").value_or("");
     EXPECT_TRUE(Runs(pid));
     bell.Ring();
   });
   const ChildResult result =
-      RunChild({.argv = {ProgramPath("sh"), "-c", "sleep 1000 & echo $! > new; mv new pid; wait"},
+      RunChild({.argv = {ProgramPath("sh"), "-c", "sleep 1000 & printf %s $! > new; mv new pid; wait"},
                 .folder = folder / "",
                 .out = folder / "o",
                 .err = folder / "e"},
