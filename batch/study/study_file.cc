@@ -44,6 +44,13 @@ TomlNode* Member(TomlNode* table, const std::string& key) {
   return table->Find(key);
 }
 
+TomlNode AsTable(const TomlNode& item) {
+  if (!item.is(Kind::kString)) return item;
+  TomlNode table;
+  table.members.push_back({"from", item});
+  return table;
+}
+
 class Reader {
  public:
   Reader(const std::string& file, std::vector<settings::AskedKey>* asked)
@@ -231,6 +238,8 @@ class Reader {
         section.Choice<bool>("worse", {{"larger", false}, {"smaller", true}}, &collected.smaller_is_worse);
         section.Finish();
       }
+      // As sections, the folder's study.toml keeps their order.
+      *Member(Member(&kept_, "collect"), name) = AsTable(item);
       const size_t colon = from.find(":/");
       if (colon == std::string::npos || colon == 0) {
         throw settings::KeyError(item.place, "collect." + name, item.Shown(),

@@ -32,11 +32,17 @@ rows = [[5000, "lockstep", 0.02, 0.5, 3.0]]
 // Tests that the same case has the same files, byte by byte, when the study is read from its folder again.
 TEST(CaseInputsTest, SurvivesTheFolder) {
   const StudyFolder folder;
-  const Study study = folder.Read("config = \"" + std::string(HYDRO_CONFIG) +
-                                  "/demo.toml\"\n[[grid]]\nkey = \"model:b\"\nvalues = [0.01, 0.02]\n");
+  const Study study = folder.Read(
+      "config = \"" + std::string(HYDRO_CONFIG) +
+      "/demo.toml\"\n[[grid]]\nkey = \"model:b\"\nvalues = [0.01, 0.02]\n"
+      "[collect]\na = { from = \"x.json:/a\" }\nb = \"x.json:/b\"\nc = { from = \"x.json:/c\" }\n");
   for (const auto& [name, text] : study.files) folder.Write(name, text);
   const Study again = ReadStudy(folder / "study.toml");
   EXPECT_EQ(again.files, study.files);
+  for (const Study& each : {study, again}) {
+    ASSERT_EQ(each.collect.size(), 3u);
+    EXPECT_EQ(each.collect[0].name + each.collect[1].name + each.collect[2].name, "abc");
+  }
   EXPECT_EQ(CaseInputs(again).Config(again.Values(1)), CaseInputs(study).Config(study.Values(1)));
   EXPECT_EQ(CaseInputs(again).Model(again.Values(1)), CaseInputs(study).Model(study.Values(1)));
 }
