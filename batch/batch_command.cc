@@ -80,10 +80,12 @@ RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::st
 }
 
 int RunStudy(const BatchOptions& options) {
-  const Study study = ReadStudy(options.study);
+  const Study asked = ReadStudy(options.study);
   const std::string folder =
       options.out.empty() ? "out/batch/" + std::filesystem::path(options.study).stem().string() : options.out;
-  PrepareStudy(study, folder);
+  PrepareStudy(asked, folder);
+  // As every worker reads it.
+  const Study study = OpenStudy(folder);
   const StudyLock lock(folder);
   if (options.slurm.on) {
     const SlurmEnd end = RunOnSlurm(study, folder, options.slurm, options.failed_again);

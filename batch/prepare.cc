@@ -5,6 +5,7 @@
 
 #include "base/new_file.h"
 #include "base/text_file.h"
+#include "batch/run/case_command.h"
 #include "batch/study/study_difference.h"
 
 namespace hydro::batch {
@@ -44,6 +45,7 @@ void WriteStudy(const Study& study, const std::string& folder) {
 }  // namespace
 
 void PrepareStudy(const Study& study, const std::string& folder) {
+  CheckCommands(study);
   if (fs::exists(folder + "/study.toml")) {
     CheckSame(study, folder);
   } else {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -87,8 +88,9 @@ StudyStatus ReadStatus(const std::string& folder) {
 }
 
 std::string StatusText(const StudyStatus& status) {
-  const double percent =
-      100 * static_cast<double>(status.done + status.failed) / static_cast<double>(status.cases);
+  const double percent = std::floor(1000 * static_cast<double>(status.done + status.failed) /
+                                    static_cast<double>(status.cases)) /
+                         10;
   std::string text = fmt::format("{}: {} cases: {} done, {} failed, {} missing ({:.3g} %)\n", status.name,
                                  status.cases, status.done, status.failed, status.missing(), percent);
   if (!status.driver.empty()) text += fmt::format("driven by {}\n", status.driver);

@@ -23,7 +23,7 @@ std::string Filled(const std::string& name, const std::vector<std::string>& keys
     if (name == "value:" + keys[i]) return PlainText(values[i]);
     known.push_back("value:" + keys[i]);
   }
-  throw InputError("run: found {" + name + "}, allowed in braces " + QuotedList(known) +
+  throw InputError("step.run: found {" + name + "}, allowed in braces " + QuotedList(known) +
                    DidYouMean(name, known));
 }
 
@@ -33,12 +33,13 @@ bool IsName(const std::string& text) {
   });
 }
 
-// Braces around anything but a name are the command's own, as in JSON or awk.
+// Braces around anything but a name are the command's own, as in JSON or awk, and so are ${...}.
 std::string Replaced(const std::string& text, const std::vector<std::string>& keys,
                      const std::vector<Value>& values, const CasePlace& place) {
   std::string result;
   for (size_t i = 0; i < text.size();) {
-    const size_t end = text[i] == '{' ? text.find('}', i) : std::string::npos;
+    const bool opens = text[i] == '{' && (i == 0 || text[i - 1] != '$');
+    const size_t end = opens ? text.find('}', i) : std::string::npos;
     const std::string name = end == std::string::npos ? "" : text.substr(i + 1, end - i - 1);
     if (IsName(name)) {
       result += Filled(name, keys, values, place);
@@ -71,8 +72,15 @@ std::string ProgramPath(const std::string& name) {
     if (access(candidate.c_str(), X_OK) == 0 && !std::filesystem::is_directory(candidate, failed))
       return std::filesystem::absolute(candidate);
   }
-  throw InputError("run: found " + Quoted(name) +
+  throw InputError("step.run: found " + Quoted(name) +
                    ", allowed a program beside hydro-batch, in PATH, or with its path");
+}
+
+void CheckCommands(const Study& study) {
+  for (const Step& step : study.steps) {
+    const std::string program = CaseCommand(step, study.Keys(), study.Values(0), {}).front();
+    if (program == step.argv.front()) ProgramPath(program);
+  }
 }
 
 }  // namespace hydro::batch

@@ -25,4 +25,7 @@ std::vector<std::string> CaseCommand(const Step& step, const std::vector<std::st
 // Where a program is that a study names: as given when it has a slash, else beside this program, else in PATH. Throws InputError.
 std::string ProgramPath(const std::string& name);
 
+// Throws InputError when the study's commands have placeholders or programs that are none.
+void CheckCommands(const Study& study);
+
 }  // namespace hydro::batch

@@ -5,7 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <string_view>
 
@@ -41,6 +43,12 @@ std::string WithoutPath(std::string text, const std::string& path, const std::st
        place = text.find(path, place + name.size()))
     text.replace(place, path.size(), name);
   return text;
+}
+
+// Where a program gave back what it had written, the disk is full no more.
+bool TellsOfFullDisk(const std::string& reason) {
+  return reason.find(std::strerror(ENOSPC)) != std::string::npos ||
+         reason.find(std::strerror(EDQUOT)) != std::string::npos;
 }
 
 bool IsFull(const std::string& folder) {
@@ -141,7 +149,8 @@ std::optional<std::string> CaseRunner::Attempt(int64_t index, const std::vector<
 }
 
 void CaseRunner::CheckDisk(const std::string& reason) const {
-  if (IsFull(folder_)) throw StoreError(scratch_ + ": the disk is full: " + reason);
+  if (TellsOfFullDisk(reason) || IsFull(folder_))
+    throw StoreError(scratch_ + ": the disk is full: " + reason);
 }
 
 std::optional<CaseResult> CaseRunner::Run(int64_t index, const StopBell& bell) {

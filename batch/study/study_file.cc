@@ -32,16 +32,23 @@ std::vector<std::string> Texts(SectionReader* section, const std::string& key) {
 }
 
 // A file of a case: in its folder, and none of ours.
-std::string CaseFile(const SectionReader& section, const std::string& key, const std::string& name) {
+std::string CaseFile(const std::string& place, const std::string& key, const std::string& name) {
   const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || path.begin()->string() == ".." || path == "result.json")
-    throw section.Error(key, Quoted(name), "a file in the case's folder, other than result.json");
+    throw settings::KeyError(place, key, Quoted(name), "a file in the case's folder, other than result.json");
   return path.string();
 }
 
 TomlNode* Member(TomlNode* table, const std::string& key) {
   if (table->Find(key) == nullptr) table->members.push_back({key, TomlNode{}});
   return table->Find(key);
+}
+
+TomlNode AsTable(const TomlNode& item) {
+  if (!item.is(Kind::kString)) return item;
+  TomlNode table;
+  table.members.push_back({"from", item});
+  return table;
 }
 
 class Reader {
@@ -58,7 +65,8 @@ class Reader {
     top_.Integer("seed", &study_.seed, 0, std::numeric_limits<int64_t>::max());
     top_.Integer("retries", &study_.retries, 0, 100);
     top_.Number("timeout_s", &study_.timeout_s, settings::kNotNegative);
-    for (const std::string& name : Texts(&top_, "keep")) study_.keep.push_back(CaseFile(top_, "keep", name));
+    for (const std::string& name : Texts(&top_, "keep"))
+      study_.keep.push_back(CaseFile(Place("keep"), "keep", name));
     ReadInputs();
     ReadFactors();
     ReadSteps();
@@ -73,6 +81,8 @@ class Reader {
   }
 
  private:
+  std::string Place(const std::string& key) const { return root_.Find(key)->place; }
+
   void ReadInputs() {
     std::string config, model;
     top_.Text("config", &config);
@@ -228,20 +238,23 @@ class Reader {
         section.Choice<bool>("worse", {{"larger", false}, {"smaller", true}}, &collected.smaller_is_worse);
         section.Finish();
       }
+      // As sections, the folder's study.toml keeps their order.
+      *Member(Member(&kept_, "collect"), name) = AsTable(item);
       const size_t colon = from.find(":/");
       if (colon == std::string::npos || colon == 0) {
         throw settings::KeyError(item.place, "collect." + name, item.Shown(),
                                  "\"FILE:/POINTER\" as in \"summary.json:/tracking/rms_error_rad\"");
       }
-      collected.file = CaseFile(top_, "collect." + name, from.substr(0, colon));
+      collected.file = CaseFile(item.place, "collect." + name, from.substr(0, colon));
       collected.pointer = from.substr(colon + 1);
       study_.collect.push_back(collected);
     }
-    const std::vector<std::string> keys = study_.Keys();
-    for (const Collected& each : study_.collect) {
-      if (std::ranges::find(keys, each.name) != keys.end() || each.name == "case" || each.name == "status" ||
-          each.name == "attempts" || each.name == "reason")
-        throw top_.Error("collect." + each.name, Quoted(each.name), "a name that no other column has");
+    for (const auto& [name, item] : node->members) {
+      const std::vector<std::string> keys = study_.Keys();
+      const bool ours = name == "case" || name == "status" || name == "attempts" || name == "reason";
+      if (!ours && std::ranges::find(keys, name) == keys.end()) continue;
+      throw settings::KeyError(item.place, "collect." + name, Quoted(name),
+                               "a name that no other column has");
     }
   }
 
