@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -57,6 +60,15 @@ bool IsFull(const std::string& folder) {
   const bool bytes = disk.f_blocks > 0 && disk.f_bavail * disk.f_frsize < 65536;
   return bytes || (disk.f_files > 0 && disk.f_favail == 0);
 }
+
+// Who cancels a job, or switches a machine off, ends this process and the case's at the same time. Of the two ends the case's may be seen
+// first; it is no failure of the case.
+bool MayBeStopped(const process::ProcessEnd& end) {
+  static const bool in_job = std::getenv("SLURM_JOB_ID") != nullptr;
+  return in_job || end.signal == SIGTERM || end.signal == SIGINT || end.signal == SIGHUP ||
+         end.signal == SIGKILL;
+}
+constexpr std::chrono::milliseconds kStopFollows{300};
 
 }  // namespace
 
@@ -119,6 +131,7 @@ std::optional<std::string> CaseRunner::RunStep(size_t step, int64_t index, const
   const process::ProcessEnd end = process::EndOf(ended.wait_status);
   const std::vector<int>& good = study_.steps[step].exit_codes;
   if (end.signal == 0 && std::find(good.begin(), good.end(), end.exit_code) != good.end()) return "";
+  if (MayBeStopped(end) && bell.RingsWithin(kStopFollows)) return std::nullopt;
   reason += process::DescribeEnd(name, end);
   const std::string line = LastLine(request.err);
   return line.empty() ? reason : reason + ": " + line;

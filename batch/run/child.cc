@@ -76,9 +76,10 @@ StopBell::StopBell() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
 }
 StopBell::~StopBell() { close(descriptor_); }
 void StopBell::Ring() const { eventfd_write(descriptor_, 1); }
-bool StopBell::Rings() const {
+bool StopBell::Rings() const { return RingsWithin(std::chrono::milliseconds(0)); }
+bool StopBell::RingsWithin(std::chrono::milliseconds time) const {
   pollfd wait{descriptor_, POLLIN, 0};
-  return poll(&wait, 1, 0) > 0;
+  return poll(&wait, 1, static_cast<int>(time.count())) > 0;
 }
 
 ChildResult RunChild(const ChildRequest& request, const StopBell& bell) {

@@ -18,6 +18,8 @@ class StopBell {
 
   void Ring() const;
   bool Rings() const;
+  // Waits for it.
+  bool RingsWithin(std::chrono::milliseconds time) const;
   int descriptor() const { return descriptor_; }  // readable once it rang
 
  private:

@@ -40,12 +40,7 @@ DriveEnd ArrayDriver::Run() {
     const StopWish wish = request_.stop();
     if (wish != StopWish::kNone) return EndEarly(wish);
     const bool answered = Look();
-    if (progress_.done + progress_.failed == request_.cases) {
-      // What still waits in the queue would find nothing to do.
-      CancelAll();
-      SayWaits();
-      return DriveEnd::kAllThere;
-    }
+    if (progress_.done + progress_.failed == request_.cases) return End();
     if (answered) {
       if (PassIsOver() && !StartsPass()) return DriveEnd::kGaveUp;
       TryToAdd();
@@ -232,23 +227,33 @@ std::vector<CaseRange> ArrayDriver::NextRanges(int64_t cases_per_job, int64_t mo
 
 DriveEnd ArrayDriver::EndEarly(StopWish wish) {
   if (wish == StopWish::kLeave) return DriveEnd::kLeft;
-  if (!CancelAll()) return DriveEnd::kLeft;
+  if (!CancelAll(&Cluster::Cancel)) return DriveEnd::kLeft;
   // Slurm kills what does not end by itself half a minute later.
-  milliseconds left{60000};
-  while (!active_.empty() && left.count() > 0) {
-    constexpr milliseconds kStep{500};
-    request_.wait(kStep);
-    left -= kStep;
-    Look();
-  }
+  WaitForTheirEnd(milliseconds(60000));
   return active_.empty() ? DriveEnd::kCancelled : DriveEnd::kLeft;
 }
 
-bool ArrayDriver::CancelAll() {
+// All cases are there. What still waits in the queue would find nothing to do; what runs is ending: it makes its last cases durable.
+DriveEnd ArrayDriver::End() {
+  CancelAll(&Cluster::CancelPending);
+  WaitForTheirEnd(milliseconds(10000));
+  SayWaits();
+  return DriveEnd::kAllThere;
+}
+
+void ArrayDriver::WaitForTheirEnd(milliseconds patience) {
+  constexpr milliseconds kStep{300};
+  for (milliseconds left = patience; !active_.empty() && left.count() > 0; left -= kStep) {
+    request_.wait(kStep);
+    Look();
+  }
+}
+
+bool ArrayDriver::CancelAll(void (Cluster::*cancel)(int64_t)) {
   bool all = true;
   for (const ArrayRecord& record : active_) {
     try {
-      cluster_.Cancel(record.id);
+      (cluster_.*cancel)(record.id);
     } catch (const ClusterError& error) {
       request_.say(error.what());
       all = false;

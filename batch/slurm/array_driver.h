@@ -64,7 +64,9 @@ class ArrayDriver {
   void Add();
   std::vector<CaseRange> NextRanges(int64_t cases_per_job, int64_t most_jobs);
   DriveEnd EndEarly(StopWish wish);
-  bool CancelAll();
+  DriveEnd End();
+  bool CancelAll(void (Cluster::*cancel)(int64_t));
+  void WaitForTheirEnd(std::chrono::milliseconds patience);
   void SayWaits() const;
 
   const DriveRequest request_;

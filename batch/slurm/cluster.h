@@ -56,6 +56,8 @@ class Cluster {
   // This user's arrays and jobs that have not ended; none while the controller does not answer.
   virtual std::optional<std::vector<QueuedArray>> Queue() = 0;
   virtual void Cancel(int64_t id) = 0;
+  // Jobs that run go on.
+  virtual void CancelPending(int64_t id) = 0;
 };
 
 }  // namespace hydro::batch

@@ -45,6 +45,12 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
 
 bool Never() { return false; }
 
+// One that has ended meanwhile is cancelled enough.
+void CheckCancelled(const Answer& answer) {
+  if (answer.exit_code != 0 && answer.err.find("Invalid job id") == std::string::npos)
+    Refuse("scancel", answer);
+}
+
 }  // namespace
 
 SlurmCluster::SlurmCluster(std::function<bool()> stop) : stop_(std::move(stop)) {
@@ -93,9 +99,10 @@ std::optional<std::vector<QueuedArray>> SlurmCluster::Queue() {
   return ParseQueue(answer.out);
 }
 
-void SlurmCluster::Cancel(int64_t id) {
-  const Answer answer = Ask({"scancel", std::to_string(id)}, Never);
-  if (answer.exit_code != 0) Refuse("scancel", answer);
+void SlurmCluster::Cancel(int64_t id) { CheckCancelled(Ask({"scancel", std::to_string(id)}, Never)); }
+
+void SlurmCluster::CancelPending(int64_t id) {
+  CheckCancelled(Ask({"scancel", "--state=PENDING", std::to_string(id)}, Never));
 }
 
 }  // namespace hydro::batch

@@ -19,6 +19,7 @@ class SlurmCluster : public Cluster {
   void Release(int64_t id) override;
   std::optional<std::vector<QueuedArray>> Queue() override;
   void Cancel(int64_t id) override;
+  void CancelPending(int64_t id) override;
 
  private:
   const std::function<bool()> stop_;

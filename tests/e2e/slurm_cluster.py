@@ -190,6 +190,12 @@ class Cluster:
         lines = self.ask("squeue", "-h", "-r", "-t", "all", "-o", "%F %K %T").splitlines()
         return {(job, index): state for job, index, state in map(str.split, lines)}
 
+    def cancel_all(self):
+        """Ends all jobs, and waits until the queue is empty."""
+        self.ask("scancel", "--state=PENDING", "--user=" + getpass.getuser())
+        self.ask("scancel", "--user=" + getpass.getuser())
+        self._wait_until(lambda: not self.ask("squeue", "--noheader"), "an empty queue")
+
     def processes(self, variables=None):
         """The process ids of all that belongs to this cluster, its jobs too, or of those with these variables in their environment."""
         wanted = {"SLURM_CONF": self._path("slurm.conf"), **(variables or {})}
