@@ -14,6 +14,8 @@ int64_t CasesIn(double seconds, double case_s, int64_t most) {
   return static_cast<int64_t>(std::clamp(cases, 1.0, static_cast<double>(std::max<int64_t>(most, 1))));
 }
 
+int64_t CeilingOf(int64_t dividend, int64_t divisor) { return (dividend + divisor - 1) / divisor; }
+
 std::string Times(int64_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
@@ -26,22 +28,22 @@ Grouping ChooseGrouping(const GroupingQuestion& question) {
   std::string because;
   if (question.cases_wished > 0) {
     grouping.cases = std::min(question.cases_wished, missing);
-    grouping.jobs = (missing + grouping.cases - 1) / grouping.cases;
+    grouping.jobs = CeilingOf(missing, grouping.cases);
     because = "as --cases-per-job asks";
   } else {
-    grouping.cases = CasesIn(question.start_s / kMostStartShare, question.case_s, missing);
-    bool limited = false;
     // Half of what a job may take, because cases differ.
-    if (question.limit_s > 0 &&
-        static_cast<double>(grouping.cases) * question.case_s > question.limit_s / 2) {
-      grouping.cases = std::max<int64_t>(1, static_cast<int64_t>(question.limit_s / 2 / question.case_s));
-      limited = true;
-    }
+    const int64_t most =
+        question.limit_s > 0 && question.case_s > 0
+            ? std::max<int64_t>(1, static_cast<int64_t>(question.limit_s / 2 / question.case_s))
+            : missing;
+    const int64_t enough = CasesIn(question.start_s / kMostStartShare, question.case_s, missing);
+    const bool limited = enough > most;
+    grouping.cases = std::min(enough, most);
     // What is left over is shared among the jobs rather than a short job of its own, unless they may not be longer.
-    grouping.jobs = limited ? (missing + grouping.cases - 1) / grouping.cases
-                            : std::max<int64_t>(1, missing / grouping.cases);
-    grouping.cases = (missing + grouping.jobs - 1) / grouping.jobs;
-    grouping.jobs = (missing + grouping.cases - 1) / grouping.cases;
+    grouping.jobs = std::max<int64_t>(1, missing / grouping.cases);
+    if (CeilingOf(missing, grouping.jobs) > most) grouping.jobs = CeilingOf(missing, grouping.cases);
+    grouping.cases = CeilingOf(missing, grouping.jobs);
+    grouping.jobs = CeilingOf(missing, grouping.cases);
     because = limited ? "as half of the time limit allows"
                       : "so that starting a job costs less than a twentieth of it";
   }
