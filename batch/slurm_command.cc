@@ -51,7 +51,7 @@ void Wait(std::chrono::milliseconds time) {
 // The first cases, run here, tell how long a case takes. They are cases like all others, stored and not repeated.
 void RunPilot(const Study& study, const std::string& folder, Progress* progress) {
   const auto start = Clock::now();
-  int64_t first = 0, count = 3;
+  int64_t first = 0, count = 1;
   while (first < study.cases() && SecondsSince(start) < kEnoughPilot_s && Wish() == StopWish::kNone) {
     RunRequest request;
     request.folder = folder;
@@ -60,10 +60,10 @@ void RunPilot(const Study& study, const std::string& folder, Progress* progress)
     request.stop = [&] { return SecondsSince(start) > kMostPilot_s || process::StopSignal() != 0; };
     if (RunCases(study, request).stopped) break;
     first = request.end;
-    count *= 4;
+    count *= 3;
   }
   const auto mean = MeanCaseSeconds(folder);
-  progress->Say(mean ? fmt::format("the first cases, run on this machine, took {:.2g} s each", *mean)
+  progress->Say(mean ? fmt::format("the first cases take {:.2g} s each on this machine", *mean)
                      : fmt::format("the first case takes more than {:g} s on this machine", kMostPilot_s));
 }
 
@@ -72,6 +72,7 @@ std::vector<std::string> SbatchOptions(const SlurmOptions& options) {
   if (!options.partition.empty()) arguments.push_back("--partition=" + options.partition);
   if (!options.account.empty()) arguments.push_back("--account=" + options.account);
   if (!options.time.empty()) arguments.push_back("--time=" + options.time);
+  if (options.processors > 1) arguments.push_back("--cpus-per-task=" + std::to_string(options.processors));
   arguments.insert(arguments.end(), options.sbatch.begin(), options.sbatch.end());
   return arguments;
 }
@@ -125,7 +126,9 @@ class Drive {
     request.name = study_.name;
     request.cases = study_.cases();
     request.arguments = SbatchOptions(options_);
+    request.partition = options_.partition;
     request.at_once = options_.at_once;
+    request.processors = options_.processors;
     request.cases_per_job = options_.cases_per_job;
     request.limit_s = ParseTimeLimit(options_.time).value_or(0);
     request.detach = options_.detach;
@@ -183,6 +186,8 @@ void AddSlurmOptions(settings::CommandLine* line, SlurmOptions* options) {
       "OPTION with --slurm: a further option of sbatch (--sbatch=--mem=2G); may be given several times");
   line->AddOption("--jobs-at-once", &options->at_once,
                   "N with --slurm: most jobs at the same time (any number)");
+  line->AddOption("--cpus-per-job", &options->processors,
+                  "N with --slurm: cases that a job runs at the same time (1)");
   line->AddOption("--cases-per-job", &options->cases_per_job,
                   "N with --slurm (so many that starting a job costs less than a twentieth of it)");
   line->AddOption("--case-time", &options->case_s,
@@ -201,6 +206,7 @@ void CheckSlurmOptions(const SlurmOptions& options) {
     if (!options.time.empty()) refuse("--time-limit", Quoted(options.time), allowed);
     if (!options.sbatch.empty()) refuse("--sbatch", Quoted(options.sbatch.front()), allowed);
     if (options.at_once != 0) refuse("--jobs-at-once", std::to_string(options.at_once), allowed);
+    if (options.processors != 1) refuse("--cpus-per-job", std::to_string(options.processors), allowed);
     if (options.cases_per_job != 0) refuse("--cases-per-job", std::to_string(options.cases_per_job), allowed);
     if (options.case_s != 0) refuse("--case-time", fmt::format("{:g}", options.case_s), allowed);
     if (options.detach) refuse("--detach", "it", allowed);
@@ -209,6 +215,8 @@ void CheckSlurmOptions(const SlurmOptions& options) {
     refuse("--time-limit", Quoted(options.time), "minutes, M:S, H:M:S, DAYS-H, DAYS-H:M or DAYS-H:M:S");
   if (options.at_once < 0)
     refuse("--jobs-at-once", std::to_string(options.at_once), "a whole number above 0");
+  if (options.processors < 1)
+    refuse("--cpus-per-job", std::to_string(options.processors), "a whole number above 0");
   if (options.cases_per_job < 0)
     refuse("--cases-per-job", std::to_string(options.cases_per_job), "a whole number above 0");
   if (!(options.case_s >= 0)) refuse("--case-time", fmt::format("{:g}", options.case_s), "a number above 0");

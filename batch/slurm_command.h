@@ -15,6 +15,7 @@ struct SlurmOptions {
   std::string partition, account, time;
   std::vector<std::string> sbatch;  // further arguments of sbatch
   int64_t at_once = 0;              // most jobs at the same time; 0: any number
+  int64_t processors = 1;           // of a job
   int64_t cases_per_job = 0;        // 0: chosen
   double case_s = 0;                // how long a case takes; 0: measured
   bool detach = false;

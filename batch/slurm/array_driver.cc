@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 // Squeue is asked rarely: everybody's commands go to the same slurmctld. At the beginning a study may be over soon.
 milliseconds NextWait(milliseconds waited) {
-  return std::clamp(waited / 20, milliseconds(200), milliseconds(10000));
+  return std::clamp(waited / 50, milliseconds(200), milliseconds(10000));
 }
 
 const QueuedArray* Named(const std::vector<QueuedArray>& queue, const std::string& name) {
@@ -34,7 +34,7 @@ ArrayDriver::ArrayDriver(DriveRequest request, Cluster* cluster)
       count_(store_, request_.cases) {}
 
 DriveEnd ArrayDriver::Run() {
-  limits_ = cluster_.Limits();
+  limits_ = cluster_.Limits(request_.partition);
   Adopt();
   for (milliseconds waited{0};;) {
     const StopWish wish = request_.stop();
@@ -142,6 +142,13 @@ bool ArrayDriver::StartsPass() {
   return true;
 }
 
+// As many of its jobs as can run at the same time; 0: not known. Others use the cluster, too, which only time tells.
+int64_t ArrayDriver::AtOnce() const {
+  const int64_t places = limits_.processors / request_.processors;
+  if (request_.at_once == 0) return places;
+  return places == 0 ? request_.at_once : std::min(places, request_.at_once);
+}
+
 // With a limit of jobs at once, one array after the other: Slurm knows such a limit within an array only.
 bool ArrayDriver::MayAdd() const {
   if (cursor_ >= request_.cases) return false;
@@ -170,6 +177,8 @@ void ArrayDriver::Add() {
                                             .case_s = request_.case_s(),
                                             .start_s = limits_.start_s,
                                             .limit_s = request_.limit_s,
+                                            .processors = request_.processors,
+                                            .at_once = AtOnce(),
                                             .cases_wished = request_.cases_per_job});
   const std::vector<CaseRange> ranges = NextRanges(grouping.cases, limits_.array_jobs);
   if (ranges.empty()) {

@@ -31,7 +31,9 @@ struct DriveRequest {
   std::string name;    // of the study
   int64_t cases = 0;
   std::vector<std::string> arguments;  // of sbatch
+  std::string partition;               // empty: the standard one
   int64_t at_once = 0;                 // most jobs at the same time; 0: any number
+  int64_t processors = 1;              // of a job
   int64_t cases_per_job = 0;           // 0: chosen (grouping.h)
   double limit_s = 0;                  // of a job; 0: none
   int barren_passes =
@@ -59,6 +61,7 @@ class ArrayDriver {
   bool Look();
   bool PassIsOver() const { return active_.empty() && cursor_ >= request_.cases; }
   bool StartsPass();
+  int64_t AtOnce() const;
   bool MayAdd() const;
   void TryToAdd();
   void Add();

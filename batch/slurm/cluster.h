@@ -26,6 +26,7 @@ struct ClusterLimits {
   int64_t all_jobs = 10000;   // most jobs that the controller keeps, everybody's (MaxJobCount)
   // s, the longest that a processor waits for its next job while there is one (batch_sched_delay), and starting that.
   double start_s = 3.1;
+  int64_t processors = 0;  // that work, of the partition; 0: not known
 };
 
 struct ArrayRequest {
@@ -49,7 +50,8 @@ class Cluster {
  public:
   virtual ~Cluster() = default;
 
-  virtual ClusterLimits Limits() = 0;
+  // `partition`: empty for the standard one. Throws ClusterError.
+  virtual ClusterLimits Limits(const std::string& partition) = 0;
   // None of its jobs begins before Release(): an array that nobody could note down never runs. Returns its id. Throws ClusterError.
   virtual int64_t SubmitHeld(const ArrayRequest& request) = 0;
   virtual void Release(int64_t id) = 0;

@@ -14,6 +14,8 @@ struct GroupingQuestion {
   double case_s = 0;         // a case takes
   double start_s = 0;        // a processor waits for its next job
   double limit_s = 0;        // a job may take; 0: any time
+  int64_t processors = 1;    // of a job
+  int64_t at_once = 0;       // jobs that can run at the same time; 0: not known
   int64_t cases_wished = 0;  // in a job; 0: to be chosen
 };
 

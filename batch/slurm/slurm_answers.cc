@@ -54,6 +54,21 @@ ClusterLimits ParseLimits(const std::string& text) {
   return limits;
 }
 
+int64_t ParseProcessors(const std::string& text, const std::string& partition) {
+  int64_t processors = 0;
+  for (const std::string& line : Split(text, '\n')) {
+    const size_t bar = line.find('|');
+    if (bar == std::string::npos) continue;
+    const std::string name = line.substr(0, bar);
+    const bool wanted =
+        partition.empty() ? name.ends_with('*') : name == partition || name == partition + "*";
+    const std::vector<std::string> counts = Split(Trimmed(line.substr(bar + 1)), '/');
+    if (!wanted || counts.size() != 4) continue;
+    processors += ParseInteger(counts[0]).value_or(0) + ParseInteger(counts[1]).value_or(0);
+  }
+  return processors;
+}
+
 std::optional<int64_t> ParseSubmitted(const std::string& text) {
   const std::vector<std::string> lines = Split(text, '\n');
   if (lines.empty()) return std::nullopt;

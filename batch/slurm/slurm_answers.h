@@ -13,6 +13,10 @@ namespace hydro::batch {
 // `scontrol show config`. What it does not say keeps Slurm's own defaults.
 ClusterLimits ParseLimits(const std::string& text);
 
+// `sinfo --noheader` with this format: a line for each partition, "NAME|ALLOCATED/IDLE/OTHER/TOTAL", the standard one with a star.
+inline constexpr const char* kPartitionFormat = "%P|%C";
+int64_t ParseProcessors(const std::string& text, const std::string& partition);
+
 // `sbatch --parsable`: "ID" or "ID;CLUSTER".
 std::optional<int64_t> ParseSubmitted(const std::string& text);
 

@@ -74,10 +74,13 @@ std::vector<std::string> SbatchArguments(const ArrayRequest& request) {
   return arguments;
 }
 
-ClusterLimits SlurmCluster::Limits() {
+ClusterLimits SlurmCluster::Limits(const std::string& partition) {
   const Answer answer = Ask({"scontrol", "show", "config"}, Never);
   if (answer.exit_code != 0) Refuse("scontrol", answer);
-  return ParseLimits(answer.out);
+  ClusterLimits limits = ParseLimits(answer.out);
+  const Answer nodes = Ask({"sinfo", "--noheader", std::string("--format=") + kPartitionFormat}, Never);
+  if (nodes.exit_code == 0) limits.processors = ParseProcessors(nodes.out, partition);
+  return limits;
 }
 
 int64_t SlurmCluster::SubmitHeld(const ArrayRequest& request) {

@@ -14,7 +14,7 @@ class SlurmCluster : public Cluster {
   // `stop`: asked while sbatch runs, which may take minutes; when true that is ended. Throws InputError when this machine has no sbatch.
   explicit SlurmCluster(std::function<bool()> stop);
 
-  ClusterLimits Limits() override;
+  ClusterLimits Limits(const std::string& partition) override;
   int64_t SubmitHeld(const ArrayRequest& request) override;
   void Release(int64_t id) override;
   std::optional<std::vector<QueuedArray>> Queue() override;

@@ -32,7 +32,7 @@ class SimulatedCluster : public Cluster {
   std::vector<int64_t> at_once_seen;
   int submitted = 0;
 
-  ClusterLimits Limits() override { return limits; }
+  ClusterLimits Limits(const std::string&) override { return limits; }
 
   int64_t SubmitHeld(const ArrayRequest& request) override {
     MayDie();

@@ -87,6 +87,23 @@ TEST(GroupingTest, StartsCostLittle) {
   EXPECT_EQ(ChooseGrouping({.missing = 5, .case_s = 0, .start_s = 3.1}).cases, 5);
 }
 
+// Tests that jobs end together where it is known how many run at once, and that a job of many processors has more cases.
+TEST(GroupingTest, FillsProcessors) {
+  EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1, .at_once = 4}).jobs, 8);
+  EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1, .at_once = 100}).jobs, 10);
+  EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1}).jobs, 10);
+  EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1, .processors = 4}).jobs, 2);
+}
+
+// Tests the processors that work, of the standard partition or another: not those of nodes that are down.
+TEST(SlurmAnswersTest, Processors) {
+  const std::string text = "short|0/8/0/8\nall*|4/2/16/22\nall*|0/1/0/1\nodd|x\n";
+  EXPECT_EQ(ParseProcessors(text, ""), 7);
+  EXPECT_EQ(ParseProcessors(text, "all"), 7);
+  EXPECT_EQ(ParseProcessors(text, "short"), 8);
+  EXPECT_EQ(ParseProcessors(text, "other"), 0);
+}
+
 // Tests that jobs take at most half of their time limit, though not less than a case, and that a wish is obeyed.
 TEST(GroupingTest, LimitsAndWishes) {
   EXPECT_EQ(ChooseGrouping({.missing = 1000, .case_s = 1, .start_s = 3.1, .limit_s = 60}).cases, 30);
