@@ -130,6 +130,7 @@ std::optional<std::string> CaseRunner::RunStep(size_t step, int64_t index, const
     return reason + name + ": not done after " + ShortestNumber(study_.timeout_s) + " s";
   const process::ProcessEnd end = process::EndOf(ended.wait_status);
   const std::vector<int>& good = study_.steps[step].exit_codes;
+  exit_codes_.push_back(end.exit_code);
   if (end.signal == 0 && std::find(good.begin(), good.end(), end.exit_code) != good.end()) return "";
   if (MayBeStopped(end) && bell.RingsWithin(kStopFollows)) return std::nullopt;
   reason += process::DescribeEnd(name, end);
@@ -144,13 +145,14 @@ std::optional<std::string> CaseRunner::Attempt(int64_t index, const std::vector<
     timing.deadline = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                              std::chrono::duration<double>(study_.timeout_s));
   }
+  exit_codes_.clear();
   try {
     Prepare(values);
     for (size_t step = 0; step < study_.steps.size(); ++step) {
       const auto reason = RunStep(step, index, values, timing, bell);
       if (!reason || !reason->empty()) return reason;
     }
-    result_.numbers = CollectNumbers(study_, folder_);
+    result_.numbers = CollectNumbers(study_, folder_, exit_codes_);
     for (const std::string& file : study_.keep) {
       if (!fs::is_regular_file(folder_ + "/" + file))
         return file + ": not written, allowed a file that the study keeps";

@@ -45,6 +45,7 @@ class CaseRunner {
   const std::string inputs_, scratch_, folder_;
   std::vector<std::string> programs_;  // of the steps, where they are fixed
   CaseResult result_;
+  std::vector<int> exit_codes_;  // of the steps of the last attempt
 };
 
 }  // namespace hydro::batch

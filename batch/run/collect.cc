@@ -61,8 +61,9 @@ std::optional<Value> Scalar(const json& value, const Collected& from) {
 
 }  // namespace
 
-std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder) {
-  std::map<std::string, json> documents;
+std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder,
+                                                 const std::vector<int>& exit_codes) {
+  std::map<std::string, json> documents = {{"exit_codes.json", exit_codes}};
   std::vector<std::optional<Value>> numbers;
   for (const Collected& each : study.collect) {
     auto document = documents.find(each.file);

@@ -9,7 +9,9 @@
 
 namespace hydro::batch {
 
-// In the order of study.collect; none where the file says null. Throws InputError naming file and pointer.
-std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder);
+// In the order of study.collect; none where the file says null. The file exit_codes.json is the list of `exit_codes`, those of the steps.
+// Throws InputError naming file and pointer.
+std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder,
+                                                 const std::vector<int>& exit_codes);
 
 }  // namespace hydro::batch

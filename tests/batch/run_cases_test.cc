@@ -161,11 +161,15 @@ nothing = "out.json:/a/1"
 flag = "out.json:/a/2"
 text = "out.json:/s"
 gain = "gains.toml:/gains/c1"
+code = "exit_codes.json:/1"
+[[step]]
+run = ["sh", "-c", "exit 4"]
+exit_codes = [0, 4]
 )";
   EXPECT_EQ(ReasonOf(folder, text), "");
-  EXPECT_EQ(
-      TableOf(folder / "out"),
-      "case,status,attempts,number,nothing,flag,text,gain,reason\n0,done,1,1.25,,true,\"tied, or so\",7,\n");
+  EXPECT_EQ(TableOf(folder / "out"),
+            "case,status,attempts,number,nothing,flag,text,gain,code,reason\n0,done,1,1.25,,true,\"tied, or "
+            "so\",7,4,\n");
 }
 
 // Tests that a result that a power cut left half written is run again, and never silently missing.
