@@ -8,6 +8,7 @@
 namespace hydro::bus {
 namespace {
 
+const WallClock kWallClock;
 constexpr size_t kFirstSlots = 16;
 
 }  // namespace
@@ -65,7 +66,9 @@ class InProcessBus::ChannelOutlet : public Outlet {
   const MessageType& type_;
 };
 
-InProcessBus::InProcessBus(SimulatedClock* clock) : clock_(clock) {}
+InProcessBus::InProcessBus(SimulatedClock* clock)
+    : stamps_(clock != nullptr ? static_cast<const Clock*>(clock) : &kWallClock), clock_(clock) {}
+InProcessBus::InProcessBus(const Clock& wall) : stamps_(&wall), clock_(nullptr) {}
 InProcessBus::~InProcessBus() = default;
 
 InProcessBus::Channel& InProcessBus::Find(const std::string& name) {
@@ -212,7 +215,7 @@ void InProcessBus::ShowTaps(const Slot& slot) {
     bytes = &encoded_;
   }
   const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()),
-                           clock_ != nullptr ? clock_->Utime() : WallClock().Utime()};
+                           stamps_->Utime()};
   for (size_t i = 0; i < taps_.size(); ++i) taps_[i](message);
 }
 

@@ -21,6 +21,8 @@ class InProcessBus : public Bus {
   // HandleUntil() advances `clock`, which also stamps what SubscribeAll() sees. Null: wall time, and
   // HandleUntil() sleeps until the deadline when nothing is waiting.
   explicit InProcessBus(SimulatedClock* clock);
+  // As with null, but `wall` stamps what SubscribeAll() sees. It must outlive the bus.
+  explicit InProcessBus(const Clock& wall);
   ~InProcessBus() override;
 
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
@@ -51,7 +53,8 @@ class InProcessBus : public Bus {
   [[gnu::noinline]] void DispatchRaw(const Slot& slot);
   [[gnu::noinline]] void ShowTaps(const Slot& slot);
 
-  SimulatedClock* clock_;
+  const Clock* stamps_;
+  SimulatedClock* clock_;  // null: wall time
   bool handling_ = false;
   std::unordered_map<std::string, std::unique_ptr<Channel>> channels_;
   std::array<Channel*, 16> recent_{};  // by the address of the caller's name, whose text is then compared

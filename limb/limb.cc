@@ -41,6 +41,7 @@ void CheckSimulated(const settings::JointConfig& joint) {
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
   CheckWanted(config, options.joints);
+  if (options.clock != nullptr) clock_.emplace(*options.clock);
   std::vector<std::unique_ptr<plant::SimulatedMachine>> machines;
   if (config.arm) machines = MakeJointedArm(config);
   for (size_t i = 0; i < config.joints.size(); ++i) {
@@ -51,7 +52,8 @@ Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
         options.clock == nullptr ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
     auto rig = config.arm ? std::make_unique<plant::SimulatedRig>(joint.config, std::move(machines[i]))
                           : std::make_unique<plant::SimulatedRig>(joint.config);
-    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), options.clock, options.program, options.heartbeat));
+    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), clock_ ? &*clock_ : nullptr, options.program,
+                                              options.heartbeat));
   }
 }
 
@@ -88,6 +90,7 @@ bool Limb::StepLockstep() {
 
 bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
   tick_ += wake_up.elapsed;
+  clock_->Stop();
   for (auto& joint : joints_) {
     if (joint->ended()) continue;
     joint->plant().participant().statistics().RecordCycle(wake_up.at, wake_up.late);
@@ -100,6 +103,7 @@ bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
     if (!joints_[i]->ended()) joints_[i]->Poll();
   }
   NoteEnds();
+  clock_->Run();
   return !over_ && tick_ != last_tick_;
 }
 
