@@ -23,7 +23,7 @@ struct CoupledArmOptions {
   double longest_step = 1e-3;  // s, from one exchange of loads to the next
   // Exchanges per radian of the fastest oscillation that the arm can have on the fluid it compresses. More is more accurate
   // (docs/model.md).
-  double steps_per_radian = 2;
+  double steps_per_radian = 2.5;
 };
 
 class CoupledArm {

@@ -45,6 +45,10 @@ void ArmCoupling::FindLoads(JointCoupling* at) {
   if (any_held_) FindHeldLoads(at);
 }
 
+void ArmCoupling::Accelerate(std::vector<double>* torques) const {
+  SolveFactored(joints(), factors_, *torques);
+}
+
 // Only what lies on and below the diagonal is read from now on.
 void ArmCoupling::TakeOutHeld(JointCoupling* at) {
   const int n = joints();

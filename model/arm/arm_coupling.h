@@ -35,6 +35,8 @@ class ArmCoupling {
   void FindAccelerations(JointCoupling* at);
   // Then, from these and torque_rate, for the same instant: the rest.
   void FindLoads(JointCoupling* at);
+  // M^-1 torques in place, at this instant; held joints stand alone, with inertia 1.
+  void Accelerate(std::vector<double>* torques) const;
 
  private:
   void TakeOutHeld(JointCoupling* at);

@@ -5,7 +5,7 @@
 
 namespace hydro::model {
 
-// In place, entry (i, j) at matrix[i + j n]: afterwards D on the diagonal and L (without its ones) below it; what lies
+// In place, entry (i, j) at matrix[i + j n]: afterwards D^-1 on the diagonal and L (without its ones) below it; what lies
 // above is neither read nor written. False: not positive definite, to rounding.
 bool Factor(int n, std::span<double> matrix);
 
