@@ -1,6 +1,7 @@
-// One joint's 1 kHz tick in an arm of N equal links, each with Table 1's actuator and its pressure loop, eq. (16), which follows a
-// +/-300 psi square wave of its own frequency. Beside it: N actuators with free shafts that nothing couples, at the same tolerance.
-// The largest difference from exchanges 20 times as often says how accurate the coupling is.
+// One joint's 1 kHz tick in an arm of N equal links, each with Table 1's actuator and its pressure loop, eq.
+// (16), which follows a +/-300 psi square wave of its own frequency. Beside it: N actuators with free shafts
+// that nothing couples, at the same tolerance. The largest difference from exchanges 20 times as often says
+// how accurate the coupling is.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -87,7 +88,8 @@ void Register(int n, bool coupled) {
   order.push_back(name);
   if (coupled) {
     const std::vector<double> here = RunArm(n, {});
-    const std::vector<double> fine = RunArm(n, {.steps_per_radian = 20 * model::CoupledArmOptions().steps_per_radian});
+    const std::vector<double> fine =
+        RunArm(n, {.steps_per_radian = 20 * model::CoupledArmOptions().steps_per_radian});
     Row& row = rows[name];
     row.angle_error = row.pressure_error = 0;
     for (size_t i = 0; i < here.size(); i += 2) {
@@ -111,7 +113,8 @@ class Reporter : public benchmark::ConsoleReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       const std::string name = run.benchmark_name();
-      if (run.run_type == Run::RT_Iteration) rows[name].us = run.GetAdjustedCPUTime() * 1e3 / kTicks / std::stoi(name);
+      if (run.run_type == Run::RT_Iteration)
+        rows[name].us = run.GetAdjustedCPUTime() * 1e3 / kTicks / std::stoi(name);
     }
     ConsoleReporter::ReportRuns(runs);
   }
@@ -129,11 +132,14 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   Reporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  std::printf("\n%-16s %20s %8s %16s %18s\n", "joints", "us a joint and tick", "ratio", "error, rad", "error of dp, psi");
+  std::printf("\n%-16s %20s %8s %16s %18s\n", "joints", "us a joint and tick", "ratio", "error, rad",
+              "error of dp, psi");
   for (size_t i = 0; i < order.size(); ++i) {
     const Row& row = rows[order[i]];
     std::printf("%-16s %20.3f", order[i].c_str(), row.us);
-    if (i % 2 == 1) std::printf(" %8.2f %16.1e %18.2g", row.us / rows[order[i - 1]].us, row.angle_error, row.pressure_error);
+    if (i % 2 == 1)
+      std::printf(" %8.2f %16.1e %18.2g", row.us / rows[order[i - 1]].us, row.angle_error,
+                  row.pressure_error);
     std::printf("\n");
   }
   return 0;

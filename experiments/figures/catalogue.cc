@@ -21,7 +21,8 @@ const std::vector<Experiment>& Experiments() {
       {"fig10", "Figure 10: a step of the arm, linear and full model, and what the motor could do", RunFig10,
        0.7},
       {"torque", "Torque control: a commanded torque at the arm, clamped and moving", RunTorque, 1.5},
-      {"coupling", "Two joints in one arm: what couples them, and what feed-forward takes away", RunCoupling, 0.5},
+      {"coupling", "Two joints in one arm: what couples them, and what feed-forward takes away", RunCoupling,
+       0.5},
   };
   return experiments;
 }

@@ -8,8 +8,8 @@
 namespace hydro::model {
 
 JointCoupling::JointCoupling(int joints) : held(static_cast<size_t>(joints)) {
-  for (std::vector<double>* numbers : {&angle, &speed, &torque, &torque_rate, &acceleration, &jerk, &inertia,
-                                       &load, &load_rate}) {
+  for (std::vector<double>* numbers :
+       {&angle, &speed, &torque, &torque_rate, &acceleration, &jerk, &inertia, &load, &load_rate}) {
     numbers->resize(static_cast<size_t>(joints));
   }
 }
