@@ -1,11 +1,12 @@
-// Each joint's actuator integrates its own equations, modes and events; the arm couples them. From one exchange of loads, at t_0,
-// to the next, joint i moves by
+// Each joint's actuator integrates its own equations, modes and events; the arm couples them. From one
+// exchange of loads, at t_0, to the next, joint i moves by
 //   m_i alpha_i'' = tau_i + W_i(t),   m_i = 1/(M^-1)_ii at t_0,
-// with its own torque tau_i exact at every instant. W_i is what the others do to it (arm/arm_coupling.h): it continues as a parabola,
-// from W and W' at t_0 and the change of W' since the exchange before. At the end W and W' are known too, and the cubic
-// through both ends says what the parabola has missed: angle and speed are corrected by its integrals, and the fluid is compressed by the
-// angle's. In smooth motion the method is of fourth order. A jump in a rate (a valve, a pump that sticks) costs accuracy in the step in
-// which it lies.
+// with its own torque tau_i exact at every instant. W_i is what the others do to it (arm/arm_coupling.h): it
+// continues as a parabola, from W and W' at t_0 and the change of W' since the exchange before. At the end W
+// and W' are known too, and the cubic through both ends says what the parabola has missed: angle and speed
+// are corrected by its integrals, and the fluid is compressed by the angle's. In smooth motion the method is
+// of fourth order. A jump in a rate (a valve, a pump that sticks) costs accuracy in the step in which it
+// lies.
 
 #include "model/coupled_arm.h"
 
@@ -50,6 +51,8 @@ class CoupledArm::Impl {
       parameters_.push_back(joint.model.parameters);
     }
     Couple(&now_);
+    for (int i = 0; i < n(); ++i) fastest_.push_back(i % 2 == 0 ? 1 : -0.7);
+    for (int round = 0; round < 20; ++round) FindFastest();
   }
 
   void Advance(std::span<const double> voltages, double until) {
@@ -58,12 +61,14 @@ class CoupledArm::Impl {
                        " joints");
     }
     if (!(until >= time()) || std::isinf(until)) {
-      throw ModelError("cannot advance to t = " + std::to_string(until) + " s from t = " +
-                       std::to_string(time()) + " s");
+      throw ModelError("cannot advance to t = " + std::to_string(until) +
+                       " s from t = " + std::to_string(time()) + " s");
     }
     while (time() < until) {
+      FindFastest();
       const double left = until - time();
-      const double steps = std::ceil(left / LongestStep());
+      const double steps =
+          std::ceil(left * std::max(1 / options_.longest_step, options_.steps_per_radian * fastest_rate_));
       Step(voltages, steps <= 1 ? until : time() + left / steps);
     }
   }
@@ -74,18 +79,29 @@ class CoupledArm::Impl {
   const JointCoupling& now() const { return now_; }
 
  private:
-  // No oscillation of the arm on the fluid is faster than the root of the trace of M^-1 K.
-  double LongestStep() const {
-    double squares = 0;
+  // The fastest oscillation of the arm on the fluid that it compresses, rad/s: the root of the largest
+  // eigenvalue of M^-1 K. One round of power iteration an exchange follows it. It is no slower than any joint
+  // is while the others' torques are held, which serves until the iteration has settled.
+  void FindFastest() {
+    double square = 0;
+    double length = 0;
     for (int i = 0; i < n(); ++i) {
-      if (clamped_[i]) continue;
+      if (now_.held[i]) fastest_[i] = 0;
+      length = std::max(length, std::abs(fastest_[i]));
       const Parameters& p = parameters_[i];
       const double V_1 = p.V_ms - p.c * now_.angle[i];
       const double V_2 = p.V_ms + p.c * now_.angle[i];
-      squares += p.k_2 * p.c * p.beta * (1 / V_1 + 1 / V_2) / now_.inertia[i];
+      const double stiffness = p.k_2 * p.c * p.beta * (1 / V_1 + 1 / V_2);
+      fastest_[i] *= stiffness;
+      if (!now_.held[i]) square = std::max(square, stiffness / now_.inertia[i]);
     }
-    const double fluid = 1 / (options_.steps_per_radian * std::sqrt(squares));
-    return squares > 0 ? std::min(options_.longest_step, fluid) : options_.longest_step;
+    coupling_.Accelerate(&fastest_);
+    double grown = 0;
+    for (const double part : fastest_) grown = std::max(grown, std::abs(part));
+    fastest_rate_ = std::sqrt(std::max(square, length > 0 ? grown / length : 0));
+    for (int i = 0; i < n(); ++i) {
+      fastest_[i] = now_.held[i] || grown == 0 ? 0.1 : fastest_[i] / grown;  // what is held may be let go
+    }
   }
 
   void Step(std::span<const double> voltages, double until) {
@@ -108,8 +124,8 @@ class CoupledArm::Impl {
   // Half of W'', from the rates now and at the exchange before (other_), both with the inertia of now.
   double Curve(int i) const {
     if (last_step_ == 0 || now_.held != other_.held) return 0;
-    const double before = now_.held[i] ? other_.load_rate[i]
-                                       : now_.inertia[i] * other_.jerk[i] - other_.torque_rate[i];
+    const double before =
+        now_.held[i] ? other_.load_rate[i] : now_.inertia[i] * other_.jerk[i] - other_.torque_rate[i];
     return (now_.load_rate[i] - before) / (2 * last_step_);
   }
 
@@ -143,9 +159,11 @@ class CoupledArm::Impl {
   std::vector<bool> clamped_;
   std::vector<Parameters> parameters_;
   JointCoupling now_;
-  JointCoupling other_;  // at the exchange before, then at the next
-  double last_step_ = 0;
-  std::vector<ArmLoad> loads_;  // as they were set last
+  JointCoupling other_;          // at the exchange before, then at the next
+  double last_step_ = 0;         // s
+  std::vector<double> fastest_;  // the shape of the fastest oscillation
+  double fastest_rate_ = 0;      // rad/s
+  std::vector<ArmLoad> loads_;   // as they were set last
 };
 
 CoupledArm::CoupledArm(const ArmDescription& arm, const std::vector<ArmJoint>& joints,

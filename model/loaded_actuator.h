@@ -1,4 +1,5 @@
-// The simulated actuator whose arm is part of something larger: another model moves with it and tells it its load.
+// The simulated actuator whose arm is part of something larger: another model moves with it and tells it its
+// load.
 #pragma once
 
 #include <memory>
@@ -9,9 +10,9 @@
 
 namespace hydro::model {
 
-// J_a and mgl of the model do not act; the load stands for them. Effects stay where they are: actuator.seal_friction is friction of
-// the joint, arm.flexure a spring between the actuator's shaft and the joint, whose angle is then the sensor's. With a clamped shaft
-// there is no load: SetLoad and MoveArm throw.
+// J_a and mgl of the model do not act; the load stands for them. Effects stay where they are:
+// actuator.seal_friction is friction of the joint, arm.flexure a spring between the actuator's shaft and the
+// joint, whose angle is then the sensor's. With a clamped shaft there is no load: SetLoad and MoveArm throw.
 class LoadedActuator {
  public:
   // As Actuator. Its load is J_a of the model until it is set. Throws ModelError, also for a driven shaft.
@@ -35,8 +36,8 @@ class LoadedActuator {
   double arm_angle() const;
   double arm_speed() const;
 
-  // What the actuator gives the arm, in-lbf: k_2 dp, changed by effects. `held`: friction of the joint holds it at rest, whatever
-  // the load; the torque is then the load's, reversed.
+  // What the actuator gives the arm, in-lbf: k_2 dp, changed by effects. `held`: friction of the joint holds
+  // it at rest, whatever the load; the torque is then the load's, reversed.
   struct Torque {
     double torque = 0;
     bool held = false;

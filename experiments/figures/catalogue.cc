@@ -26,7 +26,8 @@ const std::vector<Experiment>& Experiments() {
        .cost = 15,
        .draws_machines = true},
       {"torque", "Torque control: a commanded torque at the arm, clamped and moving", RunTorque, 1.5},
-      {"coupling", "Two joints in one arm: what couples them, and what feed-forward takes away", RunCoupling, 0.5},
+      {"coupling", "Two joints in one arm: what couples them, and what feed-forward takes away", RunCoupling,
+       0.5},
   };
   return experiments;
 }

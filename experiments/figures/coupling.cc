@@ -79,10 +79,9 @@ json Numbers(const CouplingStudy& study) {
     json& one = out["cases"][Name(moving)];
     const auto expected = ExpectedCoupling(study, moving);
     for (int i = 0; i < kArmJoints; ++i) {
-      one["closed_form"][kJoints[i]] = {
-          {"peak_coupling_in_lbf", expected[i].peak},
-          {"peak_of_inertia_in_lbf", expected[i].peak_inertia},
-          {"angle_error_at_peak_rad", expected[i].peak / StiffnessOf(study)}};
+      one["closed_form"][kJoints[i]] = {{"peak_coupling_in_lbf", expected[i].peak},
+                                        {"peak_of_inertia_in_lbf", expected[i].peak_inertia},
+                                        {"angle_error_at_peak_rad", expected[i].peak / StiffnessOf(study)}};
     }
     for (const ArmRun& run : study.runs) {
       if (run.moving == moving) {
@@ -118,8 +117,8 @@ page::Panel ErrorPanel(const CouplingStudy& study, const Moving& moving, int joi
                     .notes = {},
                     .rules = {}};
   const ArmRun& alone = study.Find(moving, FeedForward::kOwn, false);
-  panel.curves.push_back(page::Line("own model, not coupled", time, Thin(alone.joints[joint].angle_error, 1e3), 5,
-                                    page::Stroke::kDotted));
+  panel.curves.push_back(page::Line("own model, not coupled", time,
+                                    Thin(alone.joints[joint].angle_error, 1e3), 5, page::Stroke::kDotted));
   int colour = 0;
   for (const FeedForward feed_forward : {FeedForward::kOwn, FeedForward::kGravity, FeedForward::kWhole}) {
     const ArmRun& run = study.Find(moving, feed_forward, true);
@@ -138,7 +137,8 @@ Picture CasePicture(const CouplingStudy& study, const Moving& moving, const std:
                    .rules = {},
                    .height = 0.5};
   return {suffix,
-          {.caption = fmt::format("Two coupled joints; {}. Feed-forward of each joint's own model, of the whole arm's gravity in its place, "
+          {.caption = fmt::format("Two coupled joints; {}. Feed-forward of each joint's own model, of the "
+                                  "whole arm's gravity in its place, "
                                   "and of the whole arm's inverse dynamics.",
                                   Words(moving)),
            .panels = {path, TorquePanel(study, moving, kForearm), ErrorPanel(study, moving, kForearm)},
@@ -147,13 +147,15 @@ Picture CasePicture(const CouplingStudy& study, const Moving& moving, const std:
 
 // What feedback has to supply, for each way of telling it ahead.
 Picture FeedbackPicture(const CouplingStudy& study) {
-  page::Panel panel{.title = "Largest torque that eq. (17) has to supply",
-                    .x = {.label = "feed-forward", .min = -0.3, .max = 3.3},
-                    .y = {.label = "k_2 dp_ref of eq. (17), in-lbf", .logarithmic = true, .min = 20, .max = 2000},
-                    .curves = {},
-                    .notes = {},
-                    .rules = {{"friction band", false, FrictionBandTorque()}}};
-  const std::array<const char*, kFeedForwards.size()> names = {"none", "own model", "gravity", "inverse dynamics"};
+  page::Panel panel{
+      .title = "Largest torque that eq. (17) has to supply",
+      .x = {.label = "feed-forward", .min = -0.3, .max = 3.3},
+      .y = {.label = "k_2 dp_ref of eq. (17), in-lbf", .logarithmic = true, .min = 20, .max = 2000},
+      .curves = {},
+      .notes = {},
+      .rules = {{"friction band", false, FrictionBandTorque()}}};
+  const std::array<const char*, kFeedForwards.size()> names = {"none", "own model", "gravity",
+                                                               "inverse dynamics"};
   for (size_t i = 0; i < kFeedForwards.size(); ++i) {
     panel.x.ticks.push_back({static_cast<double>(i), names[i]});
   }
@@ -185,12 +187,12 @@ std::vector<Comparison> Comparisons(const CouplingStudy& study) {
     for (int i = 0; i < kArmJoints; ++i) {
       const JointRun& whole = study.Find(moving, FeedForward::kWhole, true).joints[i];
       const JointRun& own = study.Find(moving, FeedForward::kOwn, true).joints[i];
-      comparisons.push_back({fmt::format("coupling torque at the {}, {}", kJointWords[i], Words(moving)), "in-lbf", "",
-                             expected[i].peak, whole.peak_coupling,
+      comparisons.push_back({fmt::format("coupling torque at the {}, {}", kJointWords[i], Words(moving)),
+                             "in-lbf", "", expected[i].peak, whole.peak_coupling,
                              "largest; expected: the textbook's two links along the reference"});
       if (moving != kBothMove) continue;
-      comparisons.push_back({fmt::format("angle error of the {} that knows only itself", kJointWords[i]), "rad",
-                             "", expected[i].peak / StiffnessOf(study), own.peak_angle_error,
+      comparisons.push_back({fmt::format("angle error of the {} that knows only itself", kJointWords[i]),
+                             "rad", "", expected[i].peak / StiffnessOf(study), own.peak_angle_error,
                              "expected: that torque over c_1 k_2, without friction"});
     }
   }
@@ -210,25 +212,37 @@ std::string Explanation(const CouplingStudy& study) {
   const JointRun& lone = study.Find(kUpperMoves, FeedForward::kNone, false).joints[kForearm];
   const JointRun& held_own = study.Find(kUpperMoves, FeedForward::kOwn, true).joints[kForearm];
   return fmt::format(
-      "While the upper arm moves, the resting forearm feels up to {held_peak:.0f} in-lbf more than its own model knows: {inertia:.0f} "
-      "in-lbf of M_12 α_1'' where the upper arm accelerates, the rest gravity that turns with it. When both move it is {both_peak:.0f} "
-      "in-lbf. Eq. (17) alone hides this: the forearm's weight alone takes the resting forearm {lone_alone:.1f} mrad from its reference, with "
-      "coupling {held_alone:.1f}. Told what its own model knows, a lone joint follows within {lone_own:.2f} mrad, which is the "
-      "friction band of the pump, {band:.0f} in-lbf, over c_1 k_2; in the arm the forearm errs by {own:.2f} mrad, as {both_peak:.0f} in-lbf "
-      "over c_1 k_2 = {stiffness:.0f} in-lbf/rad do ({expected:.2f}). The arm's gravity as feed-forward leaves {gravity:.2f} mrad, its "
-      "inverse dynamics {whole:.2f}, hardly more than a lone joint has. Feedback then supplies {feedback_whole:.0f} in-lbf instead of {feedback_own:.0f}. "
-      "A pump at rest hides what lies within its friction band, so of {held_peak:.0f} in-lbf the resting forearm moves by only {held_own:.2f} "
-      "mrad. With Table 1's ratio the pump's reflected inertia is (c/D)^2 J = {reflected:.0f} lbf-in-s^2, {times:.0f} times the upper "
-      "arm's {inertia_1:.0f}: it limits accelerations to about 2 rad/s^2, and so keeps the coupling by inertia small.",
+      "While the upper arm moves, the resting forearm feels up to {held_peak:.0f} in-lbf more than its own "
+      "model knows: {inertia:.0f} "
+      "in-lbf of M_12 α_1'' where the upper arm accelerates, the rest gravity that turns with it. When both "
+      "move it is {both_peak:.0f} "
+      "in-lbf. Eq. (17) alone hides this: the forearm's weight alone takes the resting forearm "
+      "{lone_alone:.1f} mrad from its reference, with "
+      "coupling {held_alone:.1f}. Told what its own model knows, a lone joint follows within {lone_own:.2f} "
+      "mrad, which is the "
+      "friction band of the pump, {band:.0f} in-lbf, over c_1 k_2; in the arm the forearm errs by {own:.2f} "
+      "mrad, as {both_peak:.0f} in-lbf "
+      "over c_1 k_2 = {stiffness:.0f} in-lbf/rad do ({expected:.2f}). The arm's gravity as feed-forward "
+      "leaves {gravity:.2f} mrad, its "
+      "inverse dynamics {whole:.2f}, hardly more than a lone joint has. Feedback then supplies "
+      "{feedback_whole:.0f} in-lbf instead of {feedback_own:.0f}. "
+      "A pump at rest hides what lies within its friction band, so of {held_peak:.0f} in-lbf the resting "
+      "forearm moves by only {held_own:.2f} "
+      "mrad. With Table 1's ratio the pump's reflected inertia is (c/D)^2 J = {reflected:.0f} lbf-in-s^2, "
+      "{times:.0f} times the upper "
+      "arm's {inertia_1:.0f}: it limits accelerations to about 2 rad/s^2, and so keeps the coupling by "
+      "inertia small.",
       fmt::arg("held_peak", upper[kForearm].peak), fmt::arg("inertia", upper[kForearm].peak_inertia),
       fmt::arg("both_peak", both[kForearm].peak), fmt::arg("held_alone", 1e3 * held.peak_angle_error),
-      fmt::arg("lone_alone", 1e3 * lone.peak_angle_error), fmt::arg("lone_own", error(FeedForward::kOwn, false)),
-      fmt::arg("band", FrictionBandTorque()), fmt::arg("own", error(FeedForward::kOwn, true)),
-      fmt::arg("stiffness", StiffnessOf(study)),
+      fmt::arg("lone_alone", 1e3 * lone.peak_angle_error),
+      fmt::arg("lone_own", error(FeedForward::kOwn, false)), fmt::arg("band", FrictionBandTorque()),
+      fmt::arg("own", error(FeedForward::kOwn, true)), fmt::arg("stiffness", StiffnessOf(study)),
       fmt::arg("expected", 1e3 * both[kForearm].peak / StiffnessOf(study)),
-      fmt::arg("gravity", error(FeedForward::kGravity, true)), fmt::arg("whole", error(FeedForward::kWhole, true)),
+      fmt::arg("gravity", error(FeedForward::kGravity, true)),
+      fmt::arg("whole", error(FeedForward::kWhole, true)),
       fmt::arg("feedback_whole", feedback(FeedForward::kWhole)),
-      fmt::arg("feedback_own", feedback(FeedForward::kOwn)), fmt::arg("held_own", 1e3 * held_own.peak_angle_error),
+      fmt::arg("feedback_own", feedback(FeedForward::kOwn)),
+      fmt::arg("held_own", 1e3 * held_own.peak_angle_error),
       fmt::arg("reflected", std::pow(study.own[0].c / study.own[0].D, 2) * study.own[0].J),
       fmt::arg("times", std::pow(study.own[0].c / study.own[0].D, 2) * study.own[0].J / study.own[0].J_a),
       fmt::arg("inertia_1", study.own[0].J_a));
@@ -257,16 +271,21 @@ ExperimentResult RunCoupling(const ExperimentOptions& options) {
   const model::ArmDescription arm = StudiedArm();
   ExperimentResult result;
   result.conditions = fmt::format(
-      "Table 1's actuator in both joints of an arm (ASSUMED: upper arm {} in, {:.0f} lbf; forearm {} in, {:.0f} lbf; {:.0f} lbf in the hand; "
-      "{} rad between them at mid-stroke), with the loops of config/retuned.toml, the derivative on the error, 5 kHz, a tick of delay. A joint "
-      "that moves goes from -{} to {} rad and back (quintic, up to {} rad/s); the other holds mid-stroke. A joint's own model: eqs. (4) and "
-      "(15) with J_a = {:.1f} and {:.1f} lbf-in-s^2, m g l = {:.0f} and {:.0f} in-lbf, as measured at mid-stroke with the other at rest. "
+      "Table 1's actuator in both joints of an arm (ASSUMED: upper arm {} in, {:.0f} lbf; forearm {} in, "
+      "{:.0f} lbf; {:.0f} lbf in the hand; "
+      "{} rad between them at mid-stroke), with the loops of config/retuned.toml, the derivative on the "
+      "error, 5 kHz, a tick of delay. A joint "
+      "that moves goes from -{} to {} rad and back (quintic, up to {} rad/s); the other holds mid-stroke. A "
+      "joint's own model: eqs. (4) and "
+      "(15) with J_a = {:.1f} and {:.1f} lbf-in-s^2, m g l = {:.0f} and {:.0f} in-lbf, as measured at "
+      "mid-stroke with the other at rest. "
       "Uncoupled: two rigs with just these loads.",
-      arm.links[0].length, arm.links[0].mass * arm.gravity, arm.links[1].length, arm.links[1].mass * arm.gravity,
-      arm.payload * arm.gravity, kElbow, kArmReach, kArmReach, kArmPeakSpeed, study.own[0].J_a, study.own[1].J_a,
-      study.own[0].mgl, study.own[1].mgl);
+      arm.links[0].length, arm.links[0].mass * arm.gravity, arm.links[1].length,
+      arm.links[1].mass * arm.gravity, arm.payload * arm.gravity, kElbow, kArmReach, kArmReach, kArmPeakSpeed,
+      study.own[0].J_a, study.own[1].J_a, study.own[0].mgl, study.own[1].mgl);
   result.paper_says =
-      "The actuator is meant for robots; the paper's model and measurements are of one joint, whose load is J_a and m g l.";
+      "The actuator is meant for robots; the paper's model and measurements are of one joint, whose load is "
+      "J_a and m g l.";
   result.explanation = Explanation(study);
   result.comparisons = Comparisons(study);
   result.numbers = JsonText(Numbers(study));

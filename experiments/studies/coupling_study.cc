@@ -152,8 +152,8 @@ ArmRun RunArm(const CouplingStudy& study, const tune::StepTrial& settings, const
       const model::Parameters& p = study.own[i];
       double ahead = 0;
       if (run.feed_forward != FeedForward::kNone) {
-        ahead = known[i] / p.k_2 +
-                PumpPressure(p, settings.pressure.gains.k_p, at.speed[i], at.acceleration[i]);
+        ahead =
+            known[i] / p.k_2 + PumpPressure(p, settings.pressure.gains.k_p, at.speed[i], at.acceleration[i]);
       }
       const model::Measurement m = joints.Measure(i);
       voltages[i] = loops[i].Voltage(k, m, at.angle[i], ahead);
@@ -209,8 +209,8 @@ const ArmRun& CouplingStudy::Find(const Moving& moving, FeedForward feed_forward
 }
 
 CouplingStudy RunCouplingStudy() {
-  const settings::StackConfig config =
-      settings::ParseStackConfig(ShippedStackText("retuned"), "retuned.toml", ShippedModelText("table1"), "table1.toml");
+  const settings::StackConfig config = settings::ParseStackConfig(ShippedStackText("retuned"), "retuned.toml",
+                                                                  ShippedModelText("table1"), "table1.toml");
   tune::StepTrial settings = tune::TrialOf(config);
   settings.position.derivative_on_error = true;  // the path has no steps that would kick
   const SmoothPath path(kArmReach, kArmPeakSpeed);
@@ -244,10 +244,12 @@ std::array<CouplingAlongPath, kArmJoints> ExpectedCoupling(const CouplingStudy& 
   const model::ArmLink& upper = arm.links[0];
   const model::ArmLink& forearm = arm.links[1];
   const double mass = forearm.mass + arm.payload;
-  const double first = forearm.mass * forearm.centre + arm.payload * forearm.length;  // moment about the elbow
+  const double first =
+      forearm.mass * forearm.centre + arm.payload * forearm.length;  // moment about the elbow
   const double second = forearm.inertia + forearm.mass * forearm.centre * forearm.centre +
                         arm.payload * forearm.length * forearm.length;
-  const double shoulder = upper.inertia + upper.mass * upper.centre * upper.centre + mass * upper.length * upper.length;
+  const double shoulder =
+      upper.inertia + upper.mass * upper.centre * upper.centre + mass * upper.length * upper.length;
   const SmoothPath path(kArmReach, kArmPeakSpeed);
   std::array<CouplingAlongPath, kArmJoints> found;
   for (const double time : study.time) {
@@ -259,10 +261,14 @@ std::array<CouplingAlongPath, kArmJoints> ExpectedCoupling(const CouplingStudy& 
     const double h = -lever * std::sin(bend);
     const double v1 = at.speed[0], v2 = at.speed[1], a1 = at.acceleration[0], a2 = at.acceleration[1];
     const double g2 = arm.gravity * first * std::cos(upper.angle + at.angle[0] + bend);
-    const double g1 = arm.gravity * (upper.mass * upper.centre + mass * upper.length) * std::cos(upper.angle + at.angle[0]) + g2;
-    const Numbers inertia = {(M_11 - study.own[0].J_a) * a1 + M_12 * a2, M_12 * a1 + (M_22 - study.own[1].J_a) * a2};
+    const double g1 = arm.gravity * (upper.mass * upper.centre + mass * upper.length) *
+                          std::cos(upper.angle + at.angle[0]) +
+                      g2;
+    const Numbers inertia = {(M_11 - study.own[0].J_a) * a1 + M_12 * a2,
+                             M_12 * a1 + (M_22 - study.own[1].J_a) * a2};
     const Numbers velocity = {h * (2 * v1 * v2 + v2 * v2), -h * v1 * v1};
-    const Numbers gravity = {g1 - study.own[0].mgl * std::cos(at.angle[0]), g2 - study.own[1].mgl * std::cos(at.angle[1])};
+    const Numbers gravity = {g1 - study.own[0].mgl * std::cos(at.angle[0]),
+                             g2 - study.own[1].mgl * std::cos(at.angle[1])};
     for (int i = 0; i < kArmJoints; ++i) {
       CouplingAlongPath& joint = found[i];
       joint.inertia.push_back(inertia[i]);

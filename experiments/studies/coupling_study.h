@@ -1,4 +1,5 @@
-// Two of the paper's actuators in one arm: what each joint's motion does to the other, and what feed-forward takes away.
+// Two of the paper's actuators in one arm: what each joint's motion does to the other, and what feed-forward
+// takes away.
 #pragma once
 
 #include <array>
@@ -12,9 +13,9 @@
 namespace hydro::experiments {
 
 inline constexpr int kArmJoints = 2;
-inline constexpr double kArmReach = 0.2;       // rad, each joint's motion to both sides of mid-stroke
-inline constexpr double kArmPeakSpeed = 0.7;   // rad/s
-inline constexpr double kElbow = 0.8;          // rad, between the links at mid-stroke: ASSUMED, like all of the arm
+inline constexpr double kArmReach = 0.2;      // rad, each joint's motion to both sides of mid-stroke
+inline constexpr double kArmPeakSpeed = 0.7;  // rad/s
+inline constexpr double kElbow = 0.8;  // rad, between the links at mid-stroke: ASSUMED, like all of the arm
 
 // An upper arm and a forearm with a payload.
 model::ArmDescription StudiedArm();
@@ -53,12 +54,13 @@ struct JointRun {
 struct ArmRun {
   Moving moving;
   FeedForward feed_forward = FeedForward::kNone;
-  bool coupled = true;  // false: two rigs with their own J_a and mgl
+  bool coupled = true;              // false: two rigs with their own J_a and mgl
   double highest_motor_torque = 0;  // in-lbf
   std::array<JointRun, kArmJoints> joints;
 };
 
-// What the motion of all does to one joint along the reference, beyond what its own model knows; from the textbook's two links.
+// What the motion of all does to one joint along the reference, beyond what its own model knows; from the
+// textbook's two links.
 struct CouplingAlongPath {
   std::vector<double> inertia;   // in-lbf, of accelerations
   std::vector<double> velocity;  // centrifugal and Coriolis
@@ -68,11 +70,12 @@ struct CouplingAlongPath {
 };
 
 struct CouplingStudy {
-  std::vector<double> time;  // s, from the start of the path
+  std::vector<double> time;       // s, from the start of the path
   std::vector<double> reference;  // rad, of a joint that moves
-  std::array<model::Parameters, kArmJoints> own;  // Table 1 with each joint's J_a and mgl, measured at mid-stroke
-  double c1 = 0;                                  // psi/rad
-  std::vector<ArmRun> runs;                       // cases, feed-forwards; coupled first, then uncoupled
+  std::array<model::Parameters, kArmJoints>
+      own;                   // Table 1 with each joint's J_a and mgl, measured at mid-stroke
+  double c1 = 0;             // psi/rad
+  std::vector<ArmRun> runs;  // cases, feed-forwards; coupled first, then uncoupled
 
   const ArmRun& Find(const Moving& moving, FeedForward feed_forward, bool coupled) const;
 };

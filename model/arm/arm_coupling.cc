@@ -8,8 +8,8 @@
 namespace hydro::model {
 
 JointCoupling::JointCoupling(int joints) : held(static_cast<size_t>(joints)) {
-  for (std::vector<double>* numbers : {&angle, &speed, &torque, &torque_rate, &acceleration, &jerk, &inertia,
-                                       &load, &load_rate}) {
+  for (std::vector<double>* numbers :
+       {&angle, &speed, &torque, &torque_rate, &acceleration, &jerk, &inertia, &load, &load_rate}) {
     numbers->resize(static_cast<size_t>(joints));
   }
 }
@@ -43,6 +43,10 @@ void ArmCoupling::FindLoads(JointCoupling* at) {
     at->load_rate[i] = at->inertia[i] * at->jerk[i] - at->torque_rate[i];
   }
   if (any_held_) FindHeldLoads(at);
+}
+
+void ArmCoupling::Accelerate(std::vector<double>* torques) const {
+  SolveFactored(joints(), factors_, *torques);
 }
 
 // Only what lies on and below the diagonal is read from now on.

@@ -14,7 +14,7 @@ struct ArmLink {
   double length = 0;   // in, from this link's joint to the next joint, the last one's to the tip
   double centre = 0;   // in, from the joint to the centre of mass, along the link; below 0: behind the joint
   double inertia = 0;  // in-lbf-s^2, about the centre of mass
-  double angle = 0;    // rad, from the link before (the first: from the horizontal) to this one where alpha = 0
+  double angle = 0;  // rad, from the link before (the first: from the horizontal) to this one where alpha = 0
 };
 
 // Revolute joints in one vertical plane, from the base outwards. Joint i turns link i against link i - 1.

@@ -10,14 +10,15 @@ bool Factor(int n, std::span<double> matrix) {
   double* m = matrix.data();
   for (int j = 0; j < n; ++j) {
     double* column = m + static_cast<long>(j) * n;
-    const double pivot = column[j];
-    if (!(pivot > 0)) return false;
+    if (!(column[j] > 0)) return false;
+    const double inverse = 1 / column[j];
     for (int k = j + 1; k < n; ++k) {
-      const double factor = column[k] / pivot;
+      const double factor = column[k] * inverse;
       double* other = m + static_cast<long>(k) * n;
       for (int i = k; i < n; ++i) other[i] -= factor * column[i];
     }
-    for (int i = j + 1; i < n; ++i) column[i] /= pivot;
+    for (int i = j + 1; i < n; ++i) column[i] *= inverse;
+    column[j] = inverse;
   }
   return true;
 }
@@ -28,7 +29,7 @@ void SolveFactored(int n, std::span<const double> factors, std::span<double> x) 
     for (int i = j + 1; i < n; ++i) x[i] -= m[i + static_cast<long>(j) * n] * x[j];
   }
   for (int j = n - 1; j >= 0; --j) {
-    x[j] /= m[j + static_cast<long>(j) * n];
+    x[j] *= m[j + static_cast<long>(j) * n];
     for (int i = j + 1; i < n; ++i) x[j] -= m[i + static_cast<long>(j) * n] * x[i];
   }
 }
@@ -41,7 +42,7 @@ void InverseDiagonal(int n, std::span<const double> factors, std::span<double> d
     column[j] = 1;
     double sum = 0;
     for (int k = j; k < n; ++k) {
-      sum += column[k] * column[k] / m[k + static_cast<long>(k) * n];
+      sum += column[k] * column[k] * m[k + static_cast<long>(k) * n];
       for (int i = k + 1; i < n; ++i) column[i] -= m[i + static_cast<long>(k) * n] * column[k];
     }
     diagonal[j] = sum;

@@ -22,15 +22,17 @@ struct Planar {
   T x, y;
 };
 
-// The motion of link i, as numbers of type T: the cosine and sine of its direction, its joint's speed and acceleration.
+// The motion of link i, as numbers of type T: the cosine and sine of its direction, its joint's speed and
+// acceleration.
 template <class T>
 struct LinkMotion {
   T cosine, sine;
   T speed, acceleration;
 };
 
-// `motion(i)` gives the LinkMotion of link i; `give(i, torque)` takes the torque of joint i. Outwards the links'
-// accelerations, with gravity as an acceleration of the base; inwards the forces and moments at the joints.
+// `motion(i)` gives the LinkMotion of link i; `give(i, torque)` takes the torque of joint i. Outwards the
+// links' accelerations, with gravity as an acceleration of the base; inwards the forces and moments at the
+// joints.
 template <class T, class Motion, class Give>
 void NewtonEuler(int links, const ArmLink* link, double gravity, const Motion& motion, const Give& give) {
   Planar<T> direction[kMostLinks];

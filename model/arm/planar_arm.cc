@@ -90,8 +90,8 @@ void PlanarArm::MassMatrix(const ArmPose& pose, std::span<double> matrix) const 
     const double c = pose.cosine[j];
     const double s = pose.sine[j];
     // The body from joint j + 1 on, seen from joint j.
-    inertia += mass * l.length * l.length + 2 * l.length * (c * first.x + s * first.y) +
-               l.inertia + l.mass * l.centre * l.centre;
+    inertia += mass * l.length * l.length + 2 * l.length * (c * first.x + s * first.y) + l.inertia +
+               l.mass * l.centre * l.centre;
     first.x += (mass * l.length + l.mass * l.centre) * c;
     first.y += (mass * l.length + l.mass * l.centre) * s;
     mass += l.mass;

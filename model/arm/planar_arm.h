@@ -1,5 +1,5 @@
-// The dynamics of a planar arm of revolute links: M(alpha) alpha'' + bias(alpha, alpha') = torques. Pure functions of
-// numbers; docs/model.md has the equations.
+// The dynamics of a planar arm of revolute links: M(alpha) alpha'' + bias(alpha, alpha') = torques. Pure
+// functions of numbers; docs/model.md has the equations.
 #pragma once
 
 #include <span>
@@ -15,9 +15,10 @@ struct ArmPose {
   double sine[kMostLinks];
 };
 
-// Angles, speeds, accelerations and torques are those of the joints, from the base outwards: alpha_i is the angle between links i - 1
-// and i (the first: the base), and torque i acts from link i - 1 on link i. With one link this is eq. (15) with
-// J_a = inertia + mass centre^2 and mgl = mass gravity centre. Each span holds links() numbers; none may overlap a result.
+// Angles, speeds, accelerations and torques are those of the joints, from the base outwards: alpha_i is the
+// angle between links i - 1 and i (the first: the base), and torque i acts from link i - 1 on link i. With
+// one link this is eq. (15) with J_a = inertia + mass centre^2 and mgl = mass gravity centre. Each span holds
+// links() numbers; none may overlap a result.
 class PlanarArm {
  public:
   // Throws ModelError (ArmDescription::Check).
@@ -41,8 +42,8 @@ class PlanarArm {
   // The torques without acceleration: gravity, centrifugal and Coriolis terms.
   void Bias(const ArmPose& pose, std::span<const double> speeds, std::span<double> torques) const;
 
-  // M, symmetric and positive definite, entry (i, j) at matrix[i + j links()]: composite rigid bodies (Featherstone),
-  // in O(links^2). in-lbf-s^2.
+  // M, symmetric and positive definite, entry (i, j) at matrix[i + j links()]: composite rigid bodies
+  // (Featherstone), in O(links^2). in-lbf-s^2.
   void MassMatrix(const ArmPose& pose, std::span<double> matrix) const;
 
   // Forward dynamics: the accelerations under these torques.

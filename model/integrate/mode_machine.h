@@ -385,7 +385,7 @@ class ModeMachine {
   double voltage_ = 0;
   bool started_ = false;
   bool commanded_ = false;  // the equations know a voltage
-  bool fresh_ = true;  // mode or voltage is new
+  bool fresh_ = true;       // mode or voltage is new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
   int events_ = 0;  // since events_since_, s

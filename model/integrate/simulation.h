@@ -16,7 +16,8 @@ class Simulation {
   // As Actuator::Advance.
   virtual void Advance(double voltage, double until) = 0;
 
-  // Of a free shaft: puts the arm nearby (Equations::MoveArm); has it take up the load that the equations have been given (SetLoad).
+  // Of a free shaft: puts the arm nearby (Equations::MoveArm); has it take up the load that the equations have
+  // been given (SetLoad).
   virtual void MoveArm(double angle, double speed) = 0;
   virtual void NewLoad() = 0;
 

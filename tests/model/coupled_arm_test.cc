@@ -1,4 +1,5 @@
-// Tests that coupled actuators are the plain actuator where nothing couples, keep energy, hold still what is held, and fail by name.
+// Tests that coupled actuators are the plain actuator where nothing couples, keep energy, hold still what is
+// held, and fail by name.
 #include "model/coupled_arm.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,8 @@ double Voltage(int joint, int tick) {
 std::vector<ArmJoint> Joints(int n, const std::vector<EffectDescription>& effects = {}) {
   std::vector<ArmJoint> joints;
   for (int i = 0; i < n; ++i) {
-    joints.push_back({Table1Model(effects), {.arm_angle = i % 2 == 0 ? -0.1 : 0.15, .relative_tolerance = 1e-8}});
+    joints.push_back(
+        {Table1Model(effects), {.arm_angle = i % 2 == 0 ? -0.1 : 0.15, .relative_tolerance = 1e-8}});
   }
   return joints;
 }
@@ -50,7 +52,8 @@ void AdvanceTo(CoupledArm* arm, int tick) {
   arm->Advance(voltages, tick * kTick);
 }
 
-// Runs an arm's first joint beside a plain actuator; the tolerances are those of angle (rad), speed (rad/s) and pressures (psi).
+// Runs an arm's first joint beside a plain actuator; the tolerances are those of angle (rad), speed (rad/s)
+// and pressures (psi).
 void ExpectLikeActuator(CoupledArm* arm, Actuator* actuator, double angle, double speed, double pressure) {
   double moved = 0;
   for (int tick = 1; tick <= 500; ++tick) {
@@ -67,7 +70,8 @@ void ExpectLikeActuator(CoupledArm* arm, Actuator* actuator, double angle, doubl
   EXPECT_GT(moved, 5e-3) << "it has to move";
 }
 
-// Tests that one link is the actuator with J_a and mgl, through reversals of the pump and openings of the valves.
+// Tests that one link is the actuator with J_a and mgl, through reversals of the pump and openings of the
+// valves.
 TEST(CoupledArm, OneLinkIsTheActuator) {
   CoupledArm arm(Straight(1), Joints(1));
   ModelDescription model = Table1Model();
@@ -88,7 +92,8 @@ TEST(CoupledArm, OneLinkWithEffectsIsTheActuator) {
   ExpectLikeActuator(&arm, &actuator, 2e-7, 2e-4, 0.1);
 }
 
-// Tests that behind a joint that is locked straight, two links are one: the actuator with the inertia and gravity of both.
+// Tests that behind a joint that is locked straight, two links are one: the actuator with the inertia and
+// gravity of both.
 TEST(CoupledArm, LockedJointMakesOneLinkOfTwo) {
   std::vector<ArmJoint> joints = Joints(2);
   joints[1].options.shaft = Shaft::kClamped;
@@ -136,7 +141,8 @@ TEST(CoupledArm, EnergyIsTheActuatorsWork) {
   EXPECT_GT(largest, 5) << "in-lbf";
 }
 
-// Tests that friction of its own holds a joint exactly still until what the others do to it is more than it holds.
+// Tests that friction of its own holds a joint exactly still until what the others do to it is more than it
+// holds.
 TEST(CoupledArm, FrictionHoldsAgainstTheOthers) {
   const auto run = [](double coulomb) {
     std::vector<ArmJoint> joints = Joints(2);
@@ -230,7 +236,9 @@ TEST(CoupledArm, RefusesByName) {
   CoupledArm arm(Straight(2), Joints(2));
   EXPECT_EQ(Message([&] { arm.Advance(std::array<double, 1>{0}, 1); }), "found 1 voltages for 2 joints");
   arm.Advance(std::array<double, 2>{0, 0}, 0.5);
-  EXPECT_EQ(Message([&] { arm.Advance(std::array<double, 2>{0, 0}, 0.4); }),
+  EXPECT_EQ(Message([&] {
+              arm.Advance(std::array<double, 2>{0, 0}, 0.4);
+            }),
             "cannot advance to t = 0.400000 s from t = 0.500000 s");
 }
 

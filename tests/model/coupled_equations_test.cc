@@ -1,5 +1,6 @@
-// Tests that two coupled actuators move as the equations of both together do, integrated here by hand: eqs. (4), (13), (14) of each
-// pump, which slips forward with closed valves, and the textbook's M alpha'' + bias = k_2 dp of two links.
+// Tests that two coupled actuators move as the equations of both together do, integrated here by hand: eqs.
+// (4), (13), (14) of each pump, which slips forward with closed valves, and the textbook's M alpha'' + bias =
+// k_2 dp of two links.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,17 +32,21 @@ State Rates(const State& y, const std::array<double, 2>& voltage) {
   State rate{};
   std::array<double, 2> torque{};
   for (size_t i = 0; i < 2; ++i) {
-    const double w = y[5 * i], p1 = y[5 * i + 1], p2 = y[5 * i + 2], alpha = y[5 * i + 3], speed = y[5 * i + 4];
+    const double w = y[5 * i], p1 = y[5 * i + 1], p2 = y[5 * i + 2], alpha = y[5 * i + 3],
+                 speed = y[5 * i + 4];
     const double dp = p2 - p1;
     rate[5 * i] = (p.k_1 * voltage[i] - p.D * dp - p.b * w - p.T_s) / p.J;
-    rate[5 * i + 1] = -p.beta / (p.V_ms - p.c * alpha) * (p.D * w - p.c_I * dp + p.c_E * (p1 - p.p_3) - p.c * speed);
-    rate[5 * i + 2] = -p.beta / (p.V_ms + p.c * alpha) * (-p.D * w + p.c_I * dp + p.c_E * (p2 - p.p_3) + p.c * speed);
+    rate[5 * i + 1] =
+        -p.beta / (p.V_ms - p.c * alpha) * (p.D * w - p.c_I * dp + p.c_E * (p1 - p.p_3) - p.c * speed);
+    rate[5 * i + 2] =
+        -p.beta / (p.V_ms + p.c * alpha) * (-p.D * w + p.c_I * dp + p.c_E * (p2 - p.p_3) + p.c * speed);
     rate[5 * i + 3] = speed;
     torque[i] = p.k_2 * dp;
   }
   const double q1 = y[3], v1 = y[4], q2 = y[8], v2 = y[9];
   const double m1 = kUpper.mass, l1 = kUpper.length, c1 = kUpper.centre, m2 = kLower.mass, c2 = kLower.centre;
-  const double d11 = m1 * c1 * c1 + m2 * (l1 * l1 + c2 * c2 + 2 * l1 * c2 * std::cos(q2)) + kUpper.inertia + kLower.inertia;
+  const double d11 =
+      m1 * c1 * c1 + m2 * (l1 * l1 + c2 * c2 + 2 * l1 * c2 * std::cos(q2)) + kUpper.inertia + kLower.inertia;
   const double d12 = m2 * (c2 * c2 + l1 * c2 * std::cos(q2)) + kLower.inertia;
   const double d22 = m2 * c2 * c2 + kLower.inertia;
   const double h = -m2 * l1 * c2 * std::sin(q2);
@@ -104,8 +109,8 @@ double Worst(const State& a, const State& b, size_t which) {
   return std::max(std::abs(a[which] - b[which]), std::abs(a[which + 5] - b[which + 5]));
 }
 
-// Tests that at the default accuracy pressures agree within 0.1 psi and angles within 1e-6 rad, well below any sensor's noise,
-// while the arm moves by some hundredths of a radian.
+// Tests that at the default accuracy pressures agree within 0.1 psi and angles within 1e-6 rad, well below
+// any sensor's noise, while the arm moves by some hundredths of a radian.
 TEST(CoupledEquations, AgreeAtTheDefaultAccuracy) {
   const State by_hand = IntegratedByHand();
   const State coupled = Coupled({}, ArmJoint().options.relative_tolerance);
@@ -118,11 +123,13 @@ TEST(CoupledEquations, AgreeAtTheDefaultAccuracy) {
   EXPECT_GT(std::abs(by_hand[8] - kStart[1]), 0.01) << "it has to move";
 }
 
-// Tests that in smooth motion the error falls with the fourth power of the exchanges' distance, to what the actuators' tolerance leaves.
+// Tests that in smooth motion the error falls with the fourth power of the exchanges' distance, to what the
+// actuators' tolerance leaves.
 TEST(CoupledEquations, ConvergeWithTheFourthOrder) {
   const State by_hand = IntegratedByHand();
   const auto error = [&](int steps_in_a_tick) {
-    const State y = Coupled({.longest_step = 1.00001 * kTick / steps_in_a_tick, .steps_per_radian = 0.1}, 1e-10);
+    const State y =
+        Coupled({.longest_step = 1.00001 * kTick / steps_in_a_tick, .steps_per_radian = 0.1}, 1e-10);
     return Worst(y, by_hand, 1) + Worst(y, by_hand, 2);
   };
   const double coarse = error(4), middle = error(8), fine = error(16);

@@ -1,4 +1,5 @@
-// Tests that an actuator under a load from outside is the actuator of eq. (15) where the load is that of eq. (15).
+// Tests that an actuator under a load from outside is the actuator of eq. (15) where the load is that of eq.
+// (15).
 #include "model/loaded_actuator.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,8 @@ void ExpectSame(const Measurement& a, const Measurement& b) {
   EXPECT_EQ(a.p2, b.p2);
 }
 
-// Tests that with the inertia J_a and no torque it runs bit by bit as the actuator without gravity, plain and with effects.
+// Tests that with the inertia J_a and no torque it runs bit by bit as the actuator without gravity, plain and
+// with effects.
 TEST(LoadedActuator, WithJaIsTheActuator) {
   for (const auto& effects : Models()) {
     Actuator plain(Table1Model(effects), {});
@@ -47,8 +49,8 @@ TEST(LoadedActuator, WithJaIsTheActuator) {
   }
 }
 
-// Tests that gravity as a load, given anew every 0.2 ms with its rate and curvature, gives the motion under mgl cos(alpha), for every
-// integrator.
+// Tests that gravity as a load, given anew every 0.2 ms with its rate and curvature, gives the motion under
+// mgl cos(alpha), for every integrator.
 TEST(LoadedActuator, GravityAsLoad) {
   for (const Integrator integrator : testing::kIntegrators) {
     ModelDescription model = Table1Model();
@@ -96,7 +98,8 @@ TEST(LoadedActuator, BalanceIsNotFriction) {
   EXPECT_FALSE(loaded.ArmTorque().held);
 }
 
-// Tests that the torque's rate is the derivative of the torque, with friction, which depends on the arm's acceleration, and flexure.
+// Tests that the torque's rate is the derivative of the torque, with friction, which depends on the arm's
+// acceleration, and flexure.
 TEST(LoadedActuator, TorqueRateIsTheDerivative) {
   for (const auto& effects : Models()) {
     LoadedActuator loaded(Table1Model(effects), {.relative_tolerance = 1e-10});

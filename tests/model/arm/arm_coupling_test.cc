@@ -28,8 +28,8 @@ Eigen::MatrixXd Mass(const PlanarArm& arm, const JointCoupling& at) {
   return matrix;
 }
 
-// Tests that the torques of the accelerations found are the torques given, that the same holds for their rates, and
-// that inertia is 1/(M^-1)_ii.
+// Tests that the torques of the accelerations found are the torques given, that the same holds for their
+// rates, and that inertia is 1/(M^-1)_ii.
 TEST(ArmCoupling, DescribesTheWholeArm) {
   const PlanarArm arm(testing::UnevenArm(5));
   ArmCoupling coupling(arm);
@@ -49,8 +49,8 @@ TEST(ArmCoupling, DescribesTheWholeArm) {
   }
 }
 
-// Tests that a held joint rests, that its load is what holds it, reversed, and that the rest moves as an arm whose two links there are
-// one rigid body.
+// Tests that a held joint rests, that its load is what holds it, reversed, and that the rest moves as an arm
+// whose two links there are one rigid body.
 TEST(ArmCoupling, HeldJointIsRigid) {
   const PlanarArm arm(testing::UnevenArm(3));
   ArmCoupling coupling(arm);

@@ -25,8 +25,8 @@ TEST(FeedForward, OneLinkNeedsNone) {
   EXPECT_NEAR(torque[0], 0, 1e-10);
 }
 
-// Tests two links by the textbook: while joint 1 moves and joint 2 rests where its own model was measured, joint 2 is told of
-// M_12 alpha_1'' and of the centrifugal torque m_2 l_1 c_2 sin(alpha_2) alpha_1'^2.
+// Tests two links by the textbook: while joint 1 moves and joint 2 rests where its own model was measured,
+// joint 2 is told of M_12 alpha_1'' and of the centrifugal torque m_2 l_1 c_2 sin(alpha_2) alpha_1'^2.
 TEST(FeedForward, TwoLinksByTheTextbook) {
   ArmDescription description;  // in a horizontal plane
   description.links = {{.mass = 0.06, .length = 22, .centre = 9, .inertia = 2.5},

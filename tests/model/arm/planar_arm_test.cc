@@ -95,7 +95,8 @@ TEST(PlanarArm, OneLinkIsEquation15) {
   EXPECT_NEAR(torque, J_a * 40 + mgl * std::cos(0.6), 1e-12 * torque);
 }
 
-// Tests that two links are as in Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 7.4.
+// Tests that two links are as in Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section
+// 7.4.
 TEST(PlanarArm, TwoLinksAreTheTextbooks) {
   ArmDescription description{.gravity = 386.09};
   description.links = {{.mass = 0.06, .length = 22, .centre = 9, .inertia = 2.5},
@@ -119,7 +120,8 @@ TEST(PlanarArm, TwoLinksAreTheTextbooks) {
   EXPECT_NEAR(mass(1, 1), d22, 1e-13 * d11);
 }
 
-// Tests that seven links with a payload obey Lagrange's equations. The differences' errors are of the order of 1e-8 of the torques.
+// Tests that seven links with a payload obey Lagrange's equations. The differences' errors are of the order
+// of 1e-8 of the torques.
 TEST(PlanarArm, SevenLinksObeyLagrange) {
   ArmDescription description = testing::UnevenArm(7);
   description.payload = 0.03;
@@ -142,7 +144,8 @@ TEST(PlanarArm, EnergiesAreTheLagrangians) {
   EXPECT_NEAR(kinetic - arm.PotentialEnergy(q), Lagrangian(description, q, v), 1e-12 * kinetic);
 }
 
-// Tests that the mass matrix is symmetric, positive definite, made of the torques of unit accelerations, and gives the kinetic energy.
+// Tests that the mass matrix is symmetric, positive definite, made of the torques of unit accelerations, and
+// gives the kinetic energy.
 TEST(PlanarArm, MassMatrixIsSymmetricPositiveAndTheTorques) {
   for (const int n : {1, 2, 3, 7}) {
     const PlanarArm arm(testing::UnevenArm(n, 0));
@@ -174,7 +177,8 @@ TEST(PlanarArm, AccelerationsUndoTorques) {
   EXPECT_EQ(bias, Torques(arm, q, v, Numbers(6)));
 }
 
-// Tests that a swinging arm without torques keeps its energy, to the fourth order of the Runge-Kutta steps that move it.
+// Tests that a swinging arm without torques keeps its energy, to the fourth order of the Runge-Kutta steps
+// that move it.
 TEST(PlanarArm, FreeSwingKeepsItsEnergy) {
   const PlanarArm arm(testing::UnevenArm(3));
   const auto drift = [&](double step) {
@@ -210,7 +214,8 @@ TEST(PlanarArm, FreeSwingKeepsItsEnergy) {
 // Tests that the torques' rates are the derivative of the torques along the motion.
 TEST(PlanarArm, TorqueRatesAreDerivatives) {
   const PlanarArm arm(testing::UnevenArm(4));
-  const Numbers q = Sample(4, 0.7, 0.9), v = Sample(4, 3, 0.1), a = Sample(4, 50, 1.3), j = Sample(4, 800, 2.2);
+  const Numbers q = Sample(4, 0.7, 0.9), v = Sample(4, 3, 0.1), a = Sample(4, 50, 1.3),
+                j = Sample(4, 800, 2.2);
   Numbers rates(4);
   arm.JointTorqueRates(arm.PoseAt(q), v, a, j, rates);
   constexpr double kStep = 1e-5;
