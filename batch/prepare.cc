@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/new_file.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "batch/run/case_command.h"
 #include "batch/study/study_difference.h"
@@ -46,8 +47,14 @@ void WriteStudy(const Study& study, const std::string& folder) {
 
 void PrepareStudy(const Study& study, const std::string& folder) {
   CheckCommands(study);
-  if (fs::exists(folder + "/study.toml")) {
+  const std::string file = folder + "/study.toml";
+  if (fs::exists(file)) {
     CheckSame(study, folder);
+    // The report may ask for something else.
+    if (OpenStudy(folder).files.at("study.toml") != study.files.at("study.toml")) {
+      ForgetRead(file);
+      WriteWholeFile(file, study.files.at("study.toml"));
+    }
   } else {
     WriteStudy(study, folder);
   }

@@ -47,13 +47,28 @@ int Milliseconds(Clock::time_point until) {
   return static_cast<int>(std::clamp<int64_t>(left, 0, 1'000'000'000));
 }
 
-// True when the descriptor became readable; `bell` may end the wait.
-bool WaitFor(int child, int bell, std::optional<Clock::time_point> until) {
+bool HasEnded(pid_t pid) {
+  siginfo_t info = {};
+  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == pid;
+}
+
+// A child, and its pidfd; -1 where the kernel gives none.
+struct Child {
+  pid_t pid;
+  int descriptor;
+};
+
+// True when the child has ended; `bell` may end the wait.
+bool WaitFor(const Child& child, int bell, std::optional<Clock::time_point> until) {
+  constexpr int kLook = 5;  // ms, without a pidfd
   for (;;) {
-    std::array<pollfd, 2> waits = {pollfd{child, POLLIN, 0}, pollfd{bell, POLLIN, 0}};
-    const int count = poll(waits.data(), bell < 0 ? 1 : 2, until ? Milliseconds(*until) : -1);
+    std::array<pollfd, 2> waits = {pollfd{bell, POLLIN, 0}, pollfd{child.descriptor, POLLIN, 0}};
+    int left = until ? Milliseconds(*until) : -1;
+    if (child.descriptor < 0) left = left < 0 ? kLook : std::min(left, kLook);
+    const int count = poll(waits.data(), waits.size(), left);
     if (count < 0 && errno == EINTR) continue;
-    return waits[0].revents != 0;
+    if (child.descriptor < 0 ? HasEnded(child.pid) : waits[1].revents != 0) return true;
+    if (waits[0].revents != 0 || (until && Clock::now() >= *until)) return false;
   }
 }
 
@@ -64,9 +79,9 @@ int Reap(pid_t pid) {
   return status;
 }
 
-void EndGroup(pid_t pid, int child) {
-  kill(-pid, SIGTERM);
-  if (!WaitFor(child, -1, Clock::now() + std::chrono::seconds(2))) kill(-pid, SIGKILL);
+void EndGroup(const Child& child) {
+  kill(-child.pid, SIGTERM);
+  if (!WaitFor(child, -1, Clock::now() + std::chrono::seconds(2))) kill(-child.pid, SIGKILL);
 }
 
 }  // namespace
@@ -89,11 +104,12 @@ ChildResult RunChild(const ChildRequest& request, const StopBell& bell) {
     spawned = process::Spawn(
         {.argv = request.argv, .folder = request.folder, .out = out.number(), .err = err.number()});
   }
-  const OwnedDescriptor child(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
+  const OwnedDescriptor descriptor(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
+  const Child child{spawned.pid, descriptor.number()};
   ChildResult result;
-  if (!WaitFor(child.number(), bell.descriptor(), request.deadline)) {
+  if (!WaitFor(child, bell.descriptor(), request.deadline)) {
     result.end = bell.Rings() ? ChildEnd::kStopped : ChildEnd::kLate;
-    EndGroup(spawned.pid, child.number());
+    EndGroup(child);
   }
   result.wait_status = Reap(spawned.pid);
   return result;

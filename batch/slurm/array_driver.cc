@@ -109,6 +109,7 @@ bool ArrayDriver::Look() {
       progress_.running += queued->running;
       progress_.pending += queued->pending;
       progress_.reason = queued->reason;
+      ReleaseForgotten(record, *queued);
       return false;
     });
   }
@@ -119,6 +120,17 @@ bool ArrayDriver::Look() {
   progress_.failed = count.failed;
   request_.progress(progress_);
   return queue.has_value();
+}
+
+// A controller that was killed forgets the last seconds: that an array was released, and that some of its jobs have begun. One that its
+// user holds has no more pending jobs than before.
+void ArrayDriver::ReleaseForgotten(const ArrayRecord& record, const QueuedArray& queued) {
+  const auto seen = pending_.find(record.id);
+  if (!queued.held) {
+    pending_[record.id] = queued.pending;
+  } else if (seen == pending_.end() || queued.pending > seen->second) {
+    cluster_.Release(record.id);
+  }
 }
 
 // When no array has any of the missing cases. False: it is no use.

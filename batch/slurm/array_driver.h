@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ class ArrayDriver {
  private:
   void Adopt();
   bool Look();
+  void ReleaseForgotten(const ArrayRecord& record, const QueuedArray& queued);
   bool PassIsOver() const { return active_.empty() && cursor_ >= request_.cases; }
   bool StartsPass();
   int64_t AtOnce() const;
@@ -85,6 +87,7 @@ class ArrayDriver {
   int64_t there_before_ = 0;          // cases, when the pass began
   int barren_ = 0, refusals_ = 0;
   bool submitted_ = false;
+  std::map<int64_t, int64_t> pending_;  // of each array, when it was last seen released
   DriveProgress progress_;
 };
 

@@ -44,6 +44,7 @@ struct QueuedArray {
   std::string name;
   int64_t running = 0, pending = 0;
   std::string reason;  // why one of the pending does not run yet
+  bool held = false;   // as it was submitted, or by its user since
 };
 
 class Cluster {

@@ -88,6 +88,7 @@ std::vector<QueuedArray> ParseQueue(const std::string& text) {
     if (fields[1] == "PENDING") {
       ++array.pending;
       // Waiting for one of its own is what the limit is for.
+      array.held = array.held || fields[2] == "JobHeldUser";
       if (array.reason.empty() || array.reason == "JobArrayTaskLimit") array.reason = fields[2];
     } else {
       ++array.running;

@@ -198,6 +198,14 @@ TEST(PrepareTest, RefusesOtherFolders) {
   EXPECT_FALSE(fs::exists(folder / "other/study.toml"));
 }
 
+// Tests that the report's wishes may change, and hold from then on.
+TEST(PrepareTest, TakesOtherWishesOfTheReport) {
+  const StudyFolder folder;
+  PrepareStudy(folder.Read(kShellStudy), folder / "out");
+  PrepareStudy(folder.Read(kShellStudy + "[report]\nworst = \"l_again\"\n"), folder / "out");
+  EXPECT_EQ(OpenStudy(folder / "out").report.worst, "l_again");
+}
+
 // Tests that the status is told from the folder alone.
 TEST(StatusTest, ReadsTheFolder) {
   const StudyFolder folder;

@@ -120,6 +120,17 @@ TEST(StudyTest, RefusesWrongInput) {
   for (const auto& [text, line] : cases) EXPECT_THAT(folder.Refusal(text), StartsWith(line)) << text;
 }
 
+// Tests that the examples are studies.
+TEST(StudyTest, ReadsTheExamples) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(HYDRO_EXAMPLES "/studies")) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_GT(ReadStudy(entry.path()).cases(), 10) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 2);
+}
+
 // Tests that a difference between two studies is told with its key, and that the report's wishes are none.
 TEST(StudyTest, TellsTheFirstDifference) {
   const StudyFolder folder;

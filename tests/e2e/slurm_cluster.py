@@ -134,7 +134,7 @@ class Cluster:
         self._launch("munged", "--foreground", "--socket=" + self._path("run/munge.socket"), "--key-file=" + self._path("munge.key"),
                      "--pid-file=" + self._path("run/munged.pid"), "--seed-file=" + self._path("run/munged.seed"))
         self._wait_until(lambda: os.path.exists(self._path("run/munge.socket")), "munged's socket")
-        self._launch("slurmctld", "-D", "-f", self._path("slurm.conf"))
+        self.start_controller()
         for node in self.nodes:
             self.start_node(node)
         self._wait_until(lambda: all(state == "idle" for state in self.node_states().values()), "idle nodes")
@@ -159,8 +159,21 @@ class Cluster:
                                                     stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True,
                                                     preexec_fn=_end_with_parent)
 
+    def start_controller(self):
+        self._launch("slurmctld", "-D", "-f", self._path("slurm.conf"))
+
+    def kill_controller(self):
+        _kill(self._daemons["slurmctld"].pid)
+        self._daemons["slurmctld"].wait()
+
     def start_node(self, node):
         self._launch("slurmd", "-D", "-N", node, "-f", self._path("slurm.conf"), label=node)
+
+    def restart_slurmd(self, node):
+        """Its jobs go on; it tells slurmctld that it is there."""
+        self._daemons[node].terminate()
+        self._daemons[node].wait()
+        self.start_node(node)
 
     def kill_node(self, node):
         """As if the machine had lost its power: its slurmd, the steps of its jobs and all that these have started end at once."""

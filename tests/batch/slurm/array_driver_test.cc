@@ -155,6 +155,23 @@ TEST_F(ArrayDriverTest, LeavesJobs) {
   ExpectEachCaseRanOnce();
 }
 
+// Tests that an array that a new controller holds again is released, but not one that its user holds.
+TEST_F(ArrayDriverTest, ForgottenRelease) {
+  each_tick_ = [this] {
+    if (ticks_ == 2) cluster_.ForgetReleases();
+  };
+  EXPECT_EQ(Drive(), DriveEnd::kAllThere);
+  ExpectEachCaseRanOnce();
+}
+TEST_F(ArrayDriverTest, HeldByItsUser) {
+  each_tick_ = [this] {
+    if (ticks_ == 2) cluster_.HoldAll();
+    if (ticks_ == 50) wish_ = StopWish::kLeave;
+  };
+  EXPECT_EQ(Drive(), DriveEnd::kLeft);
+  EXPECT_LT(cluster_.runs.size(), static_cast<size_t>(kCases));
+}
+
 // Tests that --detach submits and leaves.
 TEST_F(ArrayDriverTest, Detaches) {
   DriveRequest request = Request();

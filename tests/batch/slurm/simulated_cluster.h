@@ -61,7 +61,7 @@ class SimulatedCluster : public Cluster {
     if (!answers) return std::nullopt;
     std::vector<QueuedArray> queue;
     for (const auto& [id, array] : arrays_) {
-      QueuedArray queued{.id = id, .name = array.name, .reason = "Priority"};
+      QueuedArray queued{.id = id, .name = array.name, .reason = "Priority", .held = array.held};
       for (const Job& job : array.jobs) {
         queued.running += job.state == State::kRunning ? 1 : 0;
         queued.pending += job.state == State::kPending ? 1 : 0;
@@ -86,6 +86,17 @@ class SimulatedCluster : public Cluster {
         if (job.state == State::kRunning) job.state = State::kEnded;
       }
     }
+  }
+
+  // As a controller that is killed soon after it has released an array: it does not know which jobs have begun.
+  void ForgetReleases() {
+    for (auto& [id, array] : arrays_) {
+      array.held = true;
+      for (Job& job : array.jobs) job.state = State::kPending;
+    }
+  }
+  void HoldAll() {
+    for (auto& [id, array] : arrays_) array.held = true;
   }
 
   void Tick() {

@@ -57,6 +57,8 @@ TEST(SlurmAnswersTest, Queue) {
   EXPECT_EQ(arrays[1].name, "hydro-a");
   EXPECT_EQ(arrays[1].running, 2);
   EXPECT_EQ(arrays[1].pending, 2);
+  EXPECT_FALSE(arrays[1].held);
+  EXPECT_TRUE(ParseQueue("5|PENDING|JobHeldUser|hydro-c\n").at(0).held);
   EXPECT_EQ(arrays[1].reason, "Priority");
 }
 
