@@ -53,7 +53,11 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
   std::vector<hydro::tuned_settings_t> tunings;
-  if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
+  if (!tunings_of.empty()) {
+    std::vector<std::string> overrides = options.overrides;
+    const auto joint = hydro::settings::TakeJointChoice(&overrides);
+    tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of, {.joint = joint}).messages);
+  }
   return [config, tunings](const auto& tap) { return hydro::sim::Simulate(*config, tap, tunings); };
 }
 

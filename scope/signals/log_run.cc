@@ -27,7 +27,7 @@ std::string SuffixOf(log::LogReader& reader, const std::string& file) {
     summary.events = count;
     names.channels.push_back(summary);
   }
-  return runs::ChooseSuffix(names, std::nullopt);
+  return runs::ChooseSuffix(names, {});
 }
 
 }  // namespace
