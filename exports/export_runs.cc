@@ -13,6 +13,7 @@
 #include "exports/table_sheet.h"
 #include "log/log_verdict.h"
 #include "runs/run_config.h"
+#include "runs/sampling.h"
 
 namespace hydro::exports {
 namespace {
@@ -55,6 +56,10 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
 void AddRecording(const std::string& file, runs::RunLog&& log, const Say& say, std::vector<Recording>* recordings) {
   const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
   if (!left_out.empty()) say(left_out);
+  if (const std::string sampling = runs::DescribeSampling(runs::SampleTicks(log.messages)); !sampling.empty()) {
+    say(file + (log.joint.empty() ? "" : ": joint " + log.joint) + ": the table has " + sampling +
+        "; voltage_V is what acted up to each");
+  }
   const auto before = std::find_if(recordings->rbegin(), recordings->rend(),
                                    [&](const Recording& one) { return one.log.suffix == log.suffix; });
   Recording* recording = before == recordings->rend() ? nullptr : &*before;

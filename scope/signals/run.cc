@@ -32,6 +32,7 @@ void Run::Describe(const run_description_t& given) {
   if (same) return;
   description = given;
   rate_hz = given.rate_hz;
+  of_a_limb = of_a_limb || given.program == "hydro-limb";
   config = nullptr;
   config_problem.clear();
   ++revision;
