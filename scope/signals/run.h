@@ -47,8 +47,8 @@ struct Run {
 
   double first_time() const { return ticks.empty() ? 0 : ticks.time(ticks.begin()); }
   double last_time() const { return ticks.empty() ? 0 : ticks.last_time(); }
-  // s, between two ticks; 0 where they are uneven or not known.
-  double spacing() const { return rate_hz > 0 ? static_cast<double>(sample_ticks) / rate_hz : 0; }
+  // s, between two states; 0 where they are uneven, as a limb's samples are, or not known.
+  double spacing() const { return rate_hz > 0 && sample_ticks == 1 ? 1 / rate_hz : 0; }
   size_t memory() const;
 
   uint32_t id;
