@@ -103,9 +103,12 @@ void TellApart(const DiagnoseRequest& request, std::vector<runs::MeasuredRun>* f
   }
 }
 
-bool SameFile(const std::string& a, const std::string& b) {
+// A log may be given once for each joint.
+bool SameRun(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const runs::RunName first = runs::ParseRunName(a), second = runs::ParseRunName(b);
   std::error_code error;
-  return a == b || (fs::equivalent(a, b, error) && !error);
+  return first.joint == second.joint && fs::equivalent(first.file, second.file, error) && !error;
 }
 
 void RequireJobs(const DiagnoseRequest& request) {
@@ -119,7 +122,7 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
   for (const std::string& file : request.held_out) all.emplace_back("--hold-out", file);
   for (size_t i = 0; i < all.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
-      if (!SameFile(all[i].second, all[k].second)) continue;
+      if (!SameRun(all[i].second, all[k].second)) continue;
       throw InputError(all[i].first + ": found " + Quoted(all[i].second) + ", already given as " +
                        all[k].first + ", allowed each run once");
     }
@@ -130,8 +133,9 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
 constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
 
 void RequireInputsKept(const DiagnoseRequest& request) {
-  std::vector<std::string> inputs = request.runs;
-  inputs.insert(inputs.end(), request.held_out.begin(), request.held_out.end());
+  std::vector<std::string> inputs;
+  for (const std::string& run : request.runs) inputs.push_back(runs::ParseRunName(run).file);
+  for (const std::string& run : request.held_out) inputs.push_back(runs::ParseRunName(run).file);
   inputs.push_back(request.model);
   if (!request.effects.empty()) inputs.push_back(request.effects);
   inputs.insert(inputs.end(), request.own_effects.begin(), request.own_effects.end());
@@ -161,6 +165,14 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
 }
 
 }  // namespace
+
+void ChooseJoint(const std::string& joint, DiagnoseRequest* request) {
+  for (std::vector<std::string>* list : {&request->runs, &request->held_out}) {
+    for (std::string& run : *list) {
+      if (!runs::ParseRunName(run).joint) run += "#" + joint;
+    }
+  }
+}
 
 void AddOwnEffects(const std::vector<std::string>& files) {
   std::map<std::string, std::string> file_of;

@@ -12,7 +12,7 @@
 namespace hydro::diagnose {
 
 struct DiagnoseRequest {
-  std::vector<std::string> runs, held_out;  // files
+  std::vector<std::string> runs, held_out;  // files, or LOG#NAME for a joint of a limb (runs/measured_run.h)
   std::string model, folder;
   std::string effects;                   // file; "": the whole catalogue may be named
   std::vector<std::string> own_effects;  // files of effects as text, to be looked for beside the catalogue's
@@ -39,6 +39,9 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
 // Looks at the recordings only and prints a line for each thing it finds. Returns the exit code: 0 when nothing
 // is wrong with them, else 1. Throws InputError as above.
 int CheckRuns(const DiagnoseRequest& request, std::FILE* out);
+
+// Reads `joint` of each run that does not name one itself: LOG becomes LOG#NAME. Throws InputError for a table.
+void ChooseJoint(const std::string& joint, DiagnoseRequest* request);
 
 // Adds the effects in these files to the catalogue, before its first use. Throws InputError.
 void AddOwnEffects(const std::vector<std::string>& files);

@@ -17,13 +17,16 @@ int main(int argc, char** argv) {
   hydro::diagnose::DiagnoseRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   line.AddPositional("RUN", &request.runs,
-                     "FILE a measured run: a log, or a table (csv, mat) with a sidecar");
+                     "FILE a measured run: a log, or a table (csv, mat) with a sidecar; LOG#NAME: the joint NAME of a "
+                     "limb");
   line.AddOption("--model", &request.model, "MODEL the model as it is, TOML", true);
   line.AddOption(
       "-o,--out", &request.folder,
       "DIR where report.html, report.json, model.toml and next.toml are written; required without --check");
   line.AddOption("--hold-out", &request.held_out,
                  "RUN a run that is not fitted, for the proof; without any, the runs are held out in turn");
+  std::string joint;
+  line.AddOption("--joint", &joint, "NAME the joint of a limb that is meant in each log that names none itself");
   line.AddOption(
       "--effect", &request.own_effects,
       "FILE an effect of your own, written as text, to be looked for beside the others (repeatable)");
@@ -43,6 +46,7 @@ int main(int argc, char** argv) {
                "look at the recordings only: 0 nothing is wrong with them, 1 something is");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-diagnose", [&] {
+    if (!joint.empty()) hydro::diagnose::ChooseJoint(joint, &request);
     hydro::diagnose::AddOwnEffects(request.own_effects);
     if (request.check) return hydro::diagnose::CheckRuns(request, stdout);
     hydro::diagnose::RunDiagnosis(request, hydro::diagnose::Diagnose, stdout, stderr);

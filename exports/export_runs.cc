@@ -13,6 +13,7 @@
 #include "exports/table_sheet.h"
 #include "log/log_verdict.h"
 #include "runs/run_config.h"
+#include "runs/sampling.h"
 
 namespace hydro::exports {
 namespace {
@@ -51,27 +52,41 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
   to->events += log.events;
 }
 
-std::vector<Recording> ReadRecordings(const std::vector<std::string>& files,
-                                      const std::optional<std::string>& suffix, const Say& say) {
+// More of a recording that is there, or a new one.
+void AddRecording(const std::string& file, runs::RunLog&& log, const Say& say, std::vector<Recording>* recordings) {
+  const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
+  if (!left_out.empty()) say(left_out);
+  if (const std::string sampling = runs::DescribeSampling(runs::SampleTicks(log.messages)); !sampling.empty()) {
+    say(file + (log.joint.empty() ? "" : ": joint " + log.joint) + ": the table has " + sampling +
+        "; voltage_V is what acted up to each");
+  }
+  const auto before = std::find_if(recordings->rbegin(), recordings->rend(),
+                                   [&](const Recording& one) { return one.log.suffix == log.suffix; });
+  Recording* recording = before == recordings->rend() ? nullptr : &*before;
+  if (recording != nullptr && GoesOn(recording->log, log)) {
+    recording->files.push_back(file);
+    Append(std::move(log), &recording->log);
+  } else {
+    recording = &recordings->emplace_back(Recording{{file}, std::move(log), {}});
+  }
+  if (!caution.empty()) recording->cautions.push_back(caution);
+}
+
+std::vector<Recording> ReadRecordings(const std::vector<std::string>& files, const runs::StackChoice& choice,
+                                      const Say& say) {
   std::vector<Recording> recordings;
   for (const std::string& file : files) {
-    runs::RunLog log = runs::ReadRunLog(file, suffix, runs::Undecodable::kLeftOut);
-    const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
-    if (!left_out.empty()) say(left_out);
-    if (!recordings.empty() && GoesOn(recordings.back().log, log)) {
-      recordings.back().files.push_back(file);
-      Append(std::move(log), &recordings.back().log);
-    } else {
-      recordings.push_back({{file}, std::move(log), {}});
-    }
-    if (!caution.empty()) recordings.back().cautions.push_back(caution);
+    runs::LimbLog log = runs::ReadLimbLog(file, choice, runs::Undecodable::kLeftOut);
+    if (!log.whole()) AddRecording(file, std::move(log.limb), say, &recordings);
+    for (runs::RunLog& joint : log.joints) AddRecording(file, std::move(joint), say, &recordings);
   }
   return recordings;
 }
 
-// The stem of the log, and a number where another run has that name.
-std::string NameFor(const std::string& file, const std::vector<ExportedRun>& others) {
-  const std::string stem = std::filesystem::path(file).stem().string();
+// The stem of the log, of a limb with the joint's name, and a number where another run has that name.
+std::string NameFor(const Recording& recording, const std::vector<ExportedRun>& others) {
+  const std::string stem = std::filesystem::path(recording.files.front()).stem().string() +
+                           (recording.log.joint.empty() ? "" : "_" + recording.log.joint);
   std::string name = stem;
   for (int i = 2;
        std::any_of(others.begin(), others.end(), [&](const ExportedRun& run) { return run.name == name; });
@@ -92,6 +107,7 @@ void Describe(const Recording& recording, const UnitSystem& units, bool si, Expo
   fact("log", logs);
   fact("log_is", log::NameOf(recording.log.verdict.completeness));
   fact("channel_suffix", recording.log.suffix);
+  fact("joint", recording.log.joint);
   fact("units", si ? "SI"
                    : "length " + std::string(units.length) + ", force " + std::string(units.force) +
                          ", pressure " + units.UnitFor("psi"));
@@ -176,14 +192,14 @@ void CheckNotEmpty(const Recording& recording, const Selection& selection, const
 }  // namespace
 
 std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files,
-                                  const std::optional<std::string>& suffix, const Selection& selection,
+                                  const runs::StackChoice& choice, const Selection& selection,
                                   bool times, const Say& say) {
   CheckSelection(selection);
   std::vector<ExportedRun> runs;
-  const std::vector<Recording> recordings = ReadRecordings(files, suffix, say);
+  const std::vector<Recording> recordings = ReadRecordings(files, choice, say);
   runs.reserve(recordings.size());
   for (const Recording& recording : recordings) {
-    runs.push_back(Export(recording, NameFor(recording.files.front(), runs), selection, times, say));
+    runs.push_back(Export(recording, NameFor(recording, runs), selection, times, say));
     CheckNotEmpty(recording, selection, runs.back());
   }
   // Not where an error says what is wrong.

@@ -15,7 +15,8 @@ namespace hydro::hydro_log {
 
 ExportVerb::ExportVerb(settings::CommandLine& line) {
   settings::CommandLine& verb = line.AddVerb(
-      "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels.");
+      "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels. Each joint of a "
+                "limb is a run of its own.");
   verb.AddPositional("LOG", &logs_, "FILE the log; several: runs, or one that a recorder split");
   verb.AddOption("-o,--output", &out_,
                  "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, FOLDER/ for a CSV of each table, "
@@ -33,7 +34,7 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
       "NAME export the messages of this channel (HYDRO_STATE), or table; may be given several times");
   verb.AddFlag("--all-channels", &selection_.all,
                "export the table and the messages of every channel (MCAP: always)");
-  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where a log has several");
+  runs::AddStackChoice(&verb, &choice_);
 }
 
 int ExportVerb::Run() const {
@@ -57,7 +58,7 @@ int ExportVerb::Run() const {
   const auto say = [](const std::string& line) {
     std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(line).c_str());
   };
-  const auto runs = exports::ReadRuns(logs_, suffix_, selection, messages, say);
+  const auto runs = exports::ReadRuns(logs_, choice_, selection, messages, say);
   exports::WriteExport(runs, format, "hydro-log " + settings::ProgramVersion(), out_);
   return 0;
 }

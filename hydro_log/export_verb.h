@@ -2,11 +2,11 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "exports/selection.h"
+#include "runs/stack_choice.h"
 #include "settings/command_line.h"
 
 namespace hydro::hydro_log {
@@ -19,7 +19,7 @@ class ExportVerb {
  private:
   std::vector<std::string> logs_;
   std::string out_, format_;
-  std::optional<std::string> suffix_;
+  runs::StackChoice choice_;
   double from_s_ = kNotGiven, to_s_ = kNotGiven;
   exports::Selection selection_;
 

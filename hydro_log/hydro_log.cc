@@ -12,6 +12,7 @@
 #include "log/repair.h"
 #include "runs/compare.h"
 #include "runs/info.h"
+#include "runs/limb_info.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
 #include "settings/command_line.h"
@@ -25,22 +26,29 @@ class InfoVerb {
   explicit InfoVerb(settings::CommandLine& line) {
     settings::CommandLine& verb = line.AddVerb("info", "What a log holds and whether it is complete.");
     verb.AddPositional("LOG", &log_, "FILE the log");
-    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+    runs::AddStackChoice(&verb, &choice_);
     verb.AddFlag("--json", &json_, "print JSON");
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const runs::LogInfo info = runs::Summarise(
-        runs::ReadRunLog(log_, suffix_, runs::Undecodable::kLeftOut, log::OnDamage::kStop), si_);
-    std::fputs((json_ ? runs::InfoJson(info) : PrintableLines(runs::InfoText(info))).c_str(), stdout);
-    if (info.verdict.completeness != log::Completeness::kDamaged) return 0;
-    throw log::LogError(log_ + ": " + info.verdict.where + "; hydro-log repair " + log_ +
+    const runs::LimbLog log = runs::ReadLimbLog(log_, choice_, runs::Undecodable::kLeftOut, log::OnDamage::kStop);
+    std::fputs((log.whole() ? TextOf(runs::SummariseLimb(log, si_)) : TextOf(runs::Summarise(log.limb, si_))).c_str(),
+               stdout);
+    if (log.limb.verdict.completeness != log::Completeness::kDamaged) return 0;
+    throw log::LogError(log_ + ": " + log.limb.verdict.where + "; hydro-log repair " + log_ +
                         " keeps what can be read");
   }
 
  private:
+  std::string TextOf(const runs::LogInfo& info) const {
+    return json_ ? runs::InfoJson(info) : PrintableLines(runs::InfoText(info));
+  }
+  std::string TextOf(const runs::LimbInfo& info) const {
+    return json_ ? runs::LimbInfoJson(info) : PrintableLines(runs::LimbInfoText(info));
+  }
+
   std::string log_;
-  std::optional<std::string> suffix_;
+  runs::StackChoice choice_;
   bool json_ = false, si_ = false;
 };
 
@@ -84,34 +92,38 @@ class CompareVerb {
         line.AddVerb("compare", "Tell whether two logs hold the same run, bit by bit.");
     verb.AddPositional("A", &a_, "FILE a log");
     verb.AddPositional("B", &b_, "FILE the other");
-    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where both logs have several");
-    verb.AddOption("--suffix-a", &suffix_a_, "TEXT the same for A alone");
-    verb.AddOption("--suffix-b", &suffix_b_, "TEXT the same for B alone");
+    runs::AddStackChoice(&verb, &choice_);
+    verb.AddOption("--suffix-a", &suffix_a_, "TEXT suffix for A alone");
+    verb.AddOption("--suffix-b", &suffix_b_, "TEXT suffix for B alone");
   }
   int Run() const {
-    const runs::RunLog a = ReadComparable(a_, suffix_a_);
-    const runs::RunLog b = ReadComparable(b_, suffix_b_);
-    const std::optional<std::string> difference = runs::FirstDifference(a.messages, a_, b.messages, b_);
-    const bool whole = log::Caution(a.verdict).empty() && log::Caution(b.verdict).empty();
+    const runs::LimbLog a = Read(a_, suffix_a_), b = Read(b_, suffix_b_);
+    const std::optional<std::string> difference = runs::FirstDifference(a, a_, b, b_);
+    WarnOf(a.limb);
+    WarnOf(b.limb);
+    const bool whole = log::Caution(a.limb.verdict).empty() && log::Caution(b.limb.verdict).empty();
     const char* identical = whole ? "identical" : "identical in what is there (the logs are not whole)";
     std::puts(difference.value_or(identical).c_str());
     return difference.has_value() ? 1 : 0;
   }
 
  private:
-  runs::RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
+  runs::LimbLog Read(const std::string& file, const std::optional<std::string>& suffix) const {
+    runs::StackChoice choice = choice_;
+    if (suffix) choice.suffix = suffix;
     // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
-    runs::RunLog log = runs::ReadRunLog(file, suffix ? suffix : suffix_);
+    runs::LimbLog log = runs::ReadLimbLog(file, choice);
     // Two empty logs are not a run and its repetition.
-    if (log.messages.Of<state_t>().empty() && log.messages.Of<motor_command_t>().empty()) {
+    const runs::RunMessages& messages = log.limb.messages;
+    if (!log.whole() && messages.Of<state_t>().empty() && messages.Of<motor_command_t>().empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
     }
-    WarnOf(log);
     return log;
   }
 
   std::string a_, b_;
-  std::optional<std::string> suffix_, suffix_a_, suffix_b_;
+  runs::StackChoice choice_;
+  std::optional<std::string> suffix_a_, suffix_b_;
 };
 
 class RepairVerb {

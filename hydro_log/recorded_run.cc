@@ -9,6 +9,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "hydro_log/record_gap.h"
+#include "runs/sampling.h"
 #include "runs/tuning_history.h"
 
 namespace hydro::hydro_log {
@@ -48,6 +49,7 @@ RecordedRun::RecordedRun(const runs::RunLog& log, const std::string& role) {
       settings::TimeMode::kRealtime;  // nothing waits: what is in force is handed over in time
   states_ = ByTick(log.messages.Of<state_t>());
   if (states_.empty()) throw InputError(log.file + ": found no states to feed");
+  runs::RequireEveryState(log, "a replay");
   for (const auto& [tick, state] : states_) {
     if (std::abs(state.time) <= kLatestTime) continue;
     throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +

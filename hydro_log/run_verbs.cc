@@ -13,6 +13,7 @@
 #include "hydro_log/own_replay.h"
 #include "hydro_log/replay.h"
 #include "process/stop_signal.h"
+#include "runs/limb_info.h"
 #include "runs/tracking.h"
 #include "timing/report/timing_report.h"
 
@@ -46,12 +47,23 @@ int Print(const std::string& name, const char* commands, const ReplayResult& res
   return result.difference ? 1 : 0;
 }
 
-}  // namespace
-
-runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
-  runs::RunLog log = runs::ReadRunLog(file, suffix, runs::Undecodable::kLeftOut);
+void WarnOfUndecodable(const runs::RunLog& log) {
   const std::string left_out = runs::DescribeUndecodable(log);
   if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
+}
+
+}  // namespace
+
+runs::RunLog ReadWithWarning(const std::string& file, const runs::StackChoice& choice) {
+  runs::RunLog log = runs::ReadRunLog(file, choice, runs::Undecodable::kLeftOut);
+  WarnOfUndecodable(log);
+  return log;
+}
+
+runs::LimbLog ReadLimbWithWarning(const std::string& file, const runs::StackChoice& choice) {
+  runs::LimbLog log = runs::ReadLimbLog(file, choice, runs::Undecodable::kLeftOut);
+  WarnOfUndecodable(log.limb);
+  for (const runs::RunLog& joint : log.joints) WarnOfUndecodable(joint);
   return log;
 }
 
@@ -64,14 +76,21 @@ SummaryVerb::SummaryVerb(settings::CommandLine& line) {
   settings::CommandLine& verb =
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
-  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  runs::AddStackChoice(&verb, &choice_);
   verb.AddOption("--json", &json_, "FILE write the same there as JSON");
   verb.AddFlag("--si", &si_, "print figures in SI units too");
 }
 
 int SummaryVerb::Run() const {
   CheckOutput(json_, log_);
-  const runs::RunLog log = ReadWithWarning(log_, suffix_);
+  const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
+  if (all.whole()) {
+    const runs::LimbInfo limb = runs::SummariseLimb(all, si_);
+    std::fputs(PrintableLines(runs::LimbSummaryText(limb)).c_str(), stdout);
+    if (!json_.empty()) WriteWholeFile(json_, runs::LimbSummaryJson(limb));
+    return 0;
+  }
+  const runs::RunLog& log = all.limb;
   if (log.messages.Of<state_t>().empty())
     throw InputError(log_ + ": found no state; a log of a run is needed");
   const runs::Tracking tracking = runs::TrackArm(log);
@@ -85,7 +104,7 @@ TimingVerb::TimingVerb(settings::CommandLine& line) {
   settings::CommandLine& verb =
       line.AddVerb("timing", "How the loops kept time: periods, latencies, round trips, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
-  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  runs::AddStackChoice(&verb, &choice_);
   verb.AddOption("--json", &json_, "FILE write the same there as JSON, with the histograms");
   verb.AddOption("--page", &page_, "FILE write plots there (HTML)");
 }
@@ -94,7 +113,8 @@ int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
   CheckDistinct({json_, page_});
-  const runs::RunLog log = ReadWithWarning(log_, suffix_);
+  // A limb's own loop keeps time for all its joints.
+  const runs::RunLog log = ReadLimbWithWarning(log_, choice_).limb;
   timing::TimingRecord record;
   for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);
   for (const loop_histogram_t& histogram : log.messages.Of<loop_histogram_t>()) record.Add(histogram);
@@ -115,7 +135,7 @@ ReplayVerb::ReplayVerb(settings::CommandLine& line) {
       "replay",
       "Feed the recorded states through the controllers and compare their answers with the record.");
   verb.AddPositional("LOG", &log_, "FILE the log");
-  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  runs::AddStackChoice(&verb, &choice_);
   verb.AddOption("--controller", &controller_,
                  "NAME|COMMAND pressure, position or both (default) of ours; or a program of your own, e.g. "
                  "\"./pid.py\" (docs/own_controller.md)");
@@ -138,25 +158,32 @@ int ReplayVerb::Run() const {
     throw InputError("--timeout: must be a number above 0 and at most " + ShortNumber(kLongest_s));
   }
   const std::vector<std::string> command = ours ? std::vector<std::string>() : CommandWords(controller_);
-  const runs::RunLog log = ReadWithWarning(log_, suffix_);
-  const int exit_code = ours ? RunOurs(log) : RunOwn(log, command);
-  WarnOf(log);
+  if (!ours) {
+    const runs::RunLog log = ReadWithWarning(log_, choice_);
+    const int exit_code = RunOwn(log, command);
+    WarnOf(log);
+    return exit_code;
+  }
+  const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
+  int exit_code = all.whole() ? 0 : RunOurs(all.limb, "");
+  for (const runs::RunLog& joint : all.joints) exit_code |= RunOurs(joint, joint.joint + " ");
+  WarnOf(all.limb);
   return exit_code;
 }
 
-int ReplayVerb::RunOurs(const runs::RunLog& log) const {
+int ReplayVerb::RunOurs(const runs::RunLog& log, const std::string& of) const {
   int exit_code = 0;
   for (const bool pressure : {true, false}) {
     if (controller_ == (pressure ? "position" : "pressure")) continue;
     const std::string name = pressure ? "pressure" : "position";
     if (const std::string own = OwnProgramOf(log, name + "_ctrl"); controller_ == "both" && !own.empty()) {
-      std::printf("%s: not replayed: the run had %s; --controller COMMAND replays that\n", name.c_str(),
+      std::printf("%s%s: not replayed: the run had %s; --controller COMMAND replays that\n", of.c_str(), name.c_str(),
                   Printable(own).c_str());
       continue;
     }
     const ReplayResult result =
         Replay(log, pressure ? ReplayedController::kPressure : ReplayedController::kPosition, speed_);
-    exit_code |= Print(name, pressure ? "motor commands" : "pressure commands", result);
+    exit_code |= Print(of + name, pressure ? "motor commands" : "pressure commands", result);
   }
   return exit_code;
 }

@@ -1,7 +1,6 @@
 // The verbs of hydro-log that treat a run as a control loop: summary, timing and replay.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,9 @@ namespace hydro::hydro_log {
 
 // For verbs that show or convert a recording. Messages that this stack cannot decode are left out, as the
 // processes of the run did; one line on stderr names them.
-runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
+runs::RunLog ReadWithWarning(const std::string& file, const runs::StackChoice& choice);
+// The same of all joints of a limb, where `choice` leaves open which is meant.
+runs::LimbLog ReadLimbWithWarning(const std::string& file, const runs::StackChoice& choice);
 
 // One line on stderr where the log is incomplete or repaired, or holds another stack too.
 void WarnOf(const runs::RunLog& log);
@@ -24,7 +25,7 @@ class SummaryVerb {
 
  private:
   std::string log_, json_;
-  std::optional<std::string> suffix_;
+  runs::StackChoice choice_;
   bool si_ = false;
 };
 
@@ -35,7 +36,7 @@ class TimingVerb {
 
  private:
   std::string log_, json_, page_;
-  std::optional<std::string> suffix_;
+  runs::StackChoice choice_;
 };
 
 class ReplayVerb {
@@ -44,11 +45,12 @@ class ReplayVerb {
   int Run() const;
 
  private:
-  int RunOurs(const runs::RunLog& log) const;
+  // `of`: what comes before each line; empty, or a joint's name.
+  int RunOurs(const runs::RunLog& log, const std::string& of) const;
   int RunOwn(const runs::RunLog& log, const std::vector<std::string>& command) const;
 
   std::string log_, controller_ = "both", role_;
-  std::optional<std::string> suffix_;
+  runs::StackChoice choice_;
   double speed_ = 0, timeout_s_ = 5;
 };
 

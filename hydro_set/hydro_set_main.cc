@@ -29,14 +29,16 @@ void Sort(const std::vector<std::string>& arguments, SetRequest* request) {
 }
 
 int Run(SetRequest request, const std::vector<std::string>& arguments,
-        const std::vector<std::string>& overrides) {
+        std::vector<std::string> overrides) {
   Sort(arguments, &request);
   hydro::hydro_set::CheckRequest(request);
+  if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);
   hydro::settings::BusSection section;
   if (!request.config_file.empty()) {
     section = hydro::settings::LoadStackConfig(request.config_file, overrides).bus;
   } else if (!overrides.empty()) {
-    throw hydro::InputError("--set: found " + hydro::Quoted(overrides.front()) +
+    throw hydro::InputError((request.joint.empty() ? "--set: found " : "--joint: found ") +
+                            hydro::Quoted(request.joint.empty() ? overrides.front() : request.joint) +
                             " without CONFIG, allowed is both");
   }
   hydro::process::CatchStopSignals();
@@ -62,6 +64,8 @@ int main(int argc, char** argv) {
   line.AddOption("--set", &overrides,
                  "SECTION.KEY=VALUE changes a key of CONFIG first, as on the command line that started the "
                  "stack, e.g. bus.url");
+  line.AddOption("--joint", &request.joint,
+                 "NAME of a CONFIG with [[joint]] sections, the joint whose values are meant");
   line.AddFlag("--list", &request.list,
                "show what can be changed: value in force, unit, where it acts, what it does");
   line.AddFlag("--undo", &request.undo, "go back to what was in force before the last change");

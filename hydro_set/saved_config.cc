@@ -47,10 +47,14 @@ std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
   return values;
 }
 
-std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
-                      const tuned_settings_t& in_force) {
+std::string SavedText(const std::string& file, const std::string& joint, const std::string& output,
+                      const run_description_t& run, const tuned_settings_t& in_force) {
   const settings::StackConfig config = ConfigInForce(run, in_force);
   if (file.empty()) return config.text;
+  if (!joint.empty()) {
+    const settings::StackConfig given = settings::LoadStackConfig(file, {"joint=" + joint});
+    return settings::EditToml(config.text, file, settings::MovedPaths(given, output), {});
+  }
   const std::string text = ReadTextFile(file);
   const auto before = Entries(text, file), after = Entries(config.text, file);
   std::vector<settings::TomlEntry> changed = settings::MovedPaths(settings::LoadStackConfig(file), output);

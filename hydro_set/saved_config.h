@@ -22,8 +22,9 @@ std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
                                                  const std::function<std::string(double)>& text);
 
 // The text of `file`, the configuration that the stack was started with, with the values in force and all else as it is, for a file `output`, which
-// may lie in another folder; without a file, the run's own text, which has no comments. Throws InputError.
-std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
-                      const tuned_settings_t& in_force);
+// may lie in another folder; without a file, the run's own text, which has no comments. `joint`: of a limb, whose values they are; the text
+// is then that of a stack with this joint alone. Throws InputError.
+std::string SavedText(const std::string& file, const std::string& joint, const std::string& output,
+                      const run_description_t& run, const tuned_settings_t& in_force);
 
 }  // namespace hydro::hydro_set

@@ -138,7 +138,7 @@ class Setter {
 
   void Save() const {
     const std::string text =
-        SavedText(request_.config_file, request_.save, *client_.run(), *client_.in_force());
+        SavedText(request_.config_file, request_.joint, request_.save, *client_.run(), *client_.in_force());
     NewFile file(request_.save, Opening::kTemporary);
     file.Write(text.data(), text.size());
     file.Finish();

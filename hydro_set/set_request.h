@@ -14,6 +14,7 @@ namespace hydro::hydro_set {
 
 struct SetRequest {
   std::string config_file;           // of the stack; empty: the default bus
+  std::string joint;                 // of a limb's CONFIG; empty: it is a stack's
   std::vector<std::string> changes;  // "key=value"
   bool undo = false;
   bool list = false;

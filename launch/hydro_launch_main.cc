@@ -14,6 +14,7 @@
 #include "launch/stop_stack.h"
 #include "process/stack_bus.h"
 #include "settings/command_line.h"
+#include "settings/limb_config.h"
 
 namespace {
 
@@ -83,7 +84,7 @@ std::string FlagInstead(const Options& options) {
 // Refuses options that `flag` would ignore, because they cannot be what was meant: --stop --log X records
 // nothing. --set and its like say which stack it is, as they did on the command line that started it.
 void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
-  std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
+  std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed", "--joint"};
   if (flag == "--doctor") allowed.emplace_back("--host");
   if (flag == "--new-controller") allowed.clear();
   for (const std::string& given : line.Given()) {
@@ -101,7 +102,7 @@ hydro::launch::OperatorResult Rearm(const hydro::settings::StackConfig& config) 
 
 int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop) {
   const hydro::settings::StackConfig config =
-      hydro::settings::LoadStackConfig(options.config, options.overrides);
+      hydro::settings::LoadCommonConfig(options.config, options.overrides);
   const hydro::launch::OperatorResult result = stop ? hydro::launch::StopStack(config) : Rearm(config);
   // Names and reasons come from the network.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",

@@ -53,8 +53,13 @@ std::set<std::string> NamesWith(const std::string& prefix) {
 }  // namespace
 
 LocalStop::LocalStop(const settings::StackConfig& config) {
-  const std::string prefix =
-      process::StopSocketPrefix(bus::ParseUdpmUrl(config.bus.url).port, config.bus.channel_suffix);
+  const int port = bus::ParseUdpmUrl(config.bus.url).port;
+  for (const std::string& suffix : settings::StackSuffixes(config)) {
+    Connect(process::StopSocketPrefix(port, suffix));
+  }
+}
+
+void LocalStop::Connect(const std::string& prefix) {
   for (const std::string& name : NamesWith(prefix)) {
     const std::string rest = name.substr(prefix.size());
     const size_t slash = rest.find('/');

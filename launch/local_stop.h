@@ -41,6 +41,7 @@ class LocalStop : public LocalProcesses {
     bool refused = false;  // it belongs to another user
     bool ended = false;
   };
+  void Connect(const std::string& prefix);
   void Ask(Process& process);
   bool AllEnded(bool with_loggers);
   void AwaitEnd(bool with_loggers, Duration patience);

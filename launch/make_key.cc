@@ -3,12 +3,12 @@
 #include <cstdio>
 
 #include "bus/seal/bus_key.h"
-#include "settings/stack_config.h"
+#include "settings/limb_config.h"
 
 namespace hydro::launch {
 
 int MakeKey(const settings::CommonOptions& options) {
-  const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
+  const settings::StackConfig config = settings::LoadCommonConfig(options.config, options.overrides);
   const std::string& file = config.bus.resolved_key_file;
   if (file.empty()) {
     throw InputError(options.config +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/input_error.h"
+#include "base/text_file.h"
 #include "bus/channels.h"
 #include "log/message_kinds.h"
 
@@ -48,21 +49,89 @@ std::optional<std::string> OwnSuffix(const RunLog& log, const std::set<std::stri
   return std::nullopt;
 }
 
+std::string NamesOf(const std::vector<JointChannels>& joints) {
+  std::vector<std::string> names;
+  names.reserve(joints.size());
+  for (const JointChannels& joint : joints) names.push_back(joint.name);
+  return QuotedList(names);
+}
+
+// What the channels of the limb with this joint end in: of those that the log has, the longest.
+std::optional<std::string> LimbOf(const std::string& suffix, const std::set<std::string>& limbs) {
+  std::optional<std::string> longest;
+  for (const std::string& limb : limbs) {
+    const bool fits = suffix.starts_with(limb + "_") && suffix.size() > limb.size() + 1;
+    if (fits && (!longest || limb.size() > longest->size())) longest = limb;
+  }
+  return longest;
+}
+
+// The suffix of the joint that `choice` names. A name may be the end of another, so the limb's own channels count too.
+std::string SuffixOfJoint(const RunLog& log, const StackChoice& choice) {
+  const std::string end = "_" + *choice.joint;
+  const std::set<std::string> all = SuffixesOf(log, false);
+  std::set<std::string> found, of_a_limb;
+  for (const std::string& suffix : all) {
+    if (!suffix.ends_with(end)) continue;
+    const std::string limb = suffix.substr(0, suffix.size() - end.size());
+    if (choice.suffix && limb != *choice.suffix) continue;
+    found.insert(suffix);
+    if (all.contains(limb)) of_a_limb.insert(suffix);
+  }
+  if (found.size() > 1 && of_a_limb.size() == 1) return *of_a_limb.begin();
+  if (found.size() == 1) return *found.begin();
+  if (found.contains(end)) return end;
+  if (found.size() > 1) {
+    throw InputError(log.file + ": --joint: found " + Quoted(*choice.joint) + " with the suffixes " + ListOf(found) +
+                     "; choose one of them with --suffix");
+  }
+  const std::vector<JointChannels> joints = JointsIn(log);
+  throw InputError(log.file + ": --joint: found " + Quoted(*choice.joint) + ", allowed " +
+                   (joints.empty() ? "for a log of a limb; this one has " +
+                                         (all.empty() ? "no HYDRO_ channel" : "channels with suffix " + ListOf(all))
+                                   : NamesOf(joints)));
+}
+
 }  // namespace
 
 std::set<std::string> StateSuffixes(const RunLog& log) { return SuffixesOf(log, true); }
 
-std::string ChooseSuffix(const RunLog& log, const std::optional<std::string>& wanted) {
+std::vector<JointChannels> JointsIn(const RunLog& log) {
+  const std::set<std::string> with_states = StateSuffixes(log);
+  std::set<std::string> limbs = SuffixesOf(log, false);
+  for (const std::string& suffix : with_states) limbs.erase(suffix);
+  if (!with_states.contains("")) limbs.insert("");  // a simulated limb has no channels beside its joints'
+  std::vector<JointChannels> joints;
+  for (const std::string& suffix : with_states) {
+    if (const auto limb = LimbOf(suffix, limbs)) {
+      joints.push_back({suffix.substr(limb->size() + 1), suffix, *limb});
+    }
+  }
+  return joints;
+}
+
+bool IsWholeLimb(const RunLog& log, const StackChoice& choice) {
+  if (choice.given()) return false;
+  const std::set<std::string> suffixes = StateSuffixes(log);
+  return suffixes.size() > 1 && !OwnSuffix(log, suffixes) && JointsIn(log).size() == suffixes.size();
+}
+
+std::string ChooseSuffix(const RunLog& log, const StackChoice& choice) {
+  if (choice.joint) return SuffixOfJoint(log, choice);
   const std::set<std::string> all = SuffixesOf(log, false);
-  if (wanted.has_value()) {
-    if (all.contains(*wanted)) return *wanted;
-    throw InputError(log.file + ": found no channel with suffix '" + *wanted + "'; the log has " +
+  if (choice.suffix) {
+    if (all.contains(*choice.suffix)) return *choice.suffix;
+    throw InputError(log.file + ": found no channel with suffix '" + *choice.suffix + "'; the log has " +
                      (all.empty() ? "no HYDRO_ channel" : ListOf(all)));
   }
   std::set<std::string> suffixes = StateSuffixes(log);
   if (suffixes.empty()) suffixes = all;
   if (suffixes.size() > 1) {
     if (const std::optional<std::string> own = OwnSuffix(log, suffixes)) return *own;
+    if (IsWholeLimb(log, choice)) {
+      throw InputError(log.file + ": found channels of the joints " + NamesOf(JointsIn(log)) +
+                       "; choose one of them with --joint");
+    }
     throw InputError(log.file + ": found channels with the suffixes " + ListOf(suffixes) +
                      "; choose one of them with --suffix");
   }

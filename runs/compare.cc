@@ -1,5 +1,8 @@
 #include "runs/compare.h"
 
+#include <algorithm>
+
+#include "base/input_error.h"
 #include <cmath>
 
 #include "base/number_text.h"
@@ -75,6 +78,28 @@ std::optional<std::string> FirstDifference(const RunMessages& a, const std::stri
   });
   if (!first.has_value()) return std::nullopt;
   return "differ at tick " + std::to_string(first->tick) + ": " + first->text;
+}
+
+std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& name_a, const LimbLog& b,
+                                           const std::string& name_b) {
+  if (a.whole() != b.whole()) {
+    throw InputError((a.whole() ? name_a : name_b) + ": found the joints of a limb, and one stack in " +
+                     (a.whole() ? name_b : name_a) + "; allowed are two of a kind, or --joint");
+  }
+  if (!a.whole()) return FirstDifference(a.limb.messages, name_a, b.limb.messages, name_b);
+  const auto lacks = [](const LimbLog& from, const LimbLog& to) -> const RunLog* {
+    for (const RunLog& joint : from.joints) {
+      if (std::ranges::find(to.joints, joint.suffix, &RunLog::suffix) == to.joints.end()) return &joint;
+    }
+    return nullptr;
+  };
+  if (const RunLog* joint = lacks(a, b)) return "differ: the joint " + joint->joint + " is in " + name_a + " alone";
+  if (const RunLog* joint = lacks(b, a)) return "differ: the joint " + joint->joint + " is in " + name_b + " alone";
+  for (size_t i = 0; i < a.joints.size(); ++i) {
+    const auto difference = FirstDifference(a.joints[i].messages, name_a, b.joints[i].messages, name_b);
+    if (difference) return "joint " + a.joints[i].joint + ": " + *difference;
+  }
+  return std::nullopt;
 }
 
 }  // namespace hydro::runs

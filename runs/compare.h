@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "runs/run_log.h"
 #include "runs/run_messages.h"
 
 namespace hydro::runs {
@@ -18,5 +19,10 @@ namespace hydro::runs {
 // from 0, and a NaN equals only the same NaN.
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
                                            const RunMessages& b, const std::string& name_b);
+
+// The same of two limbs, joint by joint: "joint knee: differ at tick ...", or which joint is missing from which; of two single stacks
+// as above.
+std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& name_a, const LimbLog& b,
+                                           const std::string& name_b);
 
 }  // namespace hydro::runs

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "bus/channels.h"
 #include "runs/run_config.h"
+#include "runs/sampling.h"
 #include "runs/tuning_history.h"
 
 namespace hydro::runs {
@@ -62,7 +63,8 @@ ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
   return info;
 }
 
-TickInfo TicksOf(const std::vector<state_t>& states) {
+TickInfo TicksOf(const RunMessages& messages) {
+  const std::vector<state_t>& states = messages.Of<state_t>();
   std::map<int64_t, const state_t*> by_tick;
   for (const state_t& state : states) by_tick.try_emplace(by_tick.end(), state.tick, &state);
   TickInfo info;
@@ -76,14 +78,18 @@ TickInfo TicksOf(const std::vector<state_t>& states) {
     info.rate_hz = static_cast<double>(SaturatingDifference(info.last, info.first)) /
                    (info.last_time_s - info.first_time_s);
   }
+  info.sampled = SampleTicks(messages);
+  const int64_t left_out = info.sampled - 1;  // on purpose, from one sample to the next
   int64_t previous = info.first;
   for (const auto& [tick, state] : by_tick) {
-    const int64_t missing = SaturatingDifference(SaturatingDifference(tick, previous), 1);
-    if (missing > 0) {
-      ++info.gaps;
-      info.missing = SaturatingSum(info.missing, missing);
-      info.announced = SaturatingSum(info.announced, std::clamp<int64_t>(state->skipped_ticks, 0, missing));
-    }
+    const int64_t between = std::max<int64_t>(0, SaturatingDifference(SaturatingDifference(tick, previous), 1));
+    const int64_t announced = std::clamp<int64_t>(state->skipped_ticks, 0, between);
+    // A sample of a late tick is late: only what is missing for a whole interval more is a gap.
+    const bool gap = SaturatingDifference(between, left_out) > left_out;
+    const int64_t missing = gap ? std::max(announced, SaturatingDifference(between, left_out)) : announced;
+    info.gaps += gap ? 1 : 0;
+    info.missing = SaturatingSum(info.missing, missing);
+    info.announced = SaturatingSum(info.announced, announced);
     previous = tick;
   }
   return info;
@@ -220,13 +226,14 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.file = log.file;
   info.verdict = log.verdict;
   info.suffix = log.suffix;
+  info.joint = log.joint;
   info.other_suffixes = log.other_suffixes;
   info.bytes = log.bytes;
   info.events = log.events;
   info.duration_s = Seconds(log.first_utime, log.last_utime);
   info.first_undecodable = log.first_undecodable;
   for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
-  info.ticks = TicksOf(log.messages.Of<state_t>());
+  info.ticks = TicksOf(log.messages);
   info.loops = LoopsOf(log.messages.Of<loop_statistics_t>());
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();

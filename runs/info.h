@@ -28,8 +28,9 @@ struct TickInfo {
   double first_time_s = 0;  // plant time of those
   double last_time_s = 0;
   double rate_hz = 0;     // ticks per second of plant time; 0: fewer than two
-  int64_t gaps = 0;       // places where ticks have no state
-  int64_t missing = 0;    // ticks without a state
+  int64_t sampled = 1;    // ticks from one state to the next, where a limb sends only some (sampling.h)
+  int64_t gaps = 0;       // places where ticks have no state; between the sampled ones is none
+  int64_t missing = 0;    // ticks without a state, in them
   int64_t announced = 0;  // how many of those the plant reports as skipped (a late wake-up)
 };
 
@@ -61,6 +62,7 @@ struct LogInfo {
   std::string file;
   log::LogVerdict verdict;
   std::string suffix;
+  std::string joint;                        // as RunLog::joint
   std::vector<std::string> other_suffixes;  // of state channels, not read
   int64_t bytes = 0;
   int64_t events = 0;

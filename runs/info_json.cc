@@ -85,6 +85,7 @@ Json TicksJson(const TickInfo& ticks) {
           {"first_time_s", ticks.first_time_s},
           {"last_time_s", ticks.last_time_s},
           {"rate_hz", ticks.rate_hz},
+          {"ticks_to_next_state", ticks.sampled},
           {"gaps", ticks.gaps},
           {"missing", ticks.missing},
           {"skipped_by_plant", ticks.announced},
@@ -125,6 +126,7 @@ std::string InfoJson(const LogInfo& info) {
                  {"remarks", info.verdict.remarks},
                  {"ending", info.verdict.ending}};
   json["suffix"] = info.suffix;
+  json["joint"] = info.joint;
   json["other_suffixes"] = info.other_suffixes;
   json["bytes"] = info.bytes;
   json["messages"] = info.events;

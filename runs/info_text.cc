@@ -6,6 +6,7 @@
 #include "base/text_file.h"
 #include "process/output_left.h"
 #include "runs/info.h"
+#include "runs/sampling.h"
 #include "runs/tuning_history.h"
 
 namespace hydro::runs {
@@ -74,6 +75,7 @@ void AppendTicks(const TickInfo& ticks, std::string& text) {
   Append(text, "ticks: {}, from {} at {} s to {} at {} s, {} a second of plant time\n", ticks.states,
          ticks.first, Number(ticks.first_time_s), ticks.last, Number(ticks.last_time_s),
          Number(ticks.rate_hz));
+  if (ticks.sampled > 1) Append(text, "sampled: {}, not each\n", DescribeSampling(ticks.sampled));
   Append(text,
          "tick gaps: {}, without state: {}, of which the plant skipped {} and {} are missing from the log\n",
          ticks.gaps, ticks.missing, ticks.announced, ticks.missing - ticks.announced);
@@ -130,6 +132,7 @@ std::string InfoText(const LogInfo& info) {
          Number(info.duration_s));
   AppendVerdict(info.verdict, text);
   if (!info.suffix.empty()) Append(text, "channel suffix: {}\n", info.suffix);
+  if (!info.joint.empty()) Append(text, "joint of a limb: {}\n", info.joint);
   for (const std::string& other : info.other_suffixes) {
     Append(text, "channels with suffix '{}' are not read (--suffix)\n", other);
   }

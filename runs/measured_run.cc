@@ -8,6 +8,7 @@
 #include "runs/measured_signals.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
+#include "runs/sampling.h"
 #include "runs/sidecar.h"
 #include "runs/signal_columns.h"
 #include "runs/signal_unit.h"
@@ -107,14 +108,23 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
   return run;
 }
 
-MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units) {
+RunName ParseRunName(const std::string& text) {
+  const size_t hash = text.rfind('#');
+  std::error_code error;
+  if (hash == std::string::npos || std::filesystem::exists(text, error)) return {text};
+  return {text.substr(0, hash), text.substr(hash + 1)};
+}
+
+MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSystem>& units) {
+  const auto& [file, joint] = ParseRunName(text);
   if (tables::IsTable(file)) {
+    if (joint) throw InputError(text + ": found the joint " + Quoted(*joint) + " of a table, allowed of a log");
     return ReadTableRun(file, units.value_or(UnitSystem{}));
   }
   if (file.ends_with(".toml")) {
     throw InputError(file + ": found a sidecar, allowed the run itself: a log, or the csv or mat beside it");
   }
-  const RunLog log = ReadRunLog(file);
+  const RunLog log = ReadRunLog(file, {.joint = joint});
   tables::Table table = ExportRun(log);
   table.file = file;
   if (log.messages.Of<run_description_t>().empty()) {
@@ -124,6 +134,8 @@ MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSys
   }
   const run_description_t& description = log.messages.Of<run_description_t>().front();
   MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
+  RequireEveryState(log, "fitting a model to it");
+  if (!log.joint.empty()) run.name += "_" + log.joint;
   run.caution = DescribeCaution(log);
   if (units.has_value()) Convert(*units, &run);
   return run;

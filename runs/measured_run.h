@@ -72,6 +72,15 @@ struct MeasuredRun {
   std::string Place(size_t sample) const;
 };
 
+// What stands for a run on a command line: a file, or "LOG#NAME".
+struct RunName {
+  std::string file;
+  std::optional<std::string> joint = {};  // of the limb that the log is of
+};
+
+// A file whose own name has a # is a file.
+RunName ParseRunName(const std::string& text);
+
 // Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h); any other name as a log. Its values
 // are then in `units`, those of a model; without them a table is in the paper's, a log in its own model's.
 // Throws InputError naming file, line or key, what was found and what is allowed, for
@@ -80,8 +89,10 @@ struct MeasuredRun {
 //   noise of a signal without a column;
 // - a table with columns that are absent or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, or no command in the first row;
-// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, no description of how the shaft
+// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, a limb's telemetry of
+//   some states only, no description of how the shaft
 //   was held, or an arm whose coordinate is not that of `units`.
+// "LOG#NAME" is the joint of that name in the log of a limb.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
 // The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run:

@@ -1,5 +1,8 @@
 #include "runs/run_config.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/input_error.h"
 #include "settings/model_file.h"
 #include "settings/toml/toml_document.h"
@@ -19,7 +22,20 @@ TomlNode Parse(const std::string& text, const std::string& file, const std::stri
 
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file) {
-  return settings::TomlEntries(Parse(description.config_text, file, "configuration"));
+  TomlNode root = Parse(description.config_text, file, "configuration");
+  // Of a limb, the joints' own sections by name.
+  std::vector<settings::TomlEntry> entries;
+  if (const TomlNode* joints = root.Find("joint"); joints != nullptr && joints->is(TomlNode::Kind::kArray)) {
+    for (const TomlNode& joint : joints->items) {
+      const TomlNode* name = joint.is(TomlNode::Kind::kTable) ? joint.Find("name") : nullptr;
+      const std::string shown = name != nullptr ? name->text : "?";
+      for (auto& [key, value] : settings::TomlEntries(joint)) entries.emplace_back("joint." + shown + "." + key, value);
+    }
+    root.Erase("joint");
+  }
+  for (auto& entry : settings::TomlEntries(root)) entries.push_back(std::move(entry));
+  std::sort(entries.begin(), entries.end());
+  return entries;
 }
 
 int CommandDelayTicks(const run_description_t& description, const std::string& file) {

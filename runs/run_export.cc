@@ -7,6 +7,7 @@
 #include "runs/message_order.h"
 #include "runs/run_config.h"
 #include "runs/run_table.h"
+#include "runs/sampling.h"
 
 namespace hydro::runs {
 namespace {
@@ -106,12 +107,15 @@ tables::Table ExportRun(const RunLog& log) {
   Cursor<motor_command_t> motor(commands);
   Cursor<pressure_command_t> pressure(log.messages.Of<pressure_command_t>());
   Cursor<arm_reference_t> reference(references);
+  const bool sampled = SampleTicks(log.messages) > 1;
   for (size_t k = 0; k < states.size(); ++k) {
     const state_t& state = *states[k];
     const int64_t commanding_tick = SaturatingDifference(state.tick, delay);
     const state_t* const next = k + 1 < states.size() ? states[k + 1] : nullptr;
     double voltage = kMissing;
-    if (next != nullptr && !LacksStates(state, *next)) {
+    if (sampled) {
+      voltage = state.voltage;  // what acted from this tick on is in no sample; this acted up to it
+    } else if (next != nullptr && !LacksStates(state, *next)) {
       voltage = next->voltage;
     } else if (const motor_command_t* command = acting.At(commanding_tick);
                command != nullptr && next == nullptr && (k == 0 || state.command_tick >= 0)) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "base/big_endian.h"
 #include "base/number_text.h"
@@ -50,49 +52,128 @@ void Summarise(log::LogReader& reader, RunLog& log) {
   for (auto& [name, channel] : channels) log.channels.push_back(std::move(channel));
 }
 
-}  // namespace
-
-RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix, Undecodable undecodable,
-                  log::OnDamage on_damage) {
-  RunLog log;
-  log.file = file;
-  log::LogReader reader(file, on_damage);
-  log.verdict = reader.verdict();
-  log.bytes = reader.size();
-  Summarise(reader, log);
-  log.suffix = ChooseSuffix(log, suffix);
-  for (const std::string& other : StateSuffixes(log)) {
-    if (other != log.suffix) log.other_suffixes.push_back(other);
+// Decodes the messages of several stacks.
+class Decoder {
+ public:
+  Decoder(std::vector<RunLog*> logs, Undecodable undecodable) : undecodable_(undecodable) {
+    stacks_.reserve(logs.size());
+    for (RunLog* log : logs) stacks_.push_back({log, bus::Channels(log->suffix)});
+    for (Stack& stack : stacks_) {
+      for (const std::string& channel : stack.channels.names()) by_channel_.emplace(channel, &stack);
+    }
   }
 
-  const bus::Channels channels(log.suffix);
-  log::LogEvent event;
-  const auto leave_out = [&](const log::MessageKind& kind) {
-    const std::string why = WhyUndecodable(event, kind);
-    if (undecodable == Undecodable::kRefused) {
-      throw log::LogError(file + ": " + why + "; where others on that channel are, hydro-log repair " + file +
+  void Take(const log::LogEvent& event) {
+    const auto found = by_channel_.find(event.channel);
+    if (found == by_channel_.end()) return;
+    Stack& stack = *found->second;
+    // True when the event is a `Message`; it is then in its list or left out.
+    bus::AnyMessage([&]<class Message>(const bus::MessageRow<Message>&) {
+      if (event.channel != stack.channels.Of<Message>()) return false;
+      std::vector<Message>& messages = stack.log->messages.template Of<Message>();
+      if (!log::DecodeAs(event, messages.emplace_back())) {
+        messages.pop_back();
+        LeaveOut(event, stack.log);
+      }
+      return true;
+    });
+  }
+
+ private:
+  struct Stack {
+    RunLog* log;
+    bus::Channels channels;
+  };
+
+  void LeaveOut(const log::LogEvent& event, RunLog* log) const {
+    const std::string why = WhyUndecodable(event, *log::KindOfChannel(event.channel));
+    if (undecodable_ == Undecodable::kRefused) {
+      throw log::LogError(log->file + ": " + why + "; where others on that channel are, hydro-log repair " + log->file +
                           " leaves such events out");
     }
-    if (log.first_undecodable.empty()) log.first_undecodable = why;
+    if (log->first_undecodable.empty()) log->first_undecodable = why;
     const auto channel =
-        std::lower_bound(log.channels.begin(), log.channels.end(), event.channel,
+        std::lower_bound(log->channels.begin(), log->channels.end(), event.channel,
                          [](const ChannelSummary& a, std::string_view name) { return a.channel < name; });
     ++channel->undecodable;
-  };
-  // True when the event is a `Message`; it is then in its list or left out.
-  const auto take = [&]<class Message>(const bus::MessageRow<Message>&) {
-    const std::string& channel = channels.Of<Message>();
-    if (event.channel != channel) return false;
-    std::vector<Message>& messages = log.messages.Of<Message>();
-    if (!log::DecodeAs(event, messages.emplace_back())) {
-      messages.pop_back();
-      leave_out(*log::KindOfChannel(channel));
-    }
-    return true;
-  };
+  }
+
+  Undecodable undecodable_;
+  std::vector<Stack> stacks_;
+  std::unordered_map<std::string_view, Stack*> by_channel_;  // the names lie in `stacks_`
+};
+
+// Those of state channels that are neither read nor of a joint of the same limb.
+void FindOthers(RunLog* log) {
+  const std::vector<JointChannels> joints = JointsIn(*log);
+  const auto self = std::ranges::find(joints, log->suffix, &JointChannels::suffix);
+  if (self != joints.end() && joints.size() > 1) log->joint = self->name;
+  for (const std::string& other : StateSuffixes(*log)) {
+    const auto joint = std::ranges::find(joints, other, &JointChannels::suffix);
+    const bool sibling = self != joints.end() && joint != joints.end() && joint->limb == self->limb;
+    if (other != log->suffix && !sibling) log->other_suffixes.push_back(other);
+  }
+}
+
+// A log of each joint, with nothing but what concerns its own channels.
+std::vector<RunLog> LogsOfJoints(const RunLog& limb) {
+  std::vector<RunLog> logs;
+  RunLog without_channels = limb;
+  without_channels.channels.clear();
+  std::unordered_map<std::string, RunLog*> by_suffix;
+  const std::vector<JointChannels> joints = JointsIn(limb);
+  logs.reserve(joints.size());
+  for (const JointChannels& joint : joints) {
+    RunLog& log = logs.emplace_back(without_channels);
+    log.suffix = joint.suffix;
+    log.joint = joint.name;
+    by_suffix[joint.suffix] = &log;
+  }
+  for (const ChannelSummary& channel : limb.channels) {
+    const log::MessageKind* kind = log::KindOfChannel(channel.channel);
+    if (kind == nullptr) continue;
+    const auto log = by_suffix.find(channel.channel.substr(kind->channel.size()));
+    if (log != by_suffix.end()) log->second->channels.push_back(channel);
+  }
+  return logs;
+}
+
+// `with_joints`: whether all joints of a limb are wanted where none is chosen.
+LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable undecodable, log::OnDamage on_damage,
+             bool with_joints) {
+  LimbLog all;
+  all.limb.file = file;
+  log::LogReader reader(file, on_damage);
+  all.limb.verdict = reader.verdict();
+  all.limb.bytes = reader.size();
+  Summarise(reader, all.limb);
+  std::vector<RunLog*> logs;
+  if (with_joints && IsWholeLimb(all.limb, choice)) {
+    all.limb.suffix = JointsIn(all.limb).front().limb;
+    all.joints = LogsOfJoints(all.limb);
+    for (RunLog& joint : all.joints) logs.push_back(&joint);
+  } else {
+    all.limb.suffix = ChooseSuffix(all.limb, choice);
+    FindOthers(&all.limb);
+  }
+  logs.push_back(&all.limb);
+  Decoder decoder(logs, undecodable);
+  log::LogEvent event;
   reader.Rewind();
-  while (reader.Next(event)) bus::AnyMessage(take);
-  return log;
+  while (reader.Next(event)) decoder.Take(event);
+  return all;
+}
+
+}  // namespace
+
+RunLog ReadRunLog(const std::string& file, const StackChoice& choice, Undecodable undecodable,
+                  log::OnDamage on_damage) {
+  return Read(file, choice, undecodable, on_damage, false).limb;
+}
+
+LimbLog ReadLimbLog(const std::string& file, const StackChoice& choice, Undecodable undecodable,
+                    log::OnDamage on_damage) {
+  return Read(file, choice, undecodable, on_damage, true);
 }
 
 std::string DescribeCaution(const RunLog& log) {

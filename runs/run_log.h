@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "log/log_reader.h"
 #include "runs/run_messages.h"
+#include "runs/stack_choice.h"
 
 namespace hydro::runs {
 
@@ -26,7 +26,8 @@ struct RunLog {
   std::string file;
   log::LogVerdict verdict;
   std::string suffix;                       // of the channels read
-  std::vector<std::string> other_suffixes;  // of state channels that were not read
+  std::string joint;                        // of a limb: its name; empty: it is not one of several
+  std::vector<std::string> other_suffixes;  // of state channels that were not read, and are not joints of the same limb
   RunMessages messages;
   std::vector<ChannelSummary> channels;  // by name, all that the log holds
   int64_t events = 0;                    // on all channels
@@ -42,14 +43,27 @@ enum class Undecodable {
   kLeftOut,  // counted and left out, as the processes of the run left it out
 };
 
-// Reads `file`. Without `suffix`, finds the suffix of the log's state channel. If there are several, it is that
+// Reads `file`. Without a choice, finds the suffix of the log's state channel. If there are several, it is that
 // of the only stack that describes its run, or in a log without any description that of nine states in ten;
 // otherwise the caller must choose one (InputError names them). A log without any of this stack's channels is
 // not an error here. Throws LogError if the file is damaged, because what else is missing is then unknown; with
 // OnDamage::kStop, reads what precedes the damage. An incomplete log is read to its last whole event.
-RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
+RunLog ReadRunLog(const std::string& file, const StackChoice& choice = {},
                   Undecodable undecodable = Undecodable::kRefused,
                   log::OnDamage on_damage = log::OnDamage::kThrow);
+
+// The joints of a limb, out of one log.
+struct LimbLog {
+  RunLog limb;                 // its own channels, and `channels` of the whole log
+  std::vector<RunLog> joints;  // by suffix; their `channels` are their own
+
+  bool whole() const { return !joints.empty(); }
+};
+
+// As ReadRunLog(), but where `choice` leaves open which of several joints is meant, all of them; otherwise `limb` is the stack
+// that is chosen, and there are no joints.
+LimbLog ReadLimbLog(const std::string& file, const StackChoice& choice, Undecodable undecodable = Undecodable::kRefused,
+                    log::OnDamage on_damage = log::OnDamage::kThrow);
 
 // One line for people about what a result from this log cannot say: that it is incomplete or repaired, or holds
 // another stack too; empty when there is nothing.

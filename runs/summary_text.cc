@@ -6,6 +6,7 @@
 #include "base/text_file.h"
 #include "base/units.h"
 #include "process/output_left.h"
+#include "runs/sampling.h"
 #include "runs/tracking.h"
 #include "runs/tuning_history.h"
 
@@ -28,6 +29,20 @@ std::string Angle(double rad, bool si) {
 
 }  // namespace
 
+std::string LoopsText(const LogInfo& info) {
+  if (info.loops.empty()) return {};
+  std::string text =
+      fmt::format("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}\n", "loop", "cycles", "period p50",
+                  "period p99", "late p50", "late p99", "late max", "missed", "lost");
+  for (const LoopInfo& loop : info.loops) {
+    text += fmt::format("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}\n",
+                        Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
+                        loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
+                        loop.missed_deadlines, loop.lost_messages);
+  }
+  return text;
+}
+
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) {
   std::string text;
   const auto line = [&](fmt::string_view format, const auto&... arguments) {
@@ -38,6 +53,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
       "log",
       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
       LostMessages(info));
+  if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));
   const std::string caution = log::Caution(info.verdict);
   if (!caution.empty()) line("log: {}", caution);
   const std::string where = log::EndIsOpen(info.verdict) ? "where this log ends (the run may go on): " : "";
@@ -65,16 +81,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
           tracking.steps_left_out == 1 ? "1 step is" : fmt::format("{} steps are", tracking.steps_left_out));
     }
   }
-  if (!info.loops.empty()) {
-    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles", "period p50",
-         "period p99", "late p50", "late p99", "late max", "missed", "lost");
-    for (const LoopInfo& loop : info.loops) {
-      line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",
-           Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
-           loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
-           loop.missed_deadlines, loop.lost_messages);
-    }
-  }
+  text += LoopsText(info);
   for (const fault_t& fault : info.faults) {
     line("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code), fault.active ? "began" : "ended",
          Printable(fault.source));
@@ -90,6 +97,7 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
       {"duration_s", info.ticks.last_time_s - info.ticks.first_time_s},
       {"skipped_ticks", info.ticks.announced},
       {"ticks_without_state", info.ticks.missing},
+      {"ticks_to_next_state", info.ticks.sampled},
       {"lost_messages", LostMessages(info)},
       {"log", {{"verdict", NameOf(info.verdict.completeness)}, {"caution", log::Caution(info.verdict)}}}};
   if (tracking.has_reference) {

@@ -7,7 +7,7 @@ namespace hydro::runs {
 namespace {
 
 constexpr double kShortestRest = 0.2;         // s
-constexpr double kFinalTime = 0.1;            // s
+constexpr double kEndTime = 0.1;            // s
 constexpr double kSmallestTolerance = 0.001;  // rad
 constexpr double kLeastStep = 0.01;           // rad, of one that begins with the run
 constexpr size_t kMostSteps = 100;
@@ -47,7 +47,7 @@ double MeanErrorAtEnd(const Samples& samples) {
   double sum = 0;
   int count = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (samples.times.back() - samples.times[i] > kFinalTime) continue;
+    if (samples.times.back() - samples.times[i] > kEndTime) continue;
     sum += samples.angles[i] - samples.references[i];
     ++count;
   }
@@ -111,7 +111,7 @@ Tracking TrackArm(const RunLog& log) {
   }
   bool at_rest = true;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (samples.times.back() - samples.times[i] <= kFinalTime &&
+    if (samples.times.back() - samples.times[i] <= kEndTime &&
         samples.references[i] != tracking.target_rad) {
       at_rest = false;
     }

@@ -29,6 +29,9 @@ Tracking TrackArm(const RunLog& log);
 // Several lines for people to read, with loop timing and losses. With `si`, angles also in degrees.
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
 
+// The part of it on loop timing.
+std::string LoopsText(const LogInfo& info);
+
 // The same as JSON.
 std::string SummaryJson(const Tracking& tracking, const LogInfo& info);
 

@@ -69,7 +69,7 @@ void CutLog(const CutSource& source, double t0, double t1, const std::string& fi
 void CutTable(const CutSource& source, double t0, double t1, bool si, const std::string& log_file,
               const std::string& table_file) {
   CutLog(source, t0, t1, log_file);
-  const runs::RunLog log = runs::ReadRunLog(log_file, source.suffix, runs::Undecodable::kLeftOut);
+  const runs::RunLog log = runs::ReadRunLog(log_file, {.suffix = source.suffix}, runs::Undecodable::kLeftOut);
   tables::Table table = runs::ExportRun(log);
   const auto& descriptions = log.messages.Of<run_description_t>();
   if (si) {

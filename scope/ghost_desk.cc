@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "runs/sampling.h"
 #include "scope/signals/ghost.h"
 
 namespace hydro::scope {
@@ -110,12 +111,11 @@ struct GhostDesk::Beside {
   std::string problem;
 };
 
-GhostDesk::GhostDesk(RunTable* runs, std::shared_ptr<const settings::StackConfig> config)
-    : runs_(*runs), config_(std::move(config)) {}
+GhostDesk::GhostDesk(RunTable* runs) : runs_(*runs) {}
 GhostDesk::~GhostDesk() = default;
 
 std::shared_ptr<const settings::StackConfig> GhostDesk::ConfigFor(const Run& run) const {
-  return run.kind == Run::Kind::kLog || config_ == nullptr ? run.config : config_;
+  return run.listened == nullptr ? run.config : run.listened;
 }
 
 Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
@@ -129,6 +129,12 @@ Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
     return {false,
             run->config_problem.empty() ? "the run has not described itself yet: no HYDRO_RUN"
                                         : "no model: " + run->config_problem,
+            {}};
+  }
+  if (run->sample_ticks > 1) {
+    return {false,
+            "the run has " + runs::DescribeSampling(run->sample_ticks) +
+                ": a ghost needs the voltage of every tick; limb.telemetry_hz = \"every_tick\" sends it",
             {}};
   }
   if (ghosts_.size() >= kMostGhosts) return {false, "4 ghosts are there already, switch one off", {}};

@@ -12,10 +12,9 @@ namespace hydro::scope {
 
 class GhostDesk : public GhostSwitch {
  public:
-  // `config`: of the stack that is listened to; its model is the ghost's for live runs, whatever the plant says that it runs
-  // with: a simulated one names its own model, beside which there is no gap. Null: a log is shown. A log's ghost has the
-  // model that the log names.
-  GhostDesk(RunTable* runs, std::shared_ptr<const settings::StackConfig> config);
+  // A ghost beside a live run has the model of the configuration that the scope was started with (Run::listened), whatever the plant says
+  // that it runs with: a simulated one names its own model, beside which there is no gap. A log's ghost has the model that the log names.
+  explicit GhostDesk(RunTable* runs);
   ~GhostDesk() override;
 
   // For any run whose model is known; at most 4 at a time. A live one begins with the newest 10 s.
@@ -36,7 +35,6 @@ class GhostDesk : public GhostSwitch {
   void Collect(Run& run, Beside& beside);
 
   RunTable& runs_;
-  std::shared_ptr<const settings::StackConfig> config_;
   std::map<uint32_t, std::unique_ptr<Beside>> ghosts_;  // by run
   int64_t skipped_ = 0;
 };

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   line.AddPositional("CONFIG|LOG", &request.input, "FILE the stack's configuration, or a log (.lcmlog)");
   line.AddOption("--set", &request.overrides,
                  "SECTION.KEY=VALUE as for the stack's programs; may be repeated");
+  line.AddOption("--joint", &request.joint, "NAME of a limb, or a log of one, show this joint only");
   line.AddOption("--port", &port, "N TCP port, instead of scope.port; 0: any free one");
   line.AddOption("--page", &request.page,
                  "DIR serve the page's files from this folder (for work on the page)");

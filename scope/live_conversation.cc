@@ -125,9 +125,9 @@ void LiveConversation::Take(const LiveRequest& request) {
     case Op::kRearm:
       return context_.desk.Rearm(ReplyTo(request.id));
     case Op::kSet:
-      return context_.desk.Set(request.entries, ReplyTo(request.id));
+      return context_.desk.Set(request.run, request.entries, ReplyTo(request.id));
     case Op::kUndo:
-      return context_.desk.Undo(ReplyTo(request.id));
+      return context_.desk.Undo(request.run, ReplyTo(request.id));
   }
 }
 
@@ -249,16 +249,22 @@ bool LiveConversation::NextStatus(Message* message) {
   if (dropped_.Now(now)) {
     if (std::string text = Dropped(); !text.empty()) return Text(std::move(text), message);
   }
-  const Tuning* const tuning = context_.desk.tuning();
-  if (tuning != nullptr && tuning->message() != tuning_) {
-    tuning_ = tuning->message();
-    return Text(tuning_, message);
+  for (const auto& [run, tuning] : context_.desk.tunings()) {
+    std::string& sent = tunings_[run];
+    if (tuning->message() == sent) continue;
+    sent = tuning->message();
+    return Text(sent, message);
   }
-  const Run* const live = context_.runs.live();
-  if (live == nullptr) return false;
-  if (clock_.Now(now)) return Text(ClockMessage(*live, context_.silent_s()), message);
-  if (processes_.Now(now)) return Text(ProcessesMessage(*live), message);
-  return false;
+  if (clock_.Now(now)) {
+    for (const Run* run : context_.runs.AllLive()) said_.push_back(ClockMessage(*run, context_.silent_s(run->id)));
+  }
+  if (processes_.Now(now)) {
+    for (const Run* run : context_.runs.AllLive()) said_.push_back(ProcessesMessage(*run));
+  }
+  if (said_.empty()) return false;
+  Text(std::move(said_.front()), message);
+  said_.pop_front();
+  return true;
 }
 
 // The views in turn, so that one that is always ready leaves room for the others.

@@ -33,8 +33,8 @@ struct LiveContext {
   RunTable& runs;
   OperatorDesk& desk;
   GhostSwitch& ghost;
-  std::function<double()>
-      silent_s;  // wall time since the last state of the live run; negative: none has come
+  // Wall time since the last state of a live run, s; negative: none has come.
+  std::function<double(uint32_t run)> silent_s;
   std::function<std::chrono::steady_clock::time_point()> now;
   int64_t* frames = nullptr;   // binary messages sent, of all clients
   int64_t* dropped = nullptr;  // frames not made for clients that were too slow
@@ -106,7 +106,8 @@ class LiveConversation : public Conversation {
   Due processes_{std::chrono::milliseconds(1000)};
   Due runs_{std::chrono::milliseconds(200)};
   Due dropped_{std::chrono::milliseconds(1000)};
-  std::string tuning_;  // the message that was sent last
+  std::map<uint32_t, std::string> tunings_;  // by run, the message that was sent last
+  std::deque<std::string> said_;             // of the live runs, to be sent
   uint64_t told_bins_ = 0;
   uint64_t told_frames_ = 0;
   uint64_t past_bins_ = 0;  // of views that have ended

@@ -1,6 +1,7 @@
 #include "scope/live_feed.h"
 
-#include "bus/channels.h"
+#include <algorithm>
+#include <numeric>
 
 namespace hydro::scope {
 namespace {
@@ -10,47 +11,80 @@ constexpr double kQuietAfter = 0.05;  // s without a state: no answers are comin
 
 }  // namespace
 
-LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s,
-                   RunTable* runs)
-    : bus_(bus), clock_(clock), history_s_(history_s), runs_(*runs), intake_(suffix, [this](int64_t) {
-        Run* const run = first_run_ ? runs_.live() : &runs_.RestartLive();
-        first_run_ = false;
+LiveFeed::Stack::Stack(const Run& its_first, RunTable* all)
+    : runs(*all), id(its_first.id), run(all->Find(id)), intake(its_first.suffix, [this](int64_t) {
+        if (!first) run = &runs.RestartLive(id);
+        first = false;
         return run;
-      }) {
-  const bus::Channels channels(suffix);
-  for (const std::string& name : channels.names()) channels_.insert(name);
+      }) {}
+
+LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& limb, double history_s, RunTable* runs)
+    : bus_(bus), clock_(clock), limb_(limb), history_s_(history_s), runs_(*runs) {
+  for (const Run* run : runs_.AllLive()) {
+    Stack& stack = *stacks_.emplace_back(std::make_unique<Stack>(*run, runs));
+    const bus::Channels channels(run->suffix);
+    for (const std::string& name : channels.names()) by_channel_.emplace(name, &stack);
+  }
   bus_.SubscribeAll([this](const bus::RawMessage& message) { OnMessage(message); });
 }
 
 void LiveFeed::OnMessage(const bus::RawMessage& message) {
   channel_.assign(message.channel);
-  if (!channels_.contains(channel_)) return;
+  const auto found = by_channel_.find(channel_);
+  if (found == by_channel_.end()) {
+    for (const auto& stack : stacks_) {
+      stack->intake.TakeOfLimb(limb_, message.channel, message.data, message.size, message.receive_utime);
+    }
+    return;
+  }
+  Stack& stack = *found->second;
   ++messages_;
-  intake_.Take(message.channel, message.data, message.size, message.receive_utime);
-  runs_.live()->messages->Add(
-      {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime},
-      intake_.now());
+  stack.intake.Take(message.channel, message.data, message.size, message.receive_utime);
+  stack.run->messages->Add(
+      {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime}, stack.intake.now());
 }
 
 void LiveFeed::Poll() {
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (bus_.HandleUntil(clock_.Now()) == 0) break;
   }
-  if (intake_.states() != seen_states_) {
-    seen_states_ = intake_.states();
-    last_state_ = clock_.Now();
-  } else if (silent_s() > kQuietAfter) {
-    intake_.Flush();
+  for (const auto& stack : stacks_) {
+    if (stack->intake.states() != stack->seen_states) {
+      stack->seen_states = stack->intake.states();
+      stack->last_state = clock_.Now();
+    } else if (SilentFor(*stack) > kQuietAfter) {
+      stack->intake.Flush();
+    }
+    Run& run = *stack->run;
+    const double oldest = run.last_time() - history_s_;
+    run.ticks.DropBefore(oldest);
+    run.ghost.DropBefore(oldest);
+    run.messages->DropBefore(oldest);
   }
-  Run& run = *runs_.live();
-  const double oldest = run.last_time() - history_s_;
-  run.ticks.DropBefore(oldest);
-  run.ghost.DropBefore(oldest);
-  run.messages->DropBefore(oldest);
 }
 
-double LiveFeed::silent_s() const {
-  return seen_states_ == 0 ? -1 : bus::ToSeconds(clock_.Now() - last_state_);
+double LiveFeed::SilentFor(const Stack& stack) const {
+  return stack.seen_states == 0 ? -1 : bus::ToSeconds(clock_.Now() - stack.last_state);
+}
+
+double LiveFeed::silent_s(uint32_t run) const {
+  const auto stack = std::ranges::find(stacks_, run, [](const auto& one) { return one->id; });
+  return stack == stacks_.end() ? -1 : SilentFor(**stack);
+}
+
+int64_t LiveFeed::states() const {
+  return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
+                         [](int64_t sum, const auto& stack) { return sum + stack->intake.states(); });
+}
+
+int64_t LiveFeed::undecodable() const {
+  return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
+                         [](int64_t sum, const auto& stack) { return sum + stack->intake.undecodable(); });
+}
+
+int64_t LiveFeed::foreign() const {
+  return std::accumulate(stacks_.begin(), stacks_.end(), int64_t{0},
+                         [](int64_t sum, const auto& stack) { return sum + stack->intake.foreign(); });
 }
 
 }  // namespace hydro::scope

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <hydro/state_t.hpp>
+#include <memory>
 #include <string>
-#include <unordered_set>
+#include <unordered_map>
+#include <vector>
 
 #include "bus/bus.h"
+#include "bus/channels.h"
 #include "bus/clock.h"
 #include "scope/run_table.h"
 #include "scope/signals/intake.h"
@@ -16,33 +19,47 @@ namespace hydro::scope {
 
 class LiveFeed {
  public:
-  // `runs` has a live run. `history_s`: how much of it is kept.
-  LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s,
-           RunTable* runs);
+  // Listens to the stack of each live run of `runs`: one, or the joints of a limb. `limb`: what the limb's own channels end in; those of
+  // a stack by itself. `history_s`: how much of each run is kept.
+  LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& limb, double history_s, RunTable* runs);
 
   // Takes what has arrived. Never waits.
   void Poll();
 
-  // Wall time since the last state, s; negative: none has come.
-  double silent_s() const;
+  // Wall time since the last state of a live run, s; negative: none has come.
+  double silent_s(uint32_t run) const;
 
-  Intake& intake() { return intake_; }
   int64_t messages() const { return messages_; }
+  // Of all stacks: states, messages that are none of this version's, states of a second plant.
+  int64_t states() const;
+  int64_t undecodable() const;
+  int64_t foreign() const;
 
  private:
+  // One that is listened to.
+  struct Stack {
+    Stack(const Run& first, RunTable* runs);
+
+    RunTable& runs;
+    const uint32_t id;  // of its live run
+    Run* run;
+    bool first = true;
+    Intake intake;
+    int64_t seen_states = 0;
+    bus::Clock::TimePoint last_state{};
+  };
   void OnMessage(const bus::RawMessage& message);
+  double SilentFor(const Stack& stack) const;
 
   bus::Bus& bus_;
   const bus::Clock& clock_;
+  const bus::Channels limb_;
   double history_s_;
   RunTable& runs_;
-  bool first_run_ = true;
-  Intake intake_;
-  std::unordered_set<std::string> channels_;
+  std::vector<std::unique_ptr<Stack>> stacks_;
+  std::unordered_map<std::string, Stack*> by_channel_;
   std::string channel_;  // looked up, reused
   int64_t messages_ = 0;
-  int64_t seen_states_ = 0;
-  bus::Clock::TimePoint last_state_{};
 };
 
 }  // namespace hydro::scope

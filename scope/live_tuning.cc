@@ -22,8 +22,9 @@ json ValueOf(const std::string& toml) {
 
 }  // namespace
 
-LiveTuning::LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool control)
-    : client_(bus, clock, channels, "hydro-scope"), control_(control) {}
+LiveTuning::LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, uint32_t run,
+                       bool control)
+    : client_(bus, clock, channels, "hydro-scope"), run_(run), control_(control) {}
 
 bool LiveTuning::Ready(const Done& done) {
   if (!client_.in_force() || !client_.run()) {
@@ -94,7 +95,7 @@ void LiveTuning::Describe() {
   }
   const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
   message_ = json({{"op", "tuning"},
-                   {"run", 0},
+                   {"run", run_},
                    {"control", control_},
                    {"version", in_force.version},
                    {"acts_at", in_force.acts_at},

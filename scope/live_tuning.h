@@ -17,8 +17,8 @@ namespace hydro::scope {
 
 class LiveTuning : public Tuning {
  public:
-  // `control`: whether the page may ask, for the message.
-  LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool control);
+  // `run`: the live run whose values they are. `control`: whether the page may ask. Both are for the message.
+  LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, uint32_t run, bool control);
 
   void Set(const std::vector<std::string>& entries, Done done) override;
   void Undo(Done done) override;
@@ -33,6 +33,7 @@ class LiveTuning : public Tuning {
   void Describe();
 
   hydro_set::TuningClient client_;
+  uint32_t run_;
   bool control_;
   Done waiting_;  // for the answer; null: nothing is asked
   std::string message_;

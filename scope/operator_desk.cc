@@ -9,8 +9,8 @@
 namespace hydro::scope {
 
 OperatorDesk::OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
-                           std::function<void(std::function<void()>)> post, Tuning* tuning)
-    : config_(std::move(config)), control_(control), post_(std::move(post)), tuning_(tuning) {}
+                           std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings)
+    : config_(std::move(config)), control_(control), post_(std::move(post)), tunings_(std::move(tunings)) {}
 
 OperatorDesk::~OperatorDesk() {
   for (Errand* errand : {&stop_, &rearm_}) {
@@ -60,16 +60,20 @@ void OperatorDesk::Rearm(Done done) {
   });
 }
 
-void OperatorDesk::Set(const std::vector<std::string>& entries, Done done) {
-  if (Refused(done)) return;
-  if (tuning_ == nullptr) return done({false, "nothing can be set here", {}});
-  tuning_->Set(entries, std::move(done));
+Tuning* OperatorDesk::TuningOf(uint32_t run, const Done& done) const {
+  if (Refused(done)) return nullptr;
+  const auto tuning = tunings_.find(run);
+  if (tuning != tunings_.end()) return tuning->second;
+  done({false, "nothing can be set here", {}});
+  return nullptr;
 }
 
-void OperatorDesk::Undo(Done done) {
-  if (Refused(done)) return;
-  if (tuning_ == nullptr) return done({false, "nothing can be set here", {}});
-  tuning_->Undo(std::move(done));
+void OperatorDesk::Set(uint32_t run, const std::vector<std::string>& entries, Done done) {
+  if (Tuning* const tuning = TuningOf(run, done)) tuning->Set(entries, std::move(done));
+}
+
+void OperatorDesk::Undo(uint32_t run, Done done) {
+  if (Tuning* const tuning = TuningOf(run, done)) tuning->Undo(std::move(done));
 }
 
 }  // namespace hydro::scope

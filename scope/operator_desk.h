@@ -2,7 +2,9 @@
 // its own, so that nothing on the page waits for it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -34,10 +36,10 @@ class Tuning {
 
 class OperatorDesk {
  public:
-  // `post` runs work on the server's thread. `tuning` may be null: then nothing can be set. Without `config` (a log is shown) there is
-  // no stack.
+  // `post` runs work on the server's thread. `tunings`: by live run; of one that has none nothing can be set. Without `config` (a log is
+  // shown) there is no stack. Of a limb it is what its joints have in common.
   OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
-               std::function<void(std::function<void()>)> post, Tuning* tuning);
+               std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings);
   ~OperatorDesk();
   OperatorDesk(const OperatorDesk&) = delete;
   OperatorDesk& operator=(const OperatorDesk&) = delete;
@@ -46,11 +48,11 @@ class OperatorDesk {
   void Stop(Done done);
   // As hydro-launch --rearm.
   void Rearm(Done done);
-  void Set(const std::vector<std::string>& entries, Done done);
-  void Undo(Done done);
+  void Set(uint32_t run, const std::vector<std::string>& entries, Done done);
+  void Undo(uint32_t run, Done done);
 
   bool control() const { return control_; }
-  const Tuning* tuning() const { return tuning_; }  // null: none
+  const std::map<uint32_t, Tuning*>& tunings() const { return tunings_; }
 
  private:
   // A request of one kind: one thread at a time.
@@ -60,11 +62,13 @@ class OperatorDesk {
   };
   void Run(Errand* errand, Done done, std::function<launch::OperatorResult()> work);
   bool Refused(const Done& done) const;
+  // Null: nothing can be set of that run, and `done` has been told.
+  Tuning* TuningOf(uint32_t run, const Done& done) const;
 
   std::shared_ptr<const settings::StackConfig> config_;
   bool control_;
   std::function<void(std::function<void()>)> post_;
-  Tuning* tuning_;
+  std::map<uint32_t, Tuning*> tunings_;
   Errand stop_;
   Errand rearm_;
 };

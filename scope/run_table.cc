@@ -5,37 +5,45 @@
 
 namespace hydro::scope {
 
-std::unique_ptr<Run> RunTable::NewLive() const {
-  auto run = std::make_unique<Run>(0, name_, Run::Kind::kLive, rows_);
-  run->suffix = suffix_;
-  run->messages = std::make_unique<MessageStore>(bytes_);
+std::unique_ptr<Run> RunTable::NewRun(const Live& live) {
+  auto run = std::make_unique<Run>(0, live.name, Run::Kind::kLive, live.rows);
+  run->suffix = live.suffix;
+  run->listened = live.config;
+  run->messages = std::make_unique<MessageStore>(live.bytes);
   return run;
 }
 
-Run& RunTable::StartLive(const std::string& name, const std::string& suffix, uint64_t rows, size_t bytes) {
-  name_ = name;
-  suffix_ = suffix;
-  rows_ = rows;
-  bytes_ = bytes;
-  auto run = NewLive();
-  live_ = run.get();
+Run& RunTable::StartLive(const std::string& name, const std::string& suffix, uint64_t rows, size_t bytes,
+                         std::shared_ptr<const settings::StackConfig> config) {
+  Live& live = live_.emplace_back(Live{name, suffix, rows, bytes, std::move(config)});
+  auto run = NewRun(live);
+  live.run = run.get();
   Add(std::move(run));
-  return *live_;
+  return *live.run;
 }
 
-Run& RunTable::RestartLive() {
-  if (past_ != nullptr) Close(past_->id);
-  past_ = live_;
-  auto run = NewLive();
-  run->id = live_->id;
-  run->processes = live_->processes;
-  past_->id = next_id_++;
-  past_->kind = Run::Kind::kPast;
-  past_->name += ", the run before";
-  live_ = run.get();
+Run& RunTable::RestartLive(uint32_t id) {
+  Live& live = *std::ranges::find(live_, id, [](const Live& one) { return one.run->id; });
+  if (live.past != nullptr) Close(live.past->id);
+  live.past = live.run;
+  auto run = NewRun(live);
+  run->id = live.run->id;
+  run->of_a_limb = live.run->of_a_limb;
+  run->processes = live.run->processes;
+  live.past->id = next_id_++;
+  live.past->kind = Run::Kind::kPast;
+  live.past->name += ", the run before";
+  live.run = run.get();
   runs_.push_back(std::move(run));
-  changes_ += live_->revision + 1;
-  return *live_;
+  changes_ += live.run->revision + 1;
+  return *live.run;
+}
+
+std::vector<const Run*> RunTable::AllLive() const {
+  std::vector<const Run*> all;
+  all.reserve(live_.size());
+  for (const Live& live : live_) all.push_back(live.run);
+  return all;
 }
 
 uint32_t RunTable::Add(std::unique_ptr<Run> run) {
@@ -47,8 +55,11 @@ uint32_t RunTable::Add(std::unique_ptr<Run> run) {
 
 bool RunTable::Close(uint32_t id) {
   const auto run = std::find_if(runs_.begin(), runs_.end(), [&](const auto& r) { return r->id == id; });
-  if (run == runs_.end() || run->get() == live_) return false;
-  if (run->get() == past_) past_ = nullptr;
+  if (run == runs_.end()) return false;
+  for (Live& live : live_) {
+    if (run->get() == live.run) return false;
+    if (run->get() == live.past) live.past = nullptr;
+  }
   changes_ += (*run)->revision + 1;
   runs_.erase(run);
   return true;

@@ -12,35 +12,43 @@ namespace hydro::scope {
 
 class RunTable {
  public:
-  // Of the running stack, each keeping at least `rows` ticks and messages of up to `bytes`.
-  Run& StartLive(const std::string& name, const std::string& suffix, uint64_t rows, size_t bytes);
+  // Of a running stack, each keeping at least `rows` ticks and messages of up to `bytes`. A limb's joints have one each. `config`: null,
+  // or what the scope was started with.
+  Run& StartLive(const std::string& name, const std::string& suffix, uint64_t rows, size_t bytes,
+                 std::shared_ptr<const settings::StackConfig> config = nullptr);
 
-  // The live run becomes a past one under another id, of which the newest is kept; a new one takes its place.
-  Run& RestartLive();
+  // The live run of that id becomes a past one under another, of which the newest is kept; a new one takes its place.
+  Run& RestartLive(uint32_t id = 0);
 
   // Returns its id.
   uint32_t Add(std::unique_ptr<Run> run);
 
-  // False: there is none of that id, or it is the live one.
+  // False: there is none of that id, or it is a live one.
   bool Close(uint32_t id);
 
   Run* Find(uint32_t id);
-  Run* live() { return live_; }  // null: none
+  Run* live() { return live_.empty() ? nullptr : live_.front().run; }  // the first; null: none
+  std::vector<const Run*> AllLive() const;
   std::vector<const Run*> All() const;
   // Grows with each change of the list, or of what its runs say of themselves.
   uint64_t revision() const;
   size_t memory() const;
 
  private:
-  std::unique_ptr<Run> NewLive() const;
+  // A stack that is listened to.
+  struct Live {
+    std::string name;
+    std::string suffix;
+    uint64_t rows = 0;
+    size_t bytes = 0;
+    std::shared_ptr<const settings::StackConfig> config;
+    Run* run = nullptr;
+    Run* past = nullptr;  // the run before
+  };
+  static std::unique_ptr<Run> NewRun(const Live& live);
 
   std::vector<std::unique_ptr<Run>> runs_;
-  Run* live_ = nullptr;
-  Run* past_ = nullptr;
-  std::string name_;
-  std::string suffix_;
-  uint64_t rows_ = 0;
-  size_t bytes_ = 0;
+  std::vector<Live> live_;
   uint32_t next_id_ = 0;
   uint64_t changes_ = 0;
 };

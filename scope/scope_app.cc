@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -25,6 +26,7 @@
 #include "scope/scope_site.h"
 #include "scope/signals/log_run.h"
 #include "scope/wire/web_server.h"
+#include "settings/limb_config.h"
 #include "settings/scope_section.h"
 
 namespace hydro::scope {
@@ -37,6 +39,7 @@ constexpr auto kWatchedTurn = 16ms;  // with clients: 60 frames a second
 constexpr auto kLoneTurn = 20ms;     // without: often enough for the kernel's buffer
 constexpr auto kLogTurn = 50ms;      // a log does not change
 constexpr double kBytesPerTick = 600;  // of messages, generously
+constexpr size_t kLeastBytes = 16 << 20;  // of a run's messages
 
 std::string FileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
@@ -92,8 +95,7 @@ class ScopeApp {
  public:
   explicit ScopeApp(const ScopeRequest& request) : page_(request.page) {
     if (IsConfig(request.input)) {
-      config_ = std::make_shared<const settings::StackConfig>(
-          settings::LoadStackConfig(request.input, request.overrides));
+      LoadConfig(request);
       section_ = settings::ScopeSectionOf(config_->text, config_->file);
     } else if (!request.overrides.empty()) {
       throw InputError("--set: found it beside a log, allowed is it beside CONFIG");
@@ -103,7 +105,7 @@ class ScopeApp {
     if (config_ != nullptr) {
       Listen();
     } else {
-      OpenLog(request.input);
+      OpenLog(request.input, {.joint = request.joint});
     }
   }
 
@@ -115,12 +117,14 @@ class ScopeApp {
     const auto post = [&server](std::function<void()> work) { server.Post(std::move(work)); };
     SideWork work(post);
     DiagnoseJobs jobs(work.folder(), post);
-    OperatorDesk desk(config_, section_.control, post, tuning_.get());
-    GhostDesk ghost(&runs_, config_);
+    std::map<uint32_t, Tuning*> tunings;
+    for (const auto& [run, tuning] : tunings_) tunings[run] = tuning.get();
+    OperatorDesk desk(config_, section_.control, post, std::move(tunings));
+    GhostDesk ghost(&runs_);
     LiveContext context{.runs = runs_,
                         .desk = desk,
                         .ghost = ghost,
-                        .silent_s = [this] { return feed_ == nullptr ? -1 : feed_->silent_s(); },
+                        .silent_s = [this](uint32_t run) { return feed_ == nullptr ? -1 : feed_->silent_s(run); },
                         .now = [] { return std::chrono::steady_clock::now(); },
                         .frames = &frames_,
                         .dropped = &dropped_};
@@ -135,25 +139,49 @@ class ScopeApp {
   }
 
  private:
+  // A stack, one joint of a limb, or all of them.
+  void LoadConfig(const ScopeRequest& request) {
+    std::vector<std::string> overrides = request.overrides;
+    if (request.joint) overrides.push_back("joint=" + *request.joint);
+    if (!request.joint && settings::IsLimbFile(request.input)) {
+      limb_ = settings::LoadLimbConfig(request.input, overrides);
+      config_ = std::make_shared<const settings::StackConfig>(limb_.common);
+    } else {
+      config_ = std::make_shared<const settings::StackConfig>(settings::LoadStackConfig(request.input, overrides));
+    }
+  }
+
+  // A limb in real time sends some of its states; all joints share what history may take.
+  void StartRun(const std::string& name, std::shared_ptr<const settings::StackConfig> config) {
+    double ticks = section_.history_s * config->plant.rate_hz;
+    if (!limb_.joints.empty()) {
+      const bool sampled = config->time.mode == settings::TimeMode::kRealtime;
+      ticks /= static_cast<double>(sampled ? limb_.limb.telemetry_interval_ticks : 1);
+    }
+    const std::string suffix = config->bus.channel_suffix;
+    auto& run = runs_.StartLive(name, suffix, static_cast<uint64_t>(ticks * 1.1) + 10000,
+                               static_cast<size_t>(ticks * kBytesPerTick) + kLeastBytes, std::move(config));
+    run.of_a_limb = !limb_.joints.empty() || settings::IsLimbFile(config_->file);
+    tunings_[run.id] = std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(suffix), run.id, section_.control);
+  }
+
   void Listen() {
-    const double ticks = section_.history_s * config_->plant.rate_hz;
-    runs_.StartLive(FileName(config_->file), config_->bus.channel_suffix,
-                    static_cast<uint64_t>(ticks * 1.1) + 10000,
-                    static_cast<size_t>(ticks * kBytesPerTick) + (16 << 20));
     bus_ = process::OpenStackBus(config_->bus);
-    feed_ =
-        std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
-    tuning_ = std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(config_->bus.channel_suffix),
-                                           section_.control);
+    const std::string name = FileName(config_->file);
+    for (const settings::JointConfig& joint : limb_.joints) {
+      StartRun(joint.name + " of " + name, std::make_shared<const settings::StackConfig>(joint.config));
+    }
+    if (limb_.joints.empty()) StartRun(name, config_);
+    feed_ = std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
     if (const std::string hint = bus_->receive_buffer_hint(); !hint.empty()) {
       std::fprintf(stderr, "hydro-scope: %s\n", hint.c_str());
     }
   }
 
-  void OpenLog(const std::string& file) {
+  void OpenLog(const std::string& file, const runs::StackChoice& choice) {
     std::string problem;
     const std::string name = FileName(file);
-    for (auto& run : OpenLogRuns(file, name, &problem)) runs_.Add(std::move(run));
+    for (auto& run : OpenLogRuns(file, name, &problem, choice)) runs_.Add(std::move(run));
     if (!problem.empty()) std::fprintf(stderr, "hydro-scope: warning: %s\n", Printable(problem).c_str());
     std::fprintf(stderr, "hydro-scope: %s is open, %.0f MB of memory\n", Printable(name).c_str(),
                  static_cast<double>(runs_.memory()) / 1e6);
@@ -175,7 +203,7 @@ class ScopeApp {
   std::chrono::microseconds Turn(int clients, GhostDesk* ghost) {
     if (process::StopSignal() != 0) return std::chrono::microseconds(-1);
     if (feed_ != nullptr) feed_->Poll();
-    if (tuning_ != nullptr) tuning_->Poll();
+    for (const auto& [run, tuning] : tunings_) tuning->Poll();
     ghost->Poll();
     if (feed_ == nullptr) return clients > 0 ? kWatchedTurn : kLogTurn;
     return clients > 0 ? kWatchedTurn : kLoneTurn;
@@ -190,23 +218,25 @@ class ScopeApp {
     if (feed_ != nullptr) {
       const bus::RefusedMessages& refused = bus_->refused();
       text += ",\"messages\":" + std::to_string(feed_->messages()) +
-              ",\"states\":" + std::to_string(feed_->intake().states()) +
-              ",\"undecodable\":" + std::to_string(feed_->intake().undecodable()) +
-              ",\"foreign_states\":" + std::to_string(feed_->intake().foreign()) +
+              ",\"states\":" + std::to_string(feed_->states()) +
+              ",\"undecodable\":" + std::to_string(feed_->undecodable()) +
+              ",\"foreign_states\":" + std::to_string(feed_->foreign()) +
               ",\"messages_refused\":" + std::to_string(refused.total());
     }
     return text;
   }
 
   PageFiles page_;
-  std::shared_ptr<const settings::StackConfig> config_;  // null: a log is shown
+  // Null: a log is shown. Of a limb what its joints have in common.
+  std::shared_ptr<const settings::StackConfig> config_;
+  settings::LimbConfig limb_;  // without joints: the stack of config_ alone
   settings::ScopeSection section_;
   std::string token_;
   RunTable runs_;
   bus::WallClock clock_;
   std::unique_ptr<bus::UdpmBus> bus_;
   std::unique_ptr<LiveFeed> feed_;
-  std::unique_ptr<LiveTuning> tuning_;
+  std::map<uint32_t, std::unique_ptr<LiveTuning>> tunings_;  // by live run
   int64_t frames_ = 0;
   int64_t dropped_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "base/input_error.h"
@@ -144,7 +145,9 @@ void ScopeSite::Open(const Request& request, const Reply& reply) {
   const auto given = request.query.find("name");
   const std::string name = PlainName(given == request.query.end() ? "run.lcmlog" : given->second);
   const std::string file = request.body_file;
-  if (context_.runs.All().size() >= kMostRuns) {
+  std::set<std::string> files;  // a limb's log is one, with a run for each joint
+  for (const Run* run : context_.runs.All()) files.insert(run->log_file);
+  if (files.size() >= kMostRuns) {
     std::remove(file.c_str());
     return reply(ErrorResponse(409, "16 runs are open already; close one"));
   }

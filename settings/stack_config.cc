@@ -118,6 +118,12 @@ std::vector<std::string> JointSuffixes(const StackConfig& config) {
   return config.joints.empty() ? std::vector{config.bus.channel_suffix} : config.bus.joint_suffixes;
 }
 
+std::vector<std::string> StackSuffixes(const StackConfig& config) {
+  std::vector<std::string> suffixes{config.bus.channel_suffix};
+  suffixes.insert(suffixes.end(), config.bus.joint_suffixes.begin(), config.bus.joint_suffixes.end());
+  return suffixes;
+}
+
 int64_t OldestPressureCommandTicks(const StackConfig& config) {
   return config.plant.command_delay_ticks + config.position_interval_ticks +
          static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz));

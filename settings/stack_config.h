@@ -228,6 +228,9 @@ int64_t OldestPressureCommandTicks(const StackConfig& config);
 // The suffixes of the channels on which states and commands are: those of a limb's joints, or the stack's own.
 std::vector<std::string> JointSuffixes(const StackConfig& config);
 
+// Those of all stacks on its bus: its own, and those of a limb's joints.
+std::vector<std::string> StackSuffixes(const StackConfig& config);
+
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);
 

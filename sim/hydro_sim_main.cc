@@ -69,7 +69,11 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
   std::vector<hydro::tuned_settings_t> tunings;
-  if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
+  if (!tunings_of.empty()) {
+    std::vector<std::string> overrides = options.overrides;
+    const auto joint = hydro::settings::TakeJointChoice(&overrides);
+    tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of, {.joint = joint}).messages);
+  }
   std::shared_ptr<const hydro::model::ModelDescription> machine;
   if (!machine_file.empty()) {
     machine = std::make_shared<const hydro::model::ModelDescription>(LoadMachine(machine_file, *config));

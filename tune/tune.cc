@@ -12,6 +12,7 @@
 #include "base/text_file.h"
 #include "settings/moved_paths.h"
 #include "settings/stack_config.h"
+#include "settings/limb_config.h"
 #include "settings/toml/toml_edit.h"
 #include "tune/refusal.h"
 #include "tune/report.h"
@@ -31,6 +32,7 @@ void CheckRange(const char* option, int value, int least, int most) {
 
 settings::StackConfig Load(const TuneRequest& request) {
   std::vector<std::string> overrides;
+  if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);
   if (request.interval) {
     if (!ParseNumber(*request.interval)) {
       throw InputError("--interval: found " + Quoted(*request.interval) + ", allowed a number of seconds");
@@ -81,10 +83,10 @@ Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
   return proposal;
 }
 
-// The given text with the gains of `tuned`, for a file `output`.
+// The given text with the gains of `tuned`, for a file `output`. Of a limb, the stack of this joint alone.
 std::string TunedText(const settings::StackConfig& given, const settings::StackConfig& tuned,
                       const std::string& output) {
-  const std::string before = ReadTextFile(given.file);
+  const std::string before = settings::IsLimbFile(given.file) ? given.text : ReadTextFile(given.file);
   const Keys old =
       GainKeys(settings::ParseStackConfig(before, given.file, given.model.text, given.model.file));
   Keys keys = settings::MovedPaths(given, output);

@@ -9,7 +9,7 @@
 
 #include "base/text_file.h"
 #include "launch/doctor/doctor_facts.h"
-#include "settings/stack_config.h"
+#include "settings/limb_config.h"
 
 namespace hydro::launch {
 namespace {
@@ -29,10 +29,11 @@ DoctorTask TaskOf(const std::string& config_file, const std::vector<std::string>
     task.priority = kUsualPriority;
     return task;
   }
-  const settings::StackConfig config = settings::LoadStackConfig(config_file, overrides);
+  const settings::StackConfig config = settings::LoadCommonConfig(config_file, overrides);
   task.config = config_file;
   task.url = bus::ParseUdpmUrl(config.bus.url);
   task.channel_suffix = config.bus.channel_suffix;
+  task.joint_suffixes = config.bus.joint_suffixes;
   task.open_network = task.url.ttl > 0 && config.bus.key_file.empty();
   if (config.time.mode == settings::TimeMode::kRealtime) task.stale_input_s = config.limits.stale_input_s;
   std::set<std::string> hosts;

@@ -26,6 +26,7 @@ struct Finding {
 struct DoctorTask {
   bus::UdpmUrl url;
   std::string channel_suffix;
+  std::vector<std::string> joint_suffixes = {};  // of a limb: those of its joints' channels
   bool several_hosts = false;
   bool open_network = false;  // messages may come from other hosts, and nothing authenticates them
   int priority = 0;           // the highest SCHED_FIFO priority of its processes here; 0: none asks for one

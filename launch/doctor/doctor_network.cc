@@ -126,7 +126,8 @@ Finding NeighbourFinding(const DoctorTask& task, const MachineFacts& facts) {
   if (facts.listened_s <= 0) return {kCheck, true, "could not listen: see above", ""};
   std::vector<std::string> others;
   for (const HeardStack& stack : facts.stacks) {
-    if (stack.suffix != task.channel_suffix) {
+    const auto joint = std::find(task.joint_suffixes.begin(), task.joint_suffixes.end(), stack.suffix);
+    if (stack.suffix != task.channel_suffix && joint == task.joint_suffixes.end()) {
       others.push_back(Joined(stack));
       continue;
     }

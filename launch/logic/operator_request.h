@@ -35,7 +35,7 @@ class LocalProcesses {
   virtual std::string Left() = 0;
 };
 
-// Publishes HYDRO_STOP until everyone has left who is heard or is among `local`. Exit code 0; 1 when nobody is there or a process
+// Publishes HYDRO_STOP, of a limb on each joint's channels too, until everyone has left who is heard or is among `local`. Exit code 0; 1 when nobody is there or a process
 // does not end.
 OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                            LocalProcesses& local, const OperatorTiming& timing = {});
@@ -43,8 +43,8 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
 // "stopped: 3 processes have ended"
 std::string Stopped(size_t count);
 
-// Asks the plant (or driver) to end its latched faults. Exit code 0 when it did or had none; 1 when it
-// refused, or when none is heard or more than one.
+// Asks the plant (or driver) to end its latched faults; of a limb that of every joint at the same time, if all are heard.
+// Exit code 0 when each did or had none; 1 when one refused, or when of one none is heard or more than one.
 OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing = {});
 

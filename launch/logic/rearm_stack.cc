@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <hydro/rearm_t.hpp>
 #include <hydro/state_t.hpp>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "bus/channels.h"
 #include "bus/session.h"
@@ -15,47 +19,137 @@ using namespace std::chrono_literals;
 constexpr auto kListen = 300ms;  // long enough to hear a second plant
 constexpr auto kRepeat = 100ms;
 
+// The plant of a stack, or of a joint, that is asked.
+class Asked {
+ public:
+  Asked(bus::Bus& bus, std::string joint, const std::string& suffix, int64_t session)
+      : bus_(bus), joint_(std::move(joint)), channels_(suffix), session_(session) {
+    bus.Subscribe<state_t>(channels_.Of<state_t>(), [this](const state_t& state) {
+      plants_.insert(state.session);
+      tick_ = state.tick;
+    });
+    bus.Subscribe<rearm_t>(channels_.Of<rearm_t>(), [this](const rearm_t& message) {
+      const bool ours = message.kind != rearm_t::REQUEST && message.addressee == session_;
+      if (ours && plants_.contains(message.session) && !answer_) answer_ = message;
+    });
+  }
+
+  const std::string& joint() const { return joint_; }
+  bool heard() const { return !plants_.empty(); }
+  size_t plants() const { return plants_.size(); }
+  bool answered() const { return answer_.has_value(); }
+  bool accepted() const { return answer_ && answer_->kind == rearm_t::ACCEPTED; }
+
+  void Ask(int64_t utime) {
+    rearm_t request;
+    request.utime = utime;
+    request.tick = tick_;
+    request.session = session_;
+    request.addressee = *plants_.begin();
+    request.kind = rearm_t::REQUEST;
+    request.source = "launch";
+    request.text = "hydro-launch --rearm";
+    bus_.Publish(channels_.Of<rearm_t>(), request);
+  }
+
+  // What came of it, in words.
+  std::string Text() const {
+    if (!answer_) return "the plant does not answer";
+    return accepted() ? answer_->text : "refused by the " + answer_->source + ": " + answer_->text;
+  }
+
+ private:
+  bus::Bus& bus_;
+  std::string joint_;  // empty: it is a stack by itself
+  bus::Channels channels_;
+  int64_t session_;
+  std::set<int64_t> plants_;
+  int64_t tick_ = -1;
+  std::optional<rearm_t> answer_;
+};
+
+using Joints = std::vector<std::unique_ptr<Asked>>;
+
+Joints PlantsOf(bus::Bus& bus, const settings::StackConfig& config, int64_t session) {
+  Joints all;
+  if (config.joints.empty()) {
+    all.push_back(std::make_unique<Asked>(bus, "", config.bus.channel_suffix, session));
+  }
+  for (size_t i = 0; i < config.joints.size(); ++i) {
+    all.push_back(std::make_unique<Asked>(bus, config.joints[i], config.bus.joint_suffixes.at(i), session));
+  }
+  return all;
+}
+
+template <class Is>
+bool All(const Joints& joints, Is is) {
+  return std::all_of(joints.begin(), joints.end(), [&](const auto& joint) { return is(*joint); });
+}
+
+// "hip, knee" of those for which `is` holds.
+template <class Is>
+std::string Names(const Joints& joints, Is is) {
+  std::string names;
+  for (const auto& joint : joints) {
+    if (is(*joint)) names += (names.empty() ? "" : ", ") + joint->joint();
+  }
+  return names;
+}
+
+// Why nobody is asked; empty: all are there, each once. Of a limb it is all or nothing: who re-arms it counts on each joint.
+std::string WhyNot(const Joints& joints, const std::string& url) {
+  const auto silent = [](const Asked& joint) { return !joint.heard(); };
+  if (All(joints, silent)) return "no plant or driver is heard on " + url;
+  if (const std::string names = Names(joints, silent); !names.empty()) {
+    return "no plant or driver of " + names + " is heard on " + url +
+           "; no joint was re-armed (--joint NAME re-arms one alone)";
+  }
+  for (const auto& joint : joints) {
+    if (joint->plants() == 1) continue;
+    return (joint->joint().empty() ? "" : joint->joint() + ": ") + "heard the states of " +
+           std::to_string(joint->plants()) + " plants on " + url + ", allowed is one";
+  }
+  return "";
+}
+
+// "hip: ended pressure_limit; knee, ankle: no fault is latched": joints with the same answer together, refusals first.
+std::string Answers(const Joints& joints) {
+  std::string text;
+  for (const bool accepted : {false, true}) {
+    std::map<std::string, std::string> names;
+    for (const auto& joint : joints) {
+      if (joint->accepted() != accepted) continue;
+      std::string& list = names[joint->Text()];
+      list += (list.empty() ? "" : ", ") + joint->joint();
+    }
+    for (const auto& [answer, list] : names) text += (text.empty() ? "" : "; ") + list + ": " + answer;
+  }
+  return text;
+}
+
 }  // namespace
 
 OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing) {
-  const bus::Channels channels(config.bus.channel_suffix);
-  const int64_t session = bus::IdentityOn(bus, clock).session;
-  std::set<int64_t> plants;
-  int64_t tick = -1;
-  std::optional<rearm_t> answer;
-  bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
-    plants.insert(state.session);
-    tick = state.tick;
-  });
-  bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [&](const rearm_t& message) {
-    const bool ours = message.kind != rearm_t::REQUEST && message.addressee == session;
-    if (ours && plants.contains(message.session) && !answer) answer = message;
-  });
+  const Joints joints = PlantsOf(bus, config, bus::IdentityOn(bus, clock).session);
+  const auto heard = [](const Asked& joint) { return joint.heard(); };
   const auto start = clock.Now();
-  while (plants.empty() && clock.Now() - start < timing.presence) bus.HandleUntil(clock.Now() + kRepeat);
-  if (plants.empty()) return {1, "no plant or driver is heard on " + config.bus.url};
-  for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
-  if (plants.size() > 1) {
-    return {1, "heard the states of " + std::to_string(plants.size()) + " plants on " + config.bus.url +
-                   ", allowed is one"};
+  while (!All(joints, heard) && clock.Now() - start < timing.presence) bus.HandleUntil(clock.Now() + kRepeat);
+  if (All(joints, heard)) {
+    for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
   }
+  if (const std::string why = WhyNot(joints, config.bus.url); !why.empty()) return {1, why};
+  const auto answered = [](const Asked& joint) { return joint.answered(); };
   const auto asked = clock.Now();
-  while (!answer && clock.Now() - asked < timing.presence) {
-    rearm_t request;
-    request.utime = clock.Utime();
-    request.tick = tick;
-    request.session = session;
-    request.addressee = *plants.begin();
-    request.kind = rearm_t::REQUEST;
-    request.source = "launch";
-    request.text = "hydro-launch --rearm";
-    bus.Publish(channels.Of<rearm_t>(), request);
-    for (const auto until = clock.Now() + kRepeat; !answer && clock.Now() < until;) bus.HandleUntil(until);
+  while (!All(joints, answered) && clock.Now() - asked < timing.presence) {
+    for (const auto& joint : joints) {
+      if (!joint->answered()) joint->Ask(clock.Utime());
+    }
+    for (const auto until = clock.Now() + kRepeat; !All(joints, answered) && clock.Now() < until;) bus.HandleUntil(until);
   }
-  if (!answer) return {1, "the plant does not answer"};
-  if (answer->kind != rearm_t::ACCEPTED) return {1, "refused by the " + answer->source + ": " + answer->text};
-  return {0, "re-armed: " + answer->text};
+  const bool accepted = All(joints, [](const Asked& joint) { return joint.accepted(); });
+  const std::string text = config.joints.empty() ? joints.front()->Text() : Answers(joints);
+  return {accepted ? 0 : 1, (accepted ? "re-armed: " : "") + text};
 }
 
 }  // namespace hydro::launch

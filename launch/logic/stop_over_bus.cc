@@ -6,6 +6,9 @@
 #include <hydro/state_t.hpp>
 #include <hydro/stop_t.hpp>
 #include <map>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "bus/channels.h"
 #include "bus/session.h"
@@ -19,6 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kMostProcesses = 256;   // a stack has five; a flood of made-up ones is not kept
+constexpr size_t kMostPartsOfAJoint = 8;
 constexpr auto kRepeat = 50ms;           // UDP may lose a message
 constexpr auto kUnheard = 500ms;         // for this long also when no process has been heard
 constexpr auto kLocalPatience = 1500ms;  // for processes of this machine to end because of the bus
@@ -26,28 +30,29 @@ constexpr auto kLocalPatience = 1500ms;  // for processes of this machine to end
 // The processes that are heard, until they announce their end.
 class Presence {
  public:
-  Presence(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, const LocalProcesses& local)
-      : clock_(clock), local_(local), host_(bus::IdentityOn(bus, clock).host) {
-    bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& s) { Heard(s.session, "plant"); });
-    bus.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(), [this](const loop_statistics_t& s) {
-      Heard(s.session, s.role + " on " + s.host);
-    });
-    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
-      if (s.role == process::kLaunchRole) return;  // it only asked
-      Heard(s.session, process::ProcessName(s));
-      const auto found = processes_.find(s.session);
-      if (found == processes_.end()) return;
-      Process& process = found->second;
-      process.local = s.host == host_ && local_.Found(s.pid);
-      process.left = process::HasLeft(s);
-    });
+  Presence(bus::Bus& bus, const bus::Clock& clock, const std::vector<bus::Channels>& stacks,
+           const LocalProcesses& local)
+      : clock_(clock),
+        local_(local),
+        host_(bus::IdentityOn(bus, clock).host),
+        most_(kMostProcesses + stacks.size() * kMostPartsOfAJoint) {
+    for (const bus::Channels& channels : stacks) Listen(bus, channels);
   }
 
   bool anybody() const { return !processes_.empty(); }
-  // How many of them were not found on this machine.
+  // How many of them were not found on this machine. The joints of a limb are one.
   size_t others() const {
-    return static_cast<size_t>(std::count_if(processes_.begin(), processes_.end(),
-                                             [](const auto& entry) { return !entry.second.local; }));
+    std::set<std::pair<std::string, int32_t>> known;
+    size_t nameless = 0;
+    for (const auto& [session, process] : processes_) {
+      if (process.local) continue;
+      if (process.id) {
+        known.insert(*process.id);
+      } else {
+        ++nameless;
+      }
+    }
+    return known.size() + nameless;
   }
   bus::Clock::TimePoint newest() const { return newest_; }
 
@@ -65,10 +70,28 @@ class Presence {
     std::string name;
     bool left = false;
     bool local = false;  // it was found on this machine
+    std::optional<std::pair<std::string, int32_t>> id;  // host and process id, where it has said so
   };
 
+  void Listen(bus::Bus& bus, const bus::Channels& channels) {
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& s) { Heard(s.session, "plant"); });
+    bus.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(), [this](const loop_statistics_t& s) {
+      Heard(s.session, s.role + " on " + s.host);
+    });
+    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
+      if (s.role == process::kLaunchRole) return;  // it only asked
+      Heard(s.session, process::ProcessName(s));
+      const auto found = processes_.find(s.session);
+      if (found == processes_.end()) return;
+      Process& process = found->second;
+      process.local = s.host == host_ && local_.Found(s.pid);
+      process.left = process::HasLeft(s);
+      process.id = {s.host, s.pid};
+    });
+  }
+
   void Heard(int64_t session, const std::string& name) {
-    if (processes_.size() >= kMostProcesses && !processes_.contains(session)) return;
+    if (processes_.size() >= most_ && !processes_.contains(session)) return;
     newest_ = clock_.Now();
     Process& process = processes_[session];
     if (process.name.size() < name.size()) process.name = name;
@@ -77,6 +100,7 @@ class Presence {
   const bus::Clock& clock_;
   const LocalProcesses& local_;
   const std::string host_;
+  const size_t most_;
   bus::Clock::TimePoint newest_{};
   std::map<int64_t, Process> processes_;
 };
@@ -89,8 +113,9 @@ std::string Stopped(size_t count) {
 
 OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                            LocalProcesses& local, const OperatorTiming& timing) {
-  const bus::Channels channels(config.bus.channel_suffix);
-  Presence presence(bus, clock, channels, local);
+  std::vector<bus::Channels> stacks;
+  for (const std::string& suffix : settings::StackSuffixes(config)) stacks.emplace_back(suffix);
+  Presence presence(bus, clock, stacks, local);
   stop_t stop;
   stop.tick = -1;
   stop.session = bus::IdentityOn(bus, clock).session;
@@ -106,7 +131,7 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
     const bool here = !local.Left().empty();
     if (now >= next_stop && (now - start < kUnheard || !remaining.empty())) {
       stop.utime = clock.Utime();
-      bus.Publish(channels.Of<stop_t>(), stop);
+      for (const bus::Channels& channels : stacks) bus.Publish(channels.Of<stop_t>(), stop);
       next_stop = now + kRepeat;
     }
     if (!presence.anybody() && local.found() == 0 && now - start > timing.presence) {

@@ -1,11 +1,14 @@
 // What the page knows: the runs, the one that is looked at, its events, its layout, and the user's
 // preferences. Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events",
-// "restart".
+// "restart", "tuning" and "processes" (of the run that is shown).
 
 import { EventBook } from './event_book.js';
 import * as layouts from './settings/layout.js';
 import { baseName } from './settings/run_name.js';
 import { loadPreferences, savePreferences } from './settings/preferences.js';
+
+// Messages about one run, of which the newest holds: those of the run that is shown are told on under their own names.
+const kOfARun = ['tuning', 'processes'];
 
 export class Scope {
   hello = null;
@@ -14,6 +17,7 @@ export class Scope {
   layout = { panes: [] };
   events = new EventBook();
   ghost = false;
+  #told = Object.fromEntries(kOfARun.map((name) => [name, new Map()])); // name -> run -> the newest message
 
   constructor(link, api, signals, storage) {
     this.link = link;
@@ -25,6 +29,12 @@ export class Scope {
     signals.on('op:runs', (message) => this.#setRuns(message.runs));
     signals.on('op:clock', (message) => this.#tick(message));
     signals.on('op:event', (message) => this.#event(message));
+    for (const name of kOfARun) {
+      signals.on(`op:${name}`, (message) => {
+        this.#told[name].set(message.run ?? 0, message);
+        if ((message.run ?? 0) === this.run?.run) signals.emit(name, message);
+      });
+    }
   }
 
   get live() {
@@ -60,6 +70,7 @@ export class Scope {
     this.ghost = false;
     this.signals.emit('run', run);
     this.signals.emit('layout');
+    for (const name of kOfARun) this.signals.emit(name, this.#told[name].get(number) ?? { run: number, entries: [], list: [] });
   }
 
   setLayout(layout) {

@@ -84,7 +84,9 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   } else if (sequence_ >= 0) {  // a recording without these rows, which was imported
     const int64_t expected =
         SaturatingSum(SaturatingSum(tick_, 1), std::max<int64_t>(state.skipped_ticks, 0));
-    if (state.tick > expected) {
+    if (run_->of_a_limb) {
+      FollowSampling(SaturatingDifference(state.tick, tick_) - std::max<int64_t>(state.skipped_ticks, 0));
+    } else if (state.tick > expected) {
       const std::string first = std::to_string(expected), last = std::to_string(state.tick - 1);
       AddEvent(state.time, "gap", "", "",
                (first == last ? "tick " + first : "ticks " + first + " to " + last) + " missing");
@@ -94,6 +96,15 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   tick_ = state.tick;
   time_ = state.time;
   ticks_.Add(state, utime);
+}
+
+// What a limb leaves out is not missing. The ends of a run, and late ticks, are no other interval.
+void Intake::FollowSampling(int64_t ticks) {
+  if (ticks == sample_ticks_ && ticks > 1 && run_->sample_ticks != ticks) {
+    run_->sample_ticks = ticks;
+    ++run_->revision;
+  }
+  sample_ticks_ = ticks;
 }
 
 void Intake::OnReference(const arm_reference_t& reference) {

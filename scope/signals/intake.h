@@ -27,6 +27,9 @@ class Intake {
   // A message as it was received; any other than those of a stack of that suffix are ignored. `utime`: us, of its arrival.
   void Take(std::string_view channel, const uint8_t* data, int size, int64_t utime);
 
+  // The same on the channels of the limb whose joint this stack is: what concerns all joints counts as this one's too.
+  void TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size, int64_t utime);
+
   // No more is coming for now: rows that wait for answers are complete.
   void Flush() { ticks_.Flush(); }
 
@@ -44,6 +47,7 @@ class Intake {
   void OnState(const state_t& state, int64_t utime);
   bool Follow(const state_t& state, int64_t utime);
   void OnReference(const arm_reference_t& reference);
+  void FollowSampling(int64_t ticks);
 
   // intake_events.cc
   bool TakeRare(std::string_view channel, const uint8_t* data, int size, int64_t utime);
@@ -77,6 +81,7 @@ class Intake {
   int64_t sequence_ = -1;
   int64_t tick_ = -1;
   double time_ = 0;
+  int64_t sample_ticks_ = 1;  // before the newest state
 
   std::optional<run_description_t> early_description_;
 

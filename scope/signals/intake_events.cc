@@ -68,6 +68,25 @@ bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, i
          take([&](const run_description_t& m) { OnDescription(m); }, run_description_t{});
 }
 
+void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size,
+                        int64_t utime) {
+  if (run_ == nullptr) return;
+  const auto take = [&]<class Message>(auto on_message, Message message) {
+    if (channel != limb.Of<Message>()) return false;
+    Decoded(&message, data, size) ? on_message(message) : void(++undecodable_);
+    return true;
+  };
+  const auto on_stop = [&](stop_t stop) {
+    stop.addressee = 0;  // the limb's session is not the joint's
+    OnStop(stop, utime);
+  };
+  static_cast<void>(take([&](const fault_t& m) { OnFault(m); }, fault_t{}) ||
+                    take([&](const active_faults_t& m) { OnActiveFaults(m); }, active_faults_t{}) ||
+                    take(on_stop, stop_t{}) ||
+                    take([&](const process_status_t& m) { OnStatus(m, utime); }, process_status_t{}) ||
+                    take([&](const loop_statistics_t& m) { OnStatistics(m, utime); }, loop_statistics_t{}));
+}
+
 // A plant describes its run before its first state.
 void Intake::OnDescription(const run_description_t& description) {
   if (session_ && description.session == session_) {

@@ -1,8 +1,13 @@
 #include "scope/signals/log_run.h"
 
+#include <iterator>
+#include <limits>
 #include <map>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
+#include "bus/channels.h"
 #include "log/log_reader.h"
 #include "runs/channel_suffix.h"
 #include "scope/signals/intake.h"
@@ -10,8 +15,8 @@
 namespace hydro::scope {
 namespace {
 
-// The suffix of the stack that the log holds.
-std::string SuffixOf(log::LogReader& reader, const std::string& file) {
+// The names of the channels that the log holds.
+runs::RunLog ChannelsOf(log::LogReader& reader, const std::string& file) {
   std::map<std::string, int64_t, std::less<>> events;
   log::LogEvent event;
   while (reader.Next(event)) {
@@ -27,26 +32,78 @@ std::string SuffixOf(log::LogReader& reader, const std::string& file) {
     summary.events = count;
     names.channels.push_back(summary);
   }
-  return runs::ChooseSuffix(names, std::nullopt);
+  return names;
+}
+
+// A stack's messages into its runs.
+class StackOfLog {
+ public:
+  StackOfLog(std::string file, std::string name, std::string suffix)
+      : file_(std::move(file)), name_(std::move(name)), suffix_(std::move(suffix)), channels_(suffix_) {}
+
+  const bus::Channels& channels() const { return channels_; }
+  Intake& intake() { return intake_; }
+  std::vector<std::unique_ptr<Run>>& runs() { return runs_; }
+
+ private:
+  Run* NextRun() {
+    const std::string name = runs_.empty() ? name_ : name_ + " (" + std::to_string(runs_.size() + 1) + ")";
+    runs_.push_back(std::make_unique<Run>(0, name, Run::Kind::kLog, std::numeric_limits<uint64_t>::max()));
+    runs_.back()->log_file = file_;
+    runs_.back()->suffix = suffix_;
+    return runs_.back().get();
+  }
+
+  const std::string file_;
+  const std::string name_;
+  const std::string suffix_;
+  const bus::Channels channels_;
+  std::vector<std::unique_ptr<Run>> runs_;
+  Intake intake_{suffix_, [this](int64_t) { return NextRun(); }};
+};
+
+// All joints of a limb, or the one stack that is meant; and what the limb's own channels end in.
+std::vector<std::unique_ptr<StackOfLog>> StacksOf(const runs::RunLog& channels, const std::string& name,
+                                                  const runs::StackChoice& choice, std::string* limb) {
+  std::vector<std::unique_ptr<StackOfLog>> stacks;
+  const std::vector<runs::JointChannels> joints = runs::JointsIn(channels);
+  const bool all = runs::IsWholeLimb(channels, choice);
+  const std::string chosen = all ? "" : runs::ChooseSuffix(channels, choice);
+  for (const runs::JointChannels& joint : joints) {
+    if (!all && joint.suffix != chosen) continue;
+    *limb = joint.limb;
+    stacks.push_back(std::make_unique<StackOfLog>(channels.file, joint.name + " of " + name, joint.suffix));
+  }
+  if (stacks.empty()) stacks.push_back(std::make_unique<StackOfLog>(channels.file, name, chosen));
+  return stacks;
 }
 
 }  // namespace
 
 std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std::string& name,
-                                              std::string* problem) {
+                                              std::string* problem, const runs::StackChoice& choice) {
   log::LogReader reader(file, log::OnDamage::kStop);
-  const std::string suffix = SuffixOf(reader, file);
-  std::vector<std::unique_ptr<Run>> runs;
-  Intake intake(suffix, [&](int64_t) {
-    const std::string its_name = runs.empty() ? name : name + " (" + std::to_string(runs.size() + 1) + ")";
-    runs.push_back(std::make_unique<Run>(0, its_name, Run::Kind::kLog, std::numeric_limits<uint64_t>::max()));
-    runs.back()->log_file = file;
-    runs.back()->suffix = suffix;
-    return runs.back().get();
-  });
+  std::string limb;
+  const auto stacks = StacksOf(ChannelsOf(reader, file), name, choice, &limb);
+  std::unordered_map<std::string_view, StackOfLog*> by_channel;
+  for (const auto& stack : stacks) {
+    for (const std::string& channel : stack->channels().names()) by_channel.emplace(channel, stack.get());
+  }
+  const bus::Channels of_limb(limb);
   log::LogEvent event;
-  while (reader.Next(event)) intake.Take(event.channel, event.data, event.size, event.utime);
-  intake.Flush();
+  while (reader.Next(event)) {
+    const auto stack = by_channel.find(event.channel);
+    if (stack != by_channel.end()) {
+      stack->second->intake().Take(event.channel, event.data, event.size, event.utime);
+      continue;
+    }
+    for (const auto& one : stacks) one->intake().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
+  }
+  std::vector<std::unique_ptr<Run>> runs;
+  for (const auto& stack : stacks) {
+    stack->intake().Flush();
+    std::move(stack->runs().begin(), stack->runs().end(), std::back_inserter(runs));
+  }
   if (runs.empty()) {
     throw InputError(file + ": found no states of a stack, allowed is a log with HYDRO_STATE messages");
   }

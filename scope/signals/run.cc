@@ -32,6 +32,7 @@ void Run::Describe(const run_description_t& given) {
   if (same) return;
   description = given;
   rate_hz = given.rate_hz;
+  of_a_limb = of_a_limb || given.program == "hydro-limb";
   config = nullptr;
   config_problem.clear();
   ++revision;
@@ -47,7 +48,11 @@ void Run::Describe(const run_description_t& given) {
 }
 
 std::optional<Signal> Run::Find(const std::string& channel_id) const {
-  if (const auto column = IndexOf(tick_channels_, channel_id)) return Signal{&ticks, *column, 0};
+  if (const auto column = IndexOf(tick_channels_, channel_id)) {
+    // A limb's samples last until the next: what is missing for longer is a gap.
+    const bool sampled = sample_ticks > 1 && rate_hz > 0;
+    return Signal{&ticks, *column, sampled ? kSampleHold * static_cast<double>(sample_ticks) / rate_hz : 0};
+  }
   if (const auto column = IndexOf(ghost_channels_, channel_id)) return Signal{&ghost, *column, 0};
   for (const auto& [role, history] : loops) {
     if (const auto column = IndexOf(LoopChannels(role), channel_id)) {

@@ -47,8 +47,8 @@ struct Run {
 
   double first_time() const { return ticks.empty() ? 0 : ticks.time(ticks.begin()); }
   double last_time() const { return ticks.empty() ? 0 : ticks.last_time(); }
-  // s, between two ticks; 0 where they are uneven or not known.
-  double spacing() const { return rate_hz > 0 ? 1 / rate_hz : 0; }
+  // s, between two states; 0 where they are uneven, as a limb's samples are, or not known.
+  double spacing() const { return rate_hz > 0 && sample_ticks == 1 ? 1 / rate_hz : 0; }
   size_t memory() const;
 
   uint32_t id;
@@ -56,6 +56,9 @@ struct Run {
   Kind kind;
   int64_t session = 0;
   double rate_hz = 0;
+  bool of_a_limb = false;    // hydro-limb sends it: states may be missing on purpose (limb.telemetry_hz)
+  int64_t sample_ticks = 1;  // from one state to the next; 1: all are there
+  std::shared_ptr<const settings::StackConfig> listened = {};  // of CONFIG, for a live run and the one before it; null: a log's
   History ticks;
   History ghost;
   std::map<std::string, History> loops;            // by role

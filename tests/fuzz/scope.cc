@@ -54,13 +54,13 @@ void Scope(const uint8_t* data, size_t size) {
   }
   run.events.Add({0, 0.05, "fault", "plant", "code", "text"});
   scope::OperatorDesk desk(
-      nullptr, false, [](const std::function<void()>& work) { work(); }, nullptr);
+      nullptr, false, [](const std::function<void()>& work) { work(); }, {});
   NoGhost ghost;
   auto now = std::chrono::steady_clock::time_point() + std::chrono::hours(1);
   const scope::LiveContext context{.runs = runs,
                                    .desk = desk,
                                    .ghost = ghost,
-                                   .silent_s = [] { return -1.0; },
+                                   .silent_s = [](uint32_t) { return -1.0; },
                                    .now = [&now] { return now += std::chrono::milliseconds(20); },
                                    .frames = nullptr,
                                    .dropped = nullptr};

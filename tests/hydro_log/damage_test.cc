@@ -135,7 +135,7 @@ void DamageTest::ExpectRepairable(const std::string& bytes) {
   log::WriteBytes(Path("log"), bytes);
   ForgetRead(Path("repaired"));  // each repair stands for another process
   log::RepairLog(Path("log"), Path("repaired"));
-  const runs::RunLog log = runs::ReadRunLog(Path("repaired"), std::nullopt, runs::Undecodable::kRefused);
+  const runs::RunLog log = runs::ReadRunLog(Path("repaired"), {}, runs::Undecodable::kRefused);
   EXPECT_EQ(log.verdict.completeness, Completeness::kComplete);
   EXPECT_THAT(log.verdict.note, testing::StartsWith(bytes == bytes_ ? "" : "repaired from log"));
   std::filesystem::remove(Path("repaired"));

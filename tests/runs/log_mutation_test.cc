@@ -25,7 +25,7 @@ class LogMutationTest : public log::LogTest {
     };
     attempt([&] { log::ReadEvents(Path("log")); });
     attempt([&] {
-      const runs::RunLog log = runs::ReadRunLog(Path("log"), std::nullopt, runs::Undecodable::kLeftOut);
+      const runs::RunLog log = runs::ReadRunLog(Path("log"), {}, runs::Undecodable::kLeftOut);
       runs::FirstDifference(log.messages, "a", log.messages, "b");
       runs::ExportRun(log);
     });

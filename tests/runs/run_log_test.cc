@@ -35,9 +35,9 @@ TEST_F(RunLogTest, SeveralSuffixes) {
   log::WriteBytes(Path("both"), log::ReadBytes(Path("one")) + log::ReadBytes(Path("two")));
   EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both")); }),
               AllOf(HasSubstr(Path("both")), HasSubstr("'', '_2'"), HasSubstr("--suffix")));
-  EXPECT_EQ(ReadRunLog(Path("both"), "").messages.Of<state_t>().size(), 3u);
-  EXPECT_EQ(ReadRunLog(Path("both"), "_2").messages.Of<state_t>().size(), 5u);
-  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both"), "_3"); }),
+  EXPECT_EQ(ReadRunLog(Path("both"), {.suffix = ""}).messages.Of<state_t>().size(), 3u);
+  EXPECT_EQ(ReadRunLog(Path("both"), {.suffix = "_2"}).messages.Of<state_t>().size(), 5u);
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both"), {.suffix = "_3"}); }),
               AllOf(HasSubstr("no channel with suffix '_3'"), HasSubstr("'', '_2'")));
 }
 
@@ -56,7 +56,7 @@ TEST_F(RunLogTest, StraySuffix) {
     EXPECT_EQ(log.suffix, "");
     EXPECT_THAT(log.other_suffixes, testing::ElementsAre("_X"));
     EXPECT_THAT(DescribeCaution(log), HasSubstr("read channels with suffix '', not those with '_X'"));
-    EXPECT_EQ(ReadRunLog(Path("log"), "_X").messages.Of<state_t>().size(), 1u);
+    EXPECT_EQ(ReadRunLog(Path("log"), {.suffix = "_X"}).messages.Of<state_t>().size(), 1u);
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(RunLogTest, UndecodableMessageLeftOut) {
                                      {"HYDRO_STATE_2", "another stack's", 1},
                                      {"CAMERA", "a picture", 1}});
   log::WriteEvents(Path("log"), events);
-  const RunLog log = ReadRunLog(Path("log"), "", Undecodable::kLeftOut);
+  const RunLog log = ReadRunLog(Path("log"), {.suffix = ""}, Undecodable::kLeftOut);
   EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
   EXPECT_EQ(log.messages.Of<state_t>().size(), run.Of<state_t>().size());
   for (const ChannelSummary& channel : log.channels) {
@@ -127,7 +127,7 @@ TEST_F(RunLogTest, UndecodableMessageLeftOut) {
                     HasSubstr("event 1 on HYDRO_STATE: found 60 bytes that are not a whole hydro.state_t")));
 
   log::WriteBytes(Path("log"), log::ReadBytes(Path("log")) + "x");  // damage of the file is not a message
-  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("log"), "", Undecodable::kLeftOut); }),
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("log"), {.suffix = ""}, Undecodable::kLeftOut); }),
               HasSubstr("hydro-log repair"));
 }
 

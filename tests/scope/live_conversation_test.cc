@@ -29,7 +29,7 @@ class LiveConversationTest : public ::testing::Test {
     return std::make_unique<LiveConversation>(LiveContext{.runs = runs_,
                                                           .desk = desk_,
                                                           .ghost = ghost_,
-                                                          .silent_s = [] { return 0.0; },
+                                                          .silent_s = [](uint32_t) { return 0.0; },
                                                           .now = [this] { return now_; },
                                                           .frames = &frames_,
                                                           .dropped = &dropped_});
@@ -57,7 +57,7 @@ class LiveConversationTest : public ::testing::Test {
   }
 
   RunTable runs_;
-  OperatorDesk desk_{nullptr, false, [](const std::function<void()>& work) { work(); }, nullptr};
+  OperatorDesk desk_{nullptr, false, [](const std::function<void()>& work) { work(); }, {}};
   NoGhost ghost_;
   std::chrono::steady_clock::time_point now_{};
   int64_t frames_ = 0;

@@ -21,7 +21,7 @@ export class LoopsPanel {
     );
     this.element = section('loops', 'Processes', false, this.table);
     this.element.hidden = true;
-    signals.on('op:processes', ({ list }) => this.#show(list ?? []));
+    signals.on('processes', ({ list }) => this.#show(list ?? []));
   }
 
   #show(list) {

@@ -73,7 +73,7 @@ export class ReferenceForm {
       this.result,
     );
     this.element.hidden = true;
-    signals.on('op:tuning', (message) => {
+    signals.on('tuning', (message) => {
       this.element.hidden = !(
         message.control === true &&
         scope.control &&
@@ -106,7 +106,7 @@ export class ReferenceForm {
     const set = [...this.#inputs].map(([key, input]) => `reference.${key}=${input.value}`);
     const entries = [`reference.kind=${this.#kind}`, ...set, ...kKinds[this.#kind].fixed];
     try {
-      const reply = await this.scope.link.request({ op: 'set', entries });
+      const reply = await this.scope.link.request({ op: 'set', run: this.scope.run?.run ?? 0, entries });
       setText(
         this.result,
         reply.ok

@@ -37,7 +37,7 @@ export class TuningPanel {
     });
     this.element = section('tuning', 'Tuning', false, this.in_force, this.readonly, this.rows, this.buttons);
     this.element.hidden = true;
-    signals.on('op:tuning', (message) => this.#values(message));
+    signals.on('tuning', (message) => this.#values(message));
     signals.on('link', () => this.#enable());
   }
 
@@ -45,10 +45,13 @@ export class TuningPanel {
     this.control = message.control === true && this.scope.control;
     const entries = (message.entries ?? []).filter(({ key }) => !key.startsWith(kReferencePrefix));
     this.element.hidden = entries.length === 0;
+    // Another joint's values: what was typed is not for it.
     const same =
+      this.built_of === message.run &&
       entries.length === this.#rows.size &&
       entries.every(({ key }) => this.#rows.has(key)) &&
       this.built_for === this.control;
+    this.built_of = message.run;
     if (!same) this.#build(entries);
     for (const entry of entries) this.#rows.get(entry.key).show(entry, this.#edited.has(entry.key));
     setText(
@@ -92,13 +95,13 @@ export class TuningPanel {
   async #apply() {
     const keys = [...this.#edited];
     const entries = keys.map((key) => `${key}=${this.#rows.get(key).given}`);
-    const done = await this.#request({ op: 'set', entries });
+    const done = await this.#request({ op: 'set', run: this.scope.run?.run ?? 0, entries });
     if (done) keys.forEach((key) => this.#edited.delete(key));
     this.#enable();
   }
 
   async #undo() {
-    if (await this.#request({ op: 'undo' })) this.#edited.clear();
+    if (await this.#request({ op: 'undo', run: this.scope.run?.run ?? 0 })) this.#edited.clear();
     this.#enable();
   }
 

@@ -1,0 +1,62 @@
+#include "runs/limb_info.h"
+
+#include <algorithm>
+#include <utility>
+
+
+namespace hydro::runs {
+namespace {
+
+// The launcher's form of it too.
+std::string Named(const std::string& joint, const std::string& source) { return joint + " " + source; }
+
+// A joint of the same name in another limb is told apart by its channels.
+std::string NameOf(const RunLog& joint, const LimbLog& log) {
+  const auto same = std::count_if(log.joints.begin(), log.joints.end(),
+                                  [&](const RunLog& other) { return other.joint == joint.joint; });
+  return same == 1 ? joint.joint : joint.suffix;
+}
+
+// What happened to a joint happened to the limb.
+void AddEvents(const JointInfo& joint, LogInfo* limb) {
+  for (fault_t fault : joint.info.faults) {
+    fault.source = Named(joint.name, fault.source);
+    limb->faults.push_back(std::move(fault));
+  }
+  for (stop_t stop : joint.info.stops) {
+    stop.source = Named(joint.name, stop.source);
+    limb->stops.push_back(std::move(stop));
+  }
+  for (tuned_settings_t tuning : joint.info.tunings) {
+    tuning.source = Named(joint.name, tuning.source);
+    limb->tunings.push_back(std::move(tuning));
+  }
+  for (output_left_t left : joint.info.outputs_left) {
+    left.role = Named(joint.name, left.role);
+    limb->outputs_left.push_back(std::move(left));
+  }
+}
+
+}  // namespace
+
+LimbInfo SummariseLimb(const LimbLog& log, bool si) {
+  LimbInfo all;
+  all.limb = Summarise(log.limb, si);
+  for (const RunLog& joint : log.joints) {
+    all.joints.push_back({NameOf(joint, log), Summarise(joint, si), TrackArm(joint)});
+    AddEvents(all.joints.back(), &all.limb);
+  }
+  const auto by_tick = [](const auto& a, const auto& b) { return a.tick < b.tick; };
+  std::stable_sort(all.limb.faults.begin(), all.limb.faults.end(), by_tick);
+  // Each joint has its own rows; a limb with many would fill the screen with channels.
+  std::erase_if(all.limb.channels, [&](const ChannelInfo& channel) {
+    return std::any_of(all.joints.begin(), all.joints.end(), [&](const JointInfo& joint) {
+      return std::any_of(joint.info.channels.begin(), joint.info.channels.end(), [&](const ChannelInfo& one) {
+        return one.summary.channel == channel.summary.channel;
+      });
+    });
+  });
+  return all;
+}
+
+}  // namespace hydro::runs

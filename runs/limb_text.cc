@@ -1,0 +1,134 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/number_text.h"
+#include "base/saturating.h"
+#include "base/text_file.h"
+#include "process/output_left.h"
+#include "runs/limb_info.h"
+#include "runs/sampling.h"
+#include "runs/tuning_history.h"
+
+namespace hydro::runs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kListed = 40;  // of faults and outputs; the rest is counted
+
+int64_t Lost(const JointInfo& joint) {
+  int64_t lost = 0;
+  for (const ChannelInfo& channel : joint.info.channels) {
+    if (channel.numbered) lost = SaturatingSum(lost, channel.lost);
+  }
+  return lost;
+}
+
+// The codes of its faults, each once.
+std::string Faults(const JointInfo& joint) {
+  std::string codes;
+  std::set<std::string> seen;
+  for (const fault_t& fault : joint.info.faults) {
+    if (seen.insert(fault.code).second) codes += (codes.empty() ? "" : ", ") + Printable(fault.code);
+  }
+  return codes.empty() ? "none" : codes;
+}
+
+std::string Target(const Tracking& tracking) {
+  if (!tracking.has_reference) return "none";
+  if (!tracking.at_target) return "moves";
+  return *tracking.at_target ? "reached" : "NOT reached";
+}
+
+std::string RowsOf(const LimbInfo& info) {
+  size_t width = 16;
+  for (const JointInfo& joint : info.joints) width = std::max(width, joint.name.size());
+  std::string text = fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint", width, "states",
+                                 "every", "time s", "lost", "skipped", "final error rad", "rms error rad", "target",
+                                 "faults");
+  for (const JointInfo& joint : info.joints) {
+    const TickInfo& ticks = joint.info.ticks;
+    const bool has = joint.tracking.has_reference;
+    text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", Printable(joint.name), width,
+                        ticks.states, ticks.sampled, ticks.last_time_s - ticks.first_time_s, Lost(joint), ticks.announced,
+                        has ? fmt::format("{:.5f}", joint.tracking.final_error_rad) : "-",
+                        has ? fmt::format("{:.4f}", joint.tracking.rms_error_rad) : "-", Target(joint.tracking),
+                        Faults(joint));
+  }
+  const auto sampled = std::find_if(info.joints.begin(), info.joints.end(),
+                                    [](const JointInfo& joint) { return joint.info.ticks.sampled > 1; });
+  if (sampled != info.joints.end()) {
+    text += "the log has " + DescribeSampling(sampled->info.ticks.sampled) + ", not each\n";
+  }
+  return text;
+}
+
+// "2 joints: --joint NAME (hip, knee) for one alone"
+std::string HintOf(const LimbInfo& info) {
+  return fmt::format("a limb with {} joints; --joint {} and so on for one alone\n", info.joints.size(),
+                     Printable(info.joints.front().name));
+}
+
+template <class Items, class TextOf>
+void AppendList(const Items& items, TextOf text_of, std::string* text) {
+  for (size_t i = 0; i < std::min(items.size(), kListed); ++i) *text += text_of(items[i]) + "\n";
+  if (items.size() > kListed) *text += fmt::format("... and {} more\n", items.size() - kListed);
+}
+
+Json TrackingOf(const JointInfo& joint) { return Json::parse(SummaryJson(joint.tracking, joint.info)); }
+
+std::string Dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+}  // namespace
+
+std::string LimbInfoText(const LimbInfo& info) { return InfoText(info.limb) + HintOf(info) + RowsOf(info); }
+
+std::string LimbSummaryText(const LimbInfo& info) {
+  std::string text = HintOf(info) + RowsOf(info);
+  const std::string caution = log::Caution(info.limb.verdict);
+  if (!caution.empty()) text += "log: " + caution + "\n";
+  text += LoopsText(info.limb);
+  AppendList(
+      info.limb.faults,
+      [](const fault_t& fault) {
+        return fmt::format("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code),
+                           fault.active ? "began" : "ended", Printable(fault.source));
+      },
+      &text);
+  AppendList(
+      info.limb.tunings, [](const tuned_settings_t& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
+  AppendList(
+      info.limb.outputs_left, [](const output_left_t& left) { return Printable(process::OutputLeftText(left)); }, &text);
+  return text;
+}
+
+std::string LimbInfoJson(const LimbInfo& info) {
+  Json json = Json::parse(InfoJson(info.limb));
+  json["joints"] = Json::object();
+  for (const JointInfo& joint : info.joints) {
+    Json one = Json::parse(InfoJson(joint.info));
+    const Json summary = TrackingOf(joint);
+    if (summary.contains("tracking")) one["tracking"] = summary["tracking"];
+    json["joints"][joint.name] = std::move(one);
+  }
+  return Dump(json);
+}
+
+std::string LimbSummaryJson(const LimbInfo& info) {
+  Json json = {{"log", {{"verdict", NameOf(info.limb.verdict.completeness)}, {"caution", log::Caution(info.limb.verdict)}}},
+               {"joints", Json::object()}};
+  for (const JointInfo& joint : info.joints) {
+    Json one = TrackingOf(joint);
+    one.erase("log");
+    json["joints"][joint.name] = std::move(one);
+  }
+  const Json limb = Json::parse(InfoJson(info.limb));
+  json["loops"] = limb["loops"];
+  json["faults"] = limb["faults"];
+  return Dump(json);
+}
+
+}  // namespace hydro::runs

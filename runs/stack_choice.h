@@ -1,0 +1,22 @@
+// Which stack of a log is read, where it holds several.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "settings/command_line.h"
+
+namespace hydro::runs {
+
+// Without either, the only stack that the log is of.
+struct StackChoice {
+  std::optional<std::string> suffix = {};  // of its channels; with a joint, of the limb's that it belongs to
+  std::optional<std::string> joint = {};   // of a limb, by its name
+
+  bool given() const { return suffix.has_value() || joint.has_value(); }
+};
+
+// The options --suffix and --joint.
+void AddStackChoice(settings::CommandLine* verb, StackChoice* choice);
+
+}  // namespace hydro::runs
