@@ -67,15 +67,17 @@ class PlantApp {
   void RequestStop();
   void RunLockstep();
   void RunRealtime();
-  bool AwaitAnswers();
-  bool MayGoOn(const char* who, bool late);
+  bool AwaitAnswers(bus::Clock::TimePoint* now);
+  bool Fails(const char* who, bool late) const;
+  [[gnu::cold]] void RequestStopFor(const char* who);
   const char* Unanswered() const;
   bool LoggersKeepUp() const;
   void Advance(int64_t to_tick);
+  void Measure(int64_t tick);
   void SetTick(int64_t tick);
   void Drive();
   [[gnu::cold]] void PublishRigFaults(const std::vector<RigFault>& faults);
-  void PublishState(int64_t skipped_ticks);
+  bus::Clock::TimePoint PublishState(int64_t skipped_ticks, bus::Clock::TimePoint now);
   void DescribeRun();
   [[gnu::cold]] void PublishDescription();
   void PublishOutputLeft(const OutputLeft& left);
@@ -90,6 +92,7 @@ class PlantApp {
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration AgeOfAnswer() const;
   void Poll(bus::Clock::TimePoint now);
+  [[gnu::cold]] void PollDue(bus::Clock::TimePoint now);
   bool Ended() const;
 
   settings::StackConfig config_;
@@ -113,7 +116,6 @@ class PlantApp {
   Multiples pressure_ticks_, position_ticks_;  // at which each loop answers
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
-  model::Measurement measured_;          // at tick_
   std::vector<std::string> rig_faults_;  // codes of those that are active
   double voltage_ = 0;                   // V, held from tick_ on
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from

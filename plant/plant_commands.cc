@@ -85,7 +85,7 @@ void PlantApp::ChooseVoltage(bus::Clock::TimePoint now) {
   const bool safe_command = command_ && command_->status == motor_command_t::SAFE;
   if (!safety_.AllIsWell(state_, safe_command, rig_faults) || !CommandIsWell(now)) CheckAll(now);
   if (realtime_) CheckSupervisor(now);
-  safety_.CheckSuspended();
+  safety_.CheckSuspended(now);
   // What was commanded before or while the voltage was held at zero does not come back.
   const bool held = safety_.holds() || !rig_faults.empty();
   if (held) obeyed_from_ = tick_;
@@ -96,7 +96,7 @@ void PlantApp::ChooseVoltage(bus::Clock::TimePoint now) {
 }
 
 // Whether CheckCommand() and CheckCommandIsFresh() would find nothing.
-bool PlantApp::CommandIsWell(bus::Clock::TimePoint now) const {
+inline bool PlantApp::CommandIsWell(bus::Clock::TimePoint now) const {
   const double voltage = command_ ? command_->voltage : 0;
   if (!(std::fabs(voltage) <= voltage_limit_) || future_command_) return false;
   if (command_monitor_.SecondSenderAlive(now)) return false;

@@ -35,8 +35,8 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
   read_ = tick;
   try {
     if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
-    const model::Measurement measurement = actuator_->Measure();
-    return exact_ ? measurement : ReadSensors(measurement, noise_, seed_, tick);
+    if (exact_) return actuator_->Measure();
+    return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
   } catch (const model::ModelError& error) {
     throw Explained(error, tick, late);
   }
