@@ -12,9 +12,10 @@ class Multiples {
 
   int64_t of() const { return of_; }
 
+  // Of any number.
   bool Contains(int64_t number) { return UpTo(number) == number; }
 
-  // The largest multiple that is at most `number`; for a number below 0 the smallest that is at least that.
+  // The largest multiple that is at most `number`, which is not below 0.
   int64_t UpTo(int64_t number) {
     const uint64_t ahead = static_cast<uint64_t>(number) - static_cast<uint64_t>(newest_);
     if (number < newest_ || ahead >= static_cast<uint64_t>(of_)) {

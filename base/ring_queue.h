@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/copy_words.h"
+
 namespace hydro {
 
 template <class Value>
@@ -20,7 +22,7 @@ class RingQueue {
 
   void push_back(const Value& value) {
     if (size() > mask_) Grow();
-    values_[end_++ & mask_] = value;
+    CopyFresh(&values_[end_++ & mask_], value);
   }
   void pop_front() { ++first_; }
   void clear() { first_ = end_ = 0; }

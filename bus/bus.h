@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/copy_words.h"
 #include "bus/hosted_process.h"
 #include "bus/seal_trailer.h"
 
@@ -86,7 +87,9 @@ const MessageType& TypeOf() {
         return DecodeInto(message.get(), data, size) ? message : nullptr;
       },
       []() -> std::shared_ptr<void> { return std::make_shared<Message>(); },
-      [](void* to, const void* from) { *static_cast<Message*>(to) = *static_cast<const Message*>(from); },
+      [](void* to, const void* from) {
+        CopyFresh(static_cast<Message*>(to), *static_cast<const Message*>(from));
+      },
       [](void* message, const void* data, int size) {
         return DecodeInto(static_cast<Message*>(message), data, size);
       }};

@@ -17,7 +17,7 @@ class Clock {
   virtual ~Clock() = default;
 
   // Monotonic time, for deadlines and intervals.
-  virtual TimePoint Now() const = 0;
+  TimePoint Now() const { return stands_ ? now_ : Read(); }
 
   // Microseconds since 1970-01-01 UTC, for the utime field of messages.
   virtual int64_t Utime() const = 0;
@@ -25,8 +25,25 @@ class Clock {
   // How long the machine has been suspended since boot. Now() does not count that time.
   virtual Duration Suspended() const { return {}; }
 
+  // Suspended(), or longer by as much as has passed since Now() was `now`: one reading of a clock less.
+  virtual Duration SuspendedAtMost(TimePoint /*now*/) const { return Suspended(); }
+
   // True when time passes only because a caller that waits advances the clock.
   virtual bool simulated() const { return false; }
+
+ protected:
+  // A clock that goes by itself.
+  Clock() = default;
+  // A clock that stands still, at `now`, until it is set: loops read it without a call.
+  explicit Clock(TimePoint now) : stands_(true), now_(now) {}
+  void SetTo(TimePoint now) { now_ = now; }
+
+ private:
+  // What Now() is on a clock that goes by itself.
+  virtual TimePoint Read() const { return now_; }
+
+  bool stands_ = false;
+  TimePoint now_{};
 };
 
 inline Clock::Duration FromSeconds(double seconds) {
@@ -36,14 +53,17 @@ inline double ToSeconds(Clock::Duration duration) { return std::chrono::duration
 
 class WallClock : public Clock {
  public:
-  TimePoint Now() const override { return std::chrono::steady_clock::now(); }
   int64_t Utime() const override {
     using namespace std::chrono;
     return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
   }
   Duration Suspended() const override { return Since(CLOCK_BOOTTIME) - Since(CLOCK_MONOTONIC); }
+  Duration SuspendedAtMost(TimePoint now) const override {
+    return Since(CLOCK_BOOTTIME) - now.time_since_epoch();
+  }
 
  private:
+  TimePoint Read() const override { return std::chrono::steady_clock::now(); }
   static Duration Since(clockid_t id) {
     timespec time{};
     clock_gettime(id, &time);
@@ -54,19 +74,16 @@ class WallClock : public Clock {
 // Starts at 0 and stands still until advanced.
 class SimulatedClock : public Clock {
  public:
-  TimePoint Now() const override { return now_; }
+  SimulatedClock() : Clock(TimePoint()) {}
   int64_t Utime() const override {
-    return std::chrono::duration_cast<std::chrono::microseconds>(now_.time_since_epoch()).count();
+    return std::chrono::duration_cast<std::chrono::microseconds>(Now().time_since_epoch()).count();
   }
   bool simulated() const override { return true; }
 
   // Moves to `time`; a time in the past leaves the clock where it is.
   void AdvanceTo(TimePoint time) {
-    if (time > now_) now_ = time;
+    if (time > Now()) SetTo(time);
   }
-
- private:
-  TimePoint now_{};
 };
 
 }  // namespace hydro::bus

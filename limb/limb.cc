@@ -80,9 +80,9 @@ bool Limb::StepLockstep() {
   ++tick_;
   for (auto& joint : joints_) {
     if (joint->ended()) continue;
-    if (!joint->plant().Safely([&] { joint->plant().Advance(tick_); })) continue;
+    if (!joint->plant().Safely([&] { joint->plant().AdvanceTo(tick_); })) continue;
     joint->Dispatch(joint->DueTime(tick_));
-    joint->plant().PublishState(0);
+    joint->plant().PublishState();
   }
   NoteEnds();
   return !over_;

@@ -18,12 +18,13 @@ class TickClock : public bus::Clock {
   }
   void Run() { stopped_ = false; }
 
-  TimePoint Now() const override { return stopped_ ? now_ : real_.Now(); }
   int64_t Utime() const override { return stopped_ ? utime_ : real_.Utime(); }
   Duration Suspended() const override { return stopped_ ? suspended_ : real_.Suspended(); }
   bool simulated() const override { return real_.simulated(); }
 
  private:
+  TimePoint Read() const override { return stopped_ ? now_ : real_.Now(); }
+
   const bus::Clock& real_;
   TimePoint now_{};
   int64_t utime_ = 0;

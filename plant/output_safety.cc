@@ -70,8 +70,9 @@ void OutputSafety::CheckMeasured(const state_t& state) {
   });
 }
 
-void OutputSafety::CheckSuspended(bus::Clock::Duration before, bus::Clock::Duration now) {
-  const double gone = bus::ToSeconds(now - before);
+void OutputSafety::CheckSuspended() {
+  const bus::Clock::Duration suspended = participant_.clock().Suspended();
+  const double gone = bus::ToSeconds(suspended - std::exchange(suspended_, suspended));
   Set(Cause::kSuspended, gone > limits_.stale_input_s, [&] {
     return Finding{fmt::format("tick {}: the machine was suspended for {:.3g} s, allowed are {} s "
                                "(limits.stale_input_s)",

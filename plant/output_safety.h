@@ -75,10 +75,9 @@ class OutputSafety {
   }
 
   // Checks the machine's clocks, for a suspend.
-  void CheckSuspended() {
-    const bus::Clock::Duration suspended = participant_.clock().Suspended();
-    if (suspended == suspended_ && !guard_.present(Cause::kSuspended)) return;
-    CheckSuspended(std::exchange(suspended_, suspended), suspended);
+  void CheckSuspended(bus::Clock::TimePoint now) {
+    const bool perhaps = participant_.clock().SuspendedAtMost(now) - suspended_ > kNoSuspend;
+    if (perhaps || guard_.present(Cause::kSuspended)) CheckSuspended();
   }
 
   // Checks whether another stack is heard on the bus.
@@ -112,7 +111,9 @@ class OutputSafety {
  private:
   // False for what is not a number. Pressures have no lower limit, nor a need of one: none is below absolute zero.
   static bool Within(double value, double limit) { return std::fabs(value) <= limit; }
-  void CheckSuspended(bus::Clock::Duration before, bus::Clock::Duration now);
+  // What passes from the first reading of a tick to this check, and no machine sleeps for.
+  static constexpr auto kNoSuspend = std::chrono::milliseconds(1);
+  void CheckSuspended();
   [[gnu::cold]] void PublishChanges();
   void OnDescription(const run_description_t& description);
   void OnFault(const fault_t& fault);

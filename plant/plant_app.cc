@@ -189,14 +189,9 @@ bool PlantApp::WaitForParticipants() {
       until = std::min(now + 50ms, deadline);
     }
     participant_.bus().HandleUntil(until);
-    Poll(participant_.clock().Now());
+    PollDue(participant_.clock().Now());
   }
   return false;
-}
-
-void PlantApp::Start() {
-  measured_ = rig_.Read(0);
-  PublishState(0);
 }
 
 // Puts out the chosen voltage first and publishes the faults second.
@@ -222,48 +217,7 @@ void PlantApp::PublishRigFaults(const std::vector<RigFault>& faults) {
   }
 }
 
-void PlantApp::Advance(int64_t to_tick) {
-  state_.voltage = voltage_;
-  state_.command_tick = command_tick_;
-  tuning_.OnTick(to_tick);
-  measured_ = rig_.Read(to_tick);
-  SetTick(to_tick);
-}
-
-void PlantApp::SetTick(int64_t tick) {
-  tick_ = tick;
-  asks_pressure_ = pressure_ticks_.Contains(tick);
-  asks_position_ = position_ticks_.Contains(tick);
-  participant_.set_tick(tick);
-}
-
-void PlantApp::PublishState(int64_t skipped_ticks) {
-  if (tick_ == 0) {
-    state_.voltage = 0;
-    state_.command_tick = -1;
-    state_.sequence = 0;
-    SetTick(0);
-  } else {
-    ++state_.sequence;
-  }
-  state_.utime = participant_.clock().Utime();
-  state_.tick = tick_;
-  state_.session = participant_.session();
-  state_.time = static_cast<double>(tick_) / config_.plant.rate_hz;
-  state_.motor_angle = measured_.motor_angle;
-  state_.motor_speed = measured_.motor_speed;
-  state_.arm_angle = measured_.arm_angle;
-  state_.arm_speed = measured_.arm_speed;
-  state_.p1 = measured_.p1;
-  state_.p2 = measured_.p2;
-  state_.skipped_ticks = skipped_ticks;
-  if (asks_pressure_ && !participant_.simulated()) {
-    round_trips_.OnSent(tick_, participant_.clock().Now());
-  }
-  state_publisher_.Send(state_);
-}
-
-void PlantApp::Poll(bus::Clock::TimePoint now) {
+void PlantApp::PollDue(bus::Clock::TimePoint now) {
   participant_.statistics().set_lost_messages(command_monitor_.lost());
   participant_.Poll(now);
   tuning_.Poll(now);

@@ -76,10 +76,10 @@ class PlantApp {
   void Drive();
   // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and publishes the state.
   void Start();  // at tick 0
-  void Advance(int64_t to_tick);
-  void PublishState(int64_t skipped_ticks);
-  // Real time: both, as many ticks later as have elapsed.
-  void Wake(const WakeUp& wake_up);
+  void AdvanceTo(int64_t tick);
+  void PublishState();
+  // Real time: both, as many ticks later as have elapsed. Returns when the state was sent, as far as that matters.
+  bus::Clock::TimePoint Wake(const WakeUp& wake_up);
   void Poll(bus::Clock::TimePoint now);
   // Whether somebody has asked for the end.
   bool Ended() const;
@@ -109,11 +109,16 @@ class PlantApp {
   void RequestStop();
   void RunLockstep();
   void RunRealtime();
-  bool MayGoOn(const char* who, bool late);
+  bool AwaitAnswers(bus::Clock::TimePoint* now);
+  bool Fails(const char* who, bool late) const;
+  [[gnu::cold]] void RequestStopFor(const char* who);
   const char* Unanswered() const;
   bool LoggersKeepUp() const;
+  void Advance(int64_t to_tick);
+  void Measure(int64_t tick);
   void SetTick(int64_t tick);
   [[gnu::cold]] void PublishRigFaults(const std::vector<RigFault>& faults);
+  bus::Clock::TimePoint Publish(int64_t skipped_ticks, bus::Clock::TimePoint now);
   void DescribeRun();
   [[gnu::cold]] void PublishDescription();
   void PublishOutputLeft(const OutputLeft& left);
@@ -126,6 +131,8 @@ class PlantApp {
   void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration AgeOfAnswer() const;
+  void PollIfDue(bus::Clock::TimePoint now);
+  [[gnu::cold]] void PollDue(bus::Clock::TimePoint now);
 
   settings::StackConfig config_;
   Rig& rig_;
@@ -149,7 +156,6 @@ class PlantApp {
   Multiples pressure_ticks_, position_ticks_;  // at which each loop answers
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
-  model::Measurement measured_;          // at tick_
   std::vector<std::string> rig_faults_;  // codes of those that are active
   double voltage_ = 0;                   // V, held from tick_ on
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from

@@ -82,7 +82,7 @@ void PlantApp::Check(bus::Clock::TimePoint now) {
   const bool safe_command = command_ && command_->status == motor_command_t::SAFE;
   if (!safety_.AllIsWell(state_, safe_command, rig_.faults()) || !CommandIsWell(now)) CheckAll(now);
   if (realtime_) CheckSupervisor(now);
-  safety_.CheckSuspended();
+  safety_.CheckSuspended(now);
   if (!siblings_.empty()) HoldForOthers(siblings_.Text());
 }
 
@@ -115,7 +115,7 @@ void PlantApp::HoldForOthers(const std::string& text) {
 }
 
 // Whether CheckCommand() and CheckCommandIsFresh() would find nothing.
-bool PlantApp::CommandIsWell(bus::Clock::TimePoint now) const {
+inline bool PlantApp::CommandIsWell(bus::Clock::TimePoint now) const {
   const double voltage = command_ ? command_->voltage : 0;
   if (!(std::fabs(voltage) <= voltage_limit_) || future_command_) return false;
   if (command_monitor_.SecondSenderAlive(now)) return false;

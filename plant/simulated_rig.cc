@@ -22,8 +22,8 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
   read_ = tick;
   try {
     if (tick > 0) machine_->Advance(static_cast<double>(tick) / rate_hz_);
-    const model::Measurement measurement = machine_->Measure();
-    return exact_ ? measurement : ReadSensors(measurement, noise_, seed_, tick);
+    if (exact_) return machine_->Measure();
+    return ReadSensors(machine_->Measure(), noise_, seed_, tick);
   } catch (const model::ModelError& error) {
     throw Explained(error, tick, late);
   }

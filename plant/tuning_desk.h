@@ -51,8 +51,9 @@ class TuningDesk {
 
   // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
   void Poll(bus::Clock::TimePoint now) {
-    if (pending_ || now >= next_report_ || aside_.busy()) PollDue(now);
+    if (IsDue(now)) PollDue(now);
   }
+  bool IsDue(bus::Clock::TimePoint now) const { return pending_ || now >= next_report_ || aside_.busy(); }
 
   // Whether a change is being made. Until it is in force or refused nothing is re-armed: it may loosen a limit, because all is held.
   bool changing() const { return pending_.has_value(); }

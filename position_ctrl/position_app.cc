@@ -110,7 +110,7 @@ void PositionApp::BeginAgain() {
 }
 
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
-void PositionApp::ObserveHold(const state_t& state) {
+inline void PositionApp::ObserveHold(const state_t& state) {
   // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
   const bool joins = last_sample_tick_ < 0 && state.tick > tuning::kJoiningSamples * interval_.of();
   if (!lockstep_ && joins && !participant_.clock().simulated()) return_.Join();
@@ -120,7 +120,10 @@ void PositionApp::ObserveHold(const state_t& state) {
 
 void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
   Answer(state);
-  participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
+  // Simulated time stands still meanwhile.
+  if (!participant_.simulated()) {
+    participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
+  }
 }
 
 void PositionApp::Answer(const state_t& state) {
@@ -176,7 +179,7 @@ void PositionApp::Answer(const state_t& state) {
 }
 
 // What the reference refers to, as it is now.
-double PositionApp::Present(const state_t& state) const {
+inline double PositionApp::Present(const state_t& state) const {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       return state.arm_angle;

@@ -14,14 +14,6 @@ using namespace std::chrono_literals;
 
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
-motor_command_t ZeroVolts(int64_t tick, int8_t status) {
-  motor_command_t zero{};
-  zero.tick = tick;
-  zero.pressure_command_tick = -1;
-  zero.status = status;
-  return zero;
-}
-
 // psi: with room for rounding and half a D/A step.
 double LargestPressureReference(const tuning::TunedValues& values, double half_dac_step) {
   return (1 + 1e-9) * values.position.pressure_limit + half_dac_step;
@@ -91,8 +83,8 @@ void PressureApp::OnState(const state_t& state) {
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       // The plant asks again because the answer may have been lost.
-      if (answered_ && last_command_.tick == state.tick) {
-        publisher_.Send(last_command_);
+      if (answered_ && command_.tick == state.tick) {
+        publisher_.Send(command_);
       }
       return;
     case bus::SequenceMonitor::Verdict::kAccept:
@@ -102,7 +94,7 @@ void PressureApp::OnState(const state_t& state) {
   participant_.Follow(state.session);
   if (tuning_.Awaits(state.tick)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
+  if (answered_ && state.tick <= command_.tick) Restart();  // a log is played again
   if (participant_.tick() < 0) DropFutureCommands(state.tick);
   participant_.set_tick(state.tick);
   if (!interval_.Contains(state.tick)) return;
@@ -111,7 +103,10 @@ void PressureApp::OnState(const state_t& state) {
     return;
   }
   Answer(state, now);
-  participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+  // Simulated time stands still meanwhile.
+  if (!participant_.simulated()) {
+    participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+  }
 }
 
 // Before the first state nobody can tell which ticks lie far in the future. One such command at the head of the queue would hold up
@@ -150,7 +145,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
 
 // In lockstep every pressure command that is due arrives sooner or later; which one is in force must not
 // depend on when it does.
-bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
+inline bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
   const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep_ || newest_allowed < 0) return false;
   const int64_t due = position_interval_.UpTo(newest_allowed);
@@ -160,7 +155,7 @@ bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
   return known < due;
 }
 
-void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
+inline void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= tick) {
     pressure_command_ = waiting_commands_.front();
     waiting_commands_.pop_front();
@@ -191,19 +186,18 @@ double PressureApp::LargestReference() const {
 
 // The gains have changed: the voltage shall not jump.
 void PressureApp::BeginTransfer(const PressureLawInput& input, int64_t tick) {
-  const bool begun = answered_ && last_command_.status == motor_command_t::LAW;
   const double left = transfer_.Offset(tick);
-  if (begun) {
+  if (answered_ && acted_by_law_) {
     transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
                     UnlimitedPressureLaw(values_.pressure, input), tick);
   }
   law_before_.reset();
 }
 
-void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now) {
+inline void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now) {
   TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
-  motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
+  motor_command_t& command = ZeroVolts(state.tick, motor_command_t::SAFE);
   const int64_t stale = TicksStale(state.tick);
   if (pressure_command_) {
     command.pressure_ref = PressureReference(stale);
@@ -218,7 +212,17 @@ void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now) {
       ApplyLaw(state, &command);
     }
   }
-  Send(command);
+  Send();
+}
+
+// The next command begins as this one.
+inline motor_command_t& PressureApp::ZeroVolts(int64_t tick, int8_t status) {
+  command_.tick = tick;
+  command_.voltage = command_.pressure_ref = 0;
+  command_.pressure_command_tick = -1;
+  command_.saturated = 0;
+  command_.status = status;
+  return command_;
 }
 
 void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
@@ -228,7 +232,7 @@ void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
   command->saturated = command->voltage != pressure_command_->voltage;
 }
 
-PressureLawOutput PressureApp::Law(const state_t& state, double pressure_ref) {
+inline PressureLawOutput PressureApp::Law(const state_t& state, double pressure_ref) {
   if (own_) return OwnLaw(state, pressure_ref);
   PressureLawInput input{pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
   if (law_before_) BeginTransfer(input, state.tick);
@@ -242,7 +246,7 @@ PressureLawOutput PressureApp::OwnLaw(const state_t& state, double pressure_ref)
   return {.voltage = voltage, .saturated = voltage != asked};
 }
 
-void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
+inline void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
   const PressureLawOutput output = Law(state, command->pressure_ref);
   if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);  // it stays SAFE
   command->status = motor_command_t::LAW;
@@ -260,13 +264,13 @@ void PressureApp::RaiseNonfinite(const motor_command_t& command, double voltage)
                      voltage, NAN, false);
 }
 
-void PressureApp::Send(const motor_command_t& command) {
-  last_command_ = command;
-  last_command_.utime = participant_.clock().Utime();
-  last_command_.session = participant_.session();
-  last_command_.sequence = sequence_++;
-  publisher_.Send(last_command_);
+void PressureApp::Send() {
+  command_.utime = participant_.clock().Utime();
+  command_.session = participant_.session();
+  command_.sequence = sequence_++;
+  publisher_.Send(command_);
   answered_ = true;
+  acted_by_law_ = command_.status == motor_command_t::LAW;
 }
 
 void PressureApp::Poll() {
@@ -284,7 +288,8 @@ void PressureApp::Poll() {
                                1);
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
-    Send(ZeroVolts(participant_.tick(), motor_command_t::SAFE));  // zero volts first, explanation second
+    ZeroVolts(participant_.tick(), motor_command_t::SAFE);
+    Send();  // zero volts first, explanation second
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
                                    1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
@@ -295,7 +300,8 @@ void PressureApp::Poll() {
 bool PressureApp::finished() const { return participant_.stop().has_value(); }
 
 int PressureApp::Finish() {
-  Send(ZeroVolts(participant_.tick(), motor_command_t::STOPPED));
+  ZeroVolts(participant_.tick(), motor_command_t::STOPPED);
+  Send();
   return participant_.Leave();
 }
 

@@ -66,7 +66,8 @@ class PressureApp : public process::App {
   PressureLawOutput Law(const state_t& state, double pressure_ref);
   PressureLawOutput OwnLaw(const state_t& state, double pressure_ref) const;
   [[gnu::cold]] void BeginTransfer(const PressureLawInput& input, int64_t tick);
-  void Send(const motor_command_t& command);
+  motor_command_t& ZeroVolts(int64_t tick, int8_t status);
+  void Send();
   void ForgetPressureCommands();
   void Restart();
 
@@ -98,8 +99,9 @@ class PressureApp : public process::App {
   std::optional<pressure_command_t> pressure_command_;  // in force
   std::optional<int64_t> future_command_;               // tick of a refused one, until a plausible one comes
   std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
-  motor_command_t last_command_;
-  bool answered_ = false;
+  motor_command_t command_{};   // the last one, or the one that is being made
+  bool answered_ = false;       // one was sent
+  bool acted_by_law_ = false;   // and came from the law
   int64_t sequence_ = 0;
   bus::Clock::TimePoint last_state_time_;
   bool stalled_ = false;  // lockstep: the plant is silent

@@ -47,8 +47,9 @@ class Participant {
   // Publishes what is due: the READY announcement, statistics, warnings about messages. Call it often; cheap
   // when nothing is due. `now`: what the clock shows.
   void Poll(bus::Clock::TimePoint now) {
-    if (now >= next_poll_ || Troubles() != troubles_) PollDue(now);
+    if (IsDue(now)) PollDue(now);
   }
+  bool IsDue(bus::Clock::TimePoint now) const { return now >= next_poll_ || Troubles() != troubles_; }
   void Poll() { Poll(clock_.Now()); }
 
   // The session of the plant (or driver) whose run this process takes part in: the one whose states it follows.
@@ -104,6 +105,7 @@ class Participant {
   int Leave(const std::string& failure = "");
 
   timing::LoopStatistics& statistics() { return statistics_; }
+  const timing::LoopStatistics& statistics() const { return statistics_; }
   bus::Bus& bus() const { return bus_; }
   const bus::Clock& clock() const { return clock_; }
   bool simulated() const { return simulated_; }  // the clock is

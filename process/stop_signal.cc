@@ -7,9 +7,12 @@
 #include <mutex>
 
 namespace hydro::process {
+
+volatile std::sig_atomic_t internal::caught_signal = 0;
+
 namespace {
 
-volatile std::sig_atomic_t caught_signal = 0;
+using internal::caught_signal;
 
 std::mutex reason_mutex;
 std::string stop_reason;
@@ -27,8 +30,6 @@ void CatchStopSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-int StopSignal() { return caught_signal; }
-
 void StopBecause(const std::string& reason) {
   {
     const std::lock_guard lock(reason_mutex);
@@ -40,11 +41,6 @@ void StopBecause(const std::string& reason) {
 std::string StopReason() {
   const std::lock_guard lock(reason_mutex);
   return stop_reason;
-}
-
-int StopSignal(const bus::Bus& bus) {
-  const bus::HostedProcess* const hosted = bus.process();
-  return hosted != nullptr ? hosted->stop_signal : caught_signal;
 }
 
 }  // namespace hydro::process

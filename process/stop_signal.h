@@ -1,6 +1,7 @@
 // SIGINT, SIGTERM and SIGHUP as a flag that loops check.
 #pragma once
 
+#include <csignal>
 #include <string>
 
 #include "bus/bus.h"
@@ -11,11 +12,18 @@ namespace hydro::process {
 // HandleUntil(). Call once, before threads are started.
 void CatchStopSignals();
 
+namespace internal {
+extern volatile std::sig_atomic_t caught_signal;
+}
+
 // The caught signal; 0 when there was none.
-int StopSignal();
+inline int StopSignal() { return internal::caught_signal; }
 
 // The same for the process that `bus` belongs to, which may be a simulated one.
-int StopSignal(const bus::Bus& bus);
+inline int StopSignal(const bus::Bus& bus) {
+  const bus::HostedProcess* const hosted = bus.process();
+  return hosted != nullptr ? hosted->stop_signal : StopSignal();
+}
 
 // Sets the flag as SIGTERM does, for a reason that is told with the end of the run. Any thread may call it.
 void StopBecause(const std::string& reason);

@@ -16,7 +16,8 @@ FixedRateLoop::FixedRateLoop(bus::Bus& bus, const bus::Clock& clock,
       period_ns_(period.count()),
       statistics_(statistics),
       last_tick_(last_tick),
-      start_(clock.Now()) {
+      start_(clock.Now()),
+      woke_(start_) {
   if (!(period_ns_ >= 1)) throw std::invalid_argument("the period of a loop must be at least 1 ns");
   if (!clock_.simulated()) prctl(PR_SET_TIMERSLACK, 1);
 }

@@ -27,9 +27,9 @@ class FixedRateLoop {
   // tick.
   int64_t Wait();
 
+  bus::Clock::TimePoint woke() const { return woke_; }  // when the last tick began, or the loop
   int64_t tick() const { return tick_; }        // the newest tick that was due
   int64_t skipped() const { return skipped_; }  // ticks for which Wait() did not return
-  bus::Clock::TimePoint woke() const { return woke_; }  // when Wait() returned last
   bus::Clock::Duration late() const { return late_; }   // how long after that tick was due
 
  private:
@@ -41,9 +41,9 @@ class FixedRateLoop {
   LoopStatistics& statistics_;
   int64_t last_tick_;
   bus::Clock::TimePoint start_;
+  bus::Clock::TimePoint woke_;
   int64_t tick_ = 0;
   int64_t skipped_ = 0;
-  bus::Clock::TimePoint woke_{};
   bus::Clock::Duration late_{};
 };
 

@@ -43,6 +43,7 @@ class LoopStatistics {
   // counts as missed, or lost, in a row.
   void set_missed_deadlines(int64_t total) { Count(total, &total_missed_, LoopQuantity::kSkipped); }
   void set_lost_messages(int64_t total) { Count(total, &total_lost_, LoopQuantity::kGap); }
+  int64_t lost_messages() const { return total_lost_; }
   void AddMissedDeadlines(int64_t count) { set_missed_deadlines(SaturatingSum(total_missed_, count)); }
   void AddLostMessages(int64_t count) { set_lost_messages(SaturatingSum(total_lost_, count)); }
 

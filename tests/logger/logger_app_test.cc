@@ -220,13 +220,14 @@ TEST(RotatedNameTest, NumbersBeforeTheExtension) {
 // A clock whose wall time can be set while it runs; any thread may read it.
 class ClockThatIsSet : public bus::Clock {
  public:
-  TimePoint Now() const override { return TimePoint(std::chrono::milliseconds(now_ms_)); }
   int64_t Utime() const override { return bus::WallClock().Utime() + utime_offset_; }
   bool simulated() const override { return true; }
   void Advance(int64_t ms) { now_ms_ += ms; }
   void SetBy(int64_t us) { utime_offset_ += us; }
 
  private:
+  TimePoint Read() const override { return TimePoint(std::chrono::milliseconds(now_ms_)); }
+
   std::atomic<int64_t> now_ms_ = 0;
   std::atomic<int64_t> utime_offset_ = 0;
 };

@@ -20,7 +20,6 @@ class Machine : public bus::Clock {
 
   const std::string& name() const { return name_; }
 
-  TimePoint Now() const override { return TimePoint(std::chrono::nanoseconds(NowNs())); }
   int64_t Utime() const override { return (NowNs() + suspended_ns_ + utc_offset_ns_) / 1000; }
   Duration Suspended() const override { return std::chrono::nanoseconds(suspended_ns_); }
 
@@ -37,6 +36,7 @@ class Machine : public bus::Clock {
  private:
   static constexpr int64_t kBillion = 1'000'000'000;
 
+  TimePoint Read() const override { return TimePoint(std::chrono::nanoseconds(NowNs())); }
   int64_t NowNs() const { return local_base_ + Scaled(*now_ - true_base_); }
   int64_t Scaled(int64_t true_ns) const {
     if (drift_ == 0) return true_ns;
