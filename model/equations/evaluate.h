@@ -118,7 +118,7 @@ template <Form kForm, class T>
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
-  if (ArmIsLoaded<kForm>(m)) {
+  if (ArmIsLoaded<kForm>(m)) [[unlikely]] {
     x.arm_torque += T(LoadTorque(m, time));
   } else if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) {
     x.arm_torque -= p.mgl * cos(x.arm_angle);
@@ -194,7 +194,7 @@ template <Form kForm, class T>
   SetPressureRates<kForm>(m, n, mode, rate, x);
   if (ArmMovesFreely<kForm>(m)) {
     rate[kArmAngle] = x.arm_speed;
-    if (ArmIsLoaded<kForm>(m)) {
+    if (ArmIsLoaded<kForm>(m)) [[unlikely]] {
       rate[kArmSpeed] = x.arm_torque * T(m.inverse_load_inertia);
     } else {
       rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
