@@ -111,7 +111,7 @@ void AddOptions(settings::CommandLine* line, BatchOptions* options) {
                   "A:B with --worker: the cases from A to the one before B (all)");
 }
 
-int Run(BatchOptions options) {
+int Run(const BatchOptions& options) {
   if (options.jobs < 0 || options.jobs > 4096)
     throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
   if (!options.worker.empty()) return RunWorker(options);

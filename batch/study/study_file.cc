@@ -104,17 +104,11 @@ class Reader {
     if (!kept_files.items.empty()) *Member(&kept_, "files") = kept_files;
   }
 
-  // The configuration with its model and reference in the study's folder, so that this alone is enough anywhere.
+  // The configuration with its model in the study's folder, so that this alone is enough anywhere. A reference from a table stands in the text.
   void TakeConfig(const std::string& path, const std::vector<std::string>& changes) {
     const settings::StackConfig config = settings::LoadStackConfig(path, changes);
     TomlNode tree = settings::ParseToml(config.text, path);
     *Member(Member(&tree, "model"), "file") = settings::StringNode("model.toml");
-    if (!config.reference.trajectory.file.empty()) {
-      const std::string name =
-          "inputs/" + std::filesystem::path(config.reference.trajectory.file).filename().string();
-      AddFile("config", name, ReadTextFile(PathBeside(path, config.reference.trajectory.file)));
-      *Member(Member(&tree, "reference"), "file") = settings::StringNode(name);
-    }
     study_.config_text = settings::FormatToml(tree);
     study_.model_text = config.model.text;
     scope_.has_config = true;
@@ -124,7 +118,7 @@ class Reader {
   }
 
   std::string TakeFile(const std::string& key, const std::string& name) {
-    const std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
+    std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
     AddFile(key, kept, ReadTextFile(PathBeside(file_, name)));
     return kept;
   }
@@ -303,7 +297,7 @@ class Reader {
       if (study_.config_text.empty()) {
         settings::ParseModel(model, "model.toml");
       } else {
-        CheckConfig(inputs.Config(values), model);
+        settings::ParseStackConfig(inputs.Config(values), "config.toml", model, "model.toml");
       }
     } catch (const std::exception& error) {
       std::string shown;
@@ -312,17 +306,6 @@ class Reader {
         shown += (i == 0 ? "" : ", ") + keys[i] + " = " + PlainText(values[i]);
       throw InputError(file_ + ": case " + std::to_string(index) + " (" + shown + "): " + error.what());
     }
-  }
-
-  void CheckConfig(const std::string& config, const std::string& model) const {
-    TomlNode tree = settings::ParseToml(config, "config.toml");
-    // The reference's file is not there yet: its text is known to be in order.
-    if (TomlNode* reference = tree.Find("reference"); reference != nullptr &&
-                                                      reference->Find("file") != nullptr &&
-                                                      reference->Find("file")->is(Kind::kString)) {
-      return;
-    }
-    settings::ParseStackConfig(config, "config.toml", model, "model.toml");
   }
 
   const std::string file_;
