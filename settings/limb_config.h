@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "settings/stack_config.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
 
@@ -34,6 +35,10 @@ struct LimbConfig {
   LimbSection limb;
   std::vector<JointConfig> joints;
 };
+
+// The section [limb] of a document whose plant ticks at `rate_hz`; notes in `asked` (unless it is null) the keys that it may have.
+// Throws InputError.
+LimbSection ReadLimbSection(const TomlNode& root, double rate_hz, std::vector<AskedKey>* asked = nullptr);
 
 // Whether `file` is the configuration of a limb. Throws InputError.
 bool IsLimbFile(const std::string& file);

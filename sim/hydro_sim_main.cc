@@ -38,8 +38,8 @@ bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
 }
 
 // What is simulated, given where its messages go.
-using Simulation =
-    std::function<hydro::sim::SimulationResult(const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
+using Simulation = std::function<hydro::sim::SimulationResult(
+    const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
 
 Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of) {
   if (IsWholeLimb(options)) {
