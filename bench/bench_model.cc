@@ -11,14 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "bench/model_tick.h"
 #include "model/actuator.h"
-#include "tests/table1.h"
 
 namespace hydro {
 namespace {
 
-constexpr int kTicks = 5000;
-constexpr double kTick = 2e-4;
+using bench::Table1Model;
+
+constexpr int kTicks = bench::kTicksPerSecond;
 
 // p2 - p1 at 0.05, 0.1, ... 1 s, by event-located integration with steps of 1e-6 s.
 constexpr double kReference[] = {296.568239647, -318.759357681, 320.915787611, -320.29413467,
@@ -26,18 +27,6 @@ constexpr double kReference[] = {296.568239647, -318.759357681, 320.915787611, -
                                  320.050248253, -320.052854252, 320.054262393, -320.055009572,
                                  320.055402546, -320.055608311, 320.055715807, -320.055771898,
                                  320.055801149, -320.055816398, 320.055824347, -320.055828489};
-
-model::ModelDescription Table1Model() {
-  model::ModelDescription model;
-  model.name = "Table 1";
-  model.parameters = testing::Table1();
-  return model;
-}
-
-double Loop(const model::Measurement& m, int tick) {
-  const double reference = tick % 500 < 250 ? 300 : -300;
-  return 0.134 * (reference - (m.p2 - m.p1) - 8.4 * m.motor_speed);
-}
 
 model::ActuatorOptions Clamped(model::Integrator integrator, double tolerance) {
   model::ActuatorOptions options;
@@ -61,7 +50,7 @@ void Tick(benchmark::State& state, const std::string& name, const model::ModelDe
   for (auto _ : state) {
     model::Actuator actuator(model, options);
     for (int tick = 0; tick < kTicks; ++tick) {
-      actuator.Advance(Loop(actuator.Measure(), tick), (tick + 1) * kTick);
+      bench::AdvanceTick(actuator, tick);
       if ((tick + 1) % 250 == 0) {
         const model::Measurement m = actuator.Measure();
         error = std::max(error, std::abs(m.p2 - m.p1 - kReference[tick / 250]));

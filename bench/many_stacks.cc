@@ -1,7 +1,7 @@
 // How many stacks (plant, pressure loop, position loop: three processes each) one machine and one multicast
-// segment can run in real time, on a port each and on one shared port with channel suffixes; and how many
-// hydro-sim can run in one process.
-//   many_stacks [--seconds S] [--most N] [--rate HZ] [--priority P]
+// segment can run in real time, on a port each and on one shared port with channel suffixes; how many joints a limb can have on one
+// core; and how many of both hydro-sim can run in one process.
+//   many_stacks [--seconds S] [--most N] [--rate HZ] [--priority P] [--joints N] [--limbs]
 // Each row is compared with a single stack measured just before it, because the machine may have other work.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -12,13 +12,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench/shared_results.h"
+#include "base/text_file.h"
 #include "bus/udpm/open_udpm_bus.h"
+#include "limb/limb_app.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -33,6 +37,7 @@ namespace hydro {
 namespace {
 
 constexpr int kProcesses = 3;
+constexpr int kRounds = 5;  // of the largest limb
 // Deadlines count as lost when the share of ticks missed or answered late exceeds that of a single stack by
 // more than this.
 constexpr double kMostMissed = 0.01;
@@ -42,6 +47,8 @@ struct Options {
   double seconds = 4;
   double rate = 1000;
   int priority = 0;
+  int joints = 40;  // of the largest limb
+  int cpu = -1;
 };
 
 struct PlantResult {
@@ -105,6 +112,7 @@ pid_t Fork(const Options& options, const std::function<void()>& work) {
   try {
     timing::RealTimeRequest request;
     request.priority = options.priority;
+    request.cpu = options.cpu;
     timing::ApplyRealTime(request);
     work();
   } catch (const std::exception& error) {
@@ -190,6 +198,90 @@ void RealTime(bool own_ports, const Options& options) {
               options.most);
 }
 
+// A limb of so many joints of the same kind.
+settings::LimbConfig LimbOf(int joints, const Options& options) {
+  const std::filesystem::path config = std::filesystem::absolute(HYDRO_BENCH_CONFIG);
+  std::string text = ReadTextFile(config.string());
+  text = text.substr(0, text.find("[[process]]"));  // joints are in one process
+  for (int i = 0; i < joints; ++i) text += "[[joint]]\nname = \"j" + std::to_string(i) + "\"\n";
+  const std::string file = "/tmp/many_stacks-" + std::to_string(getpid()) + ".toml";
+  std::ofstream(file) << text;
+  const settings::LimbConfig limb = settings::LoadLimbConfig(
+      file, {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
+             "plant.rate_hz=" + std::to_string(options.rate), "limits.stale_input_s=5", "bus.url=" + FreeBusUrl(),
+             "model.file=" + (config.parent_path() / "models/table1.toml").string()});
+  std::filesystem::remove(file);
+  return limb;
+}
+
+struct LimbResult {
+  int64_t ticks = 0;
+  int64_t missed = 0;
+  double late_p99_us = 0;
+  double loop_s = 0;  // processor time between the start of the run and its end
+};
+
+double ThreadSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return Seconds(usage);
+}
+
+pid_t ForkLimb(const settings::LimbConfig& config, const Options& options, int cpu, LimbResult* result) {
+  Options pinned = options;
+  pinned.cpu = cpu;
+  return Fork(pinned, [&] {
+    const auto opened = bus::OpenUdpmBus(config.common.bus.url);
+    bus::WallClock clock;
+    limb::LimbApp app(*opened, clock, config, {});
+    const double before = ThreadSeconds();
+    app.Run();
+    result->loop_s = ThreadSeconds() - before;
+    const auto total = app.statistics().Total(clock.Now());
+    result->ticks = app.limb().tick();
+    result->missed = total.missed_deadlines;
+    result->late_p99_us = total.latency_p99_us;
+  });
+}
+
+// Many joints in a process on one core, and at the same time one joint on the other: whatever the machine does to one of
+// them, it is likely to do to the other.
+void Limbs(const Options& options) {
+  std::printf("\nlimbs at %g Hz: all joints in one process on core 0, telemetry at 50 Hz; beside it, at the same time, one "
+              "joint on core 1\n",
+              options.rate);
+  std::printf("%7s %8s %10s %14s | %15s %16s\n", "joints", "missed", "late p99", "us/joint/tick", "missed beside",
+              "late p99 beside");
+  std::vector<int> counts;
+  for (int joints = 1; joints < options.joints; joints *= 4) counts.push_back(joints);
+  for (int round = 0; round < kRounds; ++round) counts.push_back(options.joints);
+  for (const int joints : counts) {
+    SharedResults<LimbResult> results(2);
+    const settings::LimbConfig many = LimbOf(joints, options), one = LimbOf(1, options);
+    const pid_t children[] = {ForkLimb(many, options, 0, &results[0]), ForkLimb(one, options, 1, &results[1])};
+    for (const pid_t child : children) waitpid(child, nullptr, 0);
+    const auto share = [](const LimbResult& r) {
+      return r.ticks > 0 ? 100 * static_cast<double>(r.missed) / static_cast<double>(r.ticks) : 100.0;
+    };
+    std::printf("%7d %7.2f%% %10.0f %14.2f | %14.2f%% %16.0f\n", joints, share(results[0]), results[0].late_p99_us,
+                1e6 * results[0].loop_s / static_cast<double>(joints) /
+                    static_cast<double>(results[0].ticks - results[0].missed),
+                share(results[1]), results[1].late_p99_us);
+    std::fflush(stdout);
+  }
+}
+
+// Many joints in hydro-sim, on one core.
+void SimulatedLimb(const Options& options) {
+  const int joints = 5 * options.joints;
+  const settings::LimbConfig config = LimbOf(joints, options);
+  const double before = ThreadSeconds();
+  sim::SimulateLimb(config, nullptr);
+  const double taken = ThreadSeconds() - before;
+  std::printf("%d joints in hydro-sim: %.2f times real time on one core, %.2f us a joint and tick\n", joints,
+              options.seconds / taken, 1e6 * taken / (options.seconds * options.rate * joints));
+}
+
 void Simulated(const Options& options) {
   const int stacks = std::min(options.most, 16);
   const settings::StackConfig config = settings::LoadStackConfig(
@@ -216,16 +308,22 @@ int main(int argc, char** argv) {
   hydro::settings::CommandLine line("many_stacks",
                                     "How many stacks a machine and a multicast segment carry.");
   hydro::Options options;
+  bool limbs_alone = false;
   line.AddOption("--most", &options.most, "N the most stacks to try (default 16); rows are powers of two");
   line.AddOption("--seconds", &options.seconds, "S plant time of each run (default 4)");
   line.AddOption("--rate", &options.rate, "HZ ticks a second (default 1000)");
+  line.AddOption("--joints", &options.joints, "N joints of the largest limb (default 40)");
+  line.AddFlag("--limbs", &limbs_alone, "leave out stacks of processes");
   line.AddOption("--priority", &options.priority, "P SCHED_FIFO priority of all processes (default 0: none)");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("many_stacks", [&] {
-    if (options.most < 1 || options.seconds < 1 || options.rate < 1) {
-      throw hydro::InputError("--most, --seconds and --rate: found less than 1, allowed is 1 or more");
+    if (options.most < 1 || options.seconds < 1 || options.rate < 1 || options.joints < 1) {
+      throw hydro::InputError("--most, --seconds, --rate and --joints: found less than 1, allowed is 1 or more");
     }
     hydro::Simulated(options);
+    hydro::SimulatedLimb(options);
+    hydro::Limbs(options);
+    if (limbs_alone) return 0;
     hydro::RealTime(true, options);
     hydro::RealTime(false, options);
     return 0;

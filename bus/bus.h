@@ -17,6 +17,7 @@
 #pragma once
 
 #include <chrono>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -159,9 +160,9 @@ class Bus {
   }
 
   // Calls `handler` for each message on exactly this channel. A subscription lasts as long as the bus.
-  template <class Message>
-  void Subscribe(const std::string& channel, std::function<void(const Message&)> handler) {
-    SubscribeTyped(channel, TypeOf<Message>(), [handler = std::move(handler)](const void* message) {
+  template <class Message, std::invocable<const Message&> Handler>
+  void Subscribe(const std::string& channel, Handler handler) {
+    SubscribeTyped(channel, TypeOf<Message>(), [handler = std::move(handler)](const void* message) mutable {
       handler(*static_cast<const Message*>(message));
     });
   }
@@ -179,23 +180,20 @@ class Bus {
   virtual int HandleUntil(TimePoint deadline) = 0;
 
   // Messages that arrived on a subscribed channel but could not be decoded as its type.
-  virtual int64_t undecodable() const = 0;
+  int64_t undecodable() const { return undecodable_; }
 
   // Messages that could not be sent because the network was down.
-  virtual int64_t unsent() const { return 0; }
+  int64_t unsent() const { return unsent_; }
 
   // The simulated process that this bus belongs to; null: the real one that runs this code.
-  virtual const HostedProcess* process() const { return nullptr; }
+  const HostedProcess* process() const { return process_; }
 
   // The channel of the newest message that could not be decoded; empty when there was none or the transport
   // does not know.
   const std::string& undecodable_channel() const { return undecodable_channel_; }
 
   // Messages that were not genuine. Always none on a bus without a key.
-  virtual const RefusedMessages& refused() const {
-    static const RefusedMessages kNone;
-    return kNone;
-  }
+  const RefusedMessages& refused() const { return *refused_; }
 
  protected:
   virtual void PublishTyped(const std::string& channel, const MessageType& type, const void* message) = 0;
@@ -207,9 +205,19 @@ class Bus {
     return std::make_shared<NamedOutlet>(this, channel, type);
   }
 
+  // What a transport counts and is; loops ask for it at every turn.
+  int64_t undecodable_ = 0;
+  int64_t unsent_ = 0;
+  const RefusedMessages* refused_ = &NoneRefused();
+  const HostedProcess* process_ = nullptr;
   std::string undecodable_channel_;
 
  private:
+  static const RefusedMessages& NoneRefused() {
+    static const RefusedMessages kNone;
+    return kNone;
+  }
+
   class NamedOutlet : public Outlet {
    public:
     NamedOutlet(Bus* bus, std::string channel, const MessageType& type)

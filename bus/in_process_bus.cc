@@ -1,54 +1,56 @@
 #include "bus/in_process_bus.h"
 
-#include <deque>
+#include <algorithm>
+#include <utility>
 
 #include "bus/sleep_until.h"
 
 namespace hydro::bus {
 namespace {
 
-constexpr size_t kFirstCapacity = 16;
-
-// A waiting message: a typed copy, or bytes when it was published raw or as another type than the channel's.
-struct Slot {
-  std::shared_ptr<void> message;
-  std::vector<uint8_t> bytes;
-  bool raw = false;
-};
-
-struct Handler {
-  const MessageType* type;
-  std::shared_ptr<void> decoded;  // for raw messages
-  std::function<void(const void*)> call;
-};
+const WallClock kWallClock;
+constexpr size_t kFirstSlots = 16;
 
 }  // namespace
 
+// A waiting message: a typed copy, or bytes when it was published raw or as another type than the channel's.
+struct InProcessBus::Slot {
+  Channel* channel;
+  Slot* next = nullptr;  // the message behind it, or the next idle slot of the channel
+  std::shared_ptr<void> message;
+  std::vector<uint8_t> bytes;
+  bool raw = false;
+
+  [[gnu::cold]] void Create(const MessageType& type) { message = type.create(); }
+};
+
+struct InProcessBus::Handler {
+  const MessageType* type;
+  bool of_channel;                // its type is that of the channel's typed copies
+  std::shared_ptr<void> decoded;  // for raw messages
+  std::function<void(const void*)> call;
+  std::unique_ptr<Handler> next;
+};
+
 struct InProcessBus::Channel {
   std::string name;
-  const MessageType* type = nullptr;  // of the slots' typed copies: that of the first publisher or subscriber
-  std::deque<Handler> handlers;       // a handler may subscribe: existing ones stay in place
-  std::vector<std::unique_ptr<Slot>> slots;  // ring, size a power of 2
-  size_t first = 0;
-  size_t end = 0;
+  const MessageType* type = nullptr;  // of the typed copies: that of the first publisher or subscriber
+  std::unique_ptr<Handler> handlers;  // in the order of subscription
+  std::vector<std::unique_ptr<Slot>> slots;
+  Slot* idle = nullptr;  // the first of those in which no message waits
 
-  Slot& Append() {
-    if (end - first == slots.size()) Grow();
-    return *slots[end++ & (slots.size() - 1)];
+  Slot& TakeSlot() {
+    if (idle == nullptr) AddSlots();
+    return *std::exchange(idle, idle->next);
   }
+  void GiveBack(Slot& slot) { slot.next = std::exchange(idle, &slot); }
 
-  Slot& Oldest() { return *slots[first & (slots.size() - 1)]; }
-
-  // Slots stay in place in memory, because a handler may hold one of them.
-  void Grow() {
-    std::vector<std::unique_ptr<Slot>> larger(slots.empty() ? kFirstCapacity : 2 * slots.size());
-    for (size_t i = 0; i < slots.size(); ++i) larger[i] = std::move(slots[(first + i) & (slots.size() - 1)]);
-    for (std::unique_ptr<Slot>& slot : larger) {
-      if (slot == nullptr) slot = std::make_unique<Slot>();
+  [[gnu::cold]] void AddSlots() {
+    for (size_t more = std::max(slots.size(), kFirstSlots); more > 0; --more) {
+      slots.push_back(std::make_unique<Slot>());
+      slots.back()->channel = this;
+      GiveBack(*slots.back());
     }
-    end -= first;
-    first = 0;
-    slots = std::move(larger);
   }
 };
 
@@ -64,7 +66,9 @@ class InProcessBus::ChannelOutlet : public Outlet {
   const MessageType& type_;
 };
 
-InProcessBus::InProcessBus(SimulatedClock* clock) : clock_(clock), order_(kFirstCapacity) {}
+InProcessBus::InProcessBus(SimulatedClock* clock)
+    : stamps_(clock != nullptr ? static_cast<const Clock*>(clock) : &kWallClock), clock_(clock) {}
+InProcessBus::InProcessBus(const Clock& wall) : stamps_(&wall), clock_(nullptr) {}
 InProcessBus::~InProcessBus() = default;
 
 InProcessBus::Channel& InProcessBus::Find(const std::string& name) {
@@ -88,7 +92,10 @@ void InProcessBus::SubscribeTyped(const std::string& channel, const MessageType&
                                   std::function<void(const void*)> handler) {
   Channel& found = Find(channel);
   if (found.type == nullptr) found.type = &type;
-  found.handlers.push_back({&type, type.create(), std::move(handler)});
+  std::unique_ptr<Handler>* last = &found.handlers;
+  while (*last != nullptr) last = &(*last)->next;
+  *last = std::make_unique<Handler>(
+      Handler{&type, found.type->hash == type.hash, type.create(), std::move(handler), nullptr});
 }
 
 std::shared_ptr<Outlet> InProcessBus::MakeOutlet(const std::string& channel, const MessageType& type) {
@@ -99,46 +106,68 @@ void InProcessBus::PublishTyped(const std::string& channel, const MessageType& t
   Enqueue(Find(channel), type, message);
 }
 
+inline void InProcessBus::Append(Slot& slot) {
+  slot.next = nullptr;
+  (oldest_ == nullptr ? oldest_ : newest_->next) = &slot;
+  newest_ = &slot;
+}
+
+inline bool InProcessBus::IsHeard(const Channel& channel) const {
+  return channel.handlers != nullptr || !taps_.empty();
+}
+
 void InProcessBus::Enqueue(Channel& channel, const MessageType& type, const void* message) {
-  if (channel.handlers.empty() && taps_.empty()) return;
+  if (!IsHeard(channel)) return;
   if (channel.type == nullptr) channel.type = &type;
-  Slot& slot = channel.Append();
-  if (channel.type->hash == type.hash) {
-    if (slot.message == nullptr) slot.message = type.create();
-    type.copy(slot.message.get(), message);
-    slot.raw = false;
-  } else {
-    slot.bytes.resize(type.encoded_size(message));
-    type.encode(message, slot.bytes.data(), static_cast<int>(slot.bytes.size()));
-    slot.raw = true;
-  }
-  Order(&channel);
+  if (channel.type != &type && channel.type->hash != type.hash) return EnqueueEncoded(channel, type, message);
+  Slot& slot = channel.TakeSlot();
+  if (slot.message == nullptr) slot.Create(type);
+  type.copy(slot.message.get(), message);
+  slot.raw = false;
+  Append(slot);
+}
+
+void InProcessBus::EnqueueEncoded(Channel& channel, const MessageType& type, const void* message) {
+  Slot& slot = channel.TakeSlot();
+  slot.bytes.resize(type.encoded_size(message));
+  type.encode(message, slot.bytes.data(), static_cast<int>(slot.bytes.size()));
+  slot.raw = true;
+  Append(slot);
 }
 
 void InProcessBus::PublishRaw(const std::string& channel, const void* data, int size) {
   Channel& found = Find(channel);
-  if (found.handlers.empty() && taps_.empty()) return;
-  Slot& slot = found.Append();
+  if (!IsHeard(found)) return;
+  Slot& slot = found.TakeSlot();
   const auto* const bytes = static_cast<const uint8_t*>(data);
   slot.bytes.assign(bytes, bytes + size);
   slot.raw = true;
-  Order(&found);
+  Append(slot);
 }
 
-void InProcessBus::Order(Channel* channel) {
-  if (end_ - first_ == order_.size()) {
-    std::vector<Channel*> larger(2 * order_.size());
-    for (size_t i = 0; i < order_.size(); ++i) larger[i] = order_[(first_ + i) & (order_.size() - 1)];
-    end_ -= first_;
-    first_ = 0;
-    order_ = std::move(larger);
+// Takes the oldest message off the queue.
+inline void InProcessBus::Done(Slot& slot) {
+  oldest_ = slot.next;
+  slot.channel->GiveBack(slot);
+}
+
+inline void InProcessBus::Dispatch(const Slot& slot) {
+  if (!taps_.empty()) ShowTaps(slot);
+  if (slot.raw) return DispatchRaw(slot);
+  const void* const message = slot.message.get();
+  for (const Handler* handler = slot.channel->handlers.get(); handler != nullptr;
+       handler = handler->next.get()) {
+    if (handler->of_channel) {
+      handler->call(message);
+    } else {
+      ++undecodable_;
+    }
   }
-  order_[end_++ & (order_.size() - 1)] = channel;
 }
 
 int InProcessBus::HandleUntil(TimePoint deadline) {
   if (handling_) throw std::logic_error("HandleUntil called from a handler");
-  if (first_ == end_) {
+  if (oldest_ == nullptr) {
     if (clock_ != nullptr) {
       clock_->AdvanceTo(deadline);
     } else {
@@ -146,49 +175,48 @@ int InProcessBus::HandleUntil(TimePoint deadline) {
     }
     return 0;
   }
-  // Takes the message off both queues when its handlers are done with it, also when one of them throws.
-  struct Turn {
-    InProcessBus* bus;
-    Channel* channel;
-    Turn(InProcessBus* b, Channel* c) : bus(b), channel(c) { bus->handling_ = true; }
-    ~Turn() {
-      ++channel->first;
-      ++bus->first_;
-      bus->handling_ = false;
+  const Slot* const last = newest_;
+  int handled = 0;
+  handling_ = true;
+  for (bool more = true; more; ++handled) {
+    Slot& slot = *oldest_;
+    more = &slot != last;
+    try {
+      Dispatch(slot);
+    } catch (...) {
+      Done(slot);
+      handling_ = false;
+      throw;
     }
-  };
-  const size_t waiting = end_ - first_;
-  for (size_t i = 0; i < waiting; ++i) {
-    const Turn turn(this, order_[first_ & (order_.size() - 1)]);
-    Dispatch(*turn.channel);
+    Done(slot);
   }
-  return static_cast<int>(waiting);
+  handling_ = false;
+  return handled;
 }
 
-void InProcessBus::Dispatch(Channel& channel) {
-  Slot& slot = channel.Oldest();
-  if (!taps_.empty()) {
-    const std::vector<uint8_t>* bytes = &slot.bytes;
-    if (!slot.raw) {
-      encoded_.resize(channel.type->encoded_size(slot.message.get()));
-      channel.type->encode(slot.message.get(), encoded_.data(), static_cast<int>(encoded_.size()));
-      bytes = &encoded_;
-    }
-    const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()),
-                             clock_ != nullptr ? clock_->Utime() : WallClock().Utime()};
-    for (size_t i = 0; i < taps_.size(); ++i) taps_[i](message);
-  }
-  for (size_t i = 0; i < channel.handlers.size(); ++i) {
-    Handler& handler = channel.handlers[i];
-    if (!slot.raw && handler.type->hash == channel.type->hash) {
-      handler.call(slot.message.get());
-    } else if (slot.raw && handler.type->decode_into(handler.decoded.get(), slot.bytes.data(),
-                                                     static_cast<int>(slot.bytes.size()))) {
-      handler.call(handler.decoded.get());
+void InProcessBus::DispatchRaw(const Slot& slot) {
+  const auto size = static_cast<int>(slot.bytes.size());
+  for (const Handler* handler = slot.channel->handlers.get(); handler != nullptr;
+       handler = handler->next.get()) {
+    if (handler->type->decode_into(handler->decoded.get(), slot.bytes.data(), size)) {
+      handler->call(handler->decoded.get());
     } else {
       ++undecodable_;
     }
   }
+}
+
+void InProcessBus::ShowTaps(const Slot& slot) {
+  const Channel& channel = *slot.channel;
+  const std::vector<uint8_t>* bytes = &slot.bytes;
+  if (!slot.raw) {
+    encoded_.resize(channel.type->encoded_size(slot.message.get()));
+    channel.type->encode(slot.message.get(), encoded_.data(), static_cast<int>(encoded_.size()));
+    bytes = &encoded_;
+  }
+  const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()),
+                           stamps_->Utime()};
+  for (size_t i = 0; i < taps_.size(); ++i) taps_[i](message);
 }
 
 }  // namespace hydro::bus

@@ -21,6 +21,8 @@ class InProcessBus : public Bus {
   // HandleUntil() advances `clock`, which also stamps what SubscribeAll() sees. Null: wall time, and
   // HandleUntil() sleeps until the deadline when nothing is waiting.
   explicit InProcessBus(SimulatedClock* clock);
+  // As with null, but `wall` stamps what SubscribeAll() sees. It must outlive the bus.
+  explicit InProcessBus(const Clock& wall);
   ~InProcessBus() override;
 
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
@@ -28,7 +30,6 @@ class InProcessBus : public Bus {
 
   // Handles the messages waiting at the call. What handlers publish meanwhile waits for the next call.
   int HandleUntil(TimePoint deadline) override;
-  int64_t undecodable() const override { return undecodable_; }
 
  protected:
   void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
@@ -37,25 +38,30 @@ class InProcessBus : public Bus {
   std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) override;
 
  private:
+  struct Slot;
+  struct Handler;
   struct Channel;
   class ChannelOutlet;
 
   Channel& Find(const std::string& name);
+  bool IsHeard(const Channel& channel) const;
   void Enqueue(Channel& channel, const MessageType& type, const void* message);
-  void Order(Channel* channel);
-  void Dispatch(Channel& channel);
+  [[gnu::cold]] void EnqueueEncoded(Channel& channel, const MessageType& type, const void* message);
+  void Append(Slot& slot);
+  void Done(Slot& slot);
+  void Dispatch(const Slot& slot);
+  [[gnu::noinline]] void DispatchRaw(const Slot& slot);
+  [[gnu::noinline]] void ShowTaps(const Slot& slot);
 
-  SimulatedClock* clock_;
-  int64_t undecodable_ = 0;
+  const Clock* stamps_;
+  SimulatedClock* clock_;  // null: wall time
   bool handling_ = false;
   std::unordered_map<std::string, std::unique_ptr<Channel>> channels_;
   std::array<Channel*, 16> recent_{};  // by the address of the caller's name, whose text is then compared
   std::deque<std::function<void(const RawMessage&)>> taps_;
   std::vector<uint8_t> encoded_;  // reused for each message
-  // Ring of the channels of the waiting messages, oldest first; its size is a power of 2.
-  std::vector<Channel*> order_;
-  size_t first_ = 0;  // index of the oldest; counts on, the position is modulo the size
-  size_t end_ = 0;    // one past the newest
+  Slot* oldest_ = nullptr;        // of the waiting messages
+  Slot* newest_ = nullptr;        // while there is an oldest
 };
 
 }  // namespace hydro::bus

@@ -43,7 +43,6 @@ class LogBus : public Bus {
   // Handles the next event that has a subscriber and returns 1: one at a time, so that the application can
   // act in between. Returns 0 when that event lies beyond `deadline`, at the end of the log, or at a signal.
   int HandleUntil(TimePoint deadline) override;
-  int64_t undecodable() const override { return undecodable_; }
 
  protected:
   void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
@@ -70,7 +69,6 @@ class LogBus : public Bus {
   bool handling_ = false;
   TimePoint wall_start_;  // when the first event is due
   int64_t first_utime_ = 0;
-  int64_t undecodable_ = 0;
   std::deque<Handler> handlers_;  // a handler may subscribe: existing ones stay in place
   std::deque<std::function<void(const RawMessage&)>> taps_;
 };

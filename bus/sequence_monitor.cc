@@ -6,16 +6,7 @@
 
 namespace hydro::bus {
 
-SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
-  return Observe(session, Place{sequence, 0}, now);
-}
-
-SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, int64_t tick,
-                                                  Clock::TimePoint now) {
-  return Observe(session, Place{sequence, tick}, now);
-}
-
-SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, Clock::TimePoint now) {
+SequenceMonitor::Verdict SequenceMonitor::ObserveOther(int64_t session, Place place, Clock::TimePoint now) {
   gap_ = 0;
   if (FollowsAnother(session, now)) {
     Note(session, now);
@@ -55,7 +46,7 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, 
   return Verdict::kDuplicate;
 }
 
-bool SequenceMonitor::SecondSenderAlive(Clock::TimePoint now) const {
+bool SequenceMonitor::OtherAlive(Clock::TimePoint now) const {
   return std::any_of(others_.begin(), others_.end(),
                      [&](const Other& other) { return other.heard && now - *other.heard <= alive_; });
 }

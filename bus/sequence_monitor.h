@@ -25,11 +25,20 @@ class SequenceMonitor {
   explicit SequenceMonitor(Clock::Duration alive) : alive_(alive) {}
 
   // Call it for each message, in order of arrival.
-  Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
+  Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
+    return Observe(session, sequence, 0, now);
+  }
 
   // The same, but a message of the same sender with a lower tick than an earlier one is kDuplicate, always. The
   // caller never passes a tick that has not been: it would make all later ones lower.
-  Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now);
+  Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now) {
+    if (!IsNext(session, sequence, tick)) return ObserveOther(session, {sequence, tick}, now);
+    gap_ = 0;
+    heard_ = advanced_ = now;
+    newest_ = {sequence, tick};
+    behind_.reset();
+    return Verdict::kAccept;
+  }
 
   // Whether a message from that session would be kSecondSender.
   bool FollowsAnother(int64_t session, Clock::TimePoint now) const {
@@ -37,7 +46,7 @@ class SequenceMonitor {
   }
 
   // A sender beside the one that is followed was heard within the last `alive`.
-  bool SecondSenderAlive(Clock::TimePoint now) const;
+  bool SecondSenderAlive(Clock::TimePoint now) const { return second_session_ && OtherAlive(now); }
 
   std::optional<int64_t> session() const { return session_; }                // of the sender being followed
   std::optional<int64_t> second_session() const { return second_session_; }  // of the last kSecondSender
@@ -53,7 +62,13 @@ class SequenceMonitor {
     int64_t sequence = 0;
     int64_t tick = 0;
   };
-  Verdict Observe(int64_t session, Place place, Clock::TimePoint now);
+  // The one that nearly every message is: the next of the sender that is followed, with nothing odd before it.
+  bool IsNext(int64_t session, int64_t sequence, int64_t tick) const {
+    return session_ && session == *session_ && sequence > newest_.sequence &&
+           sequence - 1 == newest_.sequence && tick >= newest_.tick && refused_since_ == 0;
+  }
+  Verdict ObserveOther(int64_t session, Place place, Clock::TimePoint now);
+  bool OtherAlive(Clock::TimePoint now) const;
   void Note(int64_t session, Clock::TimePoint now);
   void Follow(int64_t session, Place place, Clock::TimePoint now);
   Verdict Restart(int64_t session, Place place, Clock::TimePoint now);

@@ -44,6 +44,7 @@ ReportEntry RunOne(const Experiment& experiment, const ExperimentRequest& reques
   ReportEntry entry{experiment, std::nullopt, {}, ""};
   try {
     ExperimentOptions options = request.options;
+    options.jobs = request.jobs;
     options.progress = [&progress](double done) { progress(kRunShare * done); };
     ExperimentResult result = experiment.run(options);
     progress(kRunShare);
@@ -132,10 +133,12 @@ std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
   std::vector<std::string> names;
   std::string list;
   std::string measured;
+  std::string drawn;
   for (const Experiment& experiment : all) {
     names.push_back(experiment.name);
     list += experiment.name + ", ";
     if (experiment.takes_measured_run) measured += (measured.empty() ? "" : ", ") + experiment.name;
+    if (experiment.draws_machines) drawn += experiment.name + ", ";
   }
   names.push_back("all");
   const auto found = std::find_if(
@@ -147,6 +150,10 @@ std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
   if (!request.options.measured_run.empty() && (found == all.end() || !found->takes_measured_run)) {
     throw InputError("--run: found for '" + request.name + "', allowed for " +
                      (measured.empty() ? "none" : measured));
+  }
+  if (request.options.machines != ExperimentOptions{}.machines && found != all.end() &&
+      !found->draws_machines) {
+    throw InputError("--machines: found for '" + request.name + "', allowed for " + drawn + "all");
   }
   if (found != all.end()) return {*found};
   return all;

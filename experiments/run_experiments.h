@@ -11,7 +11,7 @@
 namespace hydro::experiments {
 
 // The experiments that were asked for. Throws InputError for an unknown name, or for a measured run given to
-// an experiment that takes none.
+// an experiment that takes none, or a number of machines to one that draws none.
 std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
                                           const ExperimentRequest& request);
 

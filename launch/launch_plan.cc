@@ -119,6 +119,7 @@ ChildSpec ChildFor(const settings::ProcessSection& process, const settings::Stac
     child.argv.insert(child.argv.end(), {"--joints", joint});
   }
   const bool with_log = !request.log_file.empty();
+  if (program != kLogger) child.joints = settings::JointsOf(process, config);
   if (program == kLogger) {
     child.last = true;
     child.argv.insert(child.argv.end(), {"-o", request.log_file});

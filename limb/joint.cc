@@ -21,7 +21,7 @@ Joint::Joint(const settings::JointConfig& joint, std::unique_ptr<plant::Rig> rig
     : name_(joint.name),
       config_(InsideALimb(joint.config)),
       clock_(clock != nullptr ? *clock : simulated_),
-      bus_(clock != nullptr ? nullptr : &simulated_),
+      bus_(clock != nullptr ? bus::InProcessBus(*clock) : bus::InProcessBus(&simulated_)),
       rig_(std::move(rig)),
       plant_(bus_, clock_, config_, *rig_, {}, program, std::move(heartbeat)),
       pressure_(bus_, clock_, config_),
@@ -43,7 +43,7 @@ bus::Clock::TimePoint Joint::DueTime(int64_t tick) const {
 }
 
 void Joint::Poll() {
-  plant_.Poll();
+  plant_.Poll(clock_.Now());
   pressure_.Poll();
   position_.Poll();
 }

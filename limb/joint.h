@@ -28,6 +28,7 @@ class Joint {
   const std::string& name() const { return name_; }
   const settings::StackConfig& config() const { return config_; }
   bus::InProcessBus& bus() { return bus_; }
+  const bus::Clock& clock() const { return clock_; }
   plant::Rig& rig() { return *rig_; }
   plant::PlantApp& plant() { return plant_; }
   const plant::PlantApp& plant() const { return plant_; }

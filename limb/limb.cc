@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/input_error.h"
+#include "base/text_file.h"
+#include "limb/jointed_arm.h"
 #include "plant/simulated_rig.h"
 
 namespace hydro::limb {
@@ -16,21 +18,42 @@ bool IsWanted(const std::string& name, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
+void CheckWanted(const settings::LimbConfig& config, const std::vector<std::string>& wanted) {
+  const std::vector<std::string>& names = config.common.joints;
+  for (const std::string& name : wanted) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw InputError("--joints: found " + Quoted(name) + ", allowed " + QuotedList(names));
+  }
+  if (config.arm && !wanted.empty() && wanted.size() < names.size()) {
+    throw InputError("--joints: found some of the joints of an [arm], allowed all of them: it couples their loads");
+  }
+}
+
+void CheckSimulated(const settings::JointConfig& joint) {
+  if (!joint.config.driver) return;
+  throw InputError(joint.config.file + ": joint." + joint.name +
+                   ".driver: found a board, allowed is a simulated joint: one on a board runs as processes "
+                   "of its own ([[process]] joint = \"" + joint.name + "\")");
+}
+
 }  // namespace
 
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
-  for (settings::JointConfig joint : config.joints) {
+  CheckWanted(config, options.joints);
+  if (options.clock != nullptr) clock_.emplace(*options.clock);
+  std::vector<std::unique_ptr<plant::SimulatedMachine>> machines;
+  if (config.arm) machines = MakeJointedArm(config);
+  for (size_t i = 0; i < config.joints.size(); ++i) {
+    settings::JointConfig joint = config.joints[i];
     if (!IsWanted(joint.name, options.joints)) continue;
-    if (joint.config.driver) {
-      throw InputError(config.common.file + ": joint." + joint.name +
-                       ".driver: found a board, allowed is a simulated joint: one on a board runs as processes "
-                       "of its own ([[process]] joint = \"" + joint.name + "\")");
-    }
+    CheckSimulated(joint);
     joint.config.time.mode =
         options.clock == nullptr ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
-    joints_.push_back(std::make_unique<Joint>(joint, std::make_unique<plant::SimulatedRig>(joint.config),
-                                              options.clock, options.program, options.heartbeat));
+    auto rig = config.arm ? std::make_unique<plant::SimulatedRig>(joint.config, std::move(machines[i]))
+                          : std::make_unique<plant::SimulatedRig>(joint.config);
+    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), clock_ ? &*clock_ : nullptr, options.program,
+                                              options.heartbeat));
   }
 }
 
@@ -67,6 +90,7 @@ bool Limb::StepLockstep() {
 
 bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
   tick_ += wake_up.elapsed;
+  clock_->Stop();
   for (auto& joint : joints_) {
     if (joint->ended()) continue;
     joint->plant().participant().statistics().RecordCycle(wake_up.at, wake_up.late);
@@ -79,6 +103,7 @@ bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
     if (!joints_[i]->ended()) joints_[i]->Poll();
   }
   NoteEnds();
+  clock_->Run();
   return !over_ && tick_ != last_tick_;
 }
 
@@ -93,7 +118,7 @@ Joint* Limb::FirstFault(const Joint* besides) const {
 // All are checked before any voltage is chosen: a fault of the last joint zeroes the first in the same tick.
 void Limb::CheckAll() {
   for (auto& joint : joints_) {
-    if (!joint->ended()) joint->plant().Check();
+    if (!joint->ended()) joint->plant().Check(joint->clock().Now());
   }
   if (on_joint_fault_ == settings::OnJointFault::kOthersGoOn) return;
   Joint* const first = FirstFault(nullptr);

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "limb/joint.h"
+#include "limb/tick_clock.h"
 #include "settings/limb_config.h"
 
 namespace hydro::limb {
@@ -15,7 +17,7 @@ namespace hydro::limb {
 struct LimbOptions {
   std::vector<std::string> joints;  // those of the configuration that are run here; empty: all
   std::string program = "hydro-limb";
-  bus::Clock* clock = nullptr;            // null: lockstep on simulated clocks
+  const bus::Clock* clock = nullptr;      // null: lockstep on simulated clocks
   std::function<bool()> heartbeat = {};   // as PlantApp's
 };
 
@@ -53,6 +55,7 @@ class Limb {
 
   settings::OnJointFault on_joint_fault_;
   int64_t last_tick_;
+  std::optional<TickClock> clock_;  // real time; before the joints, which have it
   std::vector<std::unique_ptr<Joint>> joints_;
   int64_t tick_ = 0;
   bool over_ = false;

@@ -202,7 +202,7 @@ void LimbApp::RunRealtime() {
     if (!goes_on) return;
     const auto until = participant_.clock().Now() + share;
     telemetry_.Send([&] { return participant_.clock().Now() < until; });
-    logger_watch_.Poll();
+    logger_watch_.Poll(participant_.clock().Now());
     Poll();
   }
 }

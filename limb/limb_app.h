@@ -41,6 +41,7 @@ class LimbApp {
   int Run();
 
   Limb& limb() { return limb_; }
+  timing::LoopStatistics& statistics() { return participant_.statistics(); }
 
  private:
   bool Begin();

@@ -71,7 +71,7 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
       }
       return;
     case Passage::kInBetween:
-      Enqueue(*channel, message);
+      Enqueue(*channel, message.data, static_cast<size_t>(message.size));
       return;
     case Passage::kNever:
       return;
@@ -81,18 +81,37 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
 // Those in between are not missing, so what goes out is counted anew: receivers look for gaps. A state tells of all ticks that were
 // skipped since the one before it.
 void Telemetry::OnSample(const Stack& stack, Channel& channel, const bus::RawMessage& message) {
-  const bool state = channel.part == bus::LoopPart::kState;
-  if (state) channel.skipped += std::max<int64_t>(0, NumberAt(message, kSkippedPlace));
+  if (channel.part == bus::LoopPart::kState) channel.skipped += std::max<int64_t>(0, NumberAt(message, kSkippedPlace));
   const int64_t slot = (NumberAt(message, channel.places.tick) + stack.phase) / interval_;
-  if (interval_ > 1 && slot == channel.slot) return;
+  const auto size = static_cast<size_t>(message.size);
+  if (interval_ > 1 && slot == channel.slot) {
+    channel.newest.assign(message.data, message.data + size);
+    return;
+  }
   channel.slot = slot;
-  std::vector<uint8_t>* const bytes = Enqueue(channel, message);
-  if (bytes == nullptr) return;
-  StoreBigEndian64(static_cast<uint64_t>(channel.sequence++), bytes->data() + channel.places.sequence);
-  if (state) StoreBigEndian64(static_cast<uint64_t>(std::exchange(channel.skipped, 0)), bytes->data() + kSkippedPlace);
+  channel.newest.clear();
+  Sample(channel, message.data, size);
 }
 
-std::vector<uint8_t>* Telemetry::Enqueue(const Channel& channel, const bus::RawMessage& message) {
+void Telemetry::Sample(Channel& channel, const uint8_t* data, size_t size) {
+  std::vector<uint8_t>* const bytes = Enqueue(channel, data, size);
+  if (bytes == nullptr) return;
+  StoreBigEndian64(static_cast<uint64_t>(channel.sequence++), bytes->data() + channel.places.sequence);
+  if (channel.part != bus::LoopPart::kState) return;
+  StoreBigEndian64(static_cast<uint64_t>(std::exchange(channel.skipped, 0)), bytes->data() + kSkippedPlace);
+}
+
+void Telemetry::PassAll() {
+  interval_ = 1;
+  for (auto& stack : stacks_) {
+    for (Channel& channel : stack->channels) {
+      if (!channel.newest.empty()) Sample(channel, channel.newest.data(), channel.newest.size());
+      channel.newest.clear();
+    }
+  }
+}
+
+std::vector<uint8_t>* Telemetry::Enqueue(const Channel& channel, const uint8_t* data, size_t size) {
   if (waiting() == queue_.size()) {
     if (queue_.size() >= kMostWaiting) {
       ++left_out_;
@@ -106,7 +125,7 @@ std::vector<uint8_t>* Telemetry::Enqueue(const Channel& channel, const bus::RawM
   }
   Waiting& slot = queue_[end_++ & (queue_.size() - 1)];
   slot.channel = &channel;
-  slot.bytes.assign(message.data, message.data + message.size);
+  slot.bytes.assign(data, data + size);
   return &slot.bytes;
 }
 

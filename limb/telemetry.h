@@ -30,8 +30,8 @@ class Telemetry {
   void Add(bus::Bus& joint, const std::string& suffix, int64_t phase,
            std::function<bool(int64_t session)> is_own);
 
-  // From now on everything goes out: the run is ending.
-  void PassAll() { interval_ = 1; }
+  // The run is ending: the newest of each channel and everything from now on goes out.
+  void PassAll();
 
   // Sends what waits while `goes_on` allows; at least one message.
   void Send(const std::function<bool()>& goes_on);
@@ -50,6 +50,7 @@ class Telemetry {
     int64_t slot = -1;      // of the newest sample
     int64_t sequence = 0;   // of the next
     int64_t skipped = 0;    // ticks, of the states since the newest sample
+    std::vector<uint8_t> newest = {};  // the message, where it was left out; else empty
   };
   struct Stack {
     std::vector<Channel> channels;  // of the loops first
@@ -63,7 +64,8 @@ class Telemetry {
 
   void OnMessage(Stack& stack, const bus::RawMessage& message);
   void OnSample(const Stack& stack, Channel& channel, const bus::RawMessage& message);
-  std::vector<uint8_t>* Enqueue(const Channel& channel, const bus::RawMessage& message);
+  void Sample(Channel& channel, const uint8_t* data, size_t size);
+  std::vector<uint8_t>* Enqueue(const Channel& channel, const uint8_t* data, size_t size);
 
   bus::Bus& out_;
   int64_t interval_;

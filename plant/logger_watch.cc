@@ -53,8 +53,7 @@ void LoggerWatch::Gone(int64_t session, const std::string& text, double silence)
                      silence, bus::ToSeconds(limit_), false);
 }
 
-void LoggerWatch::Poll() {
-  const auto now = participant_.clock().Now();
+void LoggerWatch::Poll(bus::Clock::TimePoint now) {
   const auto away = now - polled_.value_or(now);
   polled_ = now;
   if (away > limit_ / 4) {  // no state was sent, so loggers had nothing to report

@@ -19,7 +19,7 @@ class LoggerWatch {
 
   // Call it often during the run. It raises logger_gone when a known logger is gone, and clears the fault
   // when another one is heard twice. Time in which it was not called does not count as silence.
-  void Poll();
+  void Poll(bus::Clock::TimePoint now);
 
  private:
   void OnStatus(const process_status_t& status);

@@ -70,24 +70,24 @@ void OutputSafety::CheckMeasured(const state_t& state) {
   });
 }
 
-void OutputSafety::CheckSurroundings() {
-  const bus::Clock& clock = participant_.clock();
-  const bus::Clock::Duration suspended = clock.Suspended();
-  const double gone = bus::ToSeconds(suspended - suspended_);
-  suspended_ = suspended;
+void OutputSafety::CheckSuspended(bus::Clock::Duration before, bus::Clock::Duration now) {
+  const double gone = bus::ToSeconds(now - before);
   Set(Cause::kSuspended, gone > limits_.stale_input_s, [&] {
     return Finding{fmt::format("tick {}: the machine was suspended for {:.3g} s, allowed are {} s "
                                "(limits.stale_input_s)",
                                participant_.tick(), gone, limits_.stale_input_s),
                    gone, limits_.stale_input_s};
   });
-  const bool other = other_stack_heard_ && clock.Now() - *other_stack_heard_ <= kOtherStackAlive;
+}
+
+void OutputSafety::CheckOtherStack(bus::Clock::TimePoint now) {
+  const bool other = other_stack_heard_ && now - *other_stack_heard_ <= kOtherStackAlive;
   Set(Cause::kOtherStack, other, [&] { return Finding{other_stack_, 2, 1}; });
 }
 
-void OutputSafety::CheckController(bool safe_command) {
+void OutputSafety::CheckController(bool safe_command, bus::Clock::TimePoint now) {
   if (limits_.rearm != settings::Rearm::kExplicit) return;
-  const bool remote = remote_.any(participant_.clock().Now());
+  const bool remote = remote_.any(now);
   Set(Cause::kControllerFault, safe_command || remote, [&] {
     std::string why = "the pressure loop commands a safe output";
     if (remote) {
@@ -106,8 +106,7 @@ void OutputSafety::CheckRig(const std::vector<RigFault>& faults) {
   });
 }
 
-void OutputSafety::PublishFaults() {
-  if (!changed_) return;
+void OutputSafety::PublishChanges() {
   changed_ = false;
   for (size_t i = 0; i < findings_.size(); ++i) {
     const Cause cause = static_cast<Cause>(i);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <hydro/active_faults_t.hpp>
@@ -51,6 +52,15 @@ class OutputSafety {
     changed_ = true;
   }
 
+  // Whether all these checks, on the same findings, would find nothing, and nothing that was found before is there still: then they
+  // need not be made. Nearly always so, and quick.
+  bool AllIsWell(const state_t& state, bool safe_command, const std::vector<RigFault>& faults) const {
+    return !guard_.any_present() && Within(state.p1, limits_.pressure_psi) &&
+           Within(state.p2, limits_.pressure_psi) && Within(state.motor_speed, limits_.motor_speed_rad_s) &&
+           Within(state.arm_angle, limits_.arm_angle_rad) && !safe_command && faults.empty() &&
+           remote_.empty() && !other_stack_heard_;
+  }
+
   // Checks the sensors' readings against [limits], independently of the pressure loop's own check.
   void CheckMeasured(const state_t& state);
 
@@ -64,12 +74,19 @@ class OutputSafety {
     limits_.arm_angle_rad = limits.arm_angle_rad;
   }
 
-  // Checks the machine's clocks (for a suspend) and whether another stack is heard on the bus.
-  void CheckSurroundings();
+  // Checks the machine's clocks, for a suspend.
+  void CheckSuspended() {
+    const bus::Clock::Duration suspended = participant_.clock().Suspended();
+    if (suspended == suspended_ && !guard_.present(Cause::kSuspended)) return;
+    CheckSuspended(std::exchange(suspended_, suspended), suspended);
+  }
+
+  // Checks whether another stack is heard on the bus.
+  void CheckOtherStack(bus::Clock::TimePoint now);
 
   // Checks whether the loops report trouble: with limits.rearm = "explicit" a SAFE command in force, or a
   // fault of a loop that zeroes the voltage, holds the output at zero until a re-arm.
-  void CheckController(bool safe_command);
+  void CheckController(bool safe_command, bus::Clock::TimePoint now);
 
   // The rig's own faults zero the voltage while they last; with limits.rearm = "explicit" it stays at zero
   // after them.
@@ -85,12 +102,18 @@ class OutputSafety {
 
   // Publishes the faults that began or ended; call it after the output is safe. With limits.rearm = "restart"
   // an exceeded limit ends the run.
-  void PublishFaults();
+  void PublishFaults() {
+    if (changed_) PublishChanges();
+  }
 
   // The codes of the latched faults, with which a run does not end well; empty when there are none.
   std::string Latched() const;
 
  private:
+  // False for what is not a number. Pressures have no lower limit, nor a need of one: none is below absolute zero.
+  static bool Within(double value, double limit) { return std::fabs(value) <= limit; }
+  void CheckSuspended(bus::Clock::Duration before, bus::Clock::Duration now);
+  [[gnu::cold]] void PublishChanges();
   void OnDescription(const run_description_t& description);
   void OnFault(const fault_t& fault);
   void OnStatus(const process_status_t& status);

@@ -47,8 +47,12 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
       heartbeat_(std::move(heartbeat)),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().Of<state_t>())),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
+      stall_time_(bus::FromSeconds(config.time.stall_timeout_s)),
+      realtime_(config.time.mode == settings::TimeMode::kRealtime),
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
                      config.model.description.parameters.k_1),
+      pressure_ticks_(config.pressure_interval_ticks),
+      position_ticks_(config.position_interval_ticks),
       command_monitor_(stale_time_) {
   safety_.RefuseRearmWhile([this] {
     return tuning_.changing()
@@ -185,7 +189,7 @@ bool PlantApp::WaitForParticipants() {
       until = std::min(now + 50ms, deadline);
     }
     participant_.bus().HandleUntil(until);
-    Poll();
+    Poll(participant_.clock().Now());
   }
   return false;
 }
@@ -198,13 +202,12 @@ void PlantApp::Start() {
 // Puts out the chosen voltage first and publishes the faults second.
 void PlantApp::Drive() {
   voltage_ = rig_.Drive(voltage_);
-  PublishRigFaults();
+  const std::vector<RigFault>& faults = rig_.faults();
+  if (!faults.empty() || !rig_faults_.empty()) PublishRigFaults(faults);
   safety_.PublishFaults();
 }
 
-void PlantApp::PublishRigFaults() {
-  const std::vector<RigFault>& faults = rig_.faults();
-  if (faults.empty() && rig_faults_.empty()) return;
+void PlantApp::PublishRigFaults(const std::vector<RigFault>& faults) {
   const auto still_there = [&](const std::string& code) {
     return std::any_of(faults.begin(), faults.end(), [&](const RigFault& f) { return f.code == code; });
   };
@@ -224,8 +227,14 @@ void PlantApp::Advance(int64_t to_tick) {
   state_.command_tick = command_tick_;
   tuning_.OnTick(to_tick);
   measured_ = rig_.Read(to_tick);
-  tick_ = to_tick;
-  participant_.set_tick(tick_);
+  SetTick(to_tick);
+}
+
+void PlantApp::SetTick(int64_t tick) {
+  tick_ = tick;
+  asks_pressure_ = pressure_ticks_.Contains(tick);
+  asks_position_ = position_ticks_.Contains(tick);
+  participant_.set_tick(tick);
 }
 
 void PlantApp::PublishState(int64_t skipped_ticks) {
@@ -233,7 +242,7 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
     state_.voltage = 0;
     state_.command_tick = -1;
     state_.sequence = 0;
-    participant_.set_tick(0);
+    SetTick(0);
   } else {
     ++state_.sequence;
   }
@@ -248,17 +257,17 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
   state_.p1 = measured_.p1;
   state_.p2 = measured_.p2;
   state_.skipped_ticks = skipped_ticks;
-  if (tick_ % config_.pressure_interval_ticks == 0 && !participant_.clock().simulated()) {
+  if (asks_pressure_ && !participant_.simulated()) {
     round_trips_.OnSent(tick_, participant_.clock().Now());
   }
   state_publisher_.Send(state_);
 }
 
-void PlantApp::Poll() {
+void PlantApp::Poll(bus::Clock::TimePoint now) {
   participant_.statistics().set_lost_messages(command_monitor_.lost());
-  participant_.Poll();
-  tuning_.Poll();
-  if (participant_.clock().Now() >= next_description_) PublishDescription();
+  participant_.Poll(now);
+  tuning_.Poll(now);
+  if (now >= next_description_) PublishDescription();
 }
 
 void PlantApp::PublishOutputLeft(const OutputLeft& left) {

@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "base/multiples.h"
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
@@ -70,7 +71,7 @@ class PlantApp {
   // Lockstep, each tick: true once all that is due at this tick has arrived.
   bool AwaitAnswers();
   // Both: the checks of the command in force and of what is measured; then the voltage that follows from them; then puts it out.
-  void Check();
+  void Check(bus::Clock::TimePoint now);
   void ChooseVoltage();
   void Drive();
   // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and publishes the state.
@@ -79,7 +80,7 @@ class PlantApp {
   void PublishState(int64_t skipped_ticks);
   // Real time: both, as many ticks later as have elapsed.
   void Wake(const WakeUp& wake_up);
-  void Poll();
+  void Poll(bus::Clock::TimePoint now);
   // Whether somebody has asked for the end.
   bool Ended() const;
   // Zero volts, and everyone is told. Returns the process's exit code.
@@ -108,14 +109,19 @@ class PlantApp {
   void RequestStop();
   void RunLockstep();
   void RunRealtime();
-  std::string Unanswered() const;
-  void PublishRigFaults();
+  bool MayGoOn(const char* who, bool late);
+  const char* Unanswered() const;
+  bool LoggersKeepUp() const;
+  void SetTick(int64_t tick);
+  [[gnu::cold]] void PublishRigFaults(const std::vector<RigFault>& faults);
   void DescribeRun();
-  void PublishDescription();
+  [[gnu::cold]] void PublishDescription();
   void PublishOutputLeft(const OutputLeft& left);
-  void CheckCommand(const motor_command_t& command);
+  bool CommandIsWell(bus::Clock::TimePoint now) const;
+  [[gnu::cold]] void CheckAll(bus::Clock::TimePoint now);
+  void CheckCommand(bus::Clock::TimePoint now);
   void CheckCommandIsFresh();
-  void CheckSupervisor();
+  void CheckSupervisor(bus::Clock::TimePoint now);
   void OnMotorCommand(const motor_command_t& command);
   void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
@@ -135,9 +141,13 @@ class PlantApp {
   bus::Clock::TimePoint next_heartbeat_check_;
   bus::Publisher<state_t> state_publisher_;
   const bus::Clock::Duration stale_time_;
+  const bus::Clock::Duration stall_time_;
+  const bool realtime_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
+  Multiples pressure_ticks_, position_ticks_;  // at which each loop answers
+  bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
   model::Measurement measured_;          // at tick_
   std::vector<std::string> rig_faults_;  // codes of those that are active

@@ -73,20 +73,16 @@ bus::Clock::Duration PlantApp::AgeOfAnswer() const {
   return bus::FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
-void PlantApp::Check() {
+void PlantApp::Check(bus::Clock::TimePoint now) {
   const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
     command_ = waiting_commands_.front();
     waiting_commands_.pop_front();
   }
-  CheckCommand(command_.value_or(motor_command_t{}));
-  if (config_.time.mode == settings::TimeMode::kRealtime) {
-    CheckCommandIsFresh();
-    CheckSupervisor();
-  }
-  safety_.CheckMeasured(state_);
-  safety_.CheckRig(rig_.faults());
-  safety_.CheckSurroundings();
+  const bool safe_command = command_ && command_->status == motor_command_t::SAFE;
+  if (!safety_.AllIsWell(state_, safe_command, rig_.faults()) || !CommandIsWell(now)) CheckAll(now);
+  if (realtime_) CheckSupervisor(now);
+  safety_.CheckSuspended();
   if (!siblings_.empty()) HoldForOthers(siblings_.Text());
 }
 
@@ -118,10 +114,27 @@ void PlantApp::HoldForOthers(const std::string& text) {
               [&] { return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN}; });
 }
 
-void PlantApp::CheckCommand(const motor_command_t& command) {
+// Whether CheckCommand() and CheckCommandIsFresh() would find nothing.
+bool PlantApp::CommandIsWell(bus::Clock::TimePoint now) const {
+  const double voltage = command_ ? command_->voltage : 0;
+  if (!(std::fabs(voltage) <= voltage_limit_) || future_command_) return false;
+  if (command_monitor_.SecondSenderAlive(now)) return false;
+  return !realtime_ || (AgeOfAnswer() <= stale_time_ && !awake_again_ &&
+                        repeated_commands_.IsQuiet(command_monitor_.duplicates()));
+}
+
+void PlantApp::CheckAll(bus::Clock::TimePoint now) {
+  CheckCommand(now);
+  if (realtime_) CheckCommandIsFresh();
+  safety_.CheckMeasured(state_);
+  safety_.CheckRig(rig_.faults());
+  safety_.CheckOtherStack(now);
+}
+
+void PlantApp::CheckCommand(bus::Clock::TimePoint now) {
   using Cause = VoltageGuard::Cause;
   using Finding = OutputSafety::Finding;
-  const double voltage = command.voltage;
+  const double voltage = command_ ? command_->voltage : 0;
   safety_.Set(Cause::kNonfiniteCommand, !std::isfinite(voltage), [&] {
     return Finding{fmt::format("tick {}: the motor command is {} V, must be finite", tick_, voltage), voltage,
                    NAN};
@@ -134,18 +147,17 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
   });
   // A sender that contradicts itself: the command before it is no better.
   safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
-  safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(participant_.clock().Now()),
-              [&] {
+  safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(now), [&] {
                 return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
                                            participant_.NameOf(command_monitor_.session()),
                                            participant_.NameOf(command_monitor_.second_session())),
                                2, 1};
               });
-  safety_.CheckController(command_ && command.status == motor_command_t::SAFE);
+  safety_.CheckController(command_ && command_->status == motor_command_t::SAFE, now);
   // In lockstep the plant itself asks for repeats; in real time nobody does.
-  if (config_.time.mode == settings::TimeMode::kRealtime) {
+  if (realtime_) {
     repeated_commands_.Update(
-        command_monitor_.duplicates(), participant_.clock().Now(),
+        command_monitor_.duplicates(), now,
         [&](int64_t count) {
           return fmt::format(
               "tick {}: {} motor commands in all came twice or behind newer ones; they are "
@@ -157,8 +169,7 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
 }
 
 // Whoever watches the terminal thinks that the launcher is in charge; while it is stopped it is not.
-void PlantApp::CheckSupervisor() {
-  const auto now = participant_.clock().Now();
+void PlantApp::CheckSupervisor(bus::Clock::TimePoint now) {
   if (!heartbeat_ || now < next_heartbeat_check_) return;
   next_heartbeat_check_ = now + kHeartbeatCheck;
   if (heartbeat_()) newest_heartbeat_ = now;

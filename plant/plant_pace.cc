@@ -20,12 +20,12 @@ constexpr int64_t kLoggerWindowTicks = 64;
 }  // namespace
 
 void PlantApp::RunLockstep() {
-  const bool simulated = participant_.clock().simulated();
+  const bool simulated = participant_.simulated();
   const auto start = participant_.clock().Now();
   const double rate = config_.plant.rate_hz;
   Start();
   while (AwaitAnswers() && tick_ != config_.last_tick) {
-    Check();
+    Check(participant_.clock().Now());
     ChooseVoltage();
     Drive();
     if (participant_.stop()) break;  // a limit was exceeded
@@ -43,51 +43,51 @@ void PlantApp::RunLockstep() {
   }
 }
 
+// False: the run has ended.
 bool PlantApp::AwaitAnswers() {
-  if (Unanswered().empty()) return true;
-  bus::Bus& bus = participant_.bus();
-  const bus::Clock& clock = participant_.clock();
-  auto now = clock.Now();
-  const auto deadline = now + bus::FromSeconds(config_.time.stall_timeout_s);
-  auto next_repeat = now + kRepeatPeriod;
+  if (Unanswered() == nullptr) return true;
+  const auto start = participant_.clock().Now();
+  const auto deadline = start + stall_time_;
+  auto next_repeat = start + kRepeatPeriod;
   while (!Ended()) {
-    bus.HandleUntil(std::min(next_repeat, deadline));
-    if (!roll_call_.left().empty() && !participant_.stop()) {
-      participant_.RequestStop(
-          fmt::format("{} has left the lockstep run at tick {}", roll_call_.left(), tick_), 1);
-      return false;
-    }
-    const std::string who = Unanswered();
-    now = clock.Now();
-    if (who.empty()) {
-      Poll();
-      return !Ended();
-    }
-    if (now >= deadline) {
-      participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)",
-                                           who, tick_, config_.time.stall_timeout_s),
-                               1);
-      return false;
-    }
-    if (now >= next_repeat) {
+    participant_.bus().HandleUntil(std::min(next_repeat, deadline));
+    const char* const who = Unanswered();
+    const auto now = participant_.clock().Now();
+    if (!MayGoOn(who, now >= deadline)) return false;
+    if (who != nullptr && now >= next_repeat) {
       state_publisher_.Send(state_);  // the state or its answer may have been lost
       next_repeat = now + kRepeatPeriod;
     }
-    Poll();
+    Poll(now);
+    if (who == nullptr) return !Ended();
   }
   return false;
 }
 
-// The role that the plant still waits for at this tick; empty when all have answered.
-std::string PlantApp::Unanswered() const {
-  if (tick_ % config_.position_interval_ticks == 0 && newest_pressure_command_tick_ < tick_) {
-    return "position_ctrl";
+// Ends the run when a participant has left it, or `who` (null: nobody) has not answered in time. True: it goes on.
+bool PlantApp::MayGoOn(const char* who, bool late) {
+  if (!roll_call_.left().empty() && !participant_.stop()) {
+    participant_.RequestStop(
+        fmt::format("{} has left the lockstep run at tick {}", roll_call_.left(), tick_), 1);
+    return false;
   }
-  if (tick_ % config_.pressure_interval_ticks == 0 && newest_command_tick_ < tick_) return "pressure_ctrl";
-  for (const auto& [session, tick] : log_progress_) {
-    if (tick < tick_ - kLoggerWindowTicks) return "logger";
-  }
-  return "";
+  if (who == nullptr || !late) return true;
+  participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)", who,
+                                       tick_, config_.time.stall_timeout_s),
+                           1);
+  return false;
+}
+
+// The role that the plant still waits for at this tick; null when all have answered.
+const char* PlantApp::Unanswered() const {
+  if (asks_position_ && newest_pressure_command_tick_ < tick_) return "position_ctrl";
+  if (asks_pressure_ && newest_command_tick_ < tick_) return "pressure_ctrl";
+  return log_progress_.empty() || LoggersKeepUp() ? nullptr : "logger";
+}
+
+bool PlantApp::LoggersKeepUp() const {
+  return std::none_of(log_progress_.begin(), log_progress_.end(),
+                      [&](const auto& logger) { return logger.second < tick_ - kLoggerWindowTicks; });
 }
 
 void PlantApp::RunRealtime() {
@@ -99,11 +99,12 @@ void PlantApp::RunRealtime() {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
     Wake({elapsed, loop.skipped(), loop.woke(), loop.late()});
-    Check();
+    const auto now = participant_.clock().Now();
+    Check(now);
     ChooseVoltage();
     Drive();
-    logger_watch_.Poll();
-    Poll();
+    logger_watch_.Poll(now);
+    Poll(now);
   }
 }
 

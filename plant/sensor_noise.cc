@@ -1,28 +1,22 @@
 #include "plant/sensor_noise.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/random.h"
 
 namespace hydro::plant {
-namespace {
-
-// SplitMix64's output function (Steele, Lea and Flood 2014): a bijection that scatters neighbouring inputs.
-uint64_t Scatter(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-// In (0, 1]: never 0, because Box-Muller takes its logarithm.
-double Unit(uint64_t x) { return (static_cast<double>(x >> 11) + 1.0) * 0x1p-53; }
-
-}  // namespace
 
 double StandardNormal(uint64_t seed, int64_t tick, int channel) {
-  const uint64_t key = Scatter(Scatter(seed) ^ static_cast<uint64_t>(tick)) + static_cast<uint64_t>(channel);
-  const uint64_t first = Scatter(key);
-  return std::sqrt(-2 * std::log(Unit(first))) * std::cos(2 * std::numbers::pi * Unit(Scatter(~first)));
+  return hydro::StandardNormal(Scatter(Scatter(seed) ^ static_cast<uint64_t>(tick)) +
+                               static_cast<uint64_t>(channel));
+}
+
+bool ReadsExactly(const settings::NoiseSection& noise) {
+  return std::max({noise.p1_psi, noise.p1_resolution_psi, noise.p2_psi, noise.p2_resolution_psi,
+                   noise.motor_angle_rad, noise.motor_angle_resolution_rad, noise.motor_speed_rad_s,
+                   noise.motor_speed_resolution_rad_s, noise.arm_angle_rad, noise.arm_angle_resolution_rad,
+                   noise.arm_speed_rad_s, noise.arm_speed_resolution_rad_s}) <= 0;
 }
 
 model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,

@@ -10,8 +10,11 @@
 
 namespace hydro::plant {
 
-// A standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
+// A standard normal number for (seed, tick, channel), whatever is drawn besides.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
+
+// Whether the sensors read what is: neither noise nor rounding.
+bool ReadsExactly(const settings::NoiseSection& noise);
 
 // `measurement` as the sensors read it at `tick`: with noise, then rounded to a multiple of the resolution.
 model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "model/actuator.h"
 #include "plant/rig.h"
+#include "plant/sensor_noise.h"
+#include "plant/simulated_machine.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
@@ -15,27 +16,35 @@ class SimulatedRig : public Rig {
  public:
   // Throws InputError when the configuration and the model contradict each other.
   explicit SimulatedRig(const settings::StackConfig& config);
+  // With another machine than the actuator alone.
+  SimulatedRig(const settings::StackConfig& config, std::unique_ptr<SimulatedMachine> machine);
 
   std::string role() const override { return "plant"; }
   // Throws RigError when the model cannot go on: "arm_angle_limit" when the arm had passed its limit before, in ticks that a late plant has
   // skipped; else "model_error".
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
-  double Drive(double voltage) override { return voltage_ = voltage; }
-  void SetNoise(const settings::NoiseSection& noise) override { noise_ = noise; }
+  double Drive(double voltage) override {
+    machine_->Hold(voltage);
+    return voltage;
+  }
+  void SetNoise(const settings::NoiseSection& noise) override {
+    noise_ = noise;
+    exact_ = ReadsExactly(noise);
+  }
   bool simulated() const override { return true; }
-  OutputLeft Zero() noexcept override { return {.accepted = true, .voltage = voltage_ = 0}; }
+  OutputLeft Zero() noexcept override { return {.accepted = true, .voltage = Drive(0)}; }
 
  private:
+  [[gnu::cold]] RigError Explained(const model::ModelError& error, int64_t tick, bool late) const;
+
   settings::NoiseSection noise_;
+  bool exact_;  // the sensors have none
   int64_t seed_;
   double rate_hz_;
   double largest_angle_;  // rad
   int64_t read_ = -1;     // tick
-  std::unique_ptr<trajectory::Trajectory>
-      motion_;  // of a driven shaft; declared first, actuator_ points to it
-  std::unique_ptr<model::Actuator> actuator_;
-  double voltage_ = 0;
+  std::unique_ptr<SimulatedMachine> machine_;
   std::vector<RigFault> no_faults_;
 };
 

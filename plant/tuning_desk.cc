@@ -153,7 +153,7 @@ void TuningDesk::Answer(bool accepted, int64_t version, int64_t acts_at, const s
   answers_[request.session] = std::move(answer);
 }
 
-void TuningDesk::Poll() {
+void TuningDesk::PollDue(bus::Clock::TimePoint now) {
   if (aside_.busy()) {
     if (auto change = aside_.Take()) {
       if (change->config == nullptr) {
@@ -167,7 +167,6 @@ void TuningDesk::Poll() {
       }
     }
   }
-  const auto now = participant_.clock().Now();
   if (pending_ && pending_->version) {
     if (now >= pending_->next_repeat) {
       pending_->next_repeat = now + kRepeatPeriod;

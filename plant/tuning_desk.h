@@ -45,10 +45,14 @@ class TuningDesk {
   void Follow(std::vector<tuned_settings_t> decided);
 
   // Before the state of `tick` is published: what is decided for it takes effect. Cheap when nothing is.
-  void OnTick(int64_t tick);
+  void OnTick(int64_t tick) {
+    if (pending_ || !followed_.empty() || !begun_) OnTickWithWork(tick);
+  }
 
   // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
-  void Poll();
+  void Poll(bus::Clock::TimePoint now) {
+    if (pending_ || now >= next_report_ || aside_.busy()) PollDue(now);
+  }
 
   // Whether a change is being made. Until it is in force or refused nothing is re-armed: it may loosen a limit, because all is held.
   bool changing() const { return pending_.has_value(); }
@@ -75,6 +79,8 @@ class TuningDesk {
     bus::Clock::TimePoint heard;
   };
 
+  void OnTickWithWork(int64_t tick);
+  void PollDue(bus::Clock::TimePoint now);
   void OnRequest(const tuning_request_t& request);
   void OnStatus(const tuning_status_t& status);
   void Begin(const tuning_request_t& request);

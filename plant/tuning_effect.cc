@@ -65,7 +65,7 @@ void TuningDesk::Decide() {
 
 bool TuningDesk::IsYoung() const { return !begun_ || participant_.clock().Now() - *begun_ < kYoung; }
 
-void TuningDesk::OnTick(int64_t tick) {
+void TuningDesk::OnTickWithWork(int64_t tick) {
   if (!begun_) begun_ = participant_.clock().Now();
   if (!followed_.empty()) FollowAt(tick);
   if (!pending_ || !pending_->version) return;

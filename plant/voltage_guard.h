@@ -48,6 +48,7 @@ class VoltageGuard {
   bool active(Cause cause) const { return present(cause) || latched(cause); }
   bool any() const { return (present_ | latched_) != 0; }
   bool any_but(Cause cause) const { return ((present_ | latched_) & ~Bit(cause)) != 0; }
+  bool any_present() const { return present_ != 0; }
   bool any_latched() const { return latched_ != 0; }
 
   // The part of the commanded voltage that may reach the motor: all or nothing.

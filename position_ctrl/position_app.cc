@@ -34,6 +34,8 @@ int8_t SignalCode(settings::ReferenceSignal signal) {
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl", config.agreed),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
+      reference_publisher_(bus.Advertise<arm_reference_t>(participant_.channels().Of<arm_reference_t>())),
+      command_publisher_(bus.Advertise<pressure_command_t>(participant_.channels().Of<pressure_command_t>())),
       interval_(config.position_interval_ticks),
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
@@ -84,7 +86,7 @@ void PositionApp::OnState(const state_t& state) {
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
       // Later states that were not samples have overtaken it in the network: it is still the newest sample.
-      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && state.tick % interval_ == 0) {
+      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && interval_.Contains(state.tick)) {
         Sample(state, now);
       }
       return;
@@ -98,7 +100,7 @@ void PositionApp::OnState(const state_t& state) {
   if (state.tick <= last_sample_tick_) BeginAgain();  // a log is played again
   ObserveHold(state);
   participant_.set_tick(state.tick);
-  if (state.tick % interval_ == 0) Sample(state, now);
+  if (interval_.Contains(state.tick)) Sample(state, now);
 }
 
 void PositionApp::BeginAgain() {
@@ -110,7 +112,7 @@ void PositionApp::BeginAgain() {
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
 void PositionApp::ObserveHold(const state_t& state) {
   // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
-  const bool joins = last_sample_tick_ < 0 && state.tick > tuning::kJoiningSamples * interval_;
+  const bool joins = last_sample_tick_ < 0 && state.tick > tuning::kJoiningSamples * interval_.of();
   if (!lockstep_ && joins && !participant_.clock().simulated()) return_.Join();
   const bool safe = !lockstep_ && pressure_faults_.any(participant_.clock().Now());
   return_.Observe(state.tick, state.command_tick >= 0 && !safe, Present(state));
@@ -124,7 +126,7 @@ void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
 void PositionApp::Answer(const state_t& state) {
   TakeSettingsAt(state.tick);
   if (last_sample_tick_ < 0) law_.Reset();
-  const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
+  const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_.of();
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
@@ -192,24 +194,25 @@ void PositionApp::Send() {
   arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
   // The pressure command goes last: in lockstep the plant waits for it, so that a log has both before the
   // next state.
-  participant_.bus().Publish(participant_.channels().Of<arm_reference_t>(), arm_reference_);
-  participant_.bus().Publish(participant_.channels().Of<pressure_command_t>(), pressure_command_);
+  reference_publisher_.Send(arm_reference_);
+  command_publisher_.Send(pressure_command_);
 }
 
 void PositionApp::Poll() {
   participant_.statistics().set_lost_messages(state_monitor_.lost());
-  participant_.Poll();
-  tuning_.Poll();
+  const auto now = participant_.clock().Now();
+  participant_.Poll(now);
+  tuning_.Poll(now);
   if (plans_refused_ > 0) {
     refused_plans_.Update(
-        plans_refused_, participant_.clock().Now(),
+        plans_refused_, now,
         [&](int64_t count) {
           return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_);
         },
         participant_);
   }
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
-  const auto silence = participant_.clock().Now() - last_state_time_;
+  const auto silence = now - last_state_time_;
   if (silence > stall_time_) {
     participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
                                          bus::ToSeconds(silence), participant_.tick()),
@@ -229,7 +232,7 @@ int PositionApp::Finish() {
     pressure_command_.open_loop = true;
     pressure_command_.voltage = 0;
     pressure_command_.pressure_ref = 0;
-    participant_.bus().Publish(participant_.channels().Of<pressure_command_t>(), pressure_command_);
+    command_publisher_.Send(pressure_command_);
   }
   return participant_.Leave();
 }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/multiples.h"
 #include "bus/sequence_monitor.h"
 #include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
@@ -56,7 +57,9 @@ class PositionApp : public process::App {
 
   process::Participant participant_;
   const bool lockstep_;
-  const int64_t interval_;  // ticks between two samples
+  bus::Publisher<arm_reference_t> reference_publisher_;
+  bus::Publisher<pressure_command_t> command_publisher_;
+  Multiples interval_;  // ticks between two samples
   const bus::Clock::Duration stall_time_;
   const settings::ReferenceSignal signal_;
   const std::string reference_text_;  // as configured

@@ -34,6 +34,7 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
       own_(std::move(own)),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
+      publisher_(bus.Advertise<motor_command_t>(participant_.channels().Of<motor_command_t>())),
       interval_(config.pressure_interval_ticks),
       position_interval_(config.position_interval_ticks),
       delay_(config.plant.command_delay_ticks),
@@ -91,7 +92,7 @@ void PressureApp::OnState(const state_t& state) {
     case bus::SequenceMonitor::Verdict::kDuplicate:
       // The plant asks again because the answer may have been lost.
       if (answered_ && last_command_.tick == state.tick) {
-        participant_.bus().Publish(participant_.channels().Of<motor_command_t>(), last_command_);
+        publisher_.Send(last_command_);
       }
       return;
     case bus::SequenceMonitor::Verdict::kAccept:
@@ -104,12 +105,12 @@ void PressureApp::OnState(const state_t& state) {
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
   if (participant_.tick() < 0) DropFutureCommands(state.tick);
   participant_.set_tick(state.tick);
-  if (state.tick % interval_ != 0) return;
+  if (!interval_.Contains(state.tick)) return;
   if (AwaitsPressureCommand(state.tick)) {
     pending_state_ = state;
     return;
   }
-  Answer(state);
+  Answer(state, now);
   participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
 }
 
@@ -143,16 +144,16 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;
     pending_state_.reset();
-    Answer(state);
+    Answer(state, now);
   }
 }
 
 // In lockstep every pressure command that is due arrives sooner or later; which one is in force must not
 // depend on when it does.
-bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
+bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
   const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep_ || newest_allowed < 0) return false;
-  const int64_t due = newest_allowed / position_interval_ * position_interval_;
+  const int64_t due = position_interval_.UpTo(newest_allowed);
   const int64_t known = !waiting_commands_.empty() ? waiting_commands_.back().tick
                         : pressure_command_        ? pressure_command_->tick
                                                    : -1;
@@ -188,29 +189,27 @@ double PressureApp::LargestReference() const {
   return pressure_command_ && pressure_command_->tick < limit_from_ ? limit_before_ : pressure_limit_;
 }
 
-// V: what keeps the voltage from jumping when the gains have changed.
-double PressureApp::Transfer(const PressureLawInput& input, int64_t tick) {
-  if (law_before_) {
-    const bool begun = answered_ && last_command_.status == motor_command_t::LAW;
-    const double left = transfer_.Offset(tick);
-    if (begun) {
-      transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
-                      UnlimitedPressureLaw(values_.pressure, input), tick);
-    }
-    law_before_.reset();
+// The gains have changed: the voltage shall not jump.
+void PressureApp::BeginTransfer(const PressureLawInput& input, int64_t tick) {
+  const bool begun = answered_ && last_command_.status == motor_command_t::LAW;
+  const double left = transfer_.Offset(tick);
+  if (begun) {
+    transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
+                    UnlimitedPressureLaw(values_.pressure, input), tick);
   }
-  return transfer_.Offset(tick);
+  law_before_.reset();
 }
 
-void PressureApp::Answer(const state_t& state) {
+void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now) {
   TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
+  const int64_t stale = TicksStale(state.tick);
   if (pressure_command_) {
-    command.pressure_ref = PressureReference(state.tick);
+    command.pressure_ref = PressureReference(stale);
     command.pressure_command_tick = pressure_command_->tick;
   }
-  if (!InputsAreSafe(state)) {
+  if (!AllIsWell(state, stale, now) && !CheckInputs(state, stale, now)) {
     transfer_.Forget();
   } else {
     if (pressure_command_ && pressure_command_->open_loop) {
@@ -230,48 +229,53 @@ void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
 }
 
 PressureLawOutput PressureApp::Law(const state_t& state, double pressure_ref) {
-  if (own_) {
-    const double asked = own_(state, pressure_ref), limit = values_.pressure.voltage_limit;
-    const double voltage = std::isfinite(asked) ? std::clamp(asked, -limit, limit) : asked;
-    return {.voltage = voltage, .saturated = voltage != asked};
-  }
+  if (own_) return OwnLaw(state, pressure_ref);
   PressureLawInput input{pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
-  input.transfer = Transfer(input, state.tick);
+  if (law_before_) BeginTransfer(input, state.tick);
+  input.transfer = transfer_.Offset(state.tick);
   return PressureLaw(values_.pressure, input);
+}
+
+PressureLawOutput PressureApp::OwnLaw(const state_t& state, double pressure_ref) const {
+  const double asked = own_(state, pressure_ref), limit = values_.pressure.voltage_limit;
+  const double voltage = std::isfinite(asked) ? std::clamp(asked, -limit, limit) : asked;
+  return {.voltage = voltage, .saturated = voltage != asked};
 }
 
 void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
   const PressureLawOutput output = Law(state, command->pressure_ref);
-  if (!std::isfinite(
-          output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
-    participant_.Raise("nonfinite_motor_command",
-                       fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",
-                                   state.tick, own_ ? "the loop's own law" : "eq. (16)", output.voltage,
-                                   command->pressure_ref, units_.UnitFor("psi")),
-                       output.voltage, NAN, false);
-    return;  // the command stays SAFE
-  }
+  if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);  // it stays SAFE
   command->status = motor_command_t::LAW;
   command->voltage = output.voltage;
   command->saturated = output.saturated;
   if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
 }
 
-void PressureApp::Send(motor_command_t& command) {
-  command.utime = participant_.clock().Utime();
-  command.session = participant_.session();
-  command.sequence = sequence_++;
-  participant_.bus().Publish(participant_.channels().Of<motor_command_t>(), command);
+// The inputs are finite, but a product of gains and reference overflows.
+void PressureApp::RaiseNonfinite(const motor_command_t& command, double voltage) {
+  participant_.Raise("nonfinite_motor_command",
+                     fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",
+                                 command.tick, own_ ? "the loop's own law" : "eq. (16)", voltage,
+                                 command.pressure_ref, units_.UnitFor("psi")),
+                     voltage, NAN, false);
+}
+
+void PressureApp::Send(const motor_command_t& command) {
   last_command_ = command;
+  last_command_.utime = participant_.clock().Utime();
+  last_command_.session = participant_.session();
+  last_command_.sequence = sequence_++;
+  publisher_.Send(last_command_);
   answered_ = true;
 }
 
 void PressureApp::Poll() {
   participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
-  participant_.Poll();
-  tuning_.Poll();
+  const auto now = participant_.clock().Now();
+  participant_.Poll(now);
+  tuning_.Poll(now);
   if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
-  const auto silence = participant_.clock().Now() - last_state_time_;
+  const auto silence = now - last_state_time_;
   if (lockstep_) {
     if (silence > stall_time_ && !stalled_) {
       stalled_ = true;
@@ -280,8 +284,7 @@ void PressureApp::Poll() {
                                1);
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
-    motor_command_t zero = ZeroVolts(participant_.tick(), motor_command_t::SAFE);
-    Send(zero);  // zero volts first, explanation second
+    Send(ZeroVolts(participant_.tick(), motor_command_t::SAFE));  // zero volts first, explanation second
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
                                    1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
@@ -292,8 +295,7 @@ void PressureApp::Poll() {
 bool PressureApp::finished() const { return participant_.stop().has_value(); }
 
 int PressureApp::Finish() {
-  motor_command_t zero = ZeroVolts(participant_.tick(), motor_command_t::STOPPED);
-  Send(zero);
+  Send(ZeroVolts(participant_.tick(), motor_command_t::STOPPED));
   return participant_.Leave();
 }
 

@@ -13,6 +13,7 @@
 #include <hydro/state_t.hpp>
 #include <optional>
 
+#include "base/multiples.h"
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "pressure_ctrl/law/pressure_law.h"
@@ -44,33 +45,37 @@ class PressureApp : public process::App {
   void OnState(const state_t& state);
   void DropFutureCommands(int64_t tick);
   void OnPressureCommand(const pressure_command_t& command);
-  void Answer(const state_t& state);
+  void Answer(const state_t& state, bus::Clock::TimePoint now);
   void ApplyOpenLoop(motor_command_t* command) const;
   void ApplyLaw(const state_t& state, motor_command_t* command);
-  bool InputsAreSafe(const state_t& state);
-  bool PressureCommandIsSafe(const state_t& state);
+  [[gnu::cold]] void RaiseNonfinite(const motor_command_t& command, double voltage);
+  bool AllIsWell(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) const;
+  [[gnu::cold]] bool CheckInputs(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now);
+  bool PressureCommandIsSafe(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now);
   template <class Describe>
   bool Check(bool good, const char* code, double value, double limit, Describe&& describe);
   template <class Describe>
   bool CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe);
-  double PressureReference(int64_t tick) const;
+  double PressureReference(int64_t ticks_stale) const;
   double LargestReference() const;
   int64_t TicksStale(int64_t tick) const;
   void TakePressureCommandsUpTo(int64_t tick);
-  bool AwaitsPressureCommand(int64_t state_tick) const;
+  bool AwaitsPressureCommand(int64_t state_tick);
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
   PressureLawOutput Law(const state_t& state, double pressure_ref);
-  double Transfer(const PressureLawInput& input, int64_t tick);
-  void Send(motor_command_t& command);
+  PressureLawOutput OwnLaw(const state_t& state, double pressure_ref) const;
+  [[gnu::cold]] void BeginTransfer(const PressureLawInput& input, int64_t tick);
+  void Send(const motor_command_t& command);
   void ForgetPressureCommands();
   void Restart();
 
   process::Participant participant_;
   const OwnPressureLaw own_;  // may be empty
   const bool lockstep_;
-  const int64_t interval_;           // ticks between two commands of this loop
-  const int64_t position_interval_;  // ticks between two pressure commands
+  bus::Publisher<motor_command_t> publisher_;
+  Multiples interval_;           // ticks between two commands of this loop
+  Multiples position_interval_;  // ticks between two pressure commands
   const int64_t delay_;              // ticks from a command's tick to the tick at which it acts
   const int64_t stale_ticks_;        // a pressure command older than this is stale
   const int64_t ramp_ticks_;         // its reference then goes to zero within this many ticks

@@ -40,7 +40,22 @@ bool PressureApp::CheckLimit(bool good, const char* code, double value, double l
   return good;
 }
 
-bool PressureApp::InputsAreSafe(const state_t& state) {
+// The conditions of CheckInputs(), all at once: nearly always they hold, and there is nothing to raise or clear.
+bool PressureApp::AllIsWell(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) const {
+  const settings::LimitsSection& limits = values_.limits;
+  if (participant_.any_fault() || !pressure_command_ || ticks_stale != 0 || future_command_) return false;
+  if (!Finite(state, values_.pressure.arm_speed_ratio != 0)) return false;
+  const bool within = state.p1 <= limits.pressure_psi && state.p2 <= limits.pressure_psi &&
+                      std::fabs(state.motor_speed) <= limits.motor_speed_rad_s &&
+                      std::fabs(state.arm_angle) <= limits.arm_angle_rad;
+  const bool sound = std::fabs(pressure_command_->pressure_ref) <= LargestReference() &&
+                     std::isfinite(pressure_command_->pressure_ref) &&
+                     std::isfinite(pressure_command_->voltage);
+  return within && sound && !state_monitor_.SecondSenderAlive(now) &&
+         !command_monitor_.SecondSenderAlive(now);
+}
+
+bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) {
   if (participant_.latched()) return false;
   bool safe = Check(Finite(state, values_.pressure.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, [&] {
     return fmt::format("tick {}: p1 {}, p2 {}, motor speed {}, arm speed {}; all must be finite", state.tick,
@@ -71,8 +86,8 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
                            state.tick, state.arm_angle, values_.limits.arm_angle_rad,
                            fmt::arg("unit", units_.UnitFor("rad", 1)));
                      });
-  safe &= PressureCommandIsSafe(state);
-  safe &= Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()),
+  safe &= PressureCommandIsSafe(state, ticks_stale, now);
+  safe &= Check(!state_monitor_.SecondSenderAlive(now),
                 process::kSecondSender<state_t>, 2, 1, [&] {
                   return fmt::format("two processes send states: {} and {}; allowed is one",
                                      participant_.NameOf(state_monitor_.session()),
@@ -82,10 +97,11 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
   return safe;
 }
 
-bool PressureApp::PressureCommandIsSafe(const state_t& state) {
+bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stale,
+                                        bus::Clock::TimePoint now) {
   const int64_t age = SaturatingDifference(state.tick, pressure_command_ ? pressure_command_->tick : 0);
   const bool fresh = Check(
-      TicksStale(state.tick) == 0, "stale_pressure_command", static_cast<double>(age),
+      ticks_stale == 0, "stale_pressure_command", static_cast<double>(age),
       static_cast<double>(stale_ticks_), [&] {
         return fmt::format(
             "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
@@ -93,7 +109,7 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
       });
   // Only a pressure reference can be ramped down; an open-loop voltage is cut at once.
   const bool ramps =
-      pressure_command_ && !pressure_command_->open_loop && TicksStale(state.tick) < ramp_ticks_;
+      pressure_command_ && !pressure_command_->open_loop && ticks_stale < ramp_ticks_;
   bool safe = fresh || ramps;
   const double reference = pressure_command_ ? pressure_command_->pressure_ref : 0;
   const bool finite =
@@ -116,7 +132,7 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
                       "a pressure command for tick {} at tick {}; is another run's log being played?",
                       future_command_.value_or(0), state.tick);
                 });
-  safe &= Check(!command_monitor_.SecondSenderAlive(participant_.clock().Now()),
+  safe &= Check(!command_monitor_.SecondSenderAlive(now),
                 process::kSecondSender<pressure_command_t>, 2, 1, [&] {
                   return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
                                      participant_.NameOf(command_monitor_.session()),
@@ -132,12 +148,11 @@ int64_t PressureApp::TicksStale(int64_t tick) const {
 }
 
 // The reference in force: held until it is stale, then ramped to zero.
-double PressureApp::PressureReference(int64_t tick) const {
-  const int64_t stale = TicksStale(tick);
+double PressureApp::PressureReference(int64_t ticks_stale) const {
   const double reference = pressure_command_->pressure_ref;
-  if (stale == 0) return reference;
-  if (stale >= ramp_ticks_) return 0;
-  return reference * (1 - static_cast<double>(stale) / static_cast<double>(ramp_ticks_));
+  if (ticks_stale == 0) return reference;
+  if (ticks_stale >= ramp_ticks_) return 0;
+  return reference * (1 - static_cast<double>(ticks_stale) / static_cast<double>(ramp_ticks_));
 }
 
 }  // namespace hydro::pressure_ctrl

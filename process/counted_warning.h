@@ -20,7 +20,7 @@ class CountedWarning {
   // text `describe(count)`; the fault never affects the voltage. Cheap while nothing is counted.
   template <class Describe, class Faults>
   void Update(int64_t count, bus::Clock::TimePoint now, Describe&& describe, Faults& faults) {
-    if (count == count_ && !active_) return;
+    if (IsQuiet(count)) return;
     if (count != count_) {
       count_ = count;
       grew_ = now;
@@ -33,6 +33,12 @@ class CountedWarning {
       faults.Clear(code_, describe(count_), static_cast<double>(count_));
     }
   }
+
+  // Whether Update() with that count would do nothing.
+  bool IsQuiet(int64_t count) const { return count == count_ && !active_; }
+
+  // Whether an episode lasts: only then time alone changes something.
+  bool active() const { return active_; }
 
  private:
   const std::string code_;

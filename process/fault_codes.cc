@@ -36,6 +36,7 @@ constexpr std::array kCodes{
     FaultCode{"other_joint", FaultEffect::kZeroVolts},
     FaultCode{"late_plant", FaultEffect::kZeroVolts},
     FaultCode{"supervisor_gone", FaultEffect::kZeroVolts},
+    FaultCode{"other_joint", FaultEffect::kZeroVolts},
     FaultCode{"machine_suspended", FaultEffect::kZeroVolts},
     FaultCode{"controller_fault", FaultEffect::kZeroVolts},
     FaultCode{"rig_fault", FaultEffect::kZeroVolts},

@@ -32,6 +32,7 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
                          const std::string& role, const std::string& agreed)
     : bus_(bus),
       clock_(clock),
+      simulated_(clock.simulated()),
       channels_(channels),
       role_(role),
       identity_(bus::IdentityOn(bus, clock)),
@@ -70,6 +71,7 @@ void Participant::OnStatus(const process_status_t& status) {
     if (answered_.size() >= kMostNames) answered_.clear();  // saying it once more does no harm
     const bool is_new = answered_.insert(status.session).second;
     if (is_new) configuration_asked_ = true;
+    PollSoon();
     AnswerWithConfiguration();
     if (asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
   } else if (Refuses(status.session)) {
@@ -127,6 +129,7 @@ bool Participant::PublishConfiguration(bus::Clock::Duration period) {
 void Participant::Announce(int8_t state, const std::string& text) {
   state_ = state;
   status_text_ = text;
+  PollSoon();
   // Before the status, so that nobody counts on a process whose configuration he has not seen.
   if (state == process_status_t::READY || state == process_status_t::RUNNING) {
     PublishConfiguration(kConfigurationPeriod);
@@ -144,14 +147,14 @@ void Participant::Announce(int8_t state, const std::string& text) {
   bus_.Publish(channels_.Of<process_status_t>(), status);
 }
 
-void Participant::Poll() {
-  const auto now = clock_.Now();
+void Participant::PollDue(bus::Clock::TimePoint now) {
+  troubles_ = Troubles();
   if (state_ == process_status_t::READY && now >= next_announcement_) Announce(state_, status_text_);
   if (loop_statistics_t* report = statistics_.Poll(now)) {
     report->utime = clock_.Utime();
     bus_.Publish(channels_.Of<loop_statistics_t>(), *report);
   }
-  if (!clock_.simulated()) Publish(statistics_.PollHistogram(now));
+  if (!simulated_) Publish(statistics_.PollHistogram(now));
   unsent_.Update(
       bus_.unsent(), now,
       [](int64_t count) {
@@ -165,14 +168,28 @@ void Participant::Poll() {
                bus_.undecodable_channel() + "); they are ignored";
       },
       *this);
-  if (state_ == process_status_t::RUNNING && !clock_.simulated()) PublishConfiguration(kConfigurationAgain);
+  if (state_ == process_status_t::RUNNING && !simulated_) PublishConfiguration(kConfigurationAgain);
   AnswerWithConfiguration();
   if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
-  WatchRefusals();
+  WatchRefusals(now);
+  next_poll_ = NextPoll();
 }
 
-void Participant::WatchRefusals() {
-  const auto news = refusals_.Observe(bus_.refused(), clock_.Now());
+// When something of PollDue() is due, as things stand.
+bus::Clock::TimePoint Participant::NextPoll() const {
+  constexpr auto kAtOnce = bus::Clock::TimePoint::min();
+  if (configuration_asked_ || unsent_.active() || undecodable_.active() || refusals_.active()) return kAtOnce;
+  auto next = statistics_.report_due();
+  if (!simulated_) next = std::min(next, statistics_.histogram_due());
+  if (state_ == process_status_t::READY) next = std::min(next, next_announcement_);
+  if (state_ == process_status_t::RUNNING && !simulated_ && !agreement_.own().empty()) {
+    next = std::min(next, configuration_sent_ ? *configuration_sent_ + kConfigurationAgain : kAtOnce);
+  }
+  return active_faults_left_ > 0 ? std::min(next, next_active_faults_) : next;
+}
+
+void Participant::WatchRefusals(bus::Clock::TimePoint now) {
+  const auto news = refusals_.Observe(bus_.refused(), now);
   if (news == RefusalWatch::News::kNone) return;
   const auto count = static_cast<double>(refusals_.count());
   if (news == RefusalWatch::News::kBegins) {
@@ -196,7 +213,7 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
   active_[code] = fault;
   latched_ += latched ? 1 : 0;
   PublishFault(fault);
-  if (!clock_.simulated()) spdlog::error("fault {}: {}", code, text);
+  if (!simulated_) spdlog::error("fault {}: {}", code, text);
   return true;
 }
 
@@ -208,7 +225,7 @@ void Participant::Clear(const std::string& code) {
 void Participant::Clear(const std::string& code, const std::string& text, double value) {
   const auto found = active_.find(code);
   if (found == active_.end()) return;
-  if (found->second.text != text && !clock_.simulated()) spdlog::error("{}", text);
+  if (found->second.text != text && !simulated_) spdlog::error("{}", text);
   found->second.text = text;
   found->second.value = value;
   Clear(code);
@@ -225,7 +242,7 @@ void Participant::End(const std::string& code) {
   latched_ -= fault.latched ? 1 : 0;
   fault.active = false;
   PublishFault(fault);
-  if (!clock_.simulated()) spdlog::info("fault {} has gone", code);
+  if (!simulated_) spdlog::info("fault {} has gone", code);
 }
 
 std::string Participant::NameOf(std::optional<int64_t> session) const {
@@ -254,6 +271,7 @@ void Participant::PublishFault(const fault_t& fault) {
 void Participant::PublishActiveFaults() {
   active_faults_left_ = active_.empty() ? std::min(active_faults_left_, kFarewells + 1) - 1 : kFarewells + 1;
   next_active_faults_ = clock_.Now() + kActiveFaultsPeriod;
+  PollSoon();
   active_faults_t message;
   message.utime = clock_.Utime();
   message.session = session();
@@ -279,11 +297,11 @@ void Participant::Stop(int64_t addressee, const std::string& source, const std::
   stop.reason = reason;
   stop.exit_code = exit_code;
   stop_ = stop;
-  if (exit_code != 0 && !clock_.simulated()) spdlog::error("{}", reason);
+  if (exit_code != 0 && !simulated_) spdlog::error("{}", reason);
 }
 
 int Participant::Leave(const std::string& failure) {
-  if (!clock_.simulated()) {
+  if (!simulated_) {
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
     bus_.Publish(channels_.Of<loop_statistics_t>(), total);

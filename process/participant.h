@@ -45,8 +45,11 @@ class Participant {
   int8_t state() const { return state_; }
 
   // Publishes what is due: the READY announcement, statistics, warnings about messages. Call it often; cheap
-  // when nothing is due.
-  void Poll();
+  // when nothing is due. `now`: what the clock shows.
+  void Poll(bus::Clock::TimePoint now) {
+    if (now >= next_poll_ || Troubles() != troubles_) PollDue(now);
+  }
+  void Poll() { Poll(clock_.Now()); }
 
   // The session of the plant (or driver) whose run this process takes part in: the one whose states it follows.
   // Until it is told, the first plant that announces itself. 0: none yet.
@@ -60,7 +63,7 @@ class Participant {
   // Whether that sender has said what it runs with (a program of the user's own may never do so); true where this
   // process compares nothing.
   bool HasSaidItsConfiguration(int64_t session) const {
-    return agreement_.own().empty() || clock_.simulated() || agreement_.Heard(session);
+    return agreement_.own().empty() || simulated_ || agreement_.Heard(session);
   }
 
   // Calls `handler` with the session of each sender that turns out to be refused, and a line on how it differs.
@@ -103,9 +106,16 @@ class Participant {
   timing::LoopStatistics& statistics() { return statistics_; }
   bus::Bus& bus() const { return bus_; }
   const bus::Clock& clock() const { return clock_; }
+  bool simulated() const { return simulated_; }  // the clock is
   const bus::Channels& channels() const { return channels_; }
 
  private:
+  // Messages that could not be sent, decoded or believed.
+  int64_t Troubles() const { return bus_.unsent() + bus_.undecodable() + bus_.refused().total(); }
+  void PollDue(bus::Clock::TimePoint now);
+  bus::Clock::TimePoint NextPoll() const;
+  // Something has changed that Poll() has to see to.
+  void PollSoon() { next_poll_ = bus::Clock::TimePoint::min(); }
   void OnStatus(const process_status_t& status);
   void OnConfiguration(const configuration_t& announced);
   bool PublishConfiguration(bus::Clock::Duration period);
@@ -115,14 +125,17 @@ class Participant {
   void PublishFault(const fault_t& fault);
   void PublishActiveFaults();
   void End(const std::string& code);
-  void WatchRefusals();
+  void WatchRefusals(bus::Clock::TimePoint now);
   void Publish(loop_histogram_t* histogram);
 
   bus::Bus& bus_;
   bus::Clock& clock_;
+  const bool simulated_;
   bus::Channels channels_;
   std::string role_;
   bus::HostedProcess identity_;
+  bus::Clock::TimePoint next_poll_ = bus::Clock::TimePoint::min();  // before it nothing is due
+  int64_t troubles_ = 0;                                            // that Poll() has seen
   int8_t state_ = 0;
   std::string status_text_;
   int64_t run_ = 0;

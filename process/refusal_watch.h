@@ -21,6 +21,9 @@ class RefusalWatch {
   // An episode begins with the first refused message and ends when none has been refused for a second.
   News Observe(const bus::RefusedMessages& refused, bus::Clock::TimePoint now);
 
+  // Whether an episode lasts.
+  bool active() const { return last_.has_value(); }
+
   // Messages refused in this episode, or in the last one once it has ended.
   int64_t count() const { return count_; }
 

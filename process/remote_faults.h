@@ -30,6 +30,9 @@ class RemoteFaults {
   void ForgetSession(int64_t session);
   void ForgetOthersOfRole(const std::string& role, int64_t session);
 
+  // Whether none was heard that may last.
+  bool empty() const { return faults_.empty(); }
+
   // Whether any lasts; forgets those that nobody claims any more.
   bool any(bus::Clock::TimePoint now);
   const fault_t& first() const { return faults_.begin()->second.fault; }  // while any() is true

@@ -5,6 +5,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "model/terms/model_error.h"
 #include "settings/joint_documents.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
@@ -38,6 +39,50 @@ void ReadLimb(SectionReader section, double rate_hz, LimbSection* limb) {
         "telemetry_hz", ShortestNumber(limb->telemetry_hz),
         "plant.rate_hz = " + ShortestNumber(rate_hz) + " divided by a whole number, or \"every_tick\"");
   }
+}
+
+model::ArmLink ReadLink(SectionReader section) {
+  model::ArmLink link;
+  section.Number("mass", &link.mass, kPositive);
+  section.Number("length", &link.length, kPositive);
+  section.Number("centre", &link.centre);
+  section.Number("inertia", &link.inertia, kNotNegative);
+  section.Number("angle_rad", &link.angle);
+  for (const char* key : {"mass", "length", "centre", "inertia"}) section.Require(key, "a number");
+  section.Finish();
+  return link;
+}
+
+// A joint turns each link.
+std::optional<model::ArmDescription> ArmOf(const TomlNode& root, const std::vector<JointConfig>& joints) {
+  if (root.Find("arm") == nullptr) return std::nullopt;
+  SectionReader document(root, "");
+  SectionReader section = document.Section("arm");
+  model::ArmDescription arm;
+  section.Number("gravity", &arm.gravity);
+  section.Number("payload", &arm.payload, kNotNegative);
+  const TomlNode* links = section.Take("link");
+  section.Finish();
+  const size_t count = links != nullptr && links->is(TomlNode::Kind::kArray) ? links->items.size() : 0;
+  if (count != joints.size()) {
+    throw KeyError(root, "arm.link", std::to_string(count) + " links",
+                   std::to_string(joints.size()) + ", a section [[arm.link]] for each joint, from the base outwards");
+  }
+  for (const TomlNode& link : links->items) {
+    if (!link.is(TomlNode::Kind::kTable)) throw KeyError(link.place, "arm.link", link.Shown(), "sections [[arm.link]]");
+    arm.links.push_back(ReadLink(section.Item(link, "arm.link")));
+  }
+  for (const JointConfig& joint : joints) {
+    if (joint.config.model.shaft != model::Shaft::kDriven) continue;
+    throw KeyError(root, "arm", "it with the joint " + joint.name + ", whose shaft is driven",
+                   "shafts that are free, or clamped");
+  }
+  try {
+    arm.Check();
+  } catch (const model::ModelError& error) {
+    throw InputError(root.Find("arm")->place + ": " + error.what());
+  }
+  return arm;
 }
 
 std::string SuffixOf(const JointDocument& document) {
@@ -88,6 +133,15 @@ void CheckProcesses(const StackConfig& common) {
       }
       taken.push_back(joint);
     }
+  }
+}
+
+// What couples the joints is simulated in one process.
+void CheckArmIsWhole(const StackConfig& common) {
+  for (const ProcessSection& process : common.processes) {
+    if (process.role == "logger" || JointsOf(process, common) == common.joints) continue;
+    throw KeyError(process.place, process.joint.empty() ? "process.joints" : "process.joint",
+                   "some of the joints of an [arm]", "all of them in one hydro-limb");
   }
 }
 
@@ -195,7 +249,9 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
     limb.common.bus.joint_suffixes.push_back(joint.config.bus.channel_suffix);
   }
   limb.limb = ReadLimbSection(root, limb.common.plant.rate_hz);
+  limb.arm = ArmOf(root, limb.joints);
   CheckProcesses(limb.common);
+  if (limb.arm) CheckArmIsWhole(limb.common);
   limb.common.agreed = AgreedByAll(limb.joints);
   limb.common.text = FormatToml(WholeDocument(root, limb));
   return limb;

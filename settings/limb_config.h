@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/arm/arm_description.h"
 #include "settings/stack_config.h"
 #include "settings/toml/section_reader.h"
 
@@ -33,6 +35,9 @@ struct LimbConfig {
   // The text is that of the whole limb.
   StackConfig common;
   LimbSection limb;
+  // [arm]: the links that the joints turn, from the base outwards, in the place of the models' J_a and mgl; none: each joint has a load
+  // of its own. In the units of the joints' models.
+  std::optional<model::ArmDescription> arm;
   std::vector<JointConfig> joints;
 };
 

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
+#include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "log/log_writer.h"
@@ -12,6 +14,7 @@
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
 #include "settings/joint_documents.h"
+#include "settings/model_file.h"
 #include "settings/process_sections.h"
 #include "sim/simulation.h"
 
@@ -32,6 +35,17 @@ hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig&
   return hydro::settings::WithoutOwnPrograms(config);
 }
 
+// In the units of the model that the controllers know, which state and command.
+hydro::model::ModelDescription LoadMachine(const std::string& file,
+                                           const hydro::settings::StackConfig& config) {
+  hydro::model::ModelDescription machine = hydro::settings::LoadModelFile(file);
+  if (machine.units != config.model.description.units) {
+    throw hydro::InputError(file + ": units: found others than those of " + config.model.resolved_file +
+                            ", allowed the same");
+  }
+  return machine;
+}
+
 bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   return !hydro::settings::TakeJointChoice(&overrides) && hydro::settings::IsLimbFile(options.config);
@@ -41,10 +55,12 @@ bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
 using Simulation = std::function<hydro::sim::SimulationResult(
     const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
 
-Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of) {
+Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of,
+                        const std::string& machine_file) {
   if (IsWholeLimb(options)) {
-    if (!tunings_of.empty()) {
-      throw hydro::InputError("--tuning: found it with joints, allowed is one joint's stack (--joint NAME)");
+    for (const auto& [option, given] : {std::pair("--tuning", tunings_of), {"--machine", machine_file}}) {
+      if (given.empty()) continue;
+      throw hydro::InputError(std::string(option) + ": found it with joints, allowed is one joint's stack (--joint NAME)");
     }
     const auto limb = std::make_shared<const hydro::settings::LimbConfig>(
         hydro::settings::LoadLimbConfig(options.config, options.overrides));
@@ -58,12 +74,18 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
     const auto joint = hydro::settings::TakeJointChoice(&overrides);
     tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of, {.joint = joint}).messages);
   }
-  return [config, tunings](const auto& tap) { return hydro::sim::Simulate(*config, tap, tunings); };
+  std::shared_ptr<const hydro::model::ModelDescription> machine;
+  if (!machine_file.empty()) {
+    machine = std::make_shared<const hydro::model::ModelDescription>(LoadMachine(machine_file, *config));
+  }
+  return [config, tunings, machine](const auto& tap) {
+    return hydro::sim::Simulate(*config, tap, tunings, machine.get());
+  };
 }
 
 int Run(const hydro::settings::CommonOptions& options, const std::string& file,
-        const std::string& tunings_of) {
-  const Simulation simulate = SimulationOf(options, tunings_of);
+        const std::string& tunings_of, const std::string& machine_file) {
+  const Simulation simulate = SimulationOf(options, tunings_of, machine_file);
   hydro::CheckKeeps(file);
   hydro::process::CatchStopSignals();
   std::unique_ptr<hydro::log::LogWriter> writer;
@@ -91,15 +113,17 @@ int main(int argc, char** argv) {
                                             "The whole stack in one process on a simulated clock.");
   command_line.AddExamples({"hydro-sim config/demo.toml -o run.lcmlog"}, "README.md");
   hydro::settings::CommonOptions options;
-  std::string file, tunings_of;
+  std::string file, tunings_of, machine;
   command_line.AddCommon(&options);
   command_line.AddOption(
       "-o,--output", &file,
       "FILE where to record the run; short for --log. Without either, nothing is recorded");
   command_line.AddOption("--tuning", &tunings_of,
                          "LOG change values as was done in that run (hydro-set), at the same ticks");
+  command_line.AddOption("--machine", &machine,
+                         "MODEL simulate this machine, under controllers that know that of CONFIG");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::settings::RunProgram("hydro-sim", [&] {
-    return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of);
+    return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of, machine);
   });
 }

@@ -9,7 +9,6 @@
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro::sim {
-
 namespace {
 
 void CheckEnds(const settings::StackConfig& config) {
@@ -23,14 +22,17 @@ void CheckEnds(const settings::StackConfig& config) {
 
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
-                          const std::vector<tuned_settings_t>& tunings) {
+                          const std::vector<tuned_settings_t>& tunings,
+                          const model::ModelDescription* machine) {
   CheckEnds(config);
   settings::StackConfig lockstep = config;
   lockstep.time.mode = settings::TimeMode::kLockstep;
   bus::SimulatedClock clock;
   bus::InProcessBus bus(&clock);
   if (tap) bus.SubscribeAll(tap);
-  plant::SimulatedRig rig(lockstep);
+  settings::StackConfig simulated = lockstep;
+  if (machine != nullptr) simulated.model.description = *machine;
+  plant::SimulatedRig rig(simulated);
   plant::PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
   pressure_ctrl::PressureApp pressure(bus, clock, lockstep);
   position_ctrl::PositionApp position(bus, clock, lockstep);

@@ -23,11 +23,13 @@ struct SimulationResult {
 
 // Runs `config` to its end, in lockstep whatever time.mode says, and passes every message to `tap` (null:
 // nothing is even encoded). Throws InputError when the configuration has no duration or contradicts the
-// model.
-// `tunings`: changes that were decided in another run, made again at the same ticks.
+// model. `tunings`: changes that were decided in another run, made again at the same ticks. `machine`: what
+// is simulated, where it is another machine than the model of `config`, which the controllers know. In that
+// model's units; null: the model itself.
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
-                          const std::vector<tuned_settings_t>& tunings = {});
+                          const std::vector<tuned_settings_t>& tunings = {},
+                          const model::ModelDescription* machine = nullptr);
 
 // The same for all joints of a limb, each on channels of its own suffix.
 SimulationResult SimulateLimb(const settings::LimbConfig& config,

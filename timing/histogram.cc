@@ -25,10 +25,19 @@ int64_t Histogram::Percentile(double percent) const {
 
 void Histogram::Merge(const Histogram& other) {
   if (other.count_ == 0) return;
-  for (size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
-  min_ = count_ == 0 ? other.min_ : std::min(min_, other.min_);
+  for (int i = BucketOf(other.min_); i <= BucketOf(other.max_); ++i) counts_[i] += other.counts_[i];
+  min_ = std::min(min_, other.min_);
   max_ = std::max(max_, other.max_);
   count_ += other.count_;
+}
+
+void Histogram::Reset() {
+  if (count_ == 0) return;
+  std::fill(counts_.begin() + BucketOf(min_), counts_.begin() + BucketOf(max_) + 1, 0);
+  count_ = 0;
+  min_ = kHighest;
+  max_ = 0;
+  newest_ = -1;
 }
 
 }  // namespace hydro::timing

@@ -18,10 +18,16 @@ class Histogram {
 
   void Record(int64_t value) {
     value = std::clamp<int64_t>(value, 0, kHighest);
-    ++counts_[BucketOf(value)];
-    min_ = count_ == 0 ? value : std::min(min_, value);
-    max_ = std::max(max_, value);
     ++count_;
+    if (value == newest_) {  // as simulated time has it, tick for tick
+      ++counts_[newest_bucket_];
+      return;
+    }
+    newest_ = value;
+    newest_bucket_ = BucketOf(value);
+    ++counts_[newest_bucket_];
+    min_ = std::min(min_, value);
+    max_ = std::max(max_, value);
   }
 
   // The value that `percent` (0 to 100) of the records do not exceed; 0 when nothing was recorded. 100 gives
@@ -29,7 +35,7 @@ class Histogram {
   int64_t Percentile(double percent) const;
 
   int64_t Count() const { return count_; }
-  int64_t Min() const { return min_; }  // exact; 0 when nothing was recorded
+  int64_t Min() const { return count_ == 0 ? 0 : min_; }  // exact; 0 when nothing was recorded
   int64_t Max() const { return max_; }  // exact; 0 when nothing was recorded
 
   // Adds the records of `other`.
@@ -40,7 +46,7 @@ class Histogram {
   template <class Use>
   void ForEachRange(Use&& use) const;
 
-  void Reset() { *this = Histogram(); }
+  void Reset();
 
  private:
   static constexpr int kSubBits = 7;
@@ -64,8 +70,10 @@ class Histogram {
   }
 
   int64_t count_ = 0;
-  int64_t min_ = 0;
+  int64_t min_ = kHighest;
   int64_t max_ = 0;
+  int64_t newest_ = -1;    // the newest record; -1: none
+  int newest_bucket_ = 0;  // and where it is counted
   std::array<int64_t, kBuckets> counts_{};
 };
 

@@ -6,13 +6,8 @@
 namespace hydro::timing {
 namespace {
 
-constexpr auto kReportPeriod = std::chrono::seconds(1);
 constexpr auto kHistogramPeriod = std::chrono::seconds(2);
 constexpr size_t kMostBuckets = 700;  // more than Histogram::ForEachRange() can give
-
-int64_t Nanoseconds(bus::Clock::Duration duration) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
-}
 
 double Microseconds(int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
 
@@ -37,25 +32,8 @@ LoopStatistics::LoopStatistics(std::string role, std::string host, int64_t sessi
   current_.start = start;
 }
 
-void LoopStatistics::RecordCycle(bus::Clock::TimePoint began, bus::Clock::Duration latency) {
-  ++current_.cycles;
-  if (previous_began_) current_.period.Record(Nanoseconds(began - *previous_began_));
-  previous_began_ = began;
-  current_.latency.Record(Nanoseconds(latency));
-}
-
 void LoopStatistics::RecordRoundTrip(bus::Clock::Duration duration) {
   Whole(LoopQuantity::kRoundTrip).Record(Nanoseconds(duration));
-}
-
-void LoopStatistics::set_missed_deadlines(int64_t total) {
-  if (total > total_missed_) Whole(LoopQuantity::kSkipped).Record(total - total_missed_);
-  total_missed_ = total;
-}
-
-void LoopStatistics::set_lost_messages(int64_t total) {
-  if (total > total_lost_) Whole(LoopQuantity::kGap).Record(total - total_lost_);
-  total_lost_ = total;
 }
 
 void LoopStatistics::RecordQueueDepth(int64_t depth) {
@@ -64,7 +42,7 @@ void LoopStatistics::RecordQueueDepth(int64_t depth) {
 }
 
 loop_statistics_t* LoopStatistics::Poll(bus::Clock::TimePoint now) {
-  if (now - current_.start < kReportPeriod) return nullptr;
+  if (now < report_due()) return nullptr;
   Fill(current_, now, &report_);
   report_.sequence = sequence_++;
   cycles_ += current_.cycles;

@@ -7,6 +7,7 @@
 #include "design/bang_bang.h"
 #include "design/configured_laws.h"
 #include "design/operating_cases.h"
+#include "model/terms/drawn_model.h"
 #include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
 #include "plant/sensor_noise.h"
@@ -36,14 +37,12 @@ std::vector<double> StepsFor(const settings::StackConfig& config, const Goals& g
   return steps;
 }
 
-// What may be true instead of the model: every base parameter drawn from a normal distribution.
+// What may be true instead of the model. Not model::DrawnModel: these few are to be the same ones every time, none so rare
+// that it alone would decide, and docs/tuning_gains.md tells the gains found with them.
 model::ModelDescription SampleOf(model::ModelDescription model, int sample) {
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
-    const double deviations = std::clamp(plant::StandardNormal(kSampleSeed, sample, static_cast<int>(i)),
-                                         -kMostDeviations, kMostDeviations);
-    const double change = model::UncertaintyOf(model, i) * deviations;
-    // As a factor, so that no parameter changes its sign.
-    model::BaseValue(model.parameters, i) *= std::exp(change);
+    const double deviations = plant::StandardNormal(kSampleSeed, sample, static_cast<int>(i));
+    model::Deviate(&model, i, std::clamp(deviations, -kMostDeviations, kMostDeviations));
   }
   return model;
 }

@@ -55,6 +55,8 @@ class Loops {
 StepRun RunStepTrial(const StepTrial& trial) {
   model::Actuator actuator(trial.model, {.arm_angle = trial.start});
   Loops loops(trial);
+  const double full_torque = trial.model.parameters.T_pmax / trial.model.parameters.k_1;  // V
+  const double full_voltage = std::min(trial.pressure.voltage_limit, full_torque) * (1 - 1e-9);
   StepRun run;
   const auto before = static_cast<int>(std::lround(trial.rest / trial.tick));
   const auto ticks = before + static_cast<int>(std::lround(trial.duration / trial.tick));
@@ -70,8 +72,7 @@ StepRun RunStepTrial(const StepTrial& trial) {
     run.highest_speed = std::max(run.highest_speed, std::fabs(now.motor_speed));
     const double reference = trial.start + (k < before ? 0 : trial.step);
     const double voltage = loops.Voltage(k, plant::ReadSensors(now, trial.noise, trial.seed, k), reference);
-    if (k >= before && std::fabs(voltage) >= trial.pressure.voltage_limit * (1 - 1e-9))
-      run.saturated += trial.tick;
+    if (k >= before && std::fabs(voltage) >= full_voltage) run.saturated += trial.tick;
     actuator.Advance(voltage, (k + 1) * trial.tick);
   }
   return run;

@@ -39,7 +39,7 @@ struct StepRun {
   design::Response response;    // the true angle less `start`, one point per tick, from the step on
   double highest_pressure = 0;  // psi, of either side
   double highest_speed = 0;     // rad/s, of the motor
-  double saturated = 0;         // s, with the motor at its torque limit
+  double saturated = 0;         // s, with the motor at its torque limit or the voltage at the law's
 };
 
 // The arm's response to a reference that steps at a sample of the position loop. Up to rounding, it equals the

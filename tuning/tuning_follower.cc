@@ -83,8 +83,8 @@ void TuningFollower::Keep(const tuned_settings_t& settings) {
   }
 }
 
-const tuned_settings_t* TuningFollower::TakeDueAt(int64_t tick) {
-  if (!waiting_ || waiting_->acts_at < 0 || tick < waiting_->acts_at) return nullptr;
+const tuned_settings_t* TuningFollower::TakeWaitingAt(int64_t tick) {
+  if (waiting_->acts_at < 0 || tick < waiting_->acts_at) return nullptr;
   taken_ = std::move(*waiting_);
   waiting_.reset();
   in_force_ = taken_.version;
@@ -93,14 +93,10 @@ const tuned_settings_t* TuningFollower::TakeDueAt(int64_t tick) {
   return &taken_;
 }
 
-bool TuningFollower::Awaits(int64_t tick) {
+bool TuningFollower::AwaitsUnsettled(int64_t tick) {
   const bool first = participant_.tick() < 0 && !joined_;
   if (first && !participant_.clock().simulated() && tick > joining_) joined_ = participant_.clock().Now();
   return joined_ && !heard_ && participant_.clock().Now() - *joined_ < kLongestWait;
-}
-
-void TuningFollower::Poll() {
-  if (participant_.state() == process_status_t::RUNNING && participant_.clock().Now() >= next_status_) Say();
 }
 
 void TuningFollower::Say() {

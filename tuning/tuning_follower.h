@@ -30,19 +30,26 @@ class TuningFollower {
   TuningFollower(process::Participant& participant, const settings::StackConfig& config, Prepare prepare);
 
   // The settings that take effect at this tick; null: those in force stay. Asked once for each tick on which the loop acts.
-  const tuned_settings_t* TakeDueAt(int64_t tick);
+  const tuned_settings_t* TakeDueAt(int64_t tick) { return waiting_ ? TakeWaitingAt(tick) : nullptr; }
 
   // Whether the loop joins a run and has yet to hear which values are in force there: until then it acts by none, not by those of
   // its configuration. Asked with each state. Never in lockstep or on simulated time (a record that is replayed from its middle is no such run), and
   // false after a second and a half, because a plant of the user's own may say nothing.
-  bool Awaits(int64_t tick);
+  bool Awaits(int64_t tick) {
+    const bool settled = participant_.tick() >= 0 && (!joined_ || heard_);
+    return !settled && AwaitsUnsettled(tick);
+  }
 
   // Says where this process is, when due. Cheap.
-  void Poll();
+  void Poll(bus::Clock::TimePoint now) {
+    if (now >= next_status_ && participant_.state() == process_status_t::RUNNING) Say();
+  }
 
   int64_t in_force() const { return in_force_; }
 
  private:
+  const tuned_settings_t* TakeWaitingAt(int64_t tick);
+  bool AwaitsUnsettled(int64_t tick);
   void OnSettings(const tuned_settings_t& settings);
   void Keep(const tuned_settings_t& settings);
   void Date(const tuned_settings_t& settings);

@@ -72,7 +72,9 @@ UdpmBus::UdpmBus(const UdpmUrl& url, std::unique_ptr<Authenticator> authenticato
     : authenticator_(std::move(authenticator)),
       receive_buffer_(receive_buffer),
       socket_(url),
-      encoded_(kFirstEncodedSize) {}
+      encoded_(kFirstEncodedSize) {
+  if (authenticator_ != nullptr) refused_ = &authenticator_->refused();
+}
 
 std::string UdpmBus::receive_buffer_hint() const {
   const auto [asked, given] = receive_buffer_;

@@ -35,11 +35,6 @@ class UdpmBus : public Bus {
   // Returns 0 early when a signal arrives. Handles at most 4096 messages per call, so that a flood cannot
   // trap it.
   int HandleUntil(TimePoint deadline) override;
-  int64_t undecodable() const override { return undecodable_; }
-  int64_t unsent() const override { return unsent_; }
-  const RefusedMessages& refused() const override {
-    return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
-  }
 
   int receive_buffer_bytes() const { return receive_buffer_.given; }
 
@@ -96,8 +91,6 @@ class UdpmBus : public Bus {
   UdpmSocket socket_;
   std::deque<Subscription> subscriptions_;  // a handler may subscribe: existing ones stay in place
   std::vector<uint8_t> encoded_;            // reused for each message
-  int64_t undecodable_ = 0;
-  int64_t unsent_ = 0;
   bool handling_ = false;
 
   bool introduced_ = false;

@@ -2,22 +2,20 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "diagnose/data/diagnosis.h"
+#include "page/html_table.h"
 
 namespace hydro::diagnose {
 
-std::string Cell(const std::string& text);
-std::string NumberCell(double value);
+using page::Cell;
+using page::NumberCell;
+using page::Table;
+
 // With two digits.
 std::string ShortCell(double value);
 std::string PercentCell(double part);
 std::string IntervalCell(const Estimated& estimated);
-
-// Columns whose names begin with '#' hold numbers.
-std::string Table(const std::vector<std::string>& columns, const std::string& rows,
-                  const std::string& style = "");
 
 // Nothing without content.
 std::string Section(const std::string& heading, const std::string& content);

@@ -20,7 +20,14 @@ const std::vector<Experiment>& Experiments() {
       {"fig9", "Figure 9: root locus, and the loop sampled", RunFig9, 0.1},
       {"fig10", "Figure 10: a step of the arm, linear and full model, and what the motor could do", RunFig10,
        0.7},
+      {.name = "fig10_uncertainty",
+       .title = "Figure 10 on machines that are not exactly Table 1",
+       .run = RunFig10Uncertainty,
+       .cost = 15,
+       .draws_machines = true},
       {"torque", "Torque control: a commanded torque at the arm, clamped and moving", RunTorque, 1.5},
+      {"coupling", "Two joints in one arm: what couples them, and what feed-forward takes away", RunCoupling,
+       0.5},
   };
   return experiments;
 }

@@ -19,6 +19,8 @@ ExperimentResult RunWaves(const ExperimentOptions& options);
 ExperimentResult RunFig8(const ExperimentOptions& options);
 ExperimentResult RunFig9(const ExperimentOptions& options);
 ExperimentResult RunFig10(const ExperimentOptions& options);
+ExperimentResult RunFig10Uncertainty(const ExperimentOptions& options);
 ExperimentResult RunTorque(const ExperimentOptions& options);
+ExperimentResult RunCoupling(const ExperimentOptions& options);
 
 }  // namespace hydro::experiments

@@ -23,33 +23,6 @@ constexpr double kStart = 0.1;               // s, when the reference steps
 constexpr double kMotorSpeed = 6000 * kRpm;  // rad/s: "a larger 6000 rpm motor"
 constexpr double kNoLimit = 1e6;             // in-lbf
 
-ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
-              const model::ModelDescription& model, double step) {
-  const tables::Table table = run_stack({name, config, settings::FormatModel(model)});
-  const auto column = [&](const char* which) -> const std::vector<double>& {
-    return table.Find(which)->values;
-  };
-  const std::vector<double>& reference = column("arm_ref_rad");
-  const auto first =
-      static_cast<size_t>(std::find(reference.begin(), reference.end(), step) - reference.begin());
-  if (first == reference.size()) throw std::runtime_error(name + ": the reference never steps");
-  ArmRun run;
-  const std::vector<double>& times = column("time_s");
-  const double limit = model.parameters.T_pmax * (1 - 1e-9);
-  for (size_t i = first; i < times.size(); ++i) {
-    run.time.push_back(times[i] - times[first]);
-    run.angle.push_back(column("arm_angle_rad")[i]);
-    const double voltage = column("voltage_V")[i];
-    run.torque.push_back(model.parameters.k_1 * voltage);
-    run.speed.push_back(column("motor_speed_rad_s")[i]);
-    run.highest_speed = std::max(run.highest_speed, std::fabs(run.speed.back()));
-    if (i + 1 < times.size() && std::fabs(run.torque.back()) >= limit)
-      run.saturated_time += times[i + 1] - times[i];
-  }
-  run.response = runs::MeasureStep(run.time, run.angle, 0, run.time.size(), 0, step);
-  return run;
-}
-
 runs::StepResponse Measure(const design::Response& response, double step) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
@@ -180,6 +153,33 @@ RetunedRuns RunRetuned(const model::ModelDescription& model, const ExperimentOpt
 }
 
 }  // namespace
+
+ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
+              const model::ModelDescription& model, double step) {
+  const tables::Table table = run_stack({name, config, settings::FormatModel(model)});
+  const auto column = [&](const char* which) -> const std::vector<double>& {
+    return table.Find(which)->values;
+  };
+  const std::vector<double>& reference = column("arm_ref_rad");
+  const auto first =
+      static_cast<size_t>(std::find(reference.begin(), reference.end(), step) - reference.begin());
+  if (first == reference.size()) throw std::runtime_error(name + ": the reference never steps");
+  ArmRun run;
+  const std::vector<double>& times = column("time_s");
+  const double limit = model.parameters.T_pmax * (1 - 1e-9);
+  for (size_t i = first; i < times.size(); ++i) {
+    run.time.push_back(times[i] - times[first]);
+    run.angle.push_back(column("arm_angle_rad")[i]);
+    const double voltage = column("voltage_V")[i];
+    run.torque.push_back(model.parameters.k_1 * voltage);
+    run.speed.push_back(column("motor_speed_rad_s")[i]);
+    run.highest_speed = std::max(run.highest_speed, std::fabs(run.speed.back()));
+    if (i + 1 < times.size() && std::fabs(run.torque.back()) >= limit)
+      run.saturated_time += times[i + 1] - times[i];
+  }
+  run.response = runs::MeasureStep(run.time, run.angle, 0, run.time.size(), 0, step);
+  return run;
+}
 
 const std::array<Cause, kCauseCount> kCauses = {{
     {"all_on", "full model", true, true, true, true},

@@ -26,6 +26,11 @@ struct ArmRun {
   double highest_speed = 0;   // rad/s
 };
 
+// Runs a stack (a whole configuration, which steps the arm's reference from 0 to `step`, rad) on a model. Throws
+// std::runtime_error when the reference never steps, and what the runner throws.
+ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
+              const model::ModelDescription& model, double step);
+
 // The figure with one form of the derivative.
 struct FormRuns {
   design::Response linear;

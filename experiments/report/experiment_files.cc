@@ -33,6 +33,7 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
   json["title"] = experiment.title;
   json["program_version"] = settings::ProgramVersion();
   json["options"] = {{"seed", options.seed}, {"noise", options.noise}, {"real_time", real_time}};
+  if (experiment.draws_machines) json["options"]["machines"] = options.machines;
   if (!options.measured_run.empty()) json["options"]["run"] = options.measured_run;
   json["conditions"] = result.conditions;
   Json& comparisons = json["comparisons"] = Json::array();

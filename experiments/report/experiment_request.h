@@ -10,7 +10,7 @@ namespace hydro::experiments {
 struct ExperimentRequest {
   std::string name = "all";                // or an experiment's name
   std::string folder = "out/experiments";  // created if missing
-  int jobs = 2;                            // experiments run at the same time
+  int jobs = 2;  // experiments run at the same time, and threads of one that uses several
   bool si = false;
   bool real_time = false;  // for the record only; options.run_stack decides
   ExperimentOptions options = {};

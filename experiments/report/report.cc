@@ -92,6 +92,9 @@ std::string Command(const ExperimentRequest& request) {
   if (request.options.seed != ExperimentOptions{}.seed) {
     command += " --seed " + std::to_string(request.options.seed);
   }
+  if (request.options.machines != ExperimentOptions{}.machines) {
+    command += " --machines " + std::to_string(request.options.machines);
+  }
   if (request.options.noise) command += " --noise";
   if (request.real_time) command += " --real-time";
   if (request.si) command += " --si";

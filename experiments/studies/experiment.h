@@ -51,7 +51,9 @@ struct ExperimentResult {
 
 struct ExperimentOptions {
   StackRunner run_stack = RunStackInProcess;  // how experiments run the stack
-  int64_t seed = 1;                           // for all noise
+  int64_t seed = 1;                           // for all noise, and for what is drawn
+  int machines = 10000;                       // fig10_uncertainty: drawn from what is known of Table 1
+  int jobs = 1;                               // threads of an experiment that has use for several
   bool noise = false;                         // sensor noise like the paper's, for figures that show it
   std::string measured_run;                   // friction, leakage: file to analyse; "": simulate a rig
   // Called now and then with the fraction done, 0 to 1. Calls may come from any thread, but never from two at
@@ -65,6 +67,7 @@ struct Experiment {
   ExperimentResult (*run)(const ExperimentOptions&);
   double cost = 1;  // rough duration in seconds, for the progress bar and the starting order
   bool takes_measured_run = false;
+  bool draws_machines = false;
 };
 
 // All experiments, in the order of the paper and of the report.

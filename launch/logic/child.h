@@ -25,6 +25,7 @@ struct ChildSpec {
   std::vector<std::string> argv;  // argv[0] is the path of the program
   bool last = false;              // is stopped only when all processes without this mark have ended
   std::optional<OwnChild> own = std::nullopt;  // absent: one of our programs
+  std::vector<std::string> joints = {};        // of a limb: those that it runs, or is a part of; else empty
 
   std::string program() const;  // the last part of the path, e.g. hydro-plant; of a user's own the name
   std::string role() const;     // e.g. pressure_ctrl

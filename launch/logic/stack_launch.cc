@@ -59,18 +59,33 @@ int StackLaunch::Run() {
   return exit_code_;
 }
 
+// The processes that do what one of this launch's children would.
+std::vector<std::string> StackLaunch::PresentInOurPlace() const {
+  std::vector<std::string> present;
+  const auto add = [&](const std::vector<std::string>& roles, const std::string& joint) {
+    for (std::string& name : watch_.Present(roles, joint)) present.push_back(std::move(name));
+  };
+  for (const ChildSpec& child : plan_.children) {
+    const std::string role = child.role();
+    // Another host's logger or limb was started a moment before.
+    const bool elsewhere_too = plan_.spread && (role == "logger" || role == "limb");
+    if (!elsewhere_too && (child.joints.empty() || role == "limb")) add({role}, "");
+    for (const std::string& joint : child.joints) {
+      add(role == "limb" ? std::vector<std::string>{"plant", "driver"} : std::vector{role}, joint);
+    }
+  }
+  return present;
+}
+
 // Two stacks on the same channels drive each other to zero volts, and their messages end up in each other's
 // logs. Asked several times, because UDP may lose a message.
 void StackLaunch::RefuseIfOneRuns() {
-  std::vector<std::string> roles = RolesOf(plan_);
-  if (plan_.spread) std::erase(roles, "logger");  // another host's, which was started a moment before
-  if (!config_.joints.empty()) roles.insert(roles.end(), {"limb", "plant", "driver"});  // that has one of the joints
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();
     for (const TimePoint until = clock_.Now() + kAnswerTime; clock_.Now() < until;) {
       bus_.HandleUntil(until);
     }
-    const std::vector<std::string> present = watch_.Present(roles);
+    const std::vector<std::string> present = PresentInOurPlace();
     if (present.empty()) continue;
     throw InputError(fmt::format(
         "{}: found a stack on {}{} that runs: {}; end it with `hydro-launch {} --stop`, or give this one "

@@ -30,6 +30,7 @@ class StackLaunch {
 
  private:
   void RefuseIfOneRuns();
+  std::vector<std::string> PresentInOurPlace() const;
   void StartAll();
   int HearBus(TimePoint until);
   void ShowStatus();

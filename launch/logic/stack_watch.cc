@@ -120,10 +120,12 @@ void StackWatch::AskWhoIsThere() {
   for (const Stack& stack : stacks_) bus_.Publish(stack.channels.Of<process_status_t>(), question);
 }
 
-std::vector<std::string> StackWatch::Present(const std::vector<std::string>& roles) const {
+std::vector<std::string> StackWatch::Present(const std::vector<std::string>& roles,
+                                             const std::optional<std::string>& joint) const {
   std::vector<std::string> names;
   for (const auto& [key, heard] : statuses_) {
     const process_status_t& status = heard.status;
+    if (joint && stacks_[heard.stack].joint != *joint) continue;
     if (process::HasLeft(status) || std::find(roles.begin(), roles.end(), status.role) == roles.end())
       continue;
     names.push_back(process::ProcessName(status));

@@ -34,8 +34,10 @@ class StackWatch {
   // Asks every process on the bus to say that it is there. Answers come within milliseconds.
   void AskWhoIsThere();
 
-  // The processes with one of these roles that have been heard and have not left, by name.
-  std::vector<std::string> Present(const std::vector<std::string>& roles) const;
+  // The processes with one of these roles that have been heard and have not left, by name. `joint`: on whose channels; empty: on those
+  // of the stack or limb itself; none: on any.
+  std::vector<std::string> Present(const std::vector<std::string>& roles,
+                                   const std::optional<std::string>& joint = std::nullopt) const;
 
   // Adds a process of this launch to wait for. One of the user's own may be a script that starts another: whoever
   // announces itself under its role is it.

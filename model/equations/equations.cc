@@ -260,7 +260,9 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
   power.compression =
       (x.p1 - x.p_3) * x.V_1 / x.beta_1 * rate[kP1] + (x.p2 - x.p_3) * x.V_2 / x.beta_2 * rate[kP2];
   power.mismatch = (p.c - p.k_2) * dp * x.actuator_speed;
-  if (data_.shaft == Shaft::kFree) {
+  if (data_.loaded) {
+    power.shaft_in = -(x.arm_torque - LoadTorque(data_, time)) * x.arm_speed;
+  } else if (data_.shaft == Shaft::kFree) {
     power.kinetic += p.J_a * x.arm_speed * rate[kArmSpeed];
     power.gravity = p.mgl * std::cos(x.arm_angle) * x.arm_speed;
   } else {
@@ -271,6 +273,68 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
     effect->AddPower(x, rate, &power);
   }
   return power;
+}
+
+Equations::ArmTorque Equations::FindArmTorque(double time, double voltage, const Mode& mode,
+                                              const double* state) {
+  if (plain()) return {.torque = data_.parameters.k_2 * (state[kP2] - state[kP1])};
+  double rate[kMaxStates];
+  Terms<double> x;
+  Evaluate(time, voltage, mode, state, rate, &x);
+  ArmTorque found{.torque = x.arm_torque - LoadTorque(data_, time)};
+  if (x.arm_torque != 0) return found;
+  // Held, or just in balance? What holds it gives way to no other load either.
+  const double torque = data_.load.torque;
+  data_.load.torque += std::max(1.0, std::abs(torque));
+  Evaluate(time, voltage, mode, state, rate, &x);
+  data_.load.torque = torque;
+  found.held = x.arm_torque == 0;
+  return found;
+}
+
+double Equations::ArmTorqueRate(double time, double voltage, const Mode& mode, const double* state,
+                                const double* rate) const {
+  if (plain()) return data_.parameters.k_2 * (rate[kP2] - rate[kP1]);
+  Jet moving[kMaxStates], rates[kMaxStates];
+  for (int i = 0; i < data_.states; ++i) {
+    moving[i] = Jet(state[i]);
+    moving[i].SetDerivative(0, rate[i]);
+  }
+  Terms<Jet> x;
+  EvaluateTerms<Form::kGeneral, Jet>(data_, *data_.constants, time, Jet(voltage), mode, moving, rates, x);
+  return x.arm_torque.v[0];
+}
+
+void Equations::SetLoad(double time, const ArmLoad& load) {
+  if (data_.shaft != Shaft::kFree) throw ModelError("an arm with a load needs a free shaft");
+  if (!(load.inertia > 0) || !std::isfinite(load.inertia)) {
+    throw ModelError("inertia of the arm's load = " + Number(load.inertia) + "; allowed is above 0");
+  }
+  if (!std::isfinite(load.torque + load.torque_rate + load.torque_curve)) {
+    throw ModelError("the torque of the arm's load is not finite");
+  }
+  data_.loaded = true;
+  data_.load = load;
+  data_.load_since = time;
+  data_.inverse_load_inertia = 1 / load.inertia;
+}
+
+void Equations::MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
+                        double* state) const {
+  const Parameters& p = data_.parameters;
+  const double turned = p.c * (angle - state[kArmAngle]);
+  if (plain()) {
+    if (!mode.valve_1) state[kP1] += p.beta / (p.V_ms - p.c * angle) * turned;
+    if (!mode.valve_2) state[kP2] -= p.beta / (p.V_ms + p.c * angle) * turned;
+  } else if (!data_.bypass && data_.actuator_angle_state == kArmAngle) {
+    double rate[kMaxStates];
+    Terms<double> x;
+    Evaluate(time, voltage, mode, state, rate, &x);
+    if (!mode.valve_1) state[kP1] += x.beta_1 / x.V_1 * turned;
+    if (!mode.valve_2) state[kP2] -= x.beta_2 / x.V_2 * turned;
+  }
+  state[kArmAngle] = angle;
+  state[kArmSpeed] = speed;
 }
 
 Measurement Equations::Measure(double time, const double* state, const StateHistory<double>* history) const {

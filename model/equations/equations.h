@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/terms/actuator_options.h"
+#include "model/terms/arm_load.h"
 #include "model/terms/description.h"
 #include "model/terms/measurement.h"
 #include "model/terms/mode.h"
@@ -50,7 +51,12 @@ struct EquationData : NumbersOf<double> {
   bool reads_late = false;   // some channel does, by at most `reach`
   double reach = 0;          // s
   int p_3_state = -1;        // the accumulator's pressure, where it is a state
-  int actuator_angle_state = kArmAngle;             // free shaft: what V_1 and V_2 depend on
+  int actuator_angle_state = kArmAngle;  // free shaft: what V_1 and V_2 depend on
+  // Free shaft: the arm is part of something larger, and `load` stands for J_a and gravity.
+  bool loaded = false;
+  ArmLoad load;
+  double load_since = 0;  // s
+  double inverse_load_inertia = 0;
   std::shared_ptr<const NumbersOf<Jet>> constants;  // the same numbers without derivatives
 };
 
@@ -101,9 +107,30 @@ class Equations {
   // the last data().reach seconds; without a history it is not late.
   Measurement Measure(double time, const double* state, const StateHistory<double>* history = nullptr) const;
 
+  // What the actuator gives a loaded arm, in-lbf: k_2 dp as the effects change it, without the load.
+  struct ArmTorque {
+    double torque = 0;
+    bool held =
+        false;  // by friction of the arm's own, at rest: then the torque is what the arm does not feel
+  };
+  ArmTorque FindArmTorque(double time, double voltage, const Mode& mode, const double* state);
+  // d/dt of that torque where the state moves with `rate`. Exact, but for what effects change with time by
+  // itself.
+  double ArmTorqueRate(double time, double voltage, const Mode& mode, const double* state,
+                       const double* rate) const;
+
   // Throws ModelError when V_1 or V_2 at `arm_angle` is not above 0 (or not above the volume that an effect
   // places elsewhere).
   void CheckVolumes(double arm_angle) const;
+
+  // From `time` on the arm has this load; before the first integration step this makes the arm a loaded one.
+  // Throws ModelError.
+  void SetLoad(double time, const ArmLoad& load);
+
+  // Puts a free arm nearby. The fluid is compressed as by that motion, but where a valve is open, or the arm
+  // is not what compresses it (bypass, arm.flexure).
+  void MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
+               double* state) const;
 
   // Known stops: times at which the right-hand side jumps by itself. An integrator calls Command when the
   // voltage changes, steps no further than NextStop, and calls PassStop there; until then the earlier

@@ -14,7 +14,7 @@ inline double ValueOf(double x) { return x; }
 inline double ValueOf(const Jet& x) { return x.a; }
 
 // Which terms are compiled in. The plain forms have no effects and no bypass; the fast path inlines them.
-enum class Form { kPlainClamped, kPlainFree, kGeneral };
+enum class Form { kPlainClamped, kPlainFree, kPlainLoaded, kGeneral };
 
 // The state, and the arm as its shaft moves it.
 template <Form kForm, class T>
@@ -26,7 +26,7 @@ template <Form kForm, class T>
   if constexpr (kForm == Form::kPlainClamped) {
     x.arm_angle = T(m.arm_angle);
     x.arm_speed = T(0.0);
-  } else if (kForm == Form::kPlainFree || m.shaft == Shaft::kFree) {
+  } else if (kForm != Form::kGeneral || m.shaft == Shaft::kFree) {
     x.arm_angle = y[kArmAngle];
     x.arm_speed = y[kArmSpeed];
   } else if (m.shaft == Shaft::kDriven) {
@@ -42,7 +42,19 @@ template <Form kForm, class T>
 template <Form kForm>
 [[gnu::always_inline]] inline bool ArmMovesFreely(const EquationData& m) {
   if constexpr (kForm == Form::kGeneral) return m.shaft == Shaft::kFree;
-  return kForm == Form::kPlainFree;
+  return kForm != Form::kPlainClamped;
+}
+
+// The arm's load takes the place of its inertia and gravity.
+template <Form kForm>
+[[gnu::always_inline]] inline bool ArmIsLoaded(const EquationData& m) {
+  if constexpr (kForm == Form::kGeneral) return m.loaded;
+  return kForm == Form::kPlainLoaded;
+}
+
+[[gnu::always_inline]] inline double LoadTorque(const EquationData& m, double time) {
+  const double since = time - m.load_since;
+  return m.load.torque + since * (m.load.torque_rate + since * m.load.torque_curve);
 }
 
 // Calls `change(effect)` for each effect, with its parameters in x.own.
@@ -93,8 +105,8 @@ template <Form kForm, class T>
 
 // Torques and flows, and the rates of the effects' own states. Returns the pressure difference at the pump.
 template <Form kForm, class T>
-[[gnu::always_inline]] inline T AddTorquesAndFlows(const EquationData& m, const NumbersOf<T>& n, T* rate,
-                                                   Terms<T>& x) {
+[[gnu::always_inline]] inline T AddTorquesAndFlows(const EquationData& m, const NumbersOf<T>& n, double time,
+                                                   T* rate, Terms<T>& x) {
   using std::cos;
   constexpr bool kGeneralForm = kForm == Form::kGeneral;
   const ParametersOf<T>& p = n.parameters;
@@ -106,7 +118,11 @@ template <Form kForm, class T>
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
-  if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) x.arm_torque -= p.mgl * cos(x.arm_angle);
+  if (ArmIsLoaded<kForm>(m)) {
+    x.arm_torque += T(LoadTorque(m, time));
+  } else if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) {
+    x.arm_torque -= p.mgl * cos(x.arm_angle);
+  }
   if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);
     ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddTorquesAndFlows(x); });
@@ -166,7 +182,7 @@ template <Form kForm, class T>
                                                  Terms<T>& x) {
   ReadState<kForm>(m, time, y, x);
   SetProperties<kForm>(m, n, time, voltage, mode, y, x);
-  const T dp = AddTorquesAndFlows<kForm>(m, n, rate, x);
+  const T dp = AddTorquesAndFlows<kForm>(m, n, time, rate, x);
   const double direction = mode.pump;
   rate[kMotorAngle] = x.motor_speed;
   // (4), summed in an order that keeps the longest chain of operations, through the pressures, short.
@@ -178,7 +194,11 @@ template <Form kForm, class T>
   SetPressureRates<kForm>(m, n, mode, rate, x);
   if (ArmMovesFreely<kForm>(m)) {
     rate[kArmAngle] = x.arm_speed;
-    rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
+    if (ArmIsLoaded<kForm>(m)) {
+      rate[kArmSpeed] = x.arm_torque * T(m.inverse_load_inertia);
+    } else {
+      rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
+    }
   }
 }
 

@@ -152,8 +152,16 @@ class FastStepper {
   void Stages(const Point& now, double h, double* y, double* k2, double* k3, double* k4) const {
     double stage[kMaxStates];
     if constexpr (kMayBend) stage[0] = 0;  // GCC 12 does not see that it is written first
-    RungeKuttaStep(n(), now.time, h, now.state, now.rate, k2, k3, k4, stage, y,
-                   [this](double time, const double* at, double* rate) { Rates(time, at, rate); });
+    RungeKuttaStep(
+        n(), now.time, h, now.state, now.rate, k2, k3, k4, stage, y,
+        // Measured with a free arm: 0.24 us a tick; as a call, which GCC would make of it, 0.27.
+        [this](double time, const double* at, double* rate) __attribute__((always_inline)) {
+          if constexpr (kForm == Form::kGeneral) {
+            Rates(time, at, rate);
+          } else {
+            EvaluatePoint<kForm>(data(), time, voltage_, mode_, at, rate, nullptr);
+          }
+        });
   }
 
   const Mode& mode_;

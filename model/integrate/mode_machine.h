@@ -35,7 +35,7 @@ template <Form kForm>
 struct FormSize {
   static int states(const EquationData& m) {
     if constexpr (kForm == Form::kPlainClamped) return 4;
-    if constexpr (kForm == Form::kPlainFree) return 6;
+    if constexpr (kForm == Form::kPlainFree || kForm == Form::kPlainLoaded) return 6;
     return m.states;
   }
   static int switches(const EquationData& m) {
@@ -75,9 +75,17 @@ class ModeMachine {
 
   const PointOf<T>& now() const { return *now_; }
   const Mode& mode() const { return mode_; }
+  double voltage() const { return voltage_; }
   const StateHistory<T>* history() const { return remembers() ? &history_ : nullptr; }
   int64_t mode_changes() const { return mode_changes_; }
   Integrator in_use() const { return stepper_.in_use(); }
+
+  // As Simulation. The next Advance begins afresh.
+  void MoveArm(double angle, double speed) requires(!kDerivatives) {
+    equations_.MoveArm(now_->time, voltage_, mode_, angle, speed, now_->state);
+    started_ = false;
+  }
+  void NewLoad() { started_ = false; }
 
   // As Actuator::Advance.
   void Advance(double voltage, double until) {
@@ -139,12 +147,15 @@ class ModeMachine {
   void EvaluateHere() { Evaluate(now_); }
 
   void Command(double voltage) {
-    voltage_ = voltage;
     fresh_ = true;
     if constexpr (kForm == Form::kGeneral) {
-      equations_.Command(now_->time, voltage);
-      PassStop();
+      if (voltage != voltage_ || !commanded_) {
+        equations_.Command(now_->time, voltage);
+        PassStop();
+      }
+      commanded_ = true;
     }
+    voltage_ = voltage;
     EvaluateHere();
     const bool settled = Settle();
     if constexpr (kDerivatives) {
@@ -373,7 +384,8 @@ class ModeMachine {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
-  bool fresh_ = true;  // mode or voltage is new
+  bool commanded_ = false;  // the equations know a voltage
+  bool fresh_ = true;       // mode or voltage is new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
   int events_ = 0;  // since events_since_, s

@@ -20,8 +20,11 @@ class SimulationOf final : public Simulation {
   }
 
   void Advance(double voltage, double until) override { machine_.Advance(voltage, until); }
+  void MoveArm(double angle, double speed) override { machine_.MoveArm(angle, speed); }
+  void NewLoad() override { machine_.NewLoad(); }
   const Point& now() const override { return machine_.now(); }
   const Mode& mode() const override { return machine_.mode(); }
+  double voltage() const override { return machine_.voltage(); }
   const StateHistory<double>* history() const override { return machine_.history(); }
   int64_t mode_changes() const override { return machine_.mode_changes(); }
   Integrator in_use() const override { return machine_.in_use(); }
@@ -38,6 +41,7 @@ std::unique_ptr<Simulation> MakeForForm(Equations* equations, double time, const
                                                                  relative_tolerance);
   };
   if (!equations->plain()) return make.template operator()<Form::kGeneral>();
+  if (equations->data().loaded) return make.template operator()<Form::kPlainLoaded>();
   if (equations->data().shaft == Shaft::kFree) return make.template operator()<Form::kPlainFree>();
   return make.template operator()<Form::kPlainClamped>();
 }

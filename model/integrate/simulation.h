@@ -16,8 +16,14 @@ class Simulation {
   // As Actuator::Advance.
   virtual void Advance(double voltage, double until) = 0;
 
+  // Of a free shaft: puts the arm nearby (Equations::MoveArm); has it take up the load that the equations have
+  // been given (SetLoad).
+  virtual void MoveArm(double angle, double speed) = 0;
+  virtual void NewLoad() = 0;
+
   virtual const Point& now() const = 0;
   virtual const Mode& mode() const = 0;
+  virtual double voltage() const = 0;  // that is held
 
   // The states that late channels need; null when there are none.
   virtual const StateHistory<double>* history() const = 0;

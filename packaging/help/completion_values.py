@@ -14,6 +14,7 @@ class Values:
 BY_NAME = {
     "CONFIG": Values("files", "toml"),
     "MODEL": Values("files", "toml"),
+    "STUDY": Values("files", "toml"),
     "LOG": Values("files", "lcmlog"),
     "CONFIG|LOG": Values("files", "toml|lcmlog"),
     "A": Values("files", "lcmlog"),

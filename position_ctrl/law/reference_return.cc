@@ -4,7 +4,7 @@
 
 namespace hydro::position_ctrl {
 
-void ReferenceReturn::Observe(int64_t tick, bool driven, double present) {
+void ReferenceReturn::ObserveChange(int64_t tick, bool driven, double present) {
   // At every state, so that a hold that falls between two samples starts from where the arm is, too.
   const bool hold = held_ || (begun_ && !driven);
   if (hold && std::isfinite(present)) from_ = present;

@@ -13,7 +13,9 @@ class ReferenceReturn {
 
   // Once for each state. `driven`: a command is in force that may move the motor. Before the first one, nothing is held:
   // the run begins. `present`: what the reference refers to, as it is measured.
-  void Observe(int64_t tick, bool driven, double present);
+  void Observe(int64_t tick, bool driven, double present) {
+    if (!driven || held_ || !begun_) ObserveChange(tick, driven, present);
+  }
 
   // This loop joins a run that has gone on without it: as after a hold.
   void Join() { begun_ = held_ = true; }
@@ -29,6 +31,8 @@ class ReferenceReturn {
   void Reset() { *this = ReferenceReturn(ticks_); }
 
  private:
+  void ObserveChange(int64_t tick, bool driven, double present);
+
   int64_t ticks_;
   bool begun_ = false;      // a command has been in force
   bool held_ = false;       // none is any more

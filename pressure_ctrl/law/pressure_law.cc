@@ -1,6 +1,5 @@
 #include "pressure_ctrl/law/pressure_law.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -50,24 +49,6 @@ double SteadyStateFeedforward(const model::Parameters& p, const PressureGains& g
   // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
   const double speed_per_psi = (p.c_I + p.c_E) / p.D;
   return (p.D + p.b * speed_per_psi) / p.k_1 + gains.k_p * gains.k_v * speed_per_psi;
-}
-
-// Eq. (16).
-double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
-  const double pressure_error = input.pressure_ref - (input.p2 - input.p1);
-  double speed = input.motor_speed;
-  if (settings.arm_speed_ratio != 0) speed -= settings.arm_speed_ratio * input.arm_speed;
-  const double voltage = settings.gains.k_p * (pressure_error - settings.gains.k_v * speed) +
-                         settings.reference_feedforward * input.pressure_ref;
-  return input.transfer == 0 ? voltage : voltage + input.transfer;
-}
-
-PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
-  const double voltage = UnlimitedPressureLaw(settings, input);
-  PressureLawOutput output;
-  output.voltage = std::clamp(voltage, -settings.voltage_limit, settings.voltage_limit);
-  output.saturated = output.voltage != voltage;
-  return output;
 }
 
 }  // namespace hydro::pressure_ctrl

@@ -1,6 +1,8 @@
 // The control law of the pressure loop, eq. (16), as pure functions.
 #pragma once
 
+#include <algorithm>
+
 #include "model/terms/description.h"
 
 namespace hydro::pressure_ctrl {
@@ -55,9 +57,22 @@ struct PressureLawOutput {
 
 // Eq. (16) with the optional feed-forwards, V, without a limit:
 //   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref + transfer
-double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+inline double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
+  const double pressure_error = input.pressure_ref - (input.p2 - input.p1);
+  double speed = input.motor_speed;
+  if (settings.arm_speed_ratio != 0) speed -= settings.arm_speed_ratio * input.arm_speed;
+  const double voltage = settings.gains.k_p * (pressure_error - settings.gains.k_v * speed) +
+                         settings.reference_feedforward * input.pressure_ref;
+  return input.transfer == 0 ? voltage : voltage + input.transfer;
+}
 
 // The same, limited to +/- voltage_limit.
-PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+inline PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
+  const double voltage = UnlimitedPressureLaw(settings, input);
+  PressureLawOutput output;
+  output.voltage = std::clamp(voltage, -settings.voltage_limit, settings.voltage_limit);
+  output.saturated = output.voltage != voltage;
+  return output;
+}
 
 }  // namespace hydro::pressure_ctrl

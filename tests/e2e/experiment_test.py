@@ -23,6 +23,7 @@ KEYS = {
     "fig9": ["critical_gain", "critical_frequency_rad_s", "poles_at_350"],
     "fig10": [f"{model}.{key}" for model in ("linear", "nonlinear")
               for key in ("overshoot_percent", "settling_time_s", "steady_state_error_rad")],
+    "fig10_uncertainty": ["machines", "settling_time_s.p95", "overshoot_percent.p50", "never_settles.share", "influences"],
     "friction": ["T_s", "b"],
     "leakage": ["c_E", "c_I"],
 }
@@ -64,6 +65,8 @@ class ExperimentTest(stack.TestCase):
             (["fig3", "--out", "/proc/none"], r"/proc/none"),
             (["fig3", "--jobs", "0"], r"--jobs"),
             (["fig3", "--seed", "x"], r"--seed"),
+            (["fig3", "--machines", "50"], r"--machines.*fig3.*fig10_uncertainty, all"),
+            (["fig10_uncertainty", "--machines", "3"], r"--machines.*3.*20 to 1000000"),
             (["friction", "--run", self.path("none.csv")], r"none\.csv"),
         ]:
             with self.subTest(arguments=arguments):
@@ -76,8 +79,9 @@ class ExperimentTest(stack.TestCase):
 
     def test_all_twice(self):
         names = self.names()
-        self.experiment("all", "--out", self.path("a"))
-        self.experiment("all", "--out", self.path("b"), "--jobs", "1")
+        few = ("--machines", "300")  # the whole 10,000 take as long as all the rest
+        self.experiment("all", *few, "--out", self.path("a"))
+        self.experiment("all", *few, "--out", self.path("b"), "--jobs", "1")
         files = sorted(os.listdir(self.path("a")))
         self.assertEqual(files, sorted(os.listdir(self.path("b"))))
         for name in files:

@@ -213,6 +213,19 @@ MUTATIONS = [
         ("power.gravity", "power.gravity = p.mgl", "power.gravity = -p.mgl"),
         ("power.leakage", "power.leakage = x.cross_flow", "power.leakage = -x.cross_flow"),
     ),
+    # Arms of several links.
+    *_rows("model/arm/newton_euler.h",
+           ("arm.centrifugal", "- turn_rate * at.sine - square * at.cosine", "- turn_rate * at.sine + square * at.cosine"),
+           ("arm.gravity", "joint{T{}, T{gravity}}", "joint{T{}, T{-gravity}}"),
+           ("arm.next_joint", "l.centre * force[i].y + l.length * outer.y", "l.centre * force[i].y - l.length * outer.y")),
+    *_rows("model/coupled_arm.cc",
+           ("arm.correction_of_speed", "other_.speed[i] += h / m", "other_.speed[i] -= h / m"),
+           ("arm.curve", "(now_.load_rate[i] - before)", "(before - now_.load_rate[i])")),
+    *_rows("model/equations/equations.cc",
+           ("arm.correction_of_p1", "state[kP1] += p.beta / (p.V_ms - p.c * angle) * turned",
+            "state[kP1] -= p.beta / (p.V_ms - p.c * angle) * turned")),
+    *_rows("model/equations/evaluate.h",
+           ("arm.load", "x.arm_torque += T(LoadTorque(m, time));", "x.arm_torque -= T(LoadTorque(m, time));")),
     # Effects: a sign of each.
     *_rows(
         "model/effects/accumulator_stiffness.cc",

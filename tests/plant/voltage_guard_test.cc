@@ -43,7 +43,7 @@ TEST(VoltageGuardTest, EveryCauseHasACode) {
 }
 
 // Tests, for each cause in each mode, the voltage of five ticks: before it, with it, after it has gone, and
-// after a re-arm.
+// after a re-arm. A fault of another joint latches where it is.
 TEST(VoltageGuardTest, TicksInVoltageOut) {
   for (const settings::Rearm rearm : {settings::Rearm::kRestart, settings::Rearm::kExplicit}) {
     for (const Cause cause : AllCauses()) {
@@ -58,7 +58,8 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
       tick(true);
       tick(true);
       tick(false);
-      const bool latches = rearm == settings::Rearm::kExplicit || VoltageGuard::Trips(cause);
+      const bool latches = (rearm == settings::Rearm::kExplicit && cause != Cause::kOtherJoint) ||
+                           VoltageGuard::Trips(cause);
       EXPECT_EQ(guard.any_latched(), latches);
       guard.Release(&standing);
       EXPECT_THAT(standing, IsEmpty());
@@ -88,6 +89,22 @@ TEST(VoltageGuardTest, EndsAsTheSafetyTableSays) {
     }
     EXPECT_GT(rows, 0) << VoltageGuard::CodeOf(cause);
   }
+}
+
+// Tests that a joint is released although another one's fault holds it: two would else wait for each other.
+TEST(VoltageGuardTest, ReleasesWhileAnotherJointHasAFault) {
+  VoltageGuard guard(settings::Rearm::kExplicit);
+  guard.Set(Cause::kPressureLimit, true);
+  guard.Set(Cause::kPressureLimit, false);
+  guard.Set(Cause::kOtherJoint, true);
+  EXPECT_TRUE(guard.any_but(Cause::kOtherJoint));
+  std::vector<Cause> standing;
+  EXPECT_THAT(guard.Release(&standing), ElementsAre(Cause::kPressureLimit));
+  EXPECT_THAT(standing, IsEmpty());
+  EXPECT_FALSE(guard.any_but(Cause::kOtherJoint));
+  EXPECT_EQ(guard.Voltage(7), 0);
+  guard.Set(Cause::kOtherJoint, false);
+  EXPECT_EQ(guard.Voltage(7), 7);
 }
 
 // Tests that nothing is released while any cause, even another one, is present.

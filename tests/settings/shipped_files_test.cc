@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "settings/limb_config.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {
@@ -23,7 +24,7 @@ TEST(ShippedFilesTest, StacksLoad) {
   int stacks = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kConfig)) {
     if (entry.path().extension() != ".toml") continue;
-    EXPECT_EQ(InputErrorOf([&] { LoadStackConfig(entry.path().string()); }), "") << entry.path();
+    EXPECT_EQ(InputErrorOf([&] { LoadCommonConfig(entry.path().string()); }), "") << entry.path();
     ++stacks;
   }
   EXPECT_GE(stacks, 1);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "torture/machines/random.h"
+#include "base/random.h"
 
 namespace hydro::torture {
 namespace {

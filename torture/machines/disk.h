@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "torture/machines/random.h"
+#include "base/random.h"
 
 namespace hydro::torture {
 

@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/random.h"
 #include "torture/machines/packet.h"
-#include "torture/machines/random.h"
 
 namespace hydro::torture {
 

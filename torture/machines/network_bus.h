@@ -45,7 +45,9 @@ class NetworkBus : public bus::Bus {
  public:
   NetworkBus(int number, NetworkPort& port, Waiter& waiter, const bus::Clock& clock,
              const bus::HostedProcess& process)
-      : number_(number), port_(port), waiter_(waiter), clock_(clock), process_(process) {}
+      : number_(number), port_(port), waiter_(waiter), clock_(clock) {
+    process_ = &process;
+  }
 
   // From now on it seals what it sends and refuses what is not genuine. Call it before anything is sent.
   void UseKey(std::unique_ptr<bus::Authenticator> authenticator);
@@ -53,11 +55,6 @@ class NetworkBus : public bus::Bus {
   void SubscribeAll(std::function<void(const bus::RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
   int HandleUntil(TimePoint deadline) override;
-  int64_t undecodable() const override { return undecodable_; }
-  const bus::RefusedMessages& refused() const override {
-    return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
-  }
-  const bus::HostedProcess* process() const override { return &process_; }
 
   bool Hears(int channel) const {
     return !taps_.empty() || channel == introductions_ ||
@@ -95,7 +92,6 @@ class NetworkBus : public bus::Bus {
   NetworkPort& port_;
   Waiter& waiter_;
   const bus::Clock& clock_;
-  const bus::HostedProcess& process_;
   std::unique_ptr<bus::Authenticator> authenticator_;  // null: without a key
   int introductions_ = -1;                             // number of their channel
   bool introduced_ = false;
@@ -108,7 +104,6 @@ class NetworkBus : public bus::Bus {
   std::deque<PacketPtr> inbox_;
   size_t inbox_bytes_ = 0;
   int64_t overflowed_ = 0;
-  int64_t undecodable_ = 0;
 };
 
 }  // namespace hydro::torture

@@ -9,6 +9,7 @@ namespace hydro::torture {
 
 void NetworkBus::UseKey(std::unique_ptr<bus::Authenticator> authenticator) {
   authenticator_ = std::move(authenticator);
+  refused_ = &authenticator_->refused();
   introductions_ = Number(authenticator_->introduction_channel());
 }
 

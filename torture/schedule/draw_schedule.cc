@@ -3,8 +3,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/random.h"
 #include "process/safety/safety_table.h"
-#include "torture/machines/random.h"
 #include "torture/schedule/schedule.h"
 
 namespace hydro::torture {

@@ -1,0 +1,31 @@
+// Which whole numbers are multiples of a fixed one, without a division for numbers that mostly go up by one, as ticks do.
+#pragma once
+
+#include <cstdint>
+
+namespace hydro {
+
+class Multiples {
+ public:
+  // of: above 0.
+  explicit Multiples(int64_t of) : of_(of) {}
+
+  int64_t of() const { return of_; }
+
+  bool Contains(int64_t number) { return UpTo(number) == number; }
+
+  // The largest multiple that is at most `number`; for a number below 0 the smallest that is at least that.
+  int64_t UpTo(int64_t number) {
+    const uint64_t ahead = static_cast<uint64_t>(number) - static_cast<uint64_t>(newest_);
+    if (number < newest_ || ahead >= static_cast<uint64_t>(of_)) {
+      newest_ = ahead == static_cast<uint64_t>(of_) ? number : number / of_ * of_;
+    }
+    return newest_;
+  }
+
+ private:
+  int64_t of_;
+  int64_t newest_ = 0;
+};
+
+}  // namespace hydro

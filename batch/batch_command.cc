@@ -1,0 +1,135 @@
+#include "batch/batch_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "batch/finish.h"
+#include "batch/prepare.h"
+#include "batch/progress.h"
+#include "batch/run/missing_cases.h"
+#include "batch/run/run_cases.h"
+#include "batch/status.h"
+#include "batch/store/study_lock.h"
+#include "process/stop_signal.h"
+
+namespace hydro::batch {
+namespace {
+
+int Jobs(const BatchOptions& options) {
+  if (options.jobs != 0) return options.jobs;
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+int64_t CaseNumber(const std::string& text, const std::string& all) {
+  const auto number = ParseInteger(text);
+  if (!number || *number < 0)
+    throw InputError("--cases: found " + Quoted(all) + ", allowed A:B, the cases from A to the one before B");
+  return *number;
+}
+
+RunRequest Request(const BatchOptions& options, const std::string& folder) {
+  RunRequest request;
+  request.folder = folder;
+  request.jobs = Jobs(options);
+  request.failed_again = options.failed_again;
+  request.stop = [] { return process::StopSignal() != 0; };
+  return request;
+}
+
+int RunWorker(const BatchOptions& options) {
+  const Study study = OpenStudy(options.worker);
+  RunRequest request = Request(options, options.worker);
+  request.end = study.cases();
+  if (!options.cases.empty()) {
+    const size_t colon = options.cases.find(':');
+    request.first = CaseNumber(options.cases.substr(0, colon), options.cases);
+    const std::string end = colon == std::string::npos ? "" : options.cases.substr(colon + 1);
+    request.end = std::min(study.cases(), CaseNumber(end, options.cases));
+  }
+  const RunOutcome outcome = RunCases(study, request);
+  std::printf("%lld cases, %lld failed, %.3g s\n", static_cast<long long>(outcome.progress.ran),
+              static_cast<long long>(outcome.progress.failed), outcome.progress.elapsed_s);
+  return outcome.stopped ? 1 : 0;
+}
+
+int Told(const Study& study, const std::string& folder, const TableCounts& counts) {
+  std::printf("%s: %lld cases: %lld done, %lld failed, %lld missing; %s/index.html\n", study.name.c_str(),
+              static_cast<long long>(study.cases()), static_cast<long long>(counts.done),
+              static_cast<long long>(counts.failed), static_cast<long long>(counts.missing), folder.c_str());
+  if (!counts.first_failure.empty())
+    std::fprintf(stderr, "hydro-batch: %lld cases failed, the first: %s\n",
+                 static_cast<long long>(counts.failed), Printable(counts.first_failure).c_str());
+  return counts.failed == 0 && counts.missing == 0 ? 0 : 1;
+}
+
+RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::string& folder) {
+  RunRequest request = Request(options, folder);
+  request.end = study.cases();
+  const CaseCount there = CountCases(CaseStore(folder), 0, study.cases());
+  Progress progress(stderr, isatty(STDERR_FILENO) != 0, study.cases(),
+                    there.done + (options.failed_again ? 0 : there.failed));
+  request.progress = [&](const RunProgress& now) { progress.Show(now); };
+  return RunCases(study, request);
+}
+
+int RunStudy(const BatchOptions& options) {
+  const Study asked = ReadStudy(options.study);
+  const std::string folder =
+      options.out.empty() ? "out/batch/" + std::filesystem::path(options.study).stem().string() : options.out;
+  PrepareStudy(asked, folder);
+  // As every worker reads it.
+  const Study study = OpenStudy(folder);
+  const StudyLock lock(folder);
+  if (options.slurm.on) {
+    const SlurmEnd end = RunOnSlurm(study, folder, options.slurm, options.failed_again);
+    if (end == SlurmEnd::kStopped) return options.slurm.detach && process::StopSignal() == 0 ? 0 : 1;
+  } else if (RunAll(study, options, folder).stopped) {
+    std::fprintf(stderr, "hydro-batch: stopped; the same command goes on with the cases that are missing\n");
+    return 1;
+  }
+  return Told(study, folder, FinishStudy(folder, Jobs(options)));
+}
+
+}  // namespace
+
+void AddOptions(settings::CommandLine* line, BatchOptions* options) {
+  line->AddPositional("STUDY", &options->study, "FILE the study, TOML", false);
+  line->AddOption("-o,--out", &options->out,
+                  "DIR the study's folder (out/batch/ and the name of STUDY); goes on where it stopped");
+  line->AddOption("--jobs", &options->jobs, "N cases at the same time (the processors)");
+  line->AddFlag("--again", &options->failed_again, "run the failed cases again, too");
+  line->AddOption("--status", &options->status,
+                  "DIR tell how far the study of that folder is, wherever it runs");
+  line->AddOption("--finish", &options->finish, "DIR make table and page from the cases that are there");
+  line->AddOption("--worker", &options->worker, "DIR run cases of a prepared study, without table and page");
+  line->AddOption("--cases", &options->cases,
+                  "A:B with --worker: the cases from A to the one before B (all)");
+  AddSlurmOptions(line, &options->slurm);
+}
+
+int Run(BatchOptions options) {
+  if (options.jobs < 0 || options.jobs > 4096)
+    throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
+  CheckSlurmOptions(options.slurm);
+  if (!options.worker.empty()) return RunWorker(options);
+  if (!options.finish.empty()) {
+    const Study study = OpenStudy(options.finish);
+    return Told(study, options.finish, FinishStudy(options.finish, Jobs(options)));
+  }
+  if (!options.status.empty()) {
+    std::fputs(StatusText(ReadStatus(options.status)).c_str(), stdout);
+    std::fputs(SlurmStatusText(options.status).c_str(), stdout);
+    return 0;
+  }
+  if (options.study.empty()) throw InputError("STUDY: found nothing, allowed FILE the study, TOML");
+  return RunStudy(options);
+}
+
+}  // namespace hydro::batch

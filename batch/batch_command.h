@@ -1,0 +1,28 @@
+// What the command line of hydro-batch asks for.
+#pragma once
+
+#include <string>
+
+#include "batch/slurm_command.h"
+#include "settings/command_line.h"
+
+namespace hydro::batch {
+
+struct BatchOptions {
+  std::string study;  // STUDY.toml
+  std::string out;    // the study's folder; empty: out/batch/ and the name of the study's file
+  int jobs = 0;       // cases at the same time; 0: as many as processors
+  bool failed_again = false;
+  std::string status;  // folder of a study to tell of
+  std::string finish;  // folder of a study to make the table of
+  std::string worker;  // folder of a prepared study to run cases of
+  std::string cases;   // "A:B", which ones
+  SlurmOptions slurm;
+};
+
+void AddOptions(settings::CommandLine* line, BatchOptions* options);
+
+// Exit code: 0 all cases are done, 1 some failed or are missing. Throws InputError, StoreError, WriteError.
+int Run(BatchOptions options);
+
+}  // namespace hydro::batch

@@ -1,0 +1,18 @@
+// The page of a study. It depends on the study and its results alone: no time of day, no host.
+#pragma once
+
+#include <string>
+
+#include "batch/report/study_numbers.h"
+#include "batch/report/study_table.h"
+
+namespace hydro::batch {
+
+// A self-contained HTML document.
+std::string StudyPage(const Study& study, const TableCounts& counts, const StudyNumbers& numbers);
+
+// Writes index.html, distributions.svg, worst.svg and surface.svg, those that there are, into `folder`. Throws WriteError.
+void WritePage(const Study& study, const std::string& folder, const TableCounts& counts,
+               const StudyNumbers& numbers);
+
+}  // namespace hydro::batch

@@ -1,0 +1,25 @@
+// The pictures of a study.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "batch/report/study_numbers.h"
+#include "page/plot.h"
+
+namespace hydro::batch {
+
+// How the cases spread, a panel for each number; none without a number.
+std::optional<page::Figure> DistributionsFigure(const StudyNumbers& numbers);
+
+// The cases ordered by the number that says which are the worst, with these named.
+std::optional<page::Figure> WorstFigure(const StudyNumbers& numbers);
+
+// A number over two keys: the mean of the cases in each cell.
+std::optional<page::Figure> SurfaceFigure(const StudyNumbers& numbers);
+
+// Places in the column's vectors, the worst first.
+std::vector<size_t> WorstPlaces(const NumberColumn& column, size_t count);
+
+}  // namespace hydro::batch

@@ -1,0 +1,26 @@
+// What a case leaves: result.json.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/study/study.h"
+
+namespace hydro::batch {
+
+struct CaseResult {
+  bool failed = false;
+  int attempts = 1;
+  std::vector<std::optional<Value>> numbers;  // as Study::collect; none: null in the file that it comes from
+  std::string reason;                         // of a failure, one line
+};
+
+// The text of result.json: depends on the arguments alone.
+std::string ResultText(const Study& study, int64_t index, const CaseResult& result);
+
+// Reads it back. None when it is not whole, as after a power cut, or of another case.
+std::optional<CaseResult> ParseResult(const Study& study, int64_t index, const std::string& text);
+
+}  // namespace hydro::batch

@@ -1,0 +1,83 @@
+#include "batch/run/collect.h"
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/text_file.h"
+#include "batch/store/small_file.h"
+#include "settings/toml/toml_document.h"
+
+namespace hydro::batch {
+namespace {
+
+using nlohmann::json;
+using Kind = settings::TomlNode::Kind;
+
+json FromToml(const settings::TomlNode& node) {
+  switch (node.kind) {
+    case Kind::kTable: {
+      json table = json::object();
+      for (const auto& [key, value] : node.members) table[key] = FromToml(value);
+      return table;
+    }
+    case Kind::kArray: {
+      json array = json::array();
+      for (const settings::TomlNode& item : node.items) array.push_back(FromToml(item));
+      return array;
+    }
+    case Kind::kInteger:
+      return node.integer;
+    case Kind::kFloat:
+      return node.number;
+    case Kind::kBoolean:
+      return node.boolean;
+    case Kind::kString:
+    case Kind::kDate:
+      break;
+  }
+  return node.text;
+}
+
+json ReadDocument(const std::string& folder, const std::string& file) {
+  const auto text = ReadSmallFile(folder + "/" + file);
+  if (!text) throw InputError(file + ": not written, allowed a file that the study collects from");
+  if (file.ends_with(".toml")) return FromToml(settings::ParseToml(*text, file));
+  json document = json::parse(*text, nullptr, false);
+  if (document.is_discarded())
+    throw InputError(file + ": found no JSON in it, allowed JSON, or TOML in a file .toml");
+  return document;
+}
+
+std::optional<Value> Scalar(const json& value, const Collected& from) {
+  if (value.is_null()) return std::nullopt;
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_integer()) return value.get<int64_t>();
+  if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  throw InputError(from.file + ":" + from.pointer + ": found " + std::string(value.type_name()) +
+                   ", allowed a number, true, false, text or null");
+}
+
+}  // namespace
+
+std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder,
+                                                 const std::vector<int>& exit_codes) {
+  std::map<std::string, json> documents = {{"exit_codes.json", exit_codes}};
+  std::vector<std::optional<Value>> numbers;
+  for (const Collected& each : study.collect) {
+    auto document = documents.find(each.file);
+    if (document == documents.end())
+      document = documents.emplace(each.file, ReadDocument(folder, each.file)).first;
+    const json* found = nullptr;
+    try {
+      found = &document->second.at(json::json_pointer(each.pointer));
+    } catch (const json::exception&) {
+      throw InputError(each.file + ":" + each.pointer + ": found nothing there, allowed a place in the file");
+    }
+    numbers.push_back(Scalar(*found, each));
+  }
+  return numbers;
+}
+
+}  // namespace hydro::batch

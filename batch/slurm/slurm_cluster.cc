@@ -1,0 +1,111 @@
+#include "batch/slurm/slurm_cluster.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "base/input_error.h"
+#include "base/text_file.h"
+#include "batch/slurm/answered_command.h"
+#include "batch/slurm/slurm_answers.h"
+
+namespace hydro::batch {
+namespace {
+
+// A busy slurmctld answers late; sbatch even tries for minutes when it has as many jobs as it may have.
+constexpr std::chrono::seconds kPatience{60};
+
+std::string LastLine(const std::string& text) {
+  std::string last;
+  size_t start = 0;
+  while (start < text.size()) {
+    const size_t end = std::min(text.find('\n', start), text.size());
+    if (end > start) last = text.substr(start, end - start);
+    start = end + 1;
+  }
+  return last;
+}
+
+Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
+  const std::string program = ProgramInPath(argv[0]);
+  if (program.empty()) throw ClusterError("found no " + argv[0] + " on this machine", true);
+  argv[0] = program;
+  return AskCommand(argv, kPatience, stop);
+}
+
+[[noreturn]] void Refuse(const std::string& program, const Answer& answer) {
+  if (!answer.ended_itself) throw ClusterError(program + ": no answer", false);
+  const std::string line = LastLine(answer.err.empty() ? answer.out : answer.err);
+  // slurmctld is away, or has too many jobs, for now.
+  const bool later = line.find("contact") != std::string::npos ||
+                     line.find("timed out") != std::string::npos ||
+                     line.find("temporarily unavailable") != std::string::npos;
+  throw ClusterError(line.starts_with(program) ? Printable(line) : program + ": " + Printable(line), !later);
+}
+
+bool Never() { return false; }
+
+// One that has ended meanwhile is cancelled enough.
+void CheckCancelled(const Answer& answer) {
+  if (answer.exit_code != 0 && answer.err.find("Invalid job id") == std::string::npos)
+    Refuse("scancel", answer);
+}
+
+}  // namespace
+
+SlurmCluster::SlurmCluster(std::function<bool()> stop) : stop_(std::move(stop)) {
+  if (!ProgramInPath("sbatch").empty()) return;
+  throw InputError(
+      "--slurm: found no sbatch on this machine, allowed where Slurm's commands are (Debian: slurm-client)");
+}
+
+std::vector<std::string> SbatchArguments(const ArrayRequest& request) {
+  std::string array = "--array=0-" + std::to_string(request.jobs - 1);
+  if (request.at_once > 0) array += "%" + std::to_string(request.at_once);
+  // What a job prints goes where the script says. A job whose node is lost begins again, unless an argument that follows says otherwise.
+  std::vector<std::string> arguments = {"sbatch",
+                                        "--parsable",
+                                        "--requeue",
+                                        "--output=/dev/null",
+                                        "--job-name=" + request.name,
+                                        "--chdir=" + request.folder};
+  arguments.insert(arguments.end(), request.arguments.begin(), request.arguments.end());
+  arguments.insert(arguments.end(), {"--hold", array, request.script});
+  return arguments;
+}
+
+ClusterLimits SlurmCluster::Limits(const std::string& partition) {
+  const Answer answer = Ask({"scontrol", "show", "config"}, Never);
+  if (answer.exit_code != 0) Refuse("scontrol", answer);
+  ClusterLimits limits = ParseLimits(answer.out);
+  const Answer nodes = Ask({"sinfo", "--noheader", std::string("--format=") + kPartitionFormat}, Never);
+  if (nodes.exit_code == 0) limits.processors = ParseProcessors(nodes.out, partition);
+  return limits;
+}
+
+int64_t SlurmCluster::SubmitHeld(const ArrayRequest& request) {
+  const Answer answer = Ask(SbatchArguments(request), stop_);
+  const auto id = answer.exit_code == 0 ? ParseSubmitted(answer.out) : std::nullopt;
+  if (!id) Refuse("sbatch", answer);
+  return *id;
+}
+
+void SlurmCluster::Release(int64_t id) {
+  const Answer answer = Ask({"scontrol", "release", std::to_string(id)}, Never);
+  if (answer.exit_code != 0) Refuse("scontrol", answer);
+}
+
+std::optional<std::vector<QueuedArray>> SlurmCluster::Queue() {
+  const Answer answer =
+      Ask({"squeue", "--me", "--noheader", "--array", std::string("--format=") + kQueueFormat}, Never);
+  if (answer.exit_code != 0) return std::nullopt;
+  return ParseQueue(answer.out);
+}
+
+void SlurmCluster::Cancel(int64_t id) { CheckCancelled(Ask({"scancel", std::to_string(id)}, Never)); }
+
+void SlurmCluster::CancelPending(int64_t id) {
+  CheckCancelled(Ask({"scancel", "--state=PENDING", std::to_string(id)}, Never));
+}
+
+}  // namespace hydro::batch

@@ -1,0 +1,31 @@
+// Slurm, through its commands: sbatch, squeue, scontrol, scancel. They find the cluster as in a shell (SLURM_CONF, PATH).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "batch/slurm/cluster.h"
+
+namespace hydro::batch {
+
+class SlurmCluster : public Cluster {
+ public:
+  // `stop`: asked while sbatch runs, which may take minutes; when true that is ended. Throws InputError when this machine has no sbatch.
+  explicit SlurmCluster(std::function<bool()> stop);
+
+  ClusterLimits Limits(const std::string& partition) override;
+  int64_t SubmitHeld(const ArrayRequest& request) override;
+  void Release(int64_t id) override;
+  std::optional<std::vector<QueuedArray>> Queue() override;
+  void Cancel(int64_t id) override;
+  void CancelPending(int64_t id) override;
+
+ private:
+  const std::function<bool()> stop_;
+};
+
+// The arguments of sbatch, the program's name first.
+std::vector<std::string> SbatchArguments(const ArrayRequest& request);
+
+}  // namespace hydro::batch

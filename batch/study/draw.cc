@@ -1,0 +1,74 @@
+#include "batch/study/draw.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "base/random.h"
+#include "batch/study/key.h"
+#include "model/terms/drawn_model.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::batch {
+namespace {
+
+// What is random for a draw and a key; `attempt` numbers independent ones.
+uint64_t KeyOf(const Draw& draw, int64_t seed, int64_t number, uint64_t attempt = 0) {
+  const uint64_t numbered = Scatter(Scatter(static_cast<uint64_t>(seed)) ^ static_cast<uint64_t>(number));
+  return Scatter(Scatter(numbered ^ NameKey(draw.key)) ^ attempt);
+}
+
+double Unit(const Draw& draw, int64_t seed, int64_t number) {
+  return static_cast<double>(KeyOf(draw, seed, number) >> 11) * 0x1p-53;
+}
+
+double Normal(const Draw& draw, int64_t seed, int64_t number) {
+  // Bounds that leave little are refused when the study is read.
+  for (uint64_t attempt = 0; attempt < 10000; ++attempt) {
+    const double deviations = StandardNormal(KeyOf(draw, seed, number, attempt));
+    const double value = Rounded(draw.mean + draw.standard_deviation * deviations);
+    if (value >= draw.min && value <= draw.max) return value;
+  }
+  return std::clamp(draw.mean, draw.min, draw.max);
+}
+
+double Uncertain(const Draw& draw, int64_t seed, int64_t number) {
+  const std::string name = ParseKey(draw.key).parameter;
+  const size_t base = model::BasePlace(name);
+  model::ModelDescription model;
+  model::BaseValue(model.parameters, base) = draw.mean;
+  model.uncertainty[name] = draw.standard_deviation;
+  model::Deviate(&model, base,
+                 model::DrawnDeviation(static_cast<uint64_t>(seed), static_cast<uint64_t>(number), name));
+  return Rounded(model::BaseValue(model.parameters, base));
+}
+
+}  // namespace
+
+double Rounded(double value) { return *ParseNumber(ShortNumber(value, 12)); }
+
+Value DrawnValue(const Draw& draw, int64_t seed, int64_t number) {
+  switch (draw.distribution) {
+    case Distribution::kNormal:
+      return Normal(draw, seed, number);
+    case Distribution::kUncertainty:
+      return Uncertain(draw, seed, number);
+    case Distribution::kChoice: {
+      const double place = Unit(draw, seed, number) * static_cast<double>(draw.choices.size());
+      return draw.choices[std::min(static_cast<size_t>(place), draw.choices.size() - 1)];
+    }
+    case Distribution::kUniform:
+    case Distribution::kLogUniform:
+      break;
+  }
+  const double u = Unit(draw, seed, number);
+  if (draw.whole) {
+    const double value = std::floor(draw.min + u * (draw.max - draw.min + 1));
+    return static_cast<int64_t>(std::min(value, draw.max));
+  }
+  if (draw.distribution == Distribution::kUniform)
+    return std::clamp(Rounded(draw.min + u * (draw.max - draw.min)), draw.min, draw.max);
+  return std::clamp(Rounded(draw.min * std::exp(u * std::log(draw.max / draw.min))), draw.min, draw.max);
+}
+
+}  // namespace hydro::batch

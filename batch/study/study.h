@@ -1,0 +1,84 @@
+// A study: many cases of one thing, with other values in each. docs/studies.md explains the file.
+//
+// Case i of a study is a function of the study and i alone: nothing is kept for each case.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "batch/study/draw.h"
+#include "batch/study/value.h"
+#include "settings/toml/section_reader.h"
+#include "settings/toml/toml_document.h"
+
+namespace hydro::batch {
+
+// A key with the values that are combined with those of all other factors.
+struct GridFactor {
+  std::string key;
+  std::vector<Value> values;
+};
+
+// Rows of values, each of which is combined with the grid.
+struct RowList {
+  std::vector<std::string> keys;
+  std::vector<std::vector<Value>> rows;
+};
+
+// A command that a case runs, in the case's folder.
+struct Step {
+  std::vector<std::string> argv;      // with placeholders (run/placeholders.h)
+  std::vector<int> exit_codes = {0};  // those that are no failure
+};
+
+// A number that a case leaves: where it stands in a file of JSON or TOML.
+struct Collected {
+  std::string name;
+  std::string file;
+  std::string pointer;  // JSON pointer
+  std::string unit;     // for the page
+  bool smaller_is_worse = false;
+};
+
+struct ReportWishes {
+  std::string worst;                 // a collected number: the page shows the cases where it is worst
+  std::vector<std::string> surface;  // two varied keys and a collected number
+};
+
+struct Study {
+  std::string name;
+  int64_t seed = 1;
+  std::vector<GridFactor> grid;
+  RowList list;
+  std::vector<Draw> draws;
+  int64_t draw_count = 1;   // draws for each combination of grid and list
+  bool same_draws = false;  // the same for each combination
+  std::vector<Step> steps;
+  std::vector<Collected> collect;
+  std::vector<std::string> keep;  // files of a case that stay beside its result
+  int retries = 0;
+  double timeout_s = 0;  // of a case; 0: none
+  ReportWishes report;
+  // The texts of the configuration and the model that cases change; empty: the study has none.
+  std::string config_text, model_text;
+
+  // What the study's folder holds: name in the folder -> text. study.toml is the study with its paths as they are there.
+  std::map<std::string, std::string> files;
+
+  int64_t cases() const;
+  // All varied keys, in the order of the table's columns.
+  std::vector<std::string> Keys() const;
+  // Case `index`'s values, in the order of Keys().
+  std::vector<Value> Values(int64_t index) const;
+};
+
+// Reads and checks a study, what it names, and the first cases' configurations. Throws InputError naming file, line and key. `asked`: where
+// to note the keys asked for.
+Study ReadStudy(const std::string& file, std::vector<settings::AskedKey>* asked = nullptr);
+
+inline constexpr int64_t kMostCases = 1'000'000'000;
+
+}  // namespace hydro::batch

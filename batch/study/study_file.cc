@@ -1,0 +1,342 @@
+// Reads a study's file.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "batch/study/case_inputs.h"
+#include "batch/study/factor_reader.h"
+#include "batch/study/study.h"
+#include "settings/model_file.h"
+#include "settings/stack_config.h"
+
+namespace hydro::batch {
+namespace {
+
+using settings::SectionReader;
+using settings::TomlNode;
+using Kind = TomlNode::Kind;
+
+std::vector<std::string> Texts(SectionReader* section, const std::string& key) {
+  std::vector<std::string> texts;
+  const TomlNode* node = section->Take(key);
+  if (node == nullptr) return texts;
+  const std::string allowed = "a list of texts";
+  if (!node->is(Kind::kArray)) throw section->Error(key, node->Shown(), allowed);
+  for (const TomlNode& item : node->items) {
+    if (!item.is(Kind::kString) || item.text.empty()) throw section->Error(key, item.Shown(), allowed);
+    texts.push_back(item.text);
+  }
+  return texts;
+}
+
+// A file of a case: in its folder, and none of ours.
+std::string CaseFile(const std::string& place, const std::string& key, const std::string& name) {
+  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  if (path.empty() || path.is_absolute() || path.begin()->string() == ".." || path == "result.json")
+    throw settings::KeyError(place, key, Quoted(name), "a file in the case's folder, other than result.json");
+  return path.string();
+}
+
+TomlNode* Member(TomlNode* table, const std::string& key) {
+  if (table->Find(key) == nullptr) table->members.push_back({key, TomlNode{}});
+  return table->Find(key);
+}
+
+TomlNode AsTable(const TomlNode& item) {
+  if (!item.is(Kind::kString)) return item;
+  TomlNode table;
+  table.members.push_back({"from", item});
+  return table;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, std::vector<settings::AskedKey>* asked)
+      : file_(file),
+        root_(settings::ParseToml(ReadTextFile(file), file)),
+        top_(root_, "", asked),
+        kept_(root_) {}
+
+  Study Read() {
+    study_.name = std::filesystem::path(file_).stem().string();
+    top_.Text("name", &study_.name);
+    top_.Integer("seed", &study_.seed, 0, std::numeric_limits<int64_t>::max());
+    top_.Integer("retries", &study_.retries, 0, 100);
+    top_.Number("timeout_s", &study_.timeout_s, settings::kNotNegative);
+    for (const std::string& name : Texts(&top_, "keep"))
+      study_.keep.push_back(CaseFile(Place("keep"), "keep", name));
+    ReadInputs();
+    ReadFactors();
+    ReadSteps();
+    ReadCollect();
+    ReadReport();
+    top_.Finish();
+    study_.files["study.toml"] = settings::FormatToml(kept_);
+    if (!study_.config_text.empty()) study_.files["config.toml"] = study_.config_text;
+    if (!study_.model_text.empty()) study_.files["model.toml"] = study_.model_text;
+    CheckConfigurations();
+    return std::move(study_);
+  }
+
+ private:
+  std::string Place(const std::string& key) const { return root_.Find(key)->place; }
+
+  void ReadInputs() {
+    std::string config, model;
+    top_.Text("config", &config);
+    top_.Text("model", &model);
+    const std::vector<std::string> changes = Texts(&top_, "set");
+    if (!config.empty() && !model.empty())
+      throw top_.Error("model", "a model beside config", "one of them: a configuration names its model");
+    if (config.empty() && !changes.empty()) throw top_.Error("set", "it without config", "with config only");
+    if (!config.empty()) TakeConfig(PathBeside(file_, config), changes);
+    if (!model.empty()) {
+      const settings::ModelWithText read = settings::LoadModelWithText(PathBeside(file_, model));
+      study_.model_text = read.text;
+      scope_.model = read.description;
+      *Member(&kept_, "model") = settings::StringNode("model.toml");
+    }
+    TomlNode kept_files = settings::ArrayNode({});
+    for (const std::string& name : Texts(&top_, "files"))
+      kept_files.items.push_back(settings::StringNode(TakeFile("files", name)));
+    if (!kept_files.items.empty()) *Member(&kept_, "files") = kept_files;
+  }
+
+  // The configuration with its model and reference in the study's folder, so that this alone is enough anywhere.
+  void TakeConfig(const std::string& path, const std::vector<std::string>& changes) {
+    const settings::StackConfig config = settings::LoadStackConfig(path, changes);
+    TomlNode tree = settings::ParseToml(config.text, path);
+    *Member(Member(&tree, "model"), "file") = settings::StringNode("model.toml");
+    if (!config.reference.trajectory.file.empty()) {
+      const std::string name =
+          "inputs/" + std::filesystem::path(config.reference.trajectory.file).filename().string();
+      AddFile("config", name, ReadTextFile(PathBeside(path, config.reference.trajectory.file)));
+      *Member(Member(&tree, "reference"), "file") = settings::StringNode(name);
+    }
+    study_.config_text = settings::FormatToml(tree);
+    study_.model_text = config.model.text;
+    scope_.has_config = true;
+    scope_.model = config.model.description;
+    *Member(&kept_, "config") = settings::StringNode("config.toml");
+    kept_.Erase("set");
+  }
+
+  std::string TakeFile(const std::string& key, const std::string& name) {
+    const std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
+    AddFile(key, kept, ReadTextFile(PathBeside(file_, name)));
+    return kept;
+  }
+  void AddFile(const std::string& key, const std::string& name, std::string text) {
+    const auto [place, is_new] = study_.files.emplace(name, text);
+    if (!is_new && place->second != text)
+      throw top_.Error(key, "two files called " + Quoted(name), "different names");
+  }
+
+  void ReadFactors() {
+    study_.grid = ReadGrid(&top_, scope_);
+    SectionReader list = top_.Section("list");
+    std::string name;
+    list.Text("file", &name);
+    std::string csv;
+    if (!name.empty()) {
+      const std::string kept = TakeFile("list", name);
+      csv = study_.files[kept];
+      *Member(Member(&kept_, "list"), "file") = settings::StringNode(kept);
+      name = PathBeside(file_, name);
+    }
+    study_.list = ReadList(list, scope_, csv, name);
+    study_.draws = ReadDraws(&top_, scope_);
+    const bool counted = top_.Integer("draws", &study_.draw_count, 1, kMostCases);
+    top_.Boolean("same_draws", &study_.same_draws);
+    if (!study_.draws.empty() && !counted) throw top_.Error("draws", "nothing", "how many to draw");
+    std::set<std::string> keys;
+    for (const std::string& key : study_.Keys()) {
+      if (!keys.insert(key).second) throw top_.Error(key, "it twice", "one grid, list or draw for each key");
+    }
+    CheckCount();
+  }
+
+  void CheckCount() const {
+    double count = static_cast<double>(study_.draw_count);
+    for (const GridFactor& factor : study_.grid) count *= static_cast<double>(factor.values.size());
+    if (!study_.list.keys.empty()) count *= static_cast<double>(study_.list.rows.size());
+    if (count <= static_cast<double>(kMostCases)) return;
+    throw top_.Error("grid", ShortNumber(count) + " cases in all", "at most " + std::to_string(kMostCases));
+  }
+
+  void ReadSteps() {
+    const TomlNode* node = top_.Take("step");
+    if (node == nullptr) {
+      if (!scope_.has_config) throw top_.Error("step", "nothing", "a command, or config for hydro-sim");
+      AddStep("hydro-sim", {0});
+      AddStep("summary", {0});
+      return;
+    }
+    if (!node->is(Kind::kArray) || node->items.empty())
+      throw top_.Error("step", node->Shown(), "sections [[step]]");
+    for (const TomlNode& item : node->items) {
+      if (!item.is(Kind::kTable)) throw top_.Error("step", item.Shown(), "sections [[step]]");
+      ReadStep(top_.Item(item, "step"));
+    }
+  }
+
+  void ReadStep(SectionReader section) {
+    std::vector<int> codes = {0};
+    if (const TomlNode* node = section.Take("exit_codes")) {
+      codes.clear();
+      for (const TomlNode& item : node->items) {
+        if (!item.is(Kind::kInteger) || item.integer < 0 || item.integer > 255)
+          throw section.Error("exit_codes", item.Shown(), "a list of whole numbers from 0 to 255");
+        codes.push_back(static_cast<int>(item.integer));
+      }
+      if (codes.empty())
+        throw section.Error("exit_codes", node->Shown(), "a list of whole numbers from 0 to 255");
+    }
+    const TomlNode* run = section.Take("run");
+    section.Finish();
+    if (run == nullptr) throw section.Error("run", "nothing", "a command");
+    if (run->is(Kind::kString)) {
+      if (!AddStep(run->text, codes)) {
+        throw section.Error(
+            "run", run->Shown(),
+            "\"hydro-sim\", \"summary\", \"hydro-tune\" or a list: a program and its arguments");
+      }
+      return;
+    }
+    study_.steps.push_back({Texts(&section, "run"), codes});
+    if (study_.steps.back().argv.empty())
+      throw section.Error("run", run->Shown(), "a program and its arguments");
+  }
+
+  // A step known by name; false for another name.
+  bool AddStep(const std::string& name, const std::vector<int>& codes) {
+    if (name == "hydro-sim") {
+      study_.steps.push_back({{"hydro-sim", "config.toml", "-o", "run.lcmlog"}, codes});
+    } else if (name == "summary") {
+      study_.steps.push_back({{"hydro-log", "summary", "run.lcmlog", "--json", "summary.json"}, codes});
+    } else if (name == "hydro-tune") {
+      study_.steps.push_back({{"hydro-tune", "config.toml", "-o", "tuned.toml", "--jobs", "1"}, codes});
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  void ReadCollect() {
+    const TomlNode* node = top_.Take("collect");
+    if (node == nullptr) return;
+    if (!node->is(Kind::kTable)) throw top_.Error("collect", node->Shown(), "a section [collect]");
+    for (const auto& [name, item] : node->members) {
+      Collected collected{.name = name, .file = {}, .pointer = {}, .unit = {}};
+      std::string from = item.is(Kind::kString) ? item.text : "";
+      if (item.is(Kind::kTable)) {
+        SectionReader section = top_.Item(item, "collect." + name);
+        section.Text("from", &from);
+        section.Text("unit", &collected.unit);
+        section.Choice<bool>("worse", {{"larger", false}, {"smaller", true}}, &collected.smaller_is_worse);
+        section.Finish();
+      }
+      // As sections, the folder's study.toml keeps their order.
+      *Member(Member(&kept_, "collect"), name) = AsTable(item);
+      const size_t colon = from.find(":/");
+      if (colon == std::string::npos || colon == 0) {
+        throw settings::KeyError(item.place, "collect." + name, item.Shown(),
+                                 "\"FILE:/POINTER\" as in \"summary.json:/tracking/rms_error_rad\"");
+      }
+      collected.file = CaseFile(item.place, "collect." + name, from.substr(0, colon));
+      collected.pointer = from.substr(colon + 1);
+      study_.collect.push_back(collected);
+    }
+    for (const auto& [name, item] : node->members) {
+      const std::vector<std::string> keys = study_.Keys();
+      const bool ours = name == "case" || name == "status" || name == "attempts" || name == "reason";
+      if (!ours && std::ranges::find(keys, name) == keys.end()) continue;
+      throw settings::KeyError(item.place, "collect." + name, Quoted(name),
+                               "a name that no other column has");
+    }
+  }
+
+  void ReadReport() {
+    SectionReader section = top_.Section("report");
+    std::vector<std::string> numbers;
+    for (const Collected& each : study_.collect) numbers.push_back(each.name);
+    if (section.Text("worst", &study_.report.worst) &&
+        std::ranges::find(numbers, study_.report.worst) == numbers.end())
+      throw section.Error("worst", Quoted(study_.report.worst),
+                          "a number of [collect]: " + QuotedList(numbers));
+    study_.report.surface = Texts(&section, "surface");
+    section.Finish();
+    const std::vector<std::string>& surface = study_.report.surface;
+    if (surface.empty()) return;
+    const std::vector<std::string> keys = study_.Keys();
+    const auto is_key = [&](const std::string& key) { return std::ranges::find(keys, key) != keys.end(); };
+    if (surface.size() != 3 || !is_key(surface[0]) || !is_key(surface[1]) || surface[0] == surface[1] ||
+        std::ranges::find(numbers, surface[2]) == numbers.end()) {
+      throw section.Error("surface", std::to_string(surface.size()) + " names, " + QuotedList(surface),
+                          "two of the varied keys, " + QuotedList(keys) + ", and a number of [collect]");
+    }
+  }
+
+  // Every value of the grid and of the list's first rows gives a configuration that can run. What is drawn is not known beforehand.
+  void CheckConfigurations() const {
+    if (study_.model_text.empty()) return;
+    constexpr int64_t kMostChecked = 200;
+    const int64_t rows = study_.list.keys.empty() ? 1 : static_cast<int64_t>(study_.list.rows.size());
+    const CaseInputs inputs(study_);
+    std::set<int64_t> cases = {0};
+    for (int64_t row = 0; row < std::min(rows, kMostChecked); ++row) cases.insert(row * study_.draw_count);
+    int64_t stride = study_.draw_count * rows;
+    for (size_t i = study_.grid.size(); i-- > 0;) {
+      const auto count = static_cast<int64_t>(study_.grid[i].values.size());
+      for (int64_t k = 0; k < std::min(count, kMostChecked); ++k) cases.insert(k * stride);
+      stride *= count;
+    }
+    for (const int64_t index : cases) CheckCase(inputs, index);
+  }
+
+  void CheckCase(const CaseInputs& inputs, int64_t index) const {
+    const std::vector<Value> values = study_.Values(index);
+    try {
+      const std::string model = inputs.Model(values);
+      if (study_.config_text.empty()) {
+        settings::ParseModel(model, "model.toml");
+      } else {
+        CheckConfig(inputs.Config(values), model);
+      }
+    } catch (const std::exception& error) {
+      std::string shown;
+      const std::vector<std::string> keys = study_.Keys();
+      for (size_t i = 0; i < keys.size(); ++i)
+        shown += (i == 0 ? "" : ", ") + keys[i] + " = " + PlainText(values[i]);
+      throw InputError(file_ + ": case " + std::to_string(index) + " (" + shown + "): " + error.what());
+    }
+  }
+
+  void CheckConfig(const std::string& config, const std::string& model) const {
+    TomlNode tree = settings::ParseToml(config, "config.toml");
+    // The reference's file is not there yet: its text is known to be in order.
+    if (TomlNode* reference = tree.Find("reference"); reference != nullptr &&
+                                                      reference->Find("file") != nullptr &&
+                                                      reference->Find("file")->is(Kind::kString)) {
+      return;
+    }
+    settings::ParseStackConfig(config, "config.toml", model, "model.toml");
+  }
+
+  const std::string file_;
+  const TomlNode root_;
+  SectionReader top_;
+  TomlNode kept_;
+  Study study_;
+  KeyScope scope_;
+};
+
+}  // namespace
+
+Study ReadStudy(const std::string& file, std::vector<settings::AskedKey>* asked) {
+  return Reader(file, asked).Read();
+}
+
+}  // namespace hydro::batch

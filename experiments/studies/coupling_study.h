@@ -1,0 +1,88 @@
+// Two of the paper's actuators in one arm: what each joint's motion does to the other, and what feed-forward
+// takes away.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/torque_driven.h"
+#include "model/arm/arm_description.h"
+#include "model/terms/description.h"
+
+namespace hydro::experiments {
+
+inline constexpr int kArmJoints = 2;
+inline constexpr double kArmReach = 0.2;      // rad, each joint's motion to both sides of mid-stroke
+inline constexpr double kArmPeakSpeed = 0.7;  // rad/s
+inline constexpr double kElbow = 0.8;  // rad, between the links at mid-stroke: ASSUMED, like all of the arm
+
+// An upper arm and a forearm with a payload.
+model::ArmDescription StudiedArm();
+
+// What is added to the pressure command of eq. (17).
+enum class FeedForward {
+  kNone,
+  kOwn,      // what the joint knows of itself: its pump's inertia and friction, J_a and mgl
+  kGravity,  // and the whole arm's gravity in the place of mgl cos(alpha)
+  kWhole,    // and the whole arm's inverse dynamics
+};
+inline constexpr std::array kFeedForwards = {FeedForward::kNone, FeedForward::kOwn, FeedForward::kGravity,
+                                             FeedForward::kWhole};
+std::string Name(FeedForward feed_forward);  // "pd", "own", "gravity", "inverse_dynamics"
+
+// Which joints follow the path; the others hold the middle of it.
+using Moving = std::array<bool, kArmJoints>;
+inline constexpr std::array<Moving, 3> kCases = {{{true, false}, {false, true}, {true, true}}};
+std::string Name(const Moving& moving);  // "upper_moves", "forearm_moves", "both_move"
+
+// One joint of one run; all signals at each tick, from the start of the path.
+struct JointRun {
+  std::vector<double> angle_error;   // rad, alpha - reference
+  std::vector<double> torque;        // in-lbf, k_2 dp
+  std::vector<double> torque_error;  // in-lbf, k_2 dp less what the reference motion needs of this joint
+  std::vector<double> feedback;      // in-lbf, k_2 times what eq. (17) asks for
+  std::vector<double> coupling;      // in-lbf, k_2 dp less what the joint's own model needs for the reference
+
+  double peak_angle_error = 0;
+  double peak_torque_error = 0;
+  double rms_torque_error = 0;
+  double peak_feedback = 0;
+  double peak_coupling = 0;
+};
+
+struct ArmRun {
+  Moving moving;
+  FeedForward feed_forward = FeedForward::kNone;
+  bool coupled = true;              // false: two rigs with their own J_a and mgl
+  double highest_motor_torque = 0;  // in-lbf
+  std::array<JointRun, kArmJoints> joints;
+};
+
+// What the motion of all does to one joint along the reference, beyond what its own model knows; from the
+// textbook's two links.
+struct CouplingAlongPath {
+  std::vector<double> inertia;   // in-lbf, of accelerations
+  std::vector<double> velocity;  // centrifugal and Coriolis
+  std::vector<double> gravity;
+  double peak = 0;  // of the sum
+  double peak_inertia = 0;
+};
+
+struct CouplingStudy {
+  std::vector<double> time;       // s, from the start of the path
+  std::vector<double> reference;  // rad, of a joint that moves
+  std::array<model::Parameters, kArmJoints>
+      own;                   // Table 1 with each joint's J_a and mgl, measured at mid-stroke
+  double c1 = 0;             // psi/rad
+  std::vector<ArmRun> runs;  // cases, feed-forwards; coupled first, then uncoupled
+
+  const ArmRun& Find(const Moving& moving, FeedForward feed_forward, bool coupled) const;
+};
+
+CouplingStudy RunCouplingStudy();
+
+// For both joints, in this case.
+std::array<CouplingAlongPath, kArmJoints> ExpectedCoupling(const CouplingStudy& study, const Moving& moving);
+
+}  // namespace hydro::experiments

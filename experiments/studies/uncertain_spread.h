@@ -1,0 +1,57 @@
+// What the steps of drawn machines have in common: how they spread, on what that depends, and which are
+// worst.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "experiments/studies/uncertain_steps.h"
+#include "maths/estimate.h"
+
+namespace hydro::experiments {
+
+inline constexpr double kMuchOvershoot = 5;  // % of the step
+
+// One quantity over all machines. Infinite: so many never settle.
+struct Spread {
+  double known = 0;  // of the model as its file says
+  double lowest = 0, p5 = 0, p50 = 0, p95 = 0, p99 = 0, highest = 0;
+};
+
+// What one base parameter has to do with the spread.
+struct Influence {
+  size_t base = 0;                // in BaseParameters()
+  double standard_deviation = 0;  // relative
+  // maths::RankCorrelation and maths::MainEffect. What never settles counts as the whole run.
+  double settling_correlation = 0, settling_effect = 0;
+  double overshoot_correlation = 0, overshoot_effect = 0;
+};
+
+// The machines whose most influential parameter is nearly as the model says.
+struct Nearly {
+  size_t base = 0;
+  double within = 0;  // relative
+  int count = 0;
+  double settling_p50 = 0, settling_p95 = 0;  // s
+  double overshoot_p95 = 0;                   // %
+};
+
+struct UncertainSpread {
+  Spread settling, shortest, ratio;  // s, s, the one over the other
+  Spread overshoot;                  // %
+  Spread error;                      // rad, magnitude
+  Spread saturated;                  // s
+  maths::Estimate never,
+      overshoots;  // shares of the machines: never settle; overshoot by more than kMuchOvershoot
+  // The same of `never`, at most: the machines on which the pump's friction can hold the arm outside 2 % of
+  // the step, in closed form from T_s, k_1 and D dp of the known model.
+  double friction_holds = 0;
+  std::vector<Influence> influences;  // the largest settling_effect first; parameters that are 0 left out
+  Nearly nearly;
+  std::vector<size_t> slowest;  // numbers of the machines that settle last, those that never do first
+  std::vector<size_t> most_overshoot;
+};
+
+UncertainSpread SpreadOf(const UncertainSteps& steps);
+
+}  // namespace hydro::experiments

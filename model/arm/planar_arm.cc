@@ -1,0 +1,148 @@
+#include "model/arm/planar_arm.h"
+
+#include <cmath>
+
+#include "model/arm/factor.h"
+#include "model/arm/newton_euler.h"
+#include "model/terms/model_error.h"
+
+namespace hydro::model {
+namespace {
+
+// The last link with the payload as one body.
+void Load(ArmLink* link, double payload) {
+  const double mass = link->mass + payload;
+  const double centre = (link->mass * link->centre + payload * link->length) / mass;
+  const double from_centre = link->centre - centre;
+  const double from_tip = link->length - centre;
+  link->inertia += link->mass * from_centre * from_centre + payload * from_tip * from_tip;
+  link->mass = mass;
+  link->centre = centre;
+}
+
+}  // namespace
+
+PlanarArm::PlanarArm(const ArmDescription& description)
+    : links_(description.links), gravity_(description.gravity) {
+  description.Check();
+  if (description.payload > 0) Load(&links_.back(), description.payload);
+}
+
+ArmPose PlanarArm::PoseAt(std::span<const double> angles) const {
+  ArmPose pose;
+  double direction = 0;
+  for (int i = 0; i < links(); ++i) {
+    direction += links_[i].angle + angles[i];
+    pose.cosine[i] = std::cos(direction);
+    pose.sine[i] = std::sin(direction);
+  }
+  return pose;
+}
+
+void PlanarArm::JointTorques(const ArmPose& pose, std::span<const double> speeds,
+                             std::span<const double> accelerations, std::span<double> torques) const {
+  NewtonEuler<double>(
+      links(), links_.data(), gravity_,
+      [&](int i) {
+        return LinkMotion<double>{pose.cosine[i], pose.sine[i], speeds[i], accelerations[i]};
+      },
+      [&](int i, double torque) { torques[i] = torque; });
+}
+
+void PlanarArm::JointTorques(std::span<const double> angles, std::span<const double> speeds,
+                             std::span<const double> accelerations, std::span<double> torques) const {
+  JointTorques(PoseAt(angles), speeds, accelerations, torques);
+}
+
+void PlanarArm::JointTorqueRates(const ArmPose& pose, std::span<const double> speeds,
+                                 std::span<const double> accelerations, std::span<const double> jerks,
+                                 std::span<double> rates) const {
+  double turn = 0;
+  NewtonEuler<Moving>(
+      links(), links_.data(), gravity_,
+      [&](int i) {
+        turn += speeds[i];
+        return LinkMotion<Moving>{{pose.cosine[i], -pose.sine[i] * turn},
+                                  {pose.sine[i], pose.cosine[i] * turn},
+                                  {speeds[i], accelerations[i]},
+                                  {accelerations[i], jerks[i]}};
+      },
+      [&](int i, Moving torque) { rates[i] = torque.rate; });
+}
+
+void PlanarArm::Bias(const ArmPose& pose, std::span<const double> speeds, std::span<double> torques) const {
+  NewtonEuler<double>(
+      links(), links_.data(), gravity_,
+      [&](int i) {
+        return LinkMotion<double>{pose.cosine[i], pose.sine[i], speeds[i], 0};
+      },
+      [&](int i, double torque) { torques[i] = torque; });
+}
+
+void PlanarArm::MassMatrix(const ArmPose& pose, std::span<double> matrix) const {
+  const int n = links();
+  // Links j to n - 1 as one rigid body: its mass, first moment and inertia, about joint j.
+  double mass = 0;
+  Planar<double> first{0, 0};
+  double inertia = 0;
+  for (int j = n - 1; j >= 0; --j) {
+    const ArmLink& l = links_[j];
+    const double c = pose.cosine[j];
+    const double s = pose.sine[j];
+    // The body from joint j + 1 on, seen from joint j.
+    inertia += mass * l.length * l.length + 2 * l.length * (c * first.x + s * first.y) + l.inertia +
+               l.mass * l.centre * l.centre;
+    first.x += (mass * l.length + l.mass * l.centre) * c;
+    first.y += (mass * l.length + l.mass * l.centre) * s;
+    mass += l.mass;
+    // Turned about joint j, it asks for this torque at joint j and at those before.
+    double torque = inertia;
+    matrix[j + j * n] = torque;
+    for (int i = j - 1; i >= 0; --i) {
+      torque += links_[i].length * (pose.cosine[i] * first.x + pose.sine[i] * first.y);
+      matrix[i + j * n] = matrix[j + i * n] = torque;
+    }
+  }
+}
+
+void PlanarArm::Accelerations(std::span<const double> angles, std::span<const double> speeds,
+                              std::span<const double> torques, std::span<double> accelerations) const {
+  const int n = links();
+  const ArmPose pose = PoseAt(angles);
+  double matrix[kMostLinks * kMostLinks];
+  MassMatrix(pose, matrix);
+  Bias(pose, speeds, accelerations);
+  for (int i = 0; i < n; ++i) accelerations[i] = torques[i] - accelerations[i];
+  if (!Factor(n, matrix)) throw ModelError("the arm's mass matrix is not positive definite");
+  SolveFactored(n, matrix, accelerations);
+}
+
+double PlanarArm::KineticEnergy(std::span<const double> angles, std::span<const double> speeds) const {
+  const ArmPose pose = PoseAt(angles);
+  double energy = 0;
+  double turn = 0;
+  Planar<double> joint{0, 0};  // speed
+  for (int i = 0; i < links(); ++i) {
+    const ArmLink& l = links_[i];
+    turn += speeds[i];
+    const Planar<double> along = {-turn * pose.sine[i], turn * pose.cosine[i]};
+    const double x = joint.x + l.centre * along.x;
+    const double y = joint.y + l.centre * along.y;
+    energy += 0.5 * (l.mass * (x * x + y * y) + l.inertia * turn * turn);
+    joint = {joint.x + l.length * along.x, joint.y + l.length * along.y};
+  }
+  return energy;
+}
+
+double PlanarArm::PotentialEnergy(std::span<const double> angles) const {
+  const ArmPose pose = PoseAt(angles);
+  double energy = 0;
+  double height = 0;  // of the joint
+  for (int i = 0; i < links(); ++i) {
+    energy += links_[i].mass * gravity_ * (height + links_[i].centre * pose.sine[i]);
+    height += links_[i].length * pose.sine[i];
+  }
+  return energy;
+}
+
+}  // namespace hydro::model

@@ -1,0 +1,51 @@
+#include "batch/study/case_inputs.h"
+
+#include "settings/model_file.h"
+#include "settings/stack_config.h"
+#include "tests/batch/study_folder.h"
+
+namespace hydro::batch {
+namespace {
+
+// Tests that keys of the configuration, of the model's parameters and of effects reach a case's files, and that the rest stays.
+TEST(CaseInputsTest, SetsKeysOfConfigurationModelAndEffects) {
+  const StudyFolder folder;
+  const Study study = folder.Read("config = \"" + std::string(HYDRO_CONFIG) + R"(/demo.toml"
+[list]
+keys = ["position.c1", "time.mode", "model:b", "effect:pump.stribeck.static_excess", "effect:pump.stribeck.speed"]
+rows = [[5000, "lockstep", 0.02, 0.5, 3.0]]
+)");
+  const CaseInputs inputs(study);
+  const std::vector<Value> values = study.Values(0);
+  const settings::StackConfig config =
+      settings::ParseStackConfig(inputs.Config(values), "config.toml", inputs.Model(values), "model.toml");
+  EXPECT_EQ(config.position.c1, 5000);
+  EXPECT_EQ(config.position.c2, 1200);
+  EXPECT_EQ(config.time.mode, settings::TimeMode::kLockstep);
+  EXPECT_EQ(config.model.description.parameters.b, 0.02);
+  EXPECT_EQ(config.model.description.parameters.T_s, 4.0);
+  ASSERT_EQ(config.model.description.effects.size(), 1u);
+  EXPECT_EQ(config.model.description.effects[0].id, "pump.stribeck");
+  EXPECT_EQ(config.model.description.effects[0].parameters.at("speed"), 3);
+}
+
+// Tests that the same case has the same files, byte by byte, when the study is read from its folder again.
+TEST(CaseInputsTest, SurvivesTheFolder) {
+  const StudyFolder folder;
+  const Study study = folder.Read(
+      "config = \"" + std::string(HYDRO_CONFIG) +
+      "/demo.toml\"\n[[grid]]\nkey = \"model:b\"\nvalues = [0.01, 0.02]\n"
+      "[collect]\na = { from = \"x.json:/a\" }\nb = \"x.json:/b\"\nc = { from = \"x.json:/c\" }\n");
+  for (const auto& [name, text] : study.files) folder.Write(name, text);
+  const Study again = ReadStudy(folder / "study.toml");
+  EXPECT_EQ(again.files, study.files);
+  for (const Study& each : {study, again}) {
+    ASSERT_EQ(each.collect.size(), 3u);
+    EXPECT_EQ(each.collect[0].name + each.collect[1].name + each.collect[2].name, "abc");
+  }
+  EXPECT_EQ(CaseInputs(again).Config(again.Values(1)), CaseInputs(study).Config(study.Values(1)));
+  EXPECT_EQ(CaseInputs(again).Model(again.Values(1)), CaseInputs(study).Model(study.Values(1)));
+}
+
+}  // namespace
+}  // namespace hydro::batch

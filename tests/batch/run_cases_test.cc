@@ -1,0 +1,264 @@
+#include "batch/run/run_cases.h"
+
+#include <thread>
+
+#include "batch/finish.h"
+#include "batch/prepare.h"
+#include "batch/run/case_command.h"
+#include "batch/run/child.h"
+#include "batch/status.h"
+#include "batch/store/case_store.h"
+#include "batch/store/small_file.h"
+#include "tests/batch/study_folder.h"
+
+namespace hydro::batch {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+RunRequest All(const Study& study, const std::string& folder, int jobs = 2) {
+  return {.folder = folder, .first = 0, .end = study.cases(), .jobs = jobs};
+}
+
+std::string TableOf(const std::string& folder) { return ReadSmallFile(folder + "/table.csv").value_or(""); }
+
+// Tests a study from its file to its table.
+TEST(RunCasesTest, RunsAStudy) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kShellStudy);
+  PrepareStudy(study, folder / "out");
+  const RunOutcome outcome = RunCases(study, All(study, folder / "out"));
+  EXPECT_EQ(outcome.progress.ran, 6);
+  const TableCounts counts = FinishStudy(folder / "out", 2);
+  EXPECT_EQ(counts.done, 6);
+  EXPECT_EQ(TableOf(folder / "out"),
+            "case,status,attempts,k,l,k_again,l_again,reason\n"
+            "0,done,1,1,10.5,1,10.5,\n"
+            "1,done,1,1,20.5,1,20.5,\n"
+            "2,done,1,2,10.5,2,10.5,\n"
+            "3,done,1,2,20.5,2,20.5,\n"
+            "4,done,1,3,10.5,3,10.5,\n"
+            "5,done,1,3,20.5,3,20.5,\n");
+  EXPECT_EQ(ReadSmallFile(folder / "out/cases/000/000/003/result.json"),
+            "{\n  \"case\": 3,\n  \"status\": \"done\",\n  \"attempts\": 1,\n  \"values\": {\"k\": 2, \"l\": "
+            "20.5},\n"
+            "  \"numbers\": {\"k_again\": 2, \"l_again\": 20.5}\n}\n");
+}
+
+// Tests that ranges, in any order and overlapping, give the same files as all at once.
+TEST(RunCasesTest, RangesGiveTheSame) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kShellStudy);
+  for (const char* name : {"all", "parts"}) PrepareStudy(study, folder / name);
+  RunCases(study, All(study, folder / "all", 1));
+  int64_t ran = 0;
+  for (const auto& [first, end] : {std::pair(4, 6), std::pair(1, 5), std::pair(0, 6)}) {
+    ran += RunCases(study, {.folder = folder / "parts", .first = first, .end = end, .jobs = 3}).progress.ran;
+  }
+  EXPECT_EQ(ran, 6);
+  FinishStudy(folder / "all", 1);
+  FinishStudy(folder / "parts", 3);
+  for (const char* file :
+       {"table.csv", "table.json", "cases/000/000/000/result.json", "cases/000/000/005/result.json"}) {
+    EXPECT_EQ(ReadSmallFile(folder / ("all/" + std::string(file))),
+              ReadSmallFile(folder / ("parts/" + std::string(file))))
+        << file;
+  }
+}
+
+// Tests that a stopped study tells of missing cases, goes on, and repeats nothing.
+TEST(RunCasesTest, GoesOnWhereItStopped) {
+  const StudyFolder folder;
+  // Each case adds a line to a file outside.
+  std::string text = kShellStudy;
+  text.replace(text.find("printf"), 0, "echo {case} >> " + (folder / "ran") + "; ");
+  const Study study = folder.Read(text);
+  PrepareStudy(study, folder / "out");
+  RunRequest request = All(study, folder / "out", 1);
+  int asked = 0;
+  request.stop = [&] { return fs::exists(folder / "out/cases/000/000/002") || ++asked > 1000; };
+  EXPECT_TRUE(RunCases(study, request).stopped || fs::exists(folder / "out/cases/000/000/005"));
+  const TableCounts part = FinishStudy(folder / "out", 1);
+  EXPECT_EQ(part.done + part.missing, 6);
+  EXPECT_GE(part.missing, 1);
+  EXPECT_THAT(TableOf(folder / "out"), HasSubstr("5,missing,0,3,20.5,,,\n"));
+  RunCases(study, All(study, folder / "out"));
+  EXPECT_EQ(FinishStudy(folder / "out", 1).done, 6);
+  // What was running when it stopped may have run twice; what was stored has not.
+  const std::string ran = ReadSmallFile(folder / "ran").value_or("");
+  for (const char* line : {"0\n", "1\n", "2\n"}) EXPECT_EQ(ran.find(line), ran.rfind(line)) << ran;
+}
+
+// Tests that a failed case is retried, kept with its reason, and run again when asked.
+TEST(RunCasesTest, KeepsFailedCases) {
+  const StudyFolder folder;
+  std::string text = "retries = 2\n" + kShellStudy;
+  text.replace(text.find("printf"), 0,
+               "echo {case} >> " + (folder / "ran") + "; [ {value:k} != 2 ] || [ -e " + (folder / "mended") +
+                   " ] || { echo 'no twos here' >&2; exit 7; }; ");
+  const Study study = folder.Read(text);
+  PrepareStudy(study, folder / "out");
+  EXPECT_EQ(RunCases(study, All(study, folder / "out")).progress.failed, 2);
+  const TableCounts counts = FinishStudy(folder / "out", 1);
+  EXPECT_EQ(counts.failed, 2);
+  EXPECT_EQ(counts.first_failure, "case 2: step 1: sh ended with exit code 7: no twos here");
+  EXPECT_THAT(TableOf(folder / "out"),
+              HasSubstr("2,failed,3,2,10.5,,,step 1: sh ended with exit code 7: no twos here\n"));
+  EXPECT_EQ(RunCases(study, All(study, folder / "out")).progress.ran, 0);
+  folder.Write("mended", "");
+  RunRequest again = All(study, folder / "out");
+  again.failed_again = true;
+  EXPECT_EQ(RunCases(study, again).progress.ran, 2);
+  EXPECT_EQ(FinishStudy(folder / "out", 1).done, 6);
+  EXPECT_FALSE(fs::exists(folder / "out/cases/000/000/002.failed"));
+  EXPECT_THAT(TableOf(folder / "out"), HasSubstr("2,done,1,2,10.5,2,10.5,\n"));
+}
+
+std::string ReasonOf(const StudyFolder& folder, const std::string& study_text) {
+  const Study study = folder.Read(study_text);
+  fs::remove_all(folder / "out");
+  PrepareStudy(study, folder / "out");
+  RunCases(study, All(study, folder / "out"));
+  return FinishStudy(folder / "out", 1).first_failure;
+}
+
+// Tests the reason of each way to fail; it names no path of this machine.
+TEST(RunCasesTest, GivesReasons) {
+  const StudyFolder folder;
+  EXPECT_EQ(ReasonOf(folder, "timeout_s = 0.05\n[[step]]\nrun = [\"sleep\", \"30\"]\n"),
+            "case 0: step 1: sleep: not done after 0.05 s");
+  EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"sh\", \"-c\", \"kill -9 $$\"]\n"),
+            "case 0: step 1: sh was killed by signal 9 (SIGKILL)");
+  EXPECT_THAT(ReasonOf(folder, "[[step]]\nrun = [\"inputs/none\"]\n"),
+              HasSubstr("case 0: step 1: inputs/none: cannot be started"));
+  EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"true\"]\n[collect]\nx = \"out.json:/x\"\n"),
+            "case 0: out.json: not written, allowed a file that the study collects from");
+  EXPECT_EQ(
+      ReasonOf(folder,
+               "[[step]]\nrun = [\"sh\", \"-c\", \"echo no > out.json\"]\n[collect]\nx = \"out.json:/x\"\n"),
+      "case 0: out.json: found no JSON in it, allowed JSON, or TOML in a file .toml");
+  EXPECT_EQ(
+      ReasonOf(folder,
+               "[[step]]\nrun = [\"sh\", \"-c\", \"echo [1] > out.json\"]\n[collect]\nx = \"out.json:/x\"\n"),
+      "case 0: out.json:/x: found nothing there, allowed a place in the file");
+  EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"sh\", \"-c\", \"echo {folder} >&2; exit 1\"]\n"),
+            "case 0: step 1: sh ended with exit code 1: .");
+  EXPECT_EQ(ReasonOf(folder, "keep = [\"run.log\"]\n[[step]]\nrun = [\"true\"]\n"),
+            "case 0: run.log: not written, allowed a file that the study keeps");
+  EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"sh\", \"-c\", \"exit 3\"]\nexit_codes = [0, 3]\n"), "");
+}
+
+// Tests that numbers of every kind are collected, from JSON and from TOML.
+TEST(RunCasesTest, CollectsFromJsonAndToml) {
+  const StudyFolder folder;
+  const std::string text = R"(
+[[step]]
+run = ["sh", "-c",  '''echo '{"a": [1.25, null, true], "s": "tied, or so"}' > out.json; printf '[gains]\nc1 = 7\n' > gains.toml''']
+[collect]
+number = "out.json:/a/0"
+nothing = "out.json:/a/1"
+flag = "out.json:/a/2"
+text = "out.json:/s"
+gain = "gains.toml:/gains/c1"
+code = "exit_codes.json:/1"
+[[step]]
+run = ["sh", "-c", "exit 4"]
+exit_codes = [0, 4]
+)";
+  EXPECT_EQ(ReasonOf(folder, text), "");
+  EXPECT_EQ(TableOf(folder / "out"),
+            "case,status,attempts,number,nothing,flag,text,gain,code,reason\n0,done,1,1.25,,true,\"tied, or "
+            "so\",7,4,\n");
+}
+
+// Tests that a result that a power cut left half written is run again, and never silently missing.
+TEST(RunCasesTest, RunsTornResultsAgain) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kShellStudy);
+  PrepareStudy(study, folder / "out");
+  RunCases(study, All(study, folder / "out"));
+  std::ofstream(folder / "out/cases/000/000/001/result.json") << "";
+  EXPECT_EQ(FinishStudy(folder / "out", 1).missing, 1);
+  EXPECT_EQ(RunCases(study, All(study, folder / "out")).progress.ran, 1);
+  EXPECT_EQ(FinishStudy(folder / "out", 1).done, 6);
+}
+
+// Tests that the folder of another study is refused, and one with foreign files.
+TEST(PrepareTest, RefusesOtherFolders) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kShellStudy);
+  PrepareStudy(study, folder / "out");
+  PrepareStudy(study, folder / "out");
+  EXPECT_THROW(PrepareStudy(folder.Read("seed = 5\n" + kShellStudy), folder / "out"), InputError);
+  fs::create_directories(folder / "other");
+  folder.Write("other/thesis.tex", "mine");
+  EXPECT_THROW(PrepareStudy(study, folder / "other"), InputError);
+  EXPECT_THROW(OpenStudy(folder / "other"), InputError);
+  EXPECT_FALSE(fs::exists(folder / "other/study.toml"));
+}
+
+// Tests that the report's wishes may change, and hold from then on.
+TEST(PrepareTest, TakesOtherWishesOfTheReport) {
+  const StudyFolder folder;
+  PrepareStudy(folder.Read(kShellStudy), folder / "out");
+  PrepareStudy(folder.Read(kShellStudy + "[report]\nworst = \"l_again\"\n"), folder / "out");
+  EXPECT_EQ(OpenStudy(folder / "out").report.worst, "l_again");
+}
+
+// Tests that the status is told from the folder alone.
+TEST(StatusTest, ReadsTheFolder) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kShellStudy);
+  PrepareStudy(study, folder / "out");
+  EXPECT_THAT(StatusText(ReadStatus(folder / "out")),
+              HasSubstr("shell: 6 cases: 0 done, 0 failed, 6 missing (0 %)\nnobody runs it"));
+  RunCases(study, {.folder = folder / "out", .first = 0, .end = 3, .jobs = 1});
+  const StudyStatus status = ReadStatus(folder / "out");
+  EXPECT_EQ(status.done, 3);
+  EXPECT_EQ(status.active, 1);
+  EXPECT_GT(status.rate, 0);
+  EXPECT_THAT(StatusText(status), HasSubstr("shell: 6 cases: 3 done, 0 failed, 3 missing (50 %)"));
+  EXPECT_EQ(DurationText(59.4), "59 s");
+  EXPECT_EQ(DurationText(3725), "1 h 2 min");
+  EXPECT_EQ(DurationText(200000), "2 days 7 h");
+}
+
+// Tests placeholders, that braces of a command's own stay, and that an unknown name is refused.
+TEST(CaseCommandTest, FillsPlaceholders) {
+  const Step step{.argv = {"x{case}", "{value:position.c1}", "{folder}/{inputs}", "{\"a\": {value:k}}",
+                           "${HOME} {}", "{ case }"}};
+  EXPECT_THAT(CaseCommand(step, {"position.c1", "k"}, {2.5, int64_t{7}}, {3, "/f", "/i"}),
+              testing::ElementsAre("x3", "2.5", "/f//i", "{\"a\": 7}", "${HOME} {}", "{ case }"));
+  EXPECT_THROW(CaseCommand({.argv = {"{value:j}"}}, {"k"}, {1.0}, {}), InputError);
+  EXPECT_THROW(ProgramPath("hydro-nonsense"), InputError);
+}
+
+bool Runs(const std::string& pid) {
+  const std::string stat = ReadSmallFile("/proc/" + pid + "/stat").value_or("");
+  return !stat.empty() && stat.find(") Z ") == std::string::npos;
+}
+
+// Tests that a bell that rings ends a running child with all its group.
+TEST(ChildTest, EndsWithTheBell) {
+  const StudyFolder folder;
+  const StopBell bell;
+  std::string pid;
+  std::thread ringer([&] {
+    while (pid.empty()) pid = ReadSmallFile(folder / "pid").value_or("");
+    EXPECT_TRUE(Runs(pid));
+    bell.Ring();
+  });
+  const ChildResult result =
+      RunChild({.argv = {ProgramPath("sh"), "-c", "sleep 1000 & printf %s $! > new; mv new pid; wait"},
+                .folder = folder / "",
+                .out = folder / "o",
+                .err = folder / "e"},
+               bell);
+  ringer.join();
+  EXPECT_EQ(result.end, ChildEnd::kStopped);
+  while (Runs(pid)) std::this_thread::yield();
+}
+
+}  // namespace
+}  // namespace hydro::batch

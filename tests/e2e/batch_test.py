@@ -1,0 +1,314 @@
+"""hydro-batch: a real study of hydro-sim is the same to the byte whatever runs it, how often it is killed, and on however small a disk."""
+
+import csv
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import outcome
+import stack
+
+STUDY = """
+name = "Steps of uncertain actuators"
+seed = 3
+config = "{config}"
+set = ["time.mode=lockstep", "time.duration_s=0.4", "reference.steps=[[0.05, 0.1]]"]
+draws = 4
+[[grid]]
+key = "position.c2"
+values = [600.0, 1200.0, 2400.0]
+[[grid]]
+key = "model:b"
+from = 0.01
+to = 0.02
+steps = 2
+[[draw]]
+key = "model:*"
+distribution = "uncertainty"
+[[draw]]
+key = "noise.seed"
+distribution = "uniform"
+min = 1
+max = 1000
+whole = true
+[collect]
+rms_error_rad = {{ from = "summary.json:/tracking/rms_error_rad", unit = "rad" }}
+final_error_rad = "summary.json:/tracking/final_error_rad"
+"""
+STUDY = STUDY.replace('"model:b"\n', '"position.c1"\n').replace("0.01", "3000").replace("0.02", "6000")
+CASES = 24
+
+# Runs SHELL in a small file system of its own at small/, where that is allowed.
+SMALL_DISK = """
+mount -t tmpfs -o size={size} tmpfs {folder}/small || exit 77
+{shell}
+"""
+
+
+def results(folder):
+    """Every file that must not depend on how the study was run: name -> bytes."""
+    found = {}
+    for name in ("table.csv", "table.json"):
+        with open(os.path.join(folder, name), "rb") as file:
+            found[name] = file.read()
+    for path, _, files in os.walk(os.path.join(folder, "cases")):
+        for name in files:
+            with open(os.path.join(path, name), "rb") as file:
+                found[os.path.relpath(os.path.join(path, name), folder)] = file.read()
+    return found
+
+
+def whole_cases(folder):
+    """Which cases are there: path -> which file it is, so that one that was written again is seen."""
+    found = {}
+    for path, _, files in os.walk(os.path.join(folder, "cases")):
+        if "result.json" in files:
+            status = os.stat(os.path.join(path, "result.json"))
+            found[path] = (status.st_ino, status.st_mtime_ns)
+    return found
+
+
+class BatchTest(stack.TestCase):
+    def study(self, text=STUDY, name="study.toml"):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text.format(config=stack.config("demo.toml")) if text is STUDY else text)
+        return self.path(name)
+
+    def batch(self, *arguments, expect=0, timeout=120):
+        return self.run_program("hydro-batch", *arguments, expect=expect, timeout=timeout)
+
+    def one_line(self, done):
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.report())
+        return done.stderr
+
+    def reference(self):
+        """The study's results as one worker makes them, never interrupted."""
+        self.batch(self.study(), "--out", self.path("reference"), "--jobs", 1)
+        return results(self.path("reference"))
+
+    # Tests that one worker, three, and ranges of cases in another order with overlaps give the same bytes, and that the numbers are those of
+    # hydro-sim and hydro-log by themselves.
+    def test_same_whatever_runs_it(self):
+        study, reference = self.study(), self.reference()
+        self.assertEqual(len(reference), CASES + 2)
+        self.batch(study, "--out", self.path("three"), "--jobs", 3)
+        self.assertEqual(results(self.path("three")), reference)
+
+        self.batch(study, "--out", self.path("ranges"), "--jobs", 1)
+        shutil.rmtree(self.path("ranges/cases"))
+        workers = [self.start("hydro-batch", "--worker", self.path("ranges"), "--cases", cases, "--jobs", 2)
+                   for cases in ("16:24", "5:20", "0:10")]
+        for worker in workers:
+            self.assertEqual(worker.wait(120), 0, worker.report())
+        self.batch("--finish", self.path("ranges"))
+        self.assertEqual(results(self.path("ranges")), reference)
+
+        with open(self.path("reference/table.csv"), encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["case"]) for row in rows], list(range(CASES)))
+        self.assertEqual({row["status"] for row in rows}, {"done"})
+        self.assertEqual(len({row["rms_error_rad"] for row in rows}), CASES)
+        with open(self.path("reference/table.json"), encoding="utf-8") as file:
+            table = json.load(file)
+        self.assertEqual(len(table["rows"]), CASES)
+        self.check_by_hand(table["rows"][17])
+
+    def check_by_hand(self, row):
+        """The case's number, from programs run by hand on the study's files with the row's values."""
+        with open(self.path("reference/model.toml"), encoding="utf-8") as file:
+            model = file.read()
+        for key, value in row["values"].items():
+            if key.startswith("model:"):
+                name = key.split(":")[1]
+                model = re.sub(rf"(?m)^(r|d) *=.*\n", "", model) if name == "c" else model
+                model, count = re.subn(rf"(?m)^{name} *=.*$", f"{name} = {value}", model)
+                if count == 0:
+                    model = model.replace("[parameters]\n", f"[parameters]\n{name} = {value}\n")
+        with open(self.path("model.toml"), "w", encoding="utf-8") as file:
+            file.write(model)
+        changes = [f"{key}={value}" for key, value in row["values"].items() if not key.startswith("model:")]
+        options = [word for change in [*changes, f"model.file={self.path('model.toml')}"] for word in ("--set", change)]
+        self.run_program("hydro-sim", self.path("reference/config.toml"), *options, "-o", self.path("hand.lcmlog"))
+        self.run_program("hydro-log", "summary", self.path("hand.lcmlog"), "--json", self.path("hand.json"))
+        with open(self.path("hand.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["tracking"]["rms_error_rad"], row["numbers"]["rms_error_rad"])
+
+    # Tests that a driver killed at any point leaves whole cases, that the next goes on, repeats none of them, and that the results are those
+    # of a study that was never killed.
+    def test_killed_driver_goes_on(self):
+        study, reference = self.study(), self.reference()
+        dice, kept, kills = random.Random(5), {}, 0
+        while len(kept) < CASES and kills < 200:
+            driver = self.start("hydro-batch", study, "--out", self.path("out"), "--jobs", 2)
+            deadline, more = time.monotonic() + dice.uniform(0, 0.25), dice.randrange(1, 4)
+            self.wait_until(lambda: not driver.running or time.monotonic() > deadline or
+                            len(whole_cases(self.path("out"))) >= len(kept) + more, "a moment to kill")
+            driver.kill()
+            driver.wait()
+            kills += 1
+            now = whole_cases(self.path("out"))
+            self.assertEqual({path: now.get(path) for path in kept}, kept)
+            for path in now:
+                with open(os.path.join(path, "result.json"), "rb") as file:
+                    self.assertEqual(file.read(), reference[os.path.relpath(os.path.join(path, "result.json"), self.path("out"))])
+            kept = now
+        print(f"killed {kills} times", flush=True)
+        self.batch(study, "--out", self.path("out"))
+        self.assertEqual(whole_cases(self.path("out")), kept | whole_cases(self.path("out")))
+        self.assertEqual(results(self.path("out")), reference)
+        self.assertEqual(os.listdir(self.path("out/staging")), [])
+        self.assertEqual(sorted(os.listdir(self.path("out"))),
+                         sorted(["cases", "config.toml", "inputs", "model.toml", "staging", "study.toml", "times", *self.report_files()]))
+
+    def report_files(self):
+        return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]
+
+    # Tests that a worker killed in mid-range loses nothing: another does what is left, and does no whole case again.
+    def test_killed_worker(self):
+        study, reference = self.study(), self.reference()
+        self.batch(study, "--out", self.path("out"), "--jobs", 1)
+        shutil.rmtree(self.path("out/cases"))
+        worker = self.start("hydro-batch", "--worker", self.path("out"), "--cases", f"0:{CASES}", "--jobs", 1)
+        self.wait_until(lambda: len(whole_cases(self.path("out"))) >= 3, "three cases")
+        worker.kill()
+        worker.wait()
+        kept = whole_cases(self.path("out"))
+        self.assertLess(len(kept), CASES)
+        self.batch("--worker", self.path("out"), "--cases", f"0:{CASES}", "--jobs", 2)
+        now = whole_cases(self.path("out"))
+        self.assertEqual({path: now[path] for path in kept}, kept)
+        self.batch("--finish", self.path("out"))
+        self.assertEqual(results(self.path("out")), reference)
+
+    # Tests that SIGINT and SIGTERM end a study cleanly: one line, exit code 1, no process left, and the rest runs afterwards.
+    def test_stop_signals(self):
+        study = self.study('draws = 6\n[[step]]\nrun = ["sh", "-c", "echo $$ > pid; exec sleep 0.3"]\n')
+        for number in (signal.SIGINT, signal.SIGTERM):
+            shutil.rmtree(self.path("out"), ignore_errors=True)
+            driver = self.start("hydro-batch", study, "--out", self.path("out"), "--jobs", 2)
+            self.wait_until(lambda: len(whole_cases(self.path("out"))) >= 2, "two cases")
+            with open(f"/proc/{driver.pid}/task/{driver.pid}/children", encoding="utf-8") as file:
+                self.assertEqual(file.read(), "")  # its threads have them
+            driver.send(number)
+            self.assertEqual(driver.wait(), 1)
+            self.assertRegex(self.one_line(driver), "^hydro-batch: stopped; the same command goes on")
+            self.assertFalse(os.path.exists(self.path("out/lock")))
+            self.assertRegex(self.batch("--status", self.path("out")).stdout, r"6 cases: [2-5] done, 0 failed, [1-4] missing")
+            self.batch(study, "--out", self.path("out"))
+
+    # Tests that a second driver is refused with the first's name, that --status tells of it meanwhile, and that after its end, however
+    # sudden, the folder is free.
+    def test_one_driver_at_a_time(self):
+        study = self.study('draws = 2\n[[step]]\nrun = ["sleep", "60"]\n')
+        driver = self.start("hydro-batch", study, "--out", self.path("out"))
+        self.wait_until(lambda: os.path.exists(self.path("out/lock")), "the lock")
+        self.wait_until(lambda: "driven by" in self.batch("--status", self.path("out")).stdout, "a driver in the status")
+        second = self.batch(study, "--out", self.path("out"), expect=2)
+        self.assertRegex(self.one_line(second), rf"found it in use by hydro-batch, process {driver.pid} on ")
+        driver.kill()
+        driver.wait()
+        self.assertRegex(self.batch("--status", self.path("out")).stdout, "nobody runs it")
+        third = self.start("hydro-batch", study, "--out", self.path("out"))
+        self.wait_until(lambda: str(third.pid) in self.batch("--status", self.path("out")).stdout, "the third")
+
+    # Tests that failed cases are retried, named with their reason, in the table and the exit code, kept on going on, and run again when asked.
+    def test_failed_cases(self):
+        study = self.study(f"""retries = 2
+[[grid]]
+key = "k"
+values = [1, 2, 3]
+[[step]]
+run = ["sh", "-c", "echo {{case}} >> {self.folder}/ran; [ {{value:k}} != 2 ] || [ -e {self.folder}/mended ] || {{ echo no twos >&2; exit 9; }}"]
+""".replace("{{", "{").replace("}}", "}"))
+        done = self.batch(study, "--out", self.path("out"), "--jobs", 1, expect=1)
+        self.assertEqual(self.one_line(done), "hydro-batch: 1 cases failed, the first: case 1: step 1: sh ended with exit code 9: no twos\n")
+        self.batch(study, "--out", self.path("out"), expect=1)
+        with open(self.path("ran"), encoding="utf-8") as file:
+            self.assertEqual(file.read().split(), ["0", "1", "1", "1", "2"])
+        with open(self.path("out/table.csv"), encoding="utf-8") as file:
+            self.assertIn("\n1,failed,3,2,step 1: sh ended with exit code 9: no twos\n", file.read())
+        with open(self.path("mended"), "w", encoding="utf-8"):
+            pass
+        self.batch(study, "--out", self.path("out"), "--again")
+        with open(self.path("out/table.csv"), encoding="utf-8") as file:
+            self.assertIn("\n1,done,1,2,\n", file.read())
+
+    def on_small_disk(self, size, shell):
+        """Its exit code and output."""
+        os.makedirs(self.path("small"), exist_ok=True)
+        done = subprocess.run(["unshare", "--mount", "sh", "-c", SMALL_DISK.format(size=size, folder=self.folder, shell=shell)],
+                              cwd=self.folder, capture_output=True, text=True, timeout=120, check=False)
+        if done.returncode in (77, 1) and ("unshare" in done.stderr or "mount" in done.stderr):
+            raise unittest.SkipTest("a small file system cannot be mounted here: " + done.stderr.strip())
+        return done
+
+    # Tests that a full disk below the study ends it on one line, with every case whole or absent, and that it goes on with more room.
+    def test_full_disk(self):
+        reference = self.reference()
+        batch = stack.program("hydro-batch")
+        done = self.on_small_disk("90k", f"""
+{batch} study.toml --out small/out --jobs 2 2> first.err; echo first $?
+find small/out -name result.json | wc -l
+find small/out -name result.json -size 0 | wc -l
+mount -o remount,size=50m {self.folder}/small
+find small/out -name result.json -printf '%p %i %T@\\n' | sort > before
+{batch} study.toml --out small/out --jobs 2; echo second $?
+find small/out -name result.json -printf '%p %i %T@\\n' | sort > after
+cp -r small/out out
+""")
+        self.assertRegex(done.stdout, r"(?s)^first 1\n(\d+)\n0\n.*second 0\n$", done.stderr)
+        self.assertLess(int(done.stdout.split()[2]), CASES)
+        with open(self.path("first.err"), encoding="utf-8") as file:
+            self.assertRegex(file.read(), r"\Ahydro-batch: .*: cannot be written: No space left on device\n\Z")
+        with open(self.path("before"), encoding="utf-8") as before, open(self.path("after"), encoding="utf-8") as after:
+            self.assertLessEqual(set(before), set(after))
+        self.assertEqual(results(self.path("out")), reference)
+
+    # Tests that a full disk where cases run ends the study, too: no case has failed because of it.
+    def test_full_scratch(self):
+        reference = self.reference()
+        batch = stack.program("hydro-batch")
+        done = self.on_small_disk("150k", f"""
+TMPDIR={self.folder}/small {batch} study.toml --out out --jobs 2 2> first.err; echo first $?
+find out/cases -name '*.failed' | wc -l
+{batch} study.toml --out out --jobs 2; echo second $?
+""")
+        self.assertRegex(done.stdout, r"(?s)^first 1\n0\n.*second 0\n$", done.stderr)
+        with open(self.path("first.err"), encoding="utf-8") as file:
+            self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*\n\Z")
+        self.assertEqual(results(self.path("out")), reference)
+
+    # Tests that wrong input ends with exit code 2 and one line that says what is wrong, and that nothing is made.
+    def test_wrong_input(self):
+        study = self.study()
+        self.batch(study, "--out", self.path("out"), "--jobs", 2)
+        other = self.study(STUDY.format(config=stack.config("demo.toml")).replace("2400.0", "2500.0"), "other.toml")
+        config = stack.config("demo.toml")
+        bad = {
+            'config = "none.toml"\n': "none.toml",
+            f'config = "{config}"\nsed = 1\n': 'bad.toml:2: "sed": found an unknown key',
+            f'config = "{config}"\n[[grid]]\nkey = "position.c3"\nvalues = [1]\n': "case 0 (position.c3 = 1): ",
+            '[[step]]\nrun = ["hydro-nonsense"]\n': 'step.run: found "hydro-nonsense"',
+            '[[step]]\nrun = ["echo", "{valeu:k}"]\n': "step.run: found {valeu:k}",
+        }
+        for text, says in bad.items():
+            done = self.batch(self.study(text, "bad.toml"), "--out", self.path("none"), expect=2)
+            self.assertIn(says, self.one_line(done))
+            self.assertFalse(os.path.exists(self.path("none")))
+        for arguments, says in (((other, "--out", self.path("out")), "study.toml: grid[0].values[2]: was 2400, is 2500"),
+                                ((study, "--out", stack.CONFIG), "found "),
+                                (("--status", stack.CONFIG), "found no study.toml in it"),
+                                (("--worker", self.path("out"), "--cases", "5"), '--cases: found "5"'),
+                                ((study, "--jobs", "-1"), "--jobs: found -1"),
+                                ((), "STUDY: found nothing")):
+            self.assertIn(says, self.one_line(self.batch(*arguments, expect=2)))
+
+
+if __name__ == "__main__":
+    outcome.main()

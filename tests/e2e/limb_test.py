@@ -1,0 +1,197 @@
+"""Limbs: the joints of one configuration in one process, as stacks of processes, mixed, and on two hosts."""
+
+import os
+import signal
+
+import event_log
+import outcome
+import stack
+import two_hosts
+
+JOINTS = ("hip", "knee")
+LIMB = stack.config("limb.toml")
+# Where the knee has processes of its own.
+MIXED = """
+[[process]]
+program = "hydro-limb"
+joints = ["hip"]
+{first}
+[[process]]
+program = "hydro-plant"
+joint = "knee"
+{second}
+[[process]]
+program = "hydro-pressure-ctrl"
+joint = "knee"
+{second}
+[[process]]
+program = "hydro-position-ctrl"
+joint = "knee"
+{second}
+"""
+# Nothing on a loaded machine is late by that much.
+PATIENT = ("--set", "limits.stale_input_s=5", "--set", "limits.stale_supervisor_s=5")
+
+
+def with_processes(case, name, first="", second=""):
+    """The shipped limb with the knee in processes of its own; returns the file, beside the models."""
+    with open(LIMB, encoding="utf-8") as file:
+        text = file.read()
+    text = text.replace('"models/', f'"{os.path.dirname(LIMB)}/models/').split("[[process]]")[0]
+    path = case.path(name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text + MIXED.format(first=first, second=second))
+    return path
+
+
+class LimbTest(stack.TestCase):
+    # Tests that in lockstep each joint of a limb gives, bit by bit, what it gives in hydro-sim and alone in processes of its own.
+    def test_lockstep(self):
+        short = ("--duration", "0.5")
+        together = self.path("together.lcmlog")
+        launch = self.launch(LIMB, "--time", "lockstep", *short, "--log", together)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        simulated = self.path("simulated.lcmlog")
+        self.run_program("hydro-sim", LIMB, *short, "-o", simulated)
+        for joint in JOINTS:
+            alone = self.path(f"{joint}.lcmlog")
+            launch = self.launch(LIMB, "--joint", joint, "--time", "lockstep", *short, "--log", alone)
+            self.assertEqual(launch.wait(60), 0, launch.report())
+            suffix = ("--suffix", f"_{joint}")
+            self.assert_identical(together, alone, *suffix)
+            self.assert_identical(together, simulated, *suffix)
+            # The same by this folder's own reader.
+            logs = [event_log.Log(log, f"_{joint}") for log in (together, alone)]
+            for kind in event_log.NUMBERED:
+                messages = [{m._replace(utime=0, session=0) for m in log.of(kind)} for log in logs]
+                self.assertEqual(messages[0], messages[1], kind)
+            self.assertEqual(logs[0].states[-1].tick, 500)
+
+    # Tests that in real time a joint's states are on its own channels at the chosen rate, counted without a gap, up to the last,
+    # and that every output is left at zero.
+    def test_realtime(self):
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(LIMB, "--time", "realtime", "--duration", "1.5", "--log", log_file, *PATIENT)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        for joint in JOINTS:
+            log = event_log.Log(log_file, f"_{joint}")
+            for kind in event_log.NUMBERED:
+                self.assertEqual(event_log.missing_numbers(log.of(kind)), {}, kind)
+            self.assertEqual(log.states[-1].tick, 1500)
+            slots = {s.tick // 20 for s in log.states}
+            # One state each 20 ticks, and the last one.
+            self.assertLessEqual(len(log.states), len(slots) + 2)
+            self.assertGreater(len(slots), 30)
+            self.assertTrue(any(s.voltage != 0 for s in log.states))
+            self.assertEqual([(left.accepted, left.voltage) for left in log.outputs_left], [(1, 0.0)])
+            self.assertIn(f"{joint} plant: the output reads back 0 V", launch.stdout)
+        self.assertEqual({s.role for s in event_log.Log(log_file).statuses}, {"limb", "logger"})
+
+    # Tests that a fault of one joint, which a re-arm has to end, holds the other at zero volts, and that the other says whose it is.
+    def test_a_fault_of_one_joint(self):
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(LIMB, "--time", "realtime", "--duration", "1.5", "--log", log_file, *PATIENT, "--set",
+                             "limits.rearm=explicit", "--set", "joint.knee.limits.motor_speed_rad_s=2", "--set",
+                             "limb.telemetry_hz=every_tick")
+        self.assertEqual(launch.wait(60), 1, launch.report())
+        logs = {joint: event_log.Log(log_file, f"_{joint}") for joint in JOINTS}
+        knee = next(f for f in logs["knee"].faults if f.code == "motor_speed_limit" and f.source == "plant")
+        hip = next(f for f in logs["hip"].faults if f.code == "other_joint")
+        self.assertEqual(hip.tick, knee.tick)
+        self.assertIn("joint knee has the fault motor_speed_limit", hip.text)
+        for log in logs.values():
+            after = [s.voltage for s in log.states if s.tick > knee.tick]
+            self.assertGreater(len(after), 100)
+            self.assertEqual(set(after), {0.0})
+        self.assertTrue(any(s.voltage != 0 for s in logs["hip"].states))
+
+    # Tests that a joint in processes of its own runs beside a limb, and that a fault of each zeroes the other.
+    def test_mixed(self):
+        config = with_processes(self, "mixed.toml")
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(config, "--time", "realtime", "--duration", "0", "--log", log_file, "--set",
+                             "limits.stale_input_s=0.3", "--set", "limb.telemetry_hz=every_tick")
+        launch.wait_for("ready")
+        live = JointLog(self, log_file)
+        live.wait_for("hip", "HYDRO_STATE", lambda s: s.tick > 300 and s.voltage != 0, "the hip moves")
+        pressure_loop = self.child_of(launch, "hydro-pressure-ctrl")
+        os.kill(pressure_loop, signal.SIGSTOP)
+        try:
+            fault = live.wait_for("hip", "HYDRO_FAULT", lambda f: f.code == "other_joint" and f.active, "the hip is held")
+            self.assertRegex(fault.text, "joint knee has the fault stale_motor_command")
+            live.wait_for("hip", "HYDRO_STATE", lambda s: s.tick > fault.tick + 5 and s.voltage == 0, "zero volts")
+        finally:
+            os.kill(pressure_loop, signal.SIGCONT)
+        live.wait_for("hip", "HYDRO_FAULT", lambda f: f.code == "other_joint" and not f.active, "the hip goes on")
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assertEqual(stack.still_running([pressure_loop]), [])
+
+    def child_of(self, launch, program):
+        for pid in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as file:
+                    parent = int(file.read().rsplit(") ", 1)[1].split()[1])
+                with open(f"/proc/{pid}/cmdline", encoding="utf-8", errors="replace") as file:
+                    command = file.read().split("\0")[0]
+            except OSError:
+                continue
+            if parent == launch.pid and os.path.basename(command) == program:
+                return int(pid)
+        self.fail(f"{program} is not running\n" + launch.report())
+        return None
+
+    # Tests that wrong joints are named with their place and what is allowed.
+    def test_wrong_input(self):
+        def refuse(name, *arguments, says):
+            process = self.run_program(name, *arguments, expect=2)
+            self.assertRegex(process.stderr, says)
+            self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+
+        refuse("hydro-plant", LIMB, says='limb.toml:[0-9]+: joint: found joints \\("hip" or "knee"\\), .*--joint NAME')
+        refuse("hydro-sim", LIMB, "--joint", "toe", says='--joint: found "toe", allowed "hip" or "knee"')
+        refuse("hydro-sim", stack.config("demo.toml"), "--joint", "hip", says="--joint: found \"hip\", allowed with")
+        refuse("hydro-sim", LIMB, "--set", "joint.toe.position.c1=1", says='joint: found "toe", allowed "hip" or "knee"')
+        refuse("hydro-sim", LIMB, "--set", "joint.hip.bus.url='x'", says="joint.hip.bus: found a key that no joint has of its own")
+        refuse("hydro-sim", LIMB, "--set", "limb.telemetry_hz=300",
+               says='telemetry_hz: found 300, allowed plant.rate_hz = 1000 divided by a whole number, or "every_tick"')
+        refuse("hydro-sim", LIMB, "--set", "limb.colour=3", says="colour.*unknown key")
+        refuse("hydro-limb", stack.config("demo.toml"), says="found no \\[\\[joint\\]\\] section")
+        refuse("hydro-limb", LIMB, "--joints", "toe", says='--joints: found "toe", allowed "hip" or "knee"')
+
+
+class JointLog:
+    """The messages of several joints in a log that is being written."""
+
+    def __init__(self, case, path):
+        self.case = case
+        case.wait_until(lambda: os.path.exists(path), "the log is there")
+        self.follower = event_log.Follower(path)
+        self.messages = {}
+
+    def wait_for(self, joint, kind, condition, what):
+        def look():
+            for event in self.follower.new_events():
+                self.messages.setdefault(event.channel, []).append(event.data)
+            found = (event_log.TYPES[kind].decode(data) for data in self.messages.get(f"{kind}_{joint}", []))
+            return next(filter(condition, found), None)
+
+        return self.case.wait_until(look, what)
+
+
+class LimbOnTwoHostsTest(two_hosts.TestCase):
+    # Tests that the joints of one limb run on two hosts and end together, each output at zero.
+    def test_realtime(self):
+        config = with_processes(self, "hosts.toml", 'host = "rig"', 'host = "desk"')
+        launches = {}
+        for host in ("desk", "rig"):
+            launches[host] = self.start_in(host, [stack.program("hydro-launch"), config, "--host", host, "--time", "realtime",
+                                                  "--duration", "1", "--set", f"bus.url={two_hosts.URL}", *PATIENT])
+        for host, launch in launches.items():
+            self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assertIn("hip plant: the output reads back 0 V", launches["rig"].stdout)
+        self.assertIn("knee plant: the output reads back 0 V", launches["desk"].stdout)
+
+
+if __name__ == "__main__":
+    outcome.main()

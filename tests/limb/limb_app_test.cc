@@ -1,0 +1,138 @@
+// A limb as an application in real time, on a clock that the test moves.
+#include "limb/limb_app.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <hydro/output_left_t.hpp>
+#include <hydro/process_status_t.hpp>
+#include <hydro/stop_t.hpp>
+#include <map>
+
+#include "bus/in_process_bus.h"
+#include "tests/limb/limb_fixture.h"
+
+namespace hydro::limb {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+using testing::SmallLimb;
+
+class LimbAppTest : public ::testing::Test {
+ protected:
+  LimbAppTest() : config_(SmallLimb({"hip", "knee"})) {
+    config_.common.time.mode = settings::TimeMode::kRealtime;
+    config_.limb.telemetry_interval_ticks = 10;
+    for (const std::string suffix : {"", "_hip", "_knee"}) {
+      const bus::Channels channels(suffix);
+      bus_.Subscribe<state_t>(channels.Of<state_t>(), [this, suffix](const state_t& s) {
+        states_[suffix].push_back(s);
+        if (on_state_) on_state_(suffix, s);
+      });
+      bus_.Subscribe<fault_t>(channels.Of<fault_t>(), [this, suffix](const fault_t& f) { faults_[suffix].push_back(f); });
+      bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this, suffix](const stop_t& s) { stops_[suffix].push_back(s); });
+      bus_.Subscribe<output_left_t>(channels.Of<output_left_t>(),
+                                    [this, suffix](const output_left_t& o) { left_[suffix].push_back(o); });
+      bus_.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this, suffix](const process_status_t& s) {
+        if (s.role == "limb" || s.role == "plant") states_of_[suffix].push_back(s.state);
+      });
+    }
+  }
+
+  int Run(const std::vector<std::string>& joints = {}) {
+    LimbApp app(bus_, clock_, config_, {.joints = joints, .expected = {}, .heartbeat = {}});
+    const int exit_code = app.Run();
+    while (bus_.HandleUntil(clock_.Now()) > 0) {
+    }
+    return exit_code;
+  }
+
+  settings::LimbConfig config_;
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
+  std::map<std::string, std::vector<state_t>> states_;
+  std::map<std::string, std::vector<fault_t>> faults_;
+  std::map<std::string, std::vector<stop_t>> stops_;
+  std::map<std::string, std::vector<output_left_t>> left_;
+  std::map<std::string, std::vector<int8_t>> states_of_;
+  std::function<void(const std::string& suffix, const state_t& state)> on_state_;
+};
+
+// Tests that each joint's states are on its own channels at the chosen rate, its end with zero volts, and the limb's status on
+// its own.
+TEST_F(LimbAppTest, WhatOthersSee) {
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(states_.count(""), 0U);
+  for (const std::string suffix : {"_hip", "_knee"}) {
+    EXPECT_GE(states_[suffix].size(), 11U);
+    EXPECT_LE(states_[suffix].size(), 13U);
+    EXPECT_EQ(states_[suffix].back().tick, 100);
+    ASSERT_EQ(left_[suffix].size(), 1U);
+    EXPECT_EQ(left_[suffix][0].voltage, 0);
+    EXPECT_EQ(states_of_[suffix].back(), process_status_t::DONE);
+  }
+  EXPECT_EQ(states_of_[""].front(), process_status_t::READY);
+  EXPECT_EQ(states_of_[""].back(), process_status_t::DONE);
+}
+
+// Tests that a stop on the limb's channel and one on a joint's end all joints in order.
+TEST_F(LimbAppTest, Stops) {
+  for (const std::string suffix : {"", "_knee"}) {
+    states_.clear();
+    on_state_ = [&](const std::string&, const state_t& state) {
+      if (state.tick < 40) return;
+      stop_t stop{};
+      stop.session = 77;
+      stop.source = "launch";
+      stop.reason = "enough";
+      bus_.Publish(bus::Channels(suffix).Of<stop_t>(), stop);
+    };
+    EXPECT_EQ(Run(), 0) << suffix;
+    EXPECT_LT(states_["_hip"].back().tick, 60);
+    EXPECT_LT(states_["_knee"].back().tick, 60);
+  }
+}
+
+// Tests that a fault in a joint that another process runs holds these at zero volts while it lasts, and that it is told on their
+// channels.
+TEST_F(LimbAppTest, FaultOfAJointElsewhere) {
+  on_state_ = [&](const std::string& suffix, const state_t& state) {
+    if (suffix != "_hip" || (state.tick / 10 != 3 && state.tick / 10 != 6)) return;
+    fault_t fault{};
+    fault.session = 77;
+    fault.source = "plant";
+    fault.code = "pressure_limit";
+    fault.active = state.tick / 10 == 3;
+    bus_.Publish(bus::Channels("_knee").Of<fault_t>(), fault);
+  };
+  EXPECT_EQ(Run({"hip"}), 0);
+  EXPECT_EQ(states_.count("_knee"), 0U);
+  ASSERT_EQ(faults_["_hip"].size(), 2U);
+  EXPECT_EQ(faults_["_hip"][0].code, "other_joint");
+  EXPECT_THAT(faults_["_hip"][0].text, HasSubstr("joint knee has the fault pressure_limit (plant)"));
+  int held = 0;
+  for (const state_t& state : states_["_hip"]) {
+    if (state.tick < 40 || state.tick > 60) continue;
+    EXPECT_EQ(state.voltage, 0) << state.tick;
+    ++held;
+  }
+  EXPECT_GE(held, 2);
+  EXPECT_NE(states_["_hip"].back().voltage, 0);
+}
+
+// Tests that a joint that fails ends the limb with an error that names it.
+TEST_F(LimbAppTest, FailureNamesTheJoint) {
+  config_.joints[1].config.limits.motor_speed_rad_s = 1;
+  EXPECT_EQ(Run(), 1);
+  ASSERT_FALSE(stops_[""].empty());
+  EXPECT_THAT(stops_[""].back().reason, HasSubstr("knee: plant: fault motor_speed_limit"));
+  EXPECT_EQ(states_of_[""].back(), process_status_t::FAILED);
+  for (const std::string suffix : {"_hip", "_knee"}) {
+    ASSERT_EQ(left_[suffix].size(), 1U);
+    EXPECT_EQ(left_[suffix][0].voltage, 0);
+  }
+}
+
+}  // namespace
+}  // namespace hydro::limb

@@ -1,0 +1,169 @@
+#include "settings/limb_config.h"
+
+#include "settings/joint_documents.h"
+#include "tests/settings/texts.h"
+
+namespace hydro::settings {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr char kJoints[] = R"(
+[limb]
+telemetry_hz = 100
+
+[[joint]]
+name = "hip"
+
+[[joint]]
+name = "knee"
+[joint.position]
+c1 = 900
+[joint.pressure]
+k_p = 0.1
+k_v = 9
+[joint.reference]
+kind = "sine"
+amplitude = 0.02
+frequency_hz = 2
+)";
+
+class LimbConfigTest : public FolderTest {
+ protected:
+  std::string File(const std::string& text) {
+    Write("model.toml", kModelText);
+    return Write("limb.toml", text);
+  }
+  LimbConfig Load(const std::string& more = kJoints, const std::vector<std::string>& overrides = {}) {
+    return LoadLimbConfig(File(std::string(kConfigText) + more), overrides);
+  }
+  std::string Error(const std::string& more, const std::vector<std::string>& overrides = {}) {
+    return InputErrorOf([&] { Load(more, overrides); });
+  }
+};
+
+// Tests that a joint has what all have in common, with its own over it, on channels of its own, and that a choice among
+// alternatives drops the common one.
+TEST_F(LimbConfigTest, OwnOverCommon) {
+  const LimbConfig limb = Load();
+  ASSERT_EQ(limb.joints.size(), 2U);
+  EXPECT_THAT(limb.common.joints, ElementsAre("hip", "knee"));
+  EXPECT_THAT(limb.common.bus.joint_suffixes, ElementsAre("_hip", "_knee"));
+  EXPECT_EQ(limb.common.bus.channel_suffix, "");
+  const StackConfig& hip = limb.joints[0].config;
+  const StackConfig& knee = limb.joints[1].config;
+  EXPECT_EQ(hip.bus.channel_suffix, "_hip");
+  EXPECT_EQ(hip.position.c1, 10500);
+  EXPECT_EQ(hip.reference.trajectory.kind, TrajectorySpec::Kind::kSteps);
+  EXPECT_EQ(knee.position.c1, 900);
+  EXPECT_EQ(knee.position.c2, hip.position.c2);
+  EXPECT_EQ(knee.pressure.k_p, 0.1);
+  EXPECT_FALSE(knee.pressure.damping_ratio.has_value());
+  EXPECT_EQ(knee.reference.trajectory.kind, TrajectorySpec::Kind::kSine);
+  EXPECT_THAT(knee.reference.trajectory.steps, IsEmpty());
+  EXPECT_EQ(limb.limb.on_joint_fault, OnJointFault::kAllToZero);
+  EXPECT_EQ(limb.limb.telemetry_hz, 100);
+}
+
+// Tests that each joint's noise has a seed of its own, counted up from the configuration's, and that a joint may state one.
+TEST_F(LimbConfigTest, Seeds) {
+  const std::string own = std::string(kJoints) + "[[joint]]\nname = \"ankle\"\n[joint.noise]\nseed = 77\n";
+  const auto seeds = [&](const std::vector<std::string>& overrides) {
+    std::vector<int64_t> all;
+    for (const JointConfig& joint : Load(own, overrides).joints) all.push_back(joint.config.seed);
+    return all;
+  };
+  EXPECT_THAT(seeds({}), ElementsAre(1, 2, 77));
+  EXPECT_THAT(seeds({"noise.seed=40"}), ElementsAre(40, 41, 42));
+}
+
+// Tests that an override holds for every joint, also over its own, and one with a joint's name for that one.
+TEST_F(LimbConfigTest, Overrides) {
+  const LimbConfig all = Load(kJoints, {"position.c1=5"});
+  EXPECT_EQ(all.joints[0].config.position.c1, 5);
+  EXPECT_EQ(all.joints[1].config.position.c1, 5);
+  const LimbConfig one = Load(kJoints, {"joint.hip.position.c1=6", "limb.on_joint_fault=others_go_on"});
+  EXPECT_EQ(one.joints[0].config.position.c1, 6);
+  EXPECT_EQ(one.joints[1].config.position.c1, 900);
+  EXPECT_EQ(one.limb.on_joint_fault, OnJointFault::kOthersGoOn);
+}
+
+// Tests that a joint alone is the joint of the limb: the same text, and knows the others, whose faults concern it.
+TEST_F(LimbConfigTest, JointAlone) {
+  const LimbConfig limb = Load();
+  const StackConfig alone = LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee"});
+  EXPECT_EQ(alone.text, limb.joints[1].config.text);
+  EXPECT_EQ(alone.agreed, limb.joints[1].config.agreed);
+  ASSERT_EQ(alone.siblings.size(), 1U);
+  EXPECT_EQ(alone.siblings[0].name, "hip");
+  EXPECT_EQ(alone.siblings[0].suffix, "_hip");
+  const StackConfig unconcerned =
+      LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee", "limb.on_joint_fault=others_go_on"});
+  EXPECT_THAT(unconcerned.siblings, IsEmpty());
+}
+
+// Tests that the text of the whole limb, read again, describes the same limb.
+TEST_F(LimbConfigTest, TextDescribesItself) {
+  const LimbConfig limb = Load(kJoints, {"position.c2=123", "joint.knee.limits.pressure_psi=900"});
+  const LimbConfig again = LoadLimbConfig(File(limb.common.text));
+  EXPECT_EQ(again.common.text, limb.common.text);
+  for (size_t i = 0; i < 2; ++i) EXPECT_EQ(again.joints[i].config.agreed, limb.joints[i].config.agreed);
+}
+
+// Tests which joints a process has, and that two processes never have the same.
+TEST_F(LimbConfigTest, Processes) {
+  EXPECT_THAT(JointsOf(Load().common.processes.at(0), Load().common), ElementsAre("hip", "knee"));
+  const std::string mixed = std::string(kJoints) +
+                            "[[process]]\nprogram = \"hydro-limb\"\n[[process]]\nprogram = \"hydro-plant\"\n"
+                            "joint = \"knee\"\n[[process]]\nprogram = \"hydro-pressure-ctrl\"\njoint = \"knee\"\n";
+  const LimbConfig limb = Load(mixed);
+  EXPECT_THAT(JointsOf(limb.common.processes.at(0), limb.common), ElementsAre("hip"));
+  EXPECT_THAT(JointsOf(limb.common.processes.at(1), limb.common), ElementsAre("knee"));
+  EXPECT_EQ(limb.joints[1].config.processes.size(), 2U);
+  EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n[[process]]\n"
+                                           "program = \"hydro-limb\"\njoints = [\"knee\", \"hip\"]\n"),
+              HasSubstr("process.joints: found a second process with the joint \"hip\", allowed one"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\n"),
+              HasSubstr("found hydro-plant without a joint"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\njoint = \"toe\"\n"),
+              HasSubstr("process.joint: found \"toe\", allowed \"hip\" or \"knee\""));
+}
+
+// Tests that what is wrong is named with its place, what was found and what is allowed.
+TEST_F(LimbConfigTest, Wrong) {
+  EXPECT_THAT(Error("[[joint]]\nname = \"a b\"\n"), HasSubstr("joint.name: found \"a b\", allowed a name of up to 24"));
+  EXPECT_THAT(Error("[[joint]]\n[joint.model]\n"), HasSubstr("joint.name: found nothing"));
+  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[[joint]]\nname = \"a\"\n"), HasSubstr("a second joint \"a\""));
+  EXPECT_THAT(Error("[joint]\nname = \"a\"\n"), HasSubstr("joint: found a section, allowed sections [[joint]]"));
+  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.bus]\nurl = \"x\"\n"),
+              HasSubstr("joint.a.bus: found a key that no joint has of its own"));
+  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.position]\nc3 = 1\n"), HasSubstr("c3"));
+  EXPECT_THAT(Error("[limb]\ntelemetry_hz = 3\n[[joint]]\nname = \"a\"\n"), HasSubstr("telemetry_hz: found 3"));
+  EXPECT_THAT(Error("[limb]\non_joint_fault = \"panic\"\n[[joint]]\nname = \"a\"\n"),
+              HasSubstr("\"all_to_zero\" or \"others_go_on\""));
+  EXPECT_THAT(Error(""), HasSubstr("found no [[joint]] section"));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(File(std::string(kConfigText) + kJoints)); }),
+              HasSubstr("joint: found joints (\"hip\" or \"knee\"), allowed a stack with one"));
+}
+
+// Tests that an arm has a link for each joint, is read, and is checked.
+TEST_F(LimbConfigTest, Arm) {
+  const std::string link = "[[arm.link]]\nmass = 0.02\nlength = 15\ncentre = 7\ninertia = 0.4\n";
+  const LimbConfig limb = Load(std::string(kJoints) + "[arm]\ngravity = 386\n" + link + link + "angle_rad = 0.5\n");
+  ASSERT_TRUE(limb.arm.has_value());
+  EXPECT_EQ(limb.arm->gravity, 386);
+  ASSERT_EQ(limb.arm->links.size(), 2U);
+  EXPECT_EQ(limb.arm->links[0].centre, 7);
+  EXPECT_EQ(limb.arm->links[1].angle, 0.5);
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link),
+              HasSubstr("arm.link: found 1 links, allowed 2, a section [[arm.link]] for each joint"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = -1\n"), HasSubstr("mass: found -1"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = 1\n"), HasSubstr("length"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + link + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n"),
+              HasSubstr("found some of the joints of an [arm], allowed all of them in one hydro-limb"));
+}
+
+}  // namespace
+}  // namespace hydro::settings
