@@ -16,9 +16,10 @@ int main(int argc, char** argv) {
                    "docs/gap_finder.md");
   hydro::diagnose::DiagnoseRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
-  line.AddPositional("RUN", &request.runs,
-                     "FILE a measured run: a log, or a table (csv, mat) with a sidecar; LOG#NAME: the joint NAME of a "
-                     "limb");
+  line.AddPositional(
+      "RUN", &request.runs,
+      "FILE a measured run: a log, or a table (csv, mat) with a sidecar; LOG#NAME: the joint NAME of a "
+      "limb");
   line.AddOption("--model", &request.model, "MODEL the model as it is, TOML", true);
   line.AddOption(
       "-o,--out", &request.folder,
@@ -26,7 +27,8 @@ int main(int argc, char** argv) {
   line.AddOption("--hold-out", &request.held_out,
                  "RUN a run that is not fitted, for the proof; without any, the runs are held out in turn");
   std::string joint;
-  line.AddOption("--joint", &joint, "NAME the joint of a limb that is meant in each log that names none itself");
+  line.AddOption("--joint", &joint,
+                 "NAME the joint of a limb that is meant in each log that names none itself");
   line.AddOption(
       "--effect", &request.own_effects,
       "FILE an effect of your own, written as text, to be looked for beside the others (repeatable)");

@@ -53,10 +53,12 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
 }
 
 // More of a recording that is there, or a new one.
-void AddRecording(const std::string& file, runs::RunLog&& log, const Say& say, std::vector<Recording>* recordings) {
+void AddRecording(const std::string& file, runs::RunLog&& log, const Say& say,
+                  std::vector<Recording>* recordings) {
   const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
   if (!left_out.empty()) say(left_out);
-  if (const std::string sampling = runs::DescribeSampling(runs::SampleTicks(log.messages)); !sampling.empty()) {
+  if (const std::string sampling = runs::DescribeSampling(runs::SampleTicks(log.messages));
+      !sampling.empty()) {
     say(file + (log.joint.empty() ? "" : ": joint " + log.joint) + ": the table has " + sampling +
         "; voltage_V is what acted up to each");
   }
@@ -191,9 +193,8 @@ void CheckNotEmpty(const Recording& recording, const Selection& selection, const
 
 }  // namespace
 
-std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files,
-                                  const runs::StackChoice& choice, const Selection& selection,
-                                  bool times, const Say& say) {
+std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const runs::StackChoice& choice,
+                                  const Selection& selection, bool times, const Say& say) {
   CheckSelection(selection);
   std::vector<ExportedRun> runs;
   const std::vector<Recording> recordings = ReadRecordings(files, choice, say);

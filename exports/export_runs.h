@@ -17,8 +17,8 @@ namespace hydro::exports {
 // received, which takes another reading. `say` is called with each line for people about what is missing or odd.
 // Throws InputError, log::LogError: what a log lacks of the selection, a log that is damaged, a table that cannot be made, a window in
 // which nothing lies.
-std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files,
-                                  const runs::StackChoice& choice, const Selection& selection,
-                                  bool times, const std::function<void(const std::string&)>& say);
+std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const runs::StackChoice& choice,
+                                  const Selection& selection, bool times,
+                                  const std::function<void(const std::string&)>& say);
 
 }  // namespace hydro::exports

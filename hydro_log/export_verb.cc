@@ -14,9 +14,10 @@
 namespace hydro::hydro_log {
 
 ExportVerb::ExportVerb(settings::CommandLine& line) {
-  settings::CommandLine& verb = line.AddVerb(
-      "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels. Each joint of a "
-                "limb is a run of its own.");
+  settings::CommandLine& verb = line.AddVerb("export",
+                                             "Write runs for other tools: a table, one row per plant tick, "
+                                             "or the messages of channels. Each joint of a "
+                                             "limb is a run of its own.");
   verb.AddPositional("LOG", &logs_, "FILE the log; several: runs, or one that a recorder split");
   verb.AddOption("-o,--output", &out_,
                  "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, FOLDER/ for a CSV of each table, "

@@ -31,8 +31,10 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const runs::LimbLog log = runs::ReadLimbLog(log_, choice_, runs::Undecodable::kLeftOut, log::OnDamage::kStop);
-    std::fputs((log.whole() ? TextOf(runs::SummariseLimb(log, si_)) : TextOf(runs::Summarise(log.limb, si_))).c_str(),
+    const runs::LimbLog log =
+        runs::ReadLimbLog(log_, choice_, runs::Undecodable::kLeftOut, log::OnDamage::kStop);
+    std::fputs((log.whole() ? TextOf(runs::SummariseLimb(log, si_)) : TextOf(runs::Summarise(log.limb, si_)))
+                   .c_str(),
                stdout);
     if (log.limb.verdict.completeness != log::Completeness::kDamaged) return 0;
     throw log::LogError(log_ + ": " + log.limb.verdict.where + "; hydro-log repair " + log_ +

@@ -177,8 +177,8 @@ int ReplayVerb::RunOurs(const runs::RunLog& log, const std::string& of) const {
     if (controller_ == (pressure ? "position" : "pressure")) continue;
     const std::string name = pressure ? "pressure" : "position";
     if (const std::string own = OwnProgramOf(log, name + "_ctrl"); controller_ == "both" && !own.empty()) {
-      std::printf("%s%s: not replayed: the run had %s; --controller COMMAND replays that\n", of.c_str(), name.c_str(),
-                  Printable(own).c_str());
+      std::printf("%s%s: not replayed: the run had %s; --controller COMMAND replays that\n", of.c_str(),
+                  name.c_str(), Printable(own).c_str());
       continue;
     }
     const ReplayResult result =

@@ -28,8 +28,7 @@ void Sort(const std::vector<std::string>& arguments, SetRequest* request) {
   }
 }
 
-int Run(SetRequest request, const std::vector<std::string>& arguments,
-        std::vector<std::string> overrides) {
+int Run(SetRequest request, const std::vector<std::string>& arguments, std::vector<std::string> overrides) {
   Sort(arguments, &request);
   hydro::hydro_set::CheckRequest(request);
   if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);

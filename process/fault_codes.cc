@@ -33,6 +33,7 @@ constexpr std::array kCodes{
     FaultCode{"stale_motor_command", FaultEffect::kZeroVolts},
     FaultCode{kSecondSender<motor_command_t>, FaultEffect::kZeroVolts},
     FaultCode{"other_stack", FaultEffect::kZeroVolts},
+    FaultCode{"other_joint", FaultEffect::kZeroVolts},
     FaultCode{"late_plant", FaultEffect::kZeroVolts},
     FaultCode{"supervisor_gone", FaultEffect::kZeroVolts},
     FaultCode{"other_joint", FaultEffect::kZeroVolts},

@@ -82,14 +82,15 @@ std::string SuffixOfJoint(const RunLog& log, const StackChoice& choice) {
   if (found.size() == 1) return *found.begin();
   if (found.contains(end)) return end;
   if (found.size() > 1) {
-    throw InputError(log.file + ": --joint: found " + Quoted(*choice.joint) + " with the suffixes " + ListOf(found) +
-                     "; choose one of them with --suffix");
+    throw InputError(log.file + ": --joint: found " + Quoted(*choice.joint) + " with the suffixes " +
+                     ListOf(found) + "; choose one of them with --suffix");
   }
   const std::vector<JointChannels> joints = JointsIn(log);
   throw InputError(log.file + ": --joint: found " + Quoted(*choice.joint) + ", allowed " +
-                   (joints.empty() ? "for a log of a limb; this one has " +
-                                         (all.empty() ? "no HYDRO_ channel" : "channels with suffix " + ListOf(all))
-                                   : NamesOf(joints)));
+                   (joints.empty()
+                        ? "for a log of a limb; this one has " +
+                              (all.empty() ? "no HYDRO_ channel" : "channels with suffix " + ListOf(all))
+                        : NamesOf(joints)));
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "runs/compare.h"
 
 #include <algorithm>
-
-#include "base/input_error.h"
 #include <cmath>
 
+#include "base/input_error.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
 #include "runs/message_order.h"
@@ -93,8 +92,10 @@ std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& 
     }
     return nullptr;
   };
-  if (const RunLog* joint = lacks(a, b)) return "differ: the joint " + joint->joint + " is in " + name_a + " alone";
-  if (const RunLog* joint = lacks(b, a)) return "differ: the joint " + joint->joint + " is in " + name_b + " alone";
+  if (const RunLog* joint = lacks(a, b))
+    return "differ: the joint " + joint->joint + " is in " + name_a + " alone";
+  if (const RunLog* joint = lacks(b, a))
+    return "differ: the joint " + joint->joint + " is in " + name_b + " alone";
   for (size_t i = 0; i < a.joints.size(); ++i) {
     const auto difference = FirstDifference(a.joints[i].messages, name_a, b.joints[i].messages, name_b);
     if (difference) return "joint " + a.joints[i].joint + ": " + *difference;

@@ -82,7 +82,8 @@ TickInfo TicksOf(const RunMessages& messages) {
   const int64_t left_out = info.sampled - 1;  // on purpose, from one sample to the next
   int64_t previous = info.first;
   for (const auto& [tick, state] : by_tick) {
-    const int64_t between = std::max<int64_t>(0, SaturatingDifference(SaturatingDifference(tick, previous), 1));
+    const int64_t between =
+        std::max<int64_t>(0, SaturatingDifference(SaturatingDifference(tick, previous), 1));
     const int64_t announced = std::clamp<int64_t>(state->skipped_ticks, 0, between);
     // A sample of a late tick is late: only what is missing for a whole interval more is a gap.
     const bool gap = SaturatingDifference(between, left_out) > left_out;

@@ -46,17 +46,18 @@ std::string Target(const Tracking& tracking) {
 std::string RowsOf(const LimbInfo& info) {
   size_t width = 16;
   for (const JointInfo& joint : info.joints) width = std::max(width, joint.name.size());
-  std::string text = fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint", width, "states",
-                                 "every", "time s", "lost", "skipped", "final error rad", "rms error rad", "target",
-                                 "faults");
+  std::string text = fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint",
+                                 width, "states", "every", "time s", "lost", "skipped", "final error rad",
+                                 "rms error rad", "target", "faults");
   for (const JointInfo& joint : info.joints) {
     const TickInfo& ticks = joint.info.ticks;
     const bool has = joint.tracking.has_reference;
-    text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", Printable(joint.name), width,
-                        ticks.states, ticks.sampled, ticks.last_time_s - ticks.first_time_s, Lost(joint), ticks.announced,
+    text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n",
+                        Printable(joint.name), width, ticks.states, ticks.sampled,
+                        ticks.last_time_s - ticks.first_time_s, Lost(joint), ticks.announced,
                         has ? fmt::format("{:.5f}", joint.tracking.final_error_rad) : "-",
-                        has ? fmt::format("{:.4f}", joint.tracking.rms_error_rad) : "-", Target(joint.tracking),
-                        Faults(joint));
+                        has ? fmt::format("{:.4f}", joint.tracking.rms_error_rad) : "-",
+                        Target(joint.tracking), Faults(joint));
   }
   const auto sampled = std::find_if(info.joints.begin(), info.joints.end(),
                                     [](const JointInfo& joint) { return joint.info.ticks.sampled > 1; });
@@ -99,9 +100,11 @@ std::string LimbSummaryText(const LimbInfo& info) {
       },
       &text);
   AppendList(
-      info.limb.tunings, [](const tuned_settings_t& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
+      info.limb.tunings,
+      [](const tuned_settings_t& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
   AppendList(
-      info.limb.outputs_left, [](const output_left_t& left) { return Printable(process::OutputLeftText(left)); }, &text);
+      info.limb.outputs_left,
+      [](const output_left_t& left) { return Printable(process::OutputLeftText(left)); }, &text);
   return text;
 }
 
@@ -118,8 +121,10 @@ std::string LimbInfoJson(const LimbInfo& info) {
 }
 
 std::string LimbSummaryJson(const LimbInfo& info) {
-  Json json = {{"log", {{"verdict", NameOf(info.limb.verdict.completeness)}, {"caution", log::Caution(info.limb.verdict)}}},
-               {"joints", Json::object()}};
+  Json json = {
+      {"log",
+       {{"verdict", NameOf(info.limb.verdict.completeness)}, {"caution", log::Caution(info.limb.verdict)}}},
+      {"joints", Json::object()}};
   for (const JointInfo& joint : info.joints) {
     Json one = TrackingOf(joint);
     one.erase("log");

@@ -118,7 +118,8 @@ RunName ParseRunName(const std::string& text) {
 MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSystem>& units) {
   const auto& [file, joint] = ParseRunName(text);
   if (tables::IsTable(file)) {
-    if (joint) throw InputError(text + ": found the joint " + Quoted(*joint) + " of a table, allowed of a log");
+    if (joint)
+      throw InputError(text + ": found the joint " + Quoted(*joint) + " of a table, allowed of a log");
     return ReadTableRun(file, units.value_or(UnitSystem{}));
   }
   if (file.ends_with(".toml")) {

@@ -29,7 +29,8 @@ std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_descrip
     for (const TomlNode& joint : joints->items) {
       const TomlNode* name = joint.is(TomlNode::Kind::kTable) ? joint.Find("name") : nullptr;
       const std::string shown = name != nullptr ? name->text : "?";
-      for (auto& [key, value] : settings::TomlEntries(joint)) entries.emplace_back("joint." + shown + "." + key, value);
+      for (auto& [key, value] : settings::TomlEntries(joint))
+        entries.emplace_back("joint." + shown + "." + key, value);
     }
     root.Erase("joint");
   }

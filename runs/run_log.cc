@@ -88,8 +88,8 @@ class Decoder {
   void LeaveOut(const log::LogEvent& event, RunLog* log) const {
     const std::string why = WhyUndecodable(event, *log::KindOfChannel(event.channel));
     if (undecodable_ == Undecodable::kRefused) {
-      throw log::LogError(log->file + ": " + why + "; where others on that channel are, hydro-log repair " + log->file +
-                          " leaves such events out");
+      throw log::LogError(log->file + ": " + why + "; where others on that channel are, hydro-log repair " +
+                          log->file + " leaves such events out");
     }
     if (log->first_undecodable.empty()) log->first_undecodable = why;
     const auto channel =
@@ -139,8 +139,8 @@ std::vector<RunLog> LogsOfJoints(const RunLog& limb) {
 }
 
 // `with_joints`: whether all joints of a limb are wanted where none is chosen.
-LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable undecodable, log::OnDamage on_damage,
-             bool with_joints) {
+LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable undecodable,
+             log::OnDamage on_damage, bool with_joints) {
   LimbLog all;
   all.limb.file = file;
   log::LogReader reader(file, on_damage);

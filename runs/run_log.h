@@ -25,9 +25,10 @@ struct ChannelSummary {
 struct RunLog {
   std::string file;
   log::LogVerdict verdict;
-  std::string suffix;                       // of the channels read
-  std::string joint;                        // of a limb: its name; empty: it is not one of several
-  std::vector<std::string> other_suffixes;  // of state channels that were not read, and are not joints of the same limb
+  std::string suffix;  // of the channels read
+  std::string joint;   // of a limb: its name; empty: it is not one of several
+  std::vector<std::string>
+      other_suffixes;  // of state channels that were not read, and are not joints of the same limb
   RunMessages messages;
   std::vector<ChannelSummary> channels;  // by name, all that the log holds
   int64_t events = 0;                    // on all channels
@@ -62,7 +63,8 @@ struct LimbLog {
 
 // As ReadRunLog(), but where `choice` leaves open which of several joints is meant, all of them; otherwise `limb` is the stack
 // that is chosen, and there are no joints.
-LimbLog ReadLimbLog(const std::string& file, const StackChoice& choice, Undecodable undecodable = Undecodable::kRefused,
+LimbLog ReadLimbLog(const std::string& file, const StackChoice& choice,
+                    Undecodable undecodable = Undecodable::kRefused,
                     log::OnDamage on_damage = log::OnDamage::kThrow);
 
 // One line for people about what a result from this log cannot say: that it is incomplete or repaired, or holds

@@ -47,8 +47,8 @@ std::string DescribeSampling(int64_t sample_ticks) {
 void RequireEveryState(const RunLog& log, const std::string& needs_it) {
   const int64_t sampled = SampleTicks(log.messages);
   if (sampled <= 1) return;
-  throw InputError(log.file + (log.joint.empty() ? "" : ": joint " + log.joint) + ": found " + DescribeSampling(sampled) +
-                   ", allowed is each for " + needs_it +
+  throw InputError(log.file + (log.joint.empty() ? "" : ": joint " + log.joint) + ": found " +
+                   DescribeSampling(sampled) + ", allowed is each for " + needs_it +
                    ": record with limb.telemetry_hz = \"every_tick\", in lockstep, or with hydro-sim");
 }
 

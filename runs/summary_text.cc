@@ -32,13 +32,14 @@ std::string Angle(double rad, bool si) {
 std::string LoopsText(const LogInfo& info) {
   if (info.loops.empty()) return {};
   std::string text =
-      fmt::format("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}\n", "loop", "cycles", "period p50",
-                  "period p99", "late p50", "late p99", "late max", "missed", "lost");
+      fmt::format("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}\n", "loop", "cycles",
+                  "period p50", "period p99", "late p50", "late p99", "late max", "missed", "lost");
   for (const LoopInfo& loop : info.loops) {
-    text += fmt::format("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}\n",
-                        Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
-                        loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
-                        loop.missed_deadlines, loop.lost_messages);
+    text +=
+        fmt::format("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}\n",
+                    Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
+                    loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
+                    loop.missed_deadlines, loop.lost_messages);
   }
   return text;
 }

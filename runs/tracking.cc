@@ -7,7 +7,7 @@ namespace hydro::runs {
 namespace {
 
 constexpr double kShortestRest = 0.2;         // s
-constexpr double kEndTime = 0.1;            // s
+constexpr double kEndTime = 0.1;              // s
 constexpr double kSmallestTolerance = 0.001;  // rad
 constexpr double kLeastStep = 0.01;           // rad, of one that begins with the run
 constexpr size_t kMostSteps = 100;
@@ -111,8 +111,7 @@ Tracking TrackArm(const RunLog& log) {
   }
   bool at_rest = true;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (samples.times.back() - samples.times[i] <= kEndTime &&
-        samples.references[i] != tracking.target_rad) {
+    if (samples.times.back() - samples.times[i] <= kEndTime && samples.references[i] != tracking.target_rad) {
       at_rest = false;
     }
   }

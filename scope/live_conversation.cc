@@ -256,7 +256,8 @@ bool LiveConversation::NextStatus(Message* message) {
     return Text(sent, message);
   }
   if (clock_.Now(now)) {
-    for (const Run* run : context_.runs.AllLive()) said_.push_back(ClockMessage(*run, context_.silent_s(run->id)));
+    for (const Run* run : context_.runs.AllLive())
+      said_.push_back(ClockMessage(*run, context_.silent_s(run->id)));
   }
   if (processes_.Now(now)) {
     for (const Run* run : context_.runs.AllLive()) said_.push_back(ProcessesMessage(*run));

@@ -18,7 +18,8 @@ LiveFeed::Stack::Stack(const Run& its_first, RunTable* all)
         return run;
       }) {}
 
-LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& limb, double history_s, RunTable* runs)
+LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& limb, double history_s,
+                   RunTable* runs)
     : bus_(bus), clock_(clock), limb_(limb), history_s_(history_s), runs_(*runs) {
   for (const Run* run : runs_.AllLive()) {
     Stack& stack = *stacks_.emplace_back(std::make_unique<Stack>(*run, runs));
@@ -41,7 +42,8 @@ void LiveFeed::OnMessage(const bus::RawMessage& message) {
   ++messages_;
   stack.intake.Take(message.channel, message.data, message.size, message.receive_utime);
   stack.run->messages->Add(
-      {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime}, stack.intake.now());
+      {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime},
+      stack.intake.now());
 }
 
 void LiveFeed::Poll() {

@@ -18,7 +18,8 @@ namespace hydro::scope {
 class LiveTuning : public Tuning {
  public:
   // `run`: the live run whose values they are. `control`: whether the page may ask. Both are for the message.
-  LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, uint32_t run, bool control);
+  LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, uint32_t run,
+             bool control);
 
   void Set(const std::vector<std::string>& entries, Done done) override;
   void Undo(Done done) override;

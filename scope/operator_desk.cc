@@ -9,7 +9,8 @@
 namespace hydro::scope {
 
 OperatorDesk::OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
-                           std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings)
+                           std::function<void(std::function<void()>)> post,
+                           std::map<uint32_t, Tuning*> tunings)
     : config_(std::move(config)), control_(control), post_(std::move(post)), tunings_(std::move(tunings)) {}
 
 OperatorDesk::~OperatorDesk() {

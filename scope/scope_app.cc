@@ -38,7 +38,7 @@ constexpr int kNice = 5;             // a scope gives way to what drives a motor
 constexpr auto kWatchedTurn = 16ms;  // with clients: 60 frames a second
 constexpr auto kLoneTurn = 20ms;     // without: often enough for the kernel's buffer
 constexpr auto kLogTurn = 50ms;      // a log does not change
-constexpr double kBytesPerTick = 600;  // of messages, generously
+constexpr double kBytesPerTick = 600;     // of messages, generously
 constexpr size_t kLeastBytes = 16 << 20;  // of a run's messages
 
 std::string FileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
@@ -121,13 +121,14 @@ class ScopeApp {
     for (const auto& [run, tuning] : tunings_) tunings[run] = tuning.get();
     OperatorDesk desk(config_, section_.control, post, std::move(tunings));
     GhostDesk ghost(&runs_);
-    LiveContext context{.runs = runs_,
-                        .desk = desk,
-                        .ghost = ghost,
-                        .silent_s = [this](uint32_t run) { return feed_ == nullptr ? -1 : feed_->silent_s(run); },
-                        .now = [] { return std::chrono::steady_clock::now(); },
-                        .frames = &frames_,
-                        .dropped = &dropped_};
+    LiveContext context{
+        .runs = runs_,
+        .desk = desk,
+        .ghost = ghost,
+        .silent_s = [this](uint32_t run) { return feed_ == nullptr ? -1 : feed_->silent_s(run); },
+        .now = [] { return std::chrono::steady_clock::now(); },
+        .frames = &frames_,
+        .dropped = &dropped_};
     ScopeSite site(page_, context, &work, &jobs, static_cast<int64_t>(section_.upload_mb * 1e6));
     site.more_status = [&] {
       return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped());
@@ -147,7 +148,8 @@ class ScopeApp {
       limb_ = settings::LoadLimbConfig(request.input, overrides);
       config_ = std::make_shared<const settings::StackConfig>(limb_.common);
     } else {
-      config_ = std::make_shared<const settings::StackConfig>(settings::LoadStackConfig(request.input, overrides));
+      config_ =
+          std::make_shared<const settings::StackConfig>(settings::LoadStackConfig(request.input, overrides));
     }
   }
 
@@ -160,9 +162,10 @@ class ScopeApp {
     }
     const std::string suffix = config->bus.channel_suffix;
     auto& run = runs_.StartLive(name, suffix, static_cast<uint64_t>(ticks * 1.1) + 10000,
-                               static_cast<size_t>(ticks * kBytesPerTick) + kLeastBytes, std::move(config));
+                                static_cast<size_t>(ticks * kBytesPerTick) + kLeastBytes, std::move(config));
     run.of_a_limb = !limb_.joints.empty() || settings::IsLimbFile(config_->file);
-    tunings_[run.id] = std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(suffix), run.id, section_.control);
+    tunings_[run.id] =
+        std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(suffix), run.id, section_.control);
   }
 
   void Listen() {
@@ -172,7 +175,8 @@ class ScopeApp {
       StartRun(joint.name + " of " + name, std::make_shared<const settings::StackConfig>(joint.config));
     }
     if (limb_.joints.empty()) StartRun(name, config_);
-    feed_ = std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
+    feed_ =
+        std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
     if (const std::string hint = bus_->receive_buffer_hint(); !hint.empty()) {
       std::fprintf(stderr, "hydro-scope: %s\n", hint.c_str());
     }

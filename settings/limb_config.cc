@@ -35,17 +35,10 @@ void ReadLimb(SectionReader section, double rate_hz, LimbSection* limb) {
   section.Finish();
   limb->telemetry_interval_ticks = WholeMultiple(rate_hz, limb->telemetry_hz);
   if (limb->telemetry_interval_ticks == 0) {
-    throw section.Error("telemetry_hz", ShortestNumber(limb->telemetry_hz),
-                        "plant.rate_hz = " + ShortestNumber(rate_hz) +
-                            " divided by a whole number, or \"every_tick\"");
+    throw section.Error(
+        "telemetry_hz", ShortestNumber(limb->telemetry_hz),
+        "plant.rate_hz = " + ShortestNumber(rate_hz) + " divided by a whole number, or \"every_tick\"");
   }
-}
-
-LimbSection LimbOf(const TomlNode& root, double rate_hz) {
-  LimbSection limb;
-  SectionReader document(root, "");
-  ReadLimb(document.Section("limb"), rate_hz, &limb);
-  return limb;
 }
 
 model::ArmLink ReadLink(SectionReader section) {
@@ -113,8 +106,8 @@ void PutProcesses(const TomlNode& root, TomlNode* common) {
 
 void CheckJoint(const std::string& joint, const ProcessSection& process, const StackConfig& common) {
   if (std::find(common.joints.begin(), common.joints.end(), joint) != common.joints.end()) return;
-  throw KeyError(process.place, "process." + std::string(process.joint.empty() ? "joints" : "joint"), Quoted(joint),
-                 QuotedList(common.joints));
+  throw KeyError(process.place, "process." + std::string(process.joint.empty() ? "joints" : "joint"),
+                 Quoted(joint), QuotedList(common.joints));
 }
 
 // Each joint is run by one process, or by one stack of them.
@@ -126,8 +119,9 @@ void CheckProcesses(const StackConfig& common) {
       throw KeyError(process.place, "process.joint", Quoted(process.joint), "none for " + NameOf(process));
     }
     if (!whole && process.joint.empty()) {
-      throw KeyError(process.place, "process.program", NameOf(process) + " without a joint",
-                     "joint = \"NAME\" beside it, or hydro-limb, which has the joints that no other process has");
+      throw KeyError(
+          process.place, "process.program", NameOf(process) + " without a joint",
+          "joint = \"NAME\" beside it, or hydro-limb, which has the joints that no other process has");
     }
     if (!process.joint.empty()) CheckJoint(process.joint, process, common);
     if (process.role != "limb") continue;
@@ -171,11 +165,19 @@ TomlNode WholeDocument(const TomlNode& root, const LimbConfig& limb) {
       if (section != nullptr) joint.members.push_back({key, *section});
     }
   }
-  for (const char* key : {"model", "pressure", "position", "reference", "limits", "noise", "driver"}) whole.Erase(key);
+  for (const char* key : {"model", "pressure", "position", "reference", "limits", "noise", "driver"})
+    whole.Erase(key);
   return whole;
 }
 
 }  // namespace
+
+LimbSection ReadLimbSection(const TomlNode& root, double rate_hz, std::vector<AskedKey>* asked) {
+  LimbSection limb;
+  SectionReader document(root, "", asked);
+  ReadLimb(document.Section("limb"), rate_hz, &limb);
+  return limb;
+}
 
 std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common) {
   if (!process.joint.empty()) return {process.joint};
@@ -215,7 +217,7 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
     }
   }
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
-  const LimbSection limb = LimbOf(root, chosen->plant.rate_hz);
+  const LimbSection limb = ReadLimbSection(root, chosen->plant.rate_hz);
   if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
   return *chosen;
 }
@@ -246,7 +248,7 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
     limb.common.joints.push_back(joint.name);
     limb.common.bus.joint_suffixes.push_back(joint.config.bus.channel_suffix);
   }
-  limb.limb = LimbOf(root, limb.common.plant.rate_hz);
+  limb.limb = ReadLimbSection(root, limb.common.plant.rate_hz);
   limb.arm = ArmOf(root, limb.joints);
   CheckProcesses(limb.common);
   if (limb.arm) CheckArmIsWhole(limb.common);

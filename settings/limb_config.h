@@ -8,6 +8,7 @@
 
 #include "model/arm/arm_description.h"
 #include "settings/stack_config.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
 
@@ -39,6 +40,10 @@ struct LimbConfig {
   std::optional<model::ArmDescription> arm;
   std::vector<JointConfig> joints;
 };
+
+// The section [limb] of a document whose plant ticks at `rate_hz`; notes in `asked` (unless it is null) the keys that it may have.
+// Throws InputError.
+LimbSection ReadLimbSection(const TomlNode& root, double rate_hz, std::vector<AskedKey>* asked = nullptr);
 
 // Whether `file` is the configuration of a limb. Throws InputError.
 bool IsLimbFile(const std::string& file);

@@ -55,10 +55,10 @@ struct ModelSection {
 
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_suffix;     // appended to every channel name
+  std::string channel_suffix;               // appended to every channel name
   std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
-  std::string key_file;           // "": messages are not authenticated; docs/security.md
-  std::string resolved_key_file;  // path to read it from
+  std::string key_file;                     // "": messages are not authenticated; docs/security.md
+  std::string resolved_key_file;            // path to read it from
 };
 
 enum class TimeMode { kRealtime, kLockstep };

@@ -52,8 +52,8 @@ bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
 }
 
 // What is simulated, given where its messages go.
-using Simulation =
-    std::function<hydro::sim::SimulationResult(const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
+using Simulation = std::function<hydro::sim::SimulationResult(
+    const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
 
 Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of,
                         const std::string& machine_file) {

@@ -23,9 +23,10 @@ int main(int argc, char** argv) {
   hydro::tune::TuneRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
   line.AddPositional("CONFIG", &request.config, "FILE the stack's configuration (TOML)");
-  line.AddOption("--joint", &request.joint,
-                 "NAME of a configuration with [[joint]] sections, the joint to tune; -o then writes the stack of this "
-                 "joint alone");
+  line.AddOption(
+      "--joint", &request.joint,
+      "NAME of a configuration with [[joint]] sections, the joint to tune; -o then writes the stack of this "
+      "joint alone");
   line.AddOption("--goal", &request.goals,
                  "NAME=VALUE bandwidth_hz, settling_s (within 2 %, of step_rad), overshoot_percent, or "
                  "step_rad, the step "

@@ -145,7 +145,8 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
     for (const auto& joint : joints) {
       if (!joint->answered()) joint->Ask(clock.Utime());
     }
-    for (const auto until = clock.Now() + kRepeat; !All(joints, answered) && clock.Now() < until;) bus.HandleUntil(until);
+    for (const auto until = clock.Now() + kRepeat; !All(joints, answered) && clock.Now() < until;)
+      bus.HandleUntil(until);
   }
   const bool accepted = All(joints, [](const Asked& joint) { return joint.accepted(); });
   const std::string text = config.joints.empty() ? joints.front()->Text() : Answers(joints);

@@ -21,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr size_t kMostProcesses = 256;   // a stack has five; a flood of made-up ones is not kept
+constexpr size_t kMostProcesses = 256;  // a stack has five; a flood of made-up ones is not kept
 constexpr size_t kMostPartsOfAJoint = 8;
 constexpr auto kRepeat = 50ms;           // UDP may lose a message
 constexpr auto kUnheard = 500ms;         // for this long also when no process has been heard
@@ -69,7 +69,7 @@ class Presence {
   struct Process {
     std::string name;
     bool left = false;
-    bool local = false;  // it was found on this machine
+    bool local = false;                                 // it was found on this machine
     std::optional<std::pair<std::string, int32_t>> id;  // host and process id, where it has said so
   };
 

@@ -109,6 +109,22 @@ constexpr std::array kRows{
         .injected = "suspend:plant",
     },
     SafetyRow{
+        .id = "other_joint",
+        .fault =
+            "in a limb, a fault holds the voltage of another joint at zero, and `limb.on_joint_fault` is "
+            "\"all_to_zero\" (its default)",
+        .detected = "the limb, in the tick of the fault; a plant or limb in another process by `HYDRO_FAULT`",
+        .codes = "other_joint",
+        .within = {"5 ticks", 5},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V of all joints",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, when the other joint's fault has ended",
+        .tests = "limb/LimbTest.FaultOfOneHoldsTheOthers limb.LimbTest.test_a_fault_of_one_joint",
+        .not_injected = "hydro-torture runs single stacks",
+    },
+    SafetyRow{
         .id = "wall_clock",
         .fault = "the wall clock is changed",
         .detected = "not at all: no control, limit or watchdog reads it",

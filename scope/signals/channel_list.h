@@ -48,7 +48,7 @@ inline constexpr size_t kGhostColumns = 8;
 // Of the history of a role's loop: a row for each report.
 enum class LoopColumn : size_t { kLatencyP99, kMissed };
 inline constexpr size_t kLoopColumns = 2;
-inline constexpr double kLoopHold = 2.5;  // s: reports come once a second
+inline constexpr double kLoopHold = 2.5;    // s: reports come once a second
 inline constexpr double kSampleHold = 2.5;  // intervals of a limb's telemetry
 
 struct ChannelInfo {

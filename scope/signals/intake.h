@@ -28,7 +28,8 @@ class Intake {
   void Take(std::string_view channel, const uint8_t* data, int size, int64_t utime);
 
   // The same on the channels of the limb whose joint this stack is: what concerns all joints counts as this one's too.
-  void TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size, int64_t utime);
+  void TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size,
+                  int64_t utime);
 
   // No more is coming for now: rows that wait for answers are complete.
   void Flush() { ticks_.Flush(); }

@@ -97,7 +97,8 @@ std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std
       stack->second->intake().Take(event.channel, event.data, event.size, event.utime);
       continue;
     }
-    for (const auto& one : stacks) one->intake().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
+    for (const auto& one : stacks)
+      one->intake().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
   }
   std::vector<std::unique_ptr<Run>> runs;
   for (const auto& stack : stacks) {

@@ -58,7 +58,8 @@ struct Run {
   double rate_hz = 0;
   bool of_a_limb = false;    // hydro-limb sends it: states may be missing on purpose (limb.telemetry_hz)
   int64_t sample_ticks = 1;  // from one state to the next; 1: all are there
-  std::shared_ptr<const settings::StackConfig> listened = {};  // of CONFIG, for a live run and the one before it; null: a log's
+  std::shared_ptr<const settings::StackConfig> listened =
+      {};  // of CONFIG, for a live run and the one before it; null: a log's
   History ticks;
   History ghost;
   std::map<std::string, History> loops;            // by role

@@ -18,7 +18,8 @@ Written from the table of messages ([bus/messages.h](../bus/messages.h)) and the
 `build/tests/messages_page --write docs/messages.md lcmtypes`; a test fails when it is not current. A new message
 is one `.lcm` file and one row of the table.
 
-Every message travels on a channel of its own, whose name ends in the stack's `bus.channel_suffix`. Units are those of the model
+Every message travels on a channel of its own, whose name ends in the stack's `bus.channel_suffix`, of a limb's joint
+in `_` and its name behind that ([limbs.md](limbs.md)). Units are those of the model
 file; the paper's are in, lbf, s, psi, rad and V. `utime` and `session` differ from run to run and are not compared between runs.
 *Sealed* messages carry a proof of their sender where the stack has a key ([security.md](security.md)). *Numbered* messages are
 counted by their receivers: a gap in `sequence` is a lost message.

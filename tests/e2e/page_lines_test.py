@@ -106,6 +106,14 @@ PAGES = {
         "rig$": Not("two hosts", "hosts"),
         "desk$": Not("two hosts", "hosts"),
     }),
+    "limbs.md": (None, "", {
+        "hydro-launch config/limb.toml --time realtime": As("hydro-launch config/limb.toml --time realtime --duration 1 --log out/limb.lcmlog", SHORT),
+        "hydro-log summary out/limb": Prints("a limb with 2 joints"),
+        "hydro-log compare b.lcmlog": Prints("identical"),
+        "hydro-launch rearm config/limb.toml      ": As("hydro-launch rearm config/limb.toml", "none runs", 1),
+        "hydro-launch rearm config/limb.toml --joint": As("hydro-launch rearm config/limb.toml --joint knee", "none runs", 1),
+        "hydro-launch stop config/limb.toml": As("hydro-launch stop config/limb.toml", "none runs", 1),
+    }),
     "network.md": (None, "", {
         "hydro-launch CONFIG --doctor  ": As("hydro-launch config/demo.toml --doctor || test $? = 1", "a machine may have problems", 0, "multicast route"),
         "hydro-launch CONFIG --doctor --host": As("hydro-launch config/demo.toml --doctor --host rig", "no process of this name", 2, "rig"),

@@ -20,8 +20,7 @@ class ExportRunsTest : public log::LogTest {
  protected:
   std::vector<ExportedRun> Read(const std::vector<std::string>& files, const Selection& selection) {
     said_.clear();
-    return ReadRuns(files, {}, selection, false,
-                    [&](const std::string& line) { said_.push_back(line); });
+    return ReadRuns(files, {}, selection, false, [&](const std::string& line) { said_.push_back(line); });
   }
   std::string Write(const std::string& name, const runs::RunMessages& run) {
     log::WriteRun(Path(name), run, "");

@@ -33,8 +33,7 @@ int64_t CountEvents(const std::string& file) {
 
 void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
   runs::RunLog log, strict;
-  const bool accepted =
-      Accepts([&] { log = runs::ReadRunLog(file, {}, runs::Undecodable::kLeftOut); });
+  const bool accepted = Accepts([&] { log = runs::ReadRunLog(file, {}, runs::Undecodable::kLeftOut); });
   if (Accepts([&] { strict = runs::ReadRunLog(file); })) {
     Promise(accepted, "who leaves messages out takes what the strict take");
   }

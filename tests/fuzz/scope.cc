@@ -53,8 +53,7 @@ void Scope(const uint8_t* data, size_t size) {
     run.ticks.Append(tick * 1e-3, row.data());
   }
   run.events.Add({0, 0.05, "fault", "plant", "code", "text"});
-  scope::OperatorDesk desk(
-      nullptr, false, [](const std::function<void()>& work) { work(); }, {});
+  scope::OperatorDesk desk(nullptr, false, [](const std::function<void()>& work) { work(); }, {});
   NoGhost ghost;
   auto now = std::chrono::steady_clock::time_point() + std::chrono::hours(1);
   const scope::LiveContext context{.runs = runs,

@@ -251,5 +251,34 @@ TEST_F(HydroLogTest, DiskFull) {
   EXPECT_THAT(outcome.err, HasSubstr("/dev/full: cannot be written: No space left on device"));
 }
 
+// Tests that a log with two joints is read whole without --joint, and one joint with it.
+TEST_F(HydroLogTest, Joints) {
+  log::WriteRun(Path("hip"), log::SampleRun(9), "_hip");
+  log::WriteRun(Path("knee"), log::SampleRun(5), "_knee");
+  std::vector<log::EventContents> both = log::ReadEvents(Path("hip"));
+  for (const log::EventContents& event : log::ReadEvents(Path("knee"))) both.push_back(event);
+  const std::string limb = Path("limb");
+  log::WriteEvents(limb, both);
+  for (const char* verb : {"info", "summary"}) {
+    const Outcome all = HydroLog({verb, limb});
+    EXPECT_EQ(all.exit_code, 0) << all.err;
+    EXPECT_THAT(all.out, AllOf(HasSubstr("a limb with 2 joints"), HasSubstr("\nhip "), HasSubstr("\nknee ")));
+    const Outcome one = HydroLog({verb, limb, "--joint", "knee"});
+    EXPECT_EQ(one.exit_code, 0) << one.err;
+    EXPECT_THAT(one.out, testing::Not(HasSubstr("a limb with")));
+    EXPECT_EQ(one.err, "");
+  }
+  EXPECT_EQ(HydroLog({"compare", limb, limb}).out, "identical\n");
+  EXPECT_EQ(HydroLog({"compare", limb, Path("knee"), "--joint", "knee"}).out, "identical\n");
+  EXPECT_EQ(HydroLog({"export", limb, "-o", Path("limb.csv")}).exit_code, 0);
+  EXPECT_THAT(log::ReadBytes(Path("limb.csv")),
+              AllOf(StartsWith("run,"), HasSubstr("\nlimb_hip,"), HasSubstr("\nlimb_knee,")));
+  EXPECT_EQ(HydroLog({"export", limb, "--joint", "hip", "-o", Path("hip.csv")}).exit_code, 0);
+  EXPECT_THAT(log::ReadBytes(Path("hip.csv")), StartsWith("time_s,"));
+  const Outcome wrong = HydroLog({"summary", limb, "--joint", "ankle"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(wrong.err, "hydro-log: " + limb + ": --joint: found \"ankle\", allowed \"hip\" or \"knee\"\n");
+}
+
 }  // namespace
 }  // namespace hydro::hydro_log

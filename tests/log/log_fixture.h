@@ -174,7 +174,8 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
 // Tick by tick, in a plausible order of arrival.
 inline void WriteRun(const std::string& file, const runs::RunMessages& run, const std::string& suffix = "",
                      const std::string& config_text = "[plant]\nrate_hz = 1000\n",
-                     const std::string& model_text = "name = \"Table 1\"\n") {
+                     const std::string& model_text = "name = \"Table 1\"\n",
+                     const std::string& program = "hydro-sim") {
   const bus::Channels channels(suffix);
   ForgetRead(file);  // each call stands for another process
   LogWriter writer(file, Opening::kTemporary);
@@ -184,7 +185,7 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
   description.config_text = config_text;
   description.model_file = "table1.toml";
   description.model_text = model_text;
-  description.program = "hydro-sim";
+  description.program = program;
   description.version = "1.2.3";
   description.host = "bench";
   description.rate_hz = 1000;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/scope/decoded_bins.h"
 #include "tests/scope/made_run.h"
@@ -206,6 +207,25 @@ TEST_F(LiveConversationTest, FollowsARestart) {
   }
   EXPECT_TRUE(restarted);
   EXPECT_TRUE(listed);
+}
+
+// Tests that of a limb each joint is a live run, with a clock of its own, and begins anew by itself.
+TEST_F(LiveConversationTest, TheJointsOfALimb) {
+  auto& knee = runs_.StartLive("knee", "_knee", 1000, 1 << 20);
+  AddTick(&knee, 0, 1);
+  const auto conversation = Converse();
+  std::set<int> clocks;
+  for (const json& text : Texts(conversation.get())) {
+    if (text["op"] == "clock") clocks.insert(text["run"].get<int>());
+  }
+  EXPECT_EQ(clocks, (std::set<int>{0, 1}));
+  auto& again = runs_.RestartLive(1);
+  EXPECT_EQ(again.id, 1u);
+  EXPECT_EQ(again.suffix, "_knee");
+  EXPECT_EQ(runs_.AllLive().size(), 2u);
+  EXPECT_EQ(runs_.All().size(), 3u);
+  EXPECT_FALSE(runs_.Close(1));
+  EXPECT_TRUE(runs_.Close(2));  // the knee's run before
 }
 
 }  // namespace

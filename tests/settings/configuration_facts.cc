@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "base/input_error.h"
+#include "settings/limb_config.h"
 #include "settings/stack_sections.h"
 
 namespace hydro::settings {
@@ -44,6 +45,7 @@ struct Probe {
 
 std::vector<Probe> Probes() {
   std::vector<Probe> probes = {{"", "", ""},
+                               {"", "", "[[process]]\nprogram = \"hydro-limb\"\n"},
                                {"", "", "[[process]]\nprogram = \"hydro-plant\"\n"},
                                {"", "", "[[process]]\ncommand = [\"./pid.py\"]\nrole = \"position_ctrl\"\n"}};
   for (const char* kind : {"steps", "sine", "square", "chirp", "csv", "planner"}) {
@@ -89,6 +91,15 @@ TomlNode& Inner(TomlNode& root, const std::string& section) {
   return *node;
 }
 
+// All sections, those of a limb too.
+void ReadAll(const TomlNode& root, std::vector<AskedKey>* asked) {
+  StackConfig config;
+  TomlNode stack = root;
+  stack.Erase("limb");
+  ReadSections(stack, "", &config, asked);
+  ReadLimbSection(root, config.plant.rate_hz, asked);
+}
+
 // What the reader says is allowed when the key holds a date.
 std::string AllowedOf(const Probe& probe, const AskedKey& asked) {
   TomlNode root = ParseToml(probe.text, "probe");
@@ -98,8 +109,7 @@ std::string AllowedOf(const Probe& probe, const AskedKey& asked) {
   const std::string dotted = asked.section.empty() ? asked.key : asked.section + "." + asked.key;
   std::string said = "nothing";
   try {
-    StackConfig ignored;
-    ReadSections(root, "", &ignored);
+    ReadAll(root, nullptr);
   } catch (const InputError& error) {
     said = error.what();
     const std::string found = ": " + dotted + ": found a date or time, allowed ";
@@ -206,6 +216,8 @@ const std::vector<HandWritten>& HandWrittenDefaults() {
       {"driver.SENSOR.maximum_V", "the board knows it"},
       {"scope.hosts", "a list"},
       {"scope.origins", "a list"},
+      {"limb.telemetry_hz", "a word or a number, and at most the plant's rate"},
+      {"process.joints", "a list"},
       {"process.program", "required unless there is a command"},
       {"process.command", "a list"},
       {"process.role", "required only with a command"},
@@ -245,8 +257,7 @@ std::vector<KeyFacts> ConfigurationFacts() {
   std::vector<KeyFacts> all;
   for (const Probe& probe : Probes()) {
     std::vector<AskedKey> keys;
-    StackConfig ignored;
-    ReadSections(ParseToml(probe.text, "probe"), "", &ignored, &keys);
+    ReadAll(ParseToml(probe.text, "probe"), &keys);
     for (const AskedKey& asked : keys) {
       if (asked.section.empty()) continue;  // the sections themselves: each has keys
       // What is allowed may differ with the section's kind; elsewhere one probe tells it.

@@ -1,0 +1,160 @@
+#include "launch/logic/operator_request.h"
+
+#include <gmock/gmock.h>
+
+#include <hydro/process_status_t.hpp>
+#include <hydro/rearm_t.hpp>
+#include <hydro/state_t.hpp>
+#include <hydro/stop_t.hpp>
+#include <memory>
+
+#include "bus/channels.h"
+#include "bus/in_process_bus.h"
+
+namespace hydro::launch {
+namespace {
+
+using testing::HasSubstr;
+
+// Something sends whenever the bus is looked at.
+class LivelyBus : public bus::InProcessBus {
+ public:
+  explicit LivelyBus(bus::SimulatedClock* clock) : InProcessBus(clock), clock_(*clock) {}
+  int HandleUntil(TimePoint deadline) override {
+    for (const auto& send : senders) send();
+    const int handled = InProcessBus::HandleUntil(deadline);
+    clock_.AdvanceTo(deadline);
+    return handled;
+  }
+  std::vector<std::function<void()>> senders;
+
+ private:
+  bus::SimulatedClock& clock_;
+};
+
+// A plant of one joint: its states, and its answer to a re-arm.
+class FakePlant {
+ public:
+  FakePlant(LivelyBus& bus, const std::string& suffix, int64_t session, int8_t kind, const std::string& text)
+      : channels_(suffix) {
+    bus.senders.push_back([this, &bus, session] {
+      state_t state{};
+      state.session = session;
+      state.tick = ++tick_;
+      bus.Publish(channels_.Of<state_t>(), state);
+    });
+    bus.Subscribe<rearm_t>(channels_.Of<rearm_t>(), [=, this, &bus](const rearm_t& request) {
+      if (request.kind != rearm_t::REQUEST || request.addressee != session) return;
+      ++asked_;
+      rearm_t answer = request;
+      answer.session = session;
+      answer.addressee = request.session;
+      answer.kind = kind;
+      answer.source = "plant";
+      answer.text = text;
+      bus.Publish(channels_.Of<rearm_t>(), answer);
+    });
+    bus.Subscribe<stop_t>(channels_.Of<stop_t>(), [=, this, &bus](const stop_t&) {
+      ++stopped_;
+      process_status_t status{};
+      status.session = session;
+      status.role = "plant";
+      status.host = "far";
+      status.pid = 7;  // the limb's: that of all its joints
+      status.state = process_status_t::DONE;
+      bus.Publish(channels_.Of<process_status_t>(), status);
+      bus.senders.clear();
+    });
+  }
+
+  int asked() const { return asked_; }
+  int stopped() const { return stopped_; }
+
+ private:
+  const bus::Channels channels_;
+  int64_t tick_ = 0;
+  int asked_ = 0;
+  int stopped_ = 0;
+};
+
+class NoProcesses : public LocalProcesses {
+ public:
+  int found() const override { return 0; }
+  bool Found(int) const override { return false; }
+  std::string Left() override { return ""; }
+};
+
+class OperatorRequestTest : public ::testing::Test {
+ protected:
+  OperatorRequestTest() {
+    config_.joints = {"hip", "knee"};
+    config_.bus.joint_suffixes = {"_hip", "_knee"};
+  }
+  FakePlant& Add(const std::string& suffix, int64_t session, int8_t kind, const std::string& text) {
+    return *plants_.emplace_back(std::make_unique<FakePlant>(bus_, suffix, session, kind, text));
+  }
+
+  bus::SimulatedClock clock_;
+  LivelyBus bus_{&clock_};
+  settings::StackConfig config_;
+  std::vector<std::unique_ptr<FakePlant>> plants_;
+};
+
+// Tests that a limb's joints are asked together, and that their answers are one: the same ones side by side.
+TEST_F(OperatorRequestTest, RearmsAllJoints) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "no fault is latched");
+  Add("_knee", 2, rearm_t::ACCEPTED, "no fault is latched");
+  const OperatorResult result = RearmStack(bus_, clock_, config_);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.text, "re-armed: hip, knee: no fault is latched");
+  EXPECT_GE(plants_[0]->asked(), 1);
+  EXPECT_EQ(plants_[1]->asked(), plants_[0]->asked());
+}
+
+// Tests that one refusal fails the whole, and comes first.
+TEST_F(OperatorRequestTest, ARefusalFailsTheWhole) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
+  Add("_knee", 2, rearm_t::REFUSED, "pressure_limit persists");
+  const OperatorResult result = RearmStack(bus_, clock_, config_);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.text, "knee: refused by the plant: pressure_limit persists; hip: ended pressure_limit");
+}
+
+// Tests that a joint that is not heard keeps all others from being re-armed.
+TEST_F(OperatorRequestTest, AMissingJointKeepsTheOthersFromIt) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
+  EXPECT_THAT(RearmStack(bus_, clock_, config_).text, HasSubstr("no plant or driver of knee is heard on "));
+  EXPECT_EQ(plants_[0]->asked(), 0);
+}
+
+// Tests that a joint is re-armed by itself where it alone is meant.
+TEST_F(OperatorRequestTest, OneJointAlone) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
+  config_.joints.clear();
+  config_.bus.joint_suffixes.clear();
+  config_.bus.channel_suffix = "_hip";
+  EXPECT_EQ(RearmStack(bus_, clock_, config_).text, "re-armed: ended pressure_limit");
+}
+
+// Tests that a second plant on a joint's channels is named with the joint.
+TEST_F(OperatorRequestTest, TwoPlantsOfAJoint) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
+  Add("_knee", 2, rearm_t::ACCEPTED, "");
+  Add("_knee", 3, rearm_t::ACCEPTED, "");
+  EXPECT_THAT(RearmStack(bus_, clock_, config_).text, HasSubstr("knee: heard the states of 2 plants"));
+}
+
+// Tests that a stop reaches each joint on its channels, and that joints of one process count as one.
+TEST_F(OperatorRequestTest, StopsAllJoints) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
+  Add("_knee", 2, rearm_t::ACCEPTED, "");
+  NoProcesses none;
+  const OperatorResult result = StopOverBus(bus_, clock_, config_, none);
+  EXPECT_EQ(result.exit_code, 0) << result.text;
+  EXPECT_EQ(result.text, "stopped: 1 process has ended");
+  EXPECT_GE(plants_[0]->stopped(), 1);
+  EXPECT_GE(plants_[1]->stopped(), 1);
+}
+
+}  // namespace
+}  // namespace hydro::launch
