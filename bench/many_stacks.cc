@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/shared_results.h"
 #include "base/text_file.h"
+#include "bench/shared_results.h"
 #include "bus/udpm/open_udpm_bus.h"
 #include "limb/limb_app.h"
 #include "plant/plant_app.h"
@@ -207,9 +207,10 @@ settings::LimbConfig LimbOf(int joints, const Options& options) {
   const std::string file = "/tmp/many_stacks-" + std::to_string(getpid()) + ".toml";
   std::ofstream(file) << text;
   const settings::LimbConfig limb = settings::LoadLimbConfig(
-      file, {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
-             "plant.rate_hz=" + std::to_string(options.rate), "limits.stale_input_s=5", "bus.url=" + FreeBusUrl(),
-             "model.file=" + (config.parent_path() / "models/table1.toml").string()});
+      file,
+      {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
+       "plant.rate_hz=" + std::to_string(options.rate), "limits.stale_input_s=5", "bus.url=" + FreeBusUrl(),
+       "model.file=" + (config.parent_path() / "models/table1.toml").string()});
   std::filesystem::remove(file);
   return limb;
 }
@@ -247,23 +248,27 @@ pid_t ForkLimb(const settings::LimbConfig& config, const Options& options, int c
 // Many joints in a process on one core, and at the same time one joint on the other: whatever the machine does to one of
 // them, it is likely to do to the other.
 void Limbs(const Options& options) {
-  std::printf("\nlimbs at %g Hz: all joints in one process on core 0, telemetry at 50 Hz; beside it, at the same time, one "
-              "joint on core 1\n",
-              options.rate);
-  std::printf("%7s %8s %10s %14s | %15s %16s\n", "joints", "missed", "late p99", "us/joint/tick", "missed beside",
-              "late p99 beside");
+  std::printf(
+      "\nlimbs at %g Hz: all joints in one process on core 0, telemetry at 50 Hz; beside it, at the same "
+      "time, one "
+      "joint on core 1\n",
+      options.rate);
+  std::printf("%7s %8s %10s %14s | %15s %16s\n", "joints", "missed", "late p99", "us/joint/tick",
+              "missed beside", "late p99 beside");
   std::vector<int> counts;
   for (int joints = 1; joints < options.joints; joints *= 4) counts.push_back(joints);
   for (int round = 0; round < kRounds; ++round) counts.push_back(options.joints);
   for (const int joints : counts) {
     SharedResults<LimbResult> results(2);
     const settings::LimbConfig many = LimbOf(joints, options), one = LimbOf(1, options);
-    const pid_t children[] = {ForkLimb(many, options, 0, &results[0]), ForkLimb(one, options, 1, &results[1])};
+    const pid_t children[] = {ForkLimb(many, options, 0, &results[0]),
+                              ForkLimb(one, options, 1, &results[1])};
     for (const pid_t child : children) waitpid(child, nullptr, 0);
     const auto share = [](const LimbResult& r) {
       return r.ticks > 0 ? 100 * static_cast<double>(r.missed) / static_cast<double>(r.ticks) : 100.0;
     };
-    std::printf("%7d %7.2f%% %10.0f %14.2f | %14.2f%% %16.0f\n", joints, share(results[0]), results[0].late_p99_us,
+    std::printf("%7d %7.2f%% %10.0f %14.2f | %14.2f%% %16.0f\n", joints, share(results[0]),
+                results[0].late_p99_us,
                 1e6 * results[0].loop_s / static_cast<double>(joints) /
                     static_cast<double>(results[0].ticks - results[0].missed),
                 share(results[1]), results[1].late_p99_us);
@@ -318,7 +323,8 @@ int main(int argc, char** argv) {
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("many_stacks", [&] {
     if (options.most < 1 || options.seconds < 1 || options.rate < 1 || options.joints < 1) {
-      throw hydro::InputError("--most, --seconds, --rate and --joints: found less than 1, allowed is 1 or more");
+      throw hydro::InputError(
+          "--most, --seconds, --rate and --joints: found less than 1, allowed is 1 or more");
     }
     hydro::Simulated(options);
     hydro::SimulatedLimb(options);

@@ -214,8 +214,7 @@ void InProcessBus::ShowTaps(const Slot& slot) {
     channel.type->encode(slot.message.get(), encoded_.data(), static_cast<int>(encoded_.size()));
     bytes = &encoded_;
   }
-  const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()),
-                           stamps_->Utime()};
+  const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()), stamps_->Utime()};
   for (size_t i = 0; i < taps_.size(); ++i) taps_[i](message);
 }
 

@@ -46,7 +46,8 @@ bool AwaitsLogger(const settings::ProcessSection& process) {
 }
 
 // Which joints a limb's process has, where it does not have them all.
-std::vector<std::string> ChosenJoints(const settings::ProcessSection& process, const settings::StackConfig& config) {
+std::vector<std::string> ChosenJoints(const settings::ProcessSection& process,
+                                      const settings::StackConfig& config) {
   std::vector<std::string> joints = settings::JointsOf(process, config);
   if (process.role != "limb" || joints == config.joints) return {};
   return joints;

@@ -25,7 +25,8 @@ void CheckWanted(const settings::LimbConfig& config, const std::vector<std::stri
     throw InputError("--joints: found " + Quoted(name) + ", allowed " + QuotedList(names));
   }
   if (config.arm && !wanted.empty() && wanted.size() < names.size()) {
-    throw InputError("--joints: found some of the joints of an [arm], allowed all of them: it couples their loads");
+    throw InputError(
+        "--joints: found some of the joints of an [arm], allowed all of them: it couples their loads");
   }
 }
 
@@ -33,7 +34,8 @@ void CheckSimulated(const settings::JointConfig& joint) {
   if (!joint.config.driver) return;
   throw InputError(joint.config.file + ": joint." + joint.name +
                    ".driver: found a board, allowed is a simulated joint: one on a board runs as processes "
-                   "of its own ([[process]] joint = \"" + joint.name + "\")");
+                   "of its own ([[process]] joint = \"" +
+                   joint.name + "\")");
 }
 
 }  // namespace
@@ -52,8 +54,8 @@ Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
         options.clock == nullptr ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
     auto rig = config.arm ? std::make_unique<plant::SimulatedRig>(joint.config, std::move(machines[i]))
                           : std::make_unique<plant::SimulatedRig>(joint.config);
-    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), clock_ ? &*clock_ : nullptr, options.program,
-                                              options.heartbeat));
+    joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), clock_ ? &*clock_ : nullptr,
+                                              options.program, options.heartbeat));
   }
 }
 
@@ -152,7 +154,8 @@ void Limb::NoteEnds() {
       joint->End();
     }
   }
-  over_ = over_ || std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->ended(); });
+  over_ =
+      over_ || std::all_of(joints_.begin(), joints_.end(), [](const auto& joint) { return joint->ended(); });
 }
 
 int Limb::End(const std::function<void()>& after_each) {

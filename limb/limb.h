@@ -17,8 +17,8 @@ namespace hydro::limb {
 struct LimbOptions {
   std::vector<std::string> joints;  // those of the configuration that are run here; empty: all
   std::string program = "hydro-limb";
-  const bus::Clock* clock = nullptr;      // null: lockstep on simulated clocks
-  std::function<bool()> heartbeat = {};   // as PlantApp's
+  const bus::Clock* clock = nullptr;     // null: lockstep on simulated clocks
+  std::function<bool()> heartbeat = {};  // as PlantApp's
 };
 
 class Limb {

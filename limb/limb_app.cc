@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 constexpr char kRole[] = "limb";
 constexpr auto kDescriptionPeriod = 1s;
 constexpr auto kFarewellPause = 500us;  // between the ends of two joints
-constexpr auto kWait = 50ms;  // how long a wait for others lasts before it looks around
+constexpr auto kWait = 50ms;            // how long a wait for others lasts before it looks around
 // Lockstep: by how many ticks a limb of one joint may run ahead of a logger; about half of what Linux's default receive buffer
 // (208 KiB) holds. A logger reports four times as often (logger_app.cc).
 constexpr int64_t kLoggerWindow = 64;
@@ -39,7 +39,8 @@ std::function<bool()> SharedHeartbeat(const std::function<bool()>& source, int64
 }
 
 // Those whose faults matter here.
-std::vector<settings::Sibling> JointsElsewhere(const settings::LimbConfig& config, const std::vector<std::string>& here) {
+std::vector<settings::Sibling> JointsElsewhere(const settings::LimbConfig& config,
+                                               const std::vector<std::string>& here) {
   std::vector<settings::Sibling> elsewhere;
   if (here.empty() || config.limb.on_joint_fault == settings::OnJointFault::kOthersGoOn) return elsewhere;
   for (const settings::JointConfig& joint : config.joints) {

@@ -23,7 +23,8 @@ consteval bool IsOneOf() {
 template <class Message>
 constexpr Passage PassageOfType() {
   if (bus::RowOf<Message>().part != bus::LoopPart::kNone) return Passage::kSampled;
-  if (IsOneOf<Message, fault_t, active_faults_t, stop_t, output_left_t, rearm_t, process_status_t, tuning_answer_t>()) {
+  if (IsOneOf<Message, fault_t, active_faults_t, stop_t, output_left_t, rearm_t, process_status_t,
+              tuning_answer_t>()) {
     return Passage::kAtOnce;
   }
   if (IsOneOf<Message, tuning_request_t, arm_plan_t, log_progress_t, introduction_t, configuration_t>()) {
@@ -36,12 +37,14 @@ constexpr Passage PassageOfType() {
 constexpr int kSkippedPlace = 8 + static_cast<int>(offsetof(state_t, skipped_ticks));
 
 int64_t NumberAt(const bus::RawMessage& message, int place) {
-  return place >= 0 && message.size >= place + 8 ? static_cast<int64_t>(LoadBigEndian64(message.data + place)) : -1;
+  return place >= 0 && message.size >= place + 8 ? static_cast<int64_t>(LoadBigEndian64(message.data + place))
+                                                 : -1;
 }
 
 }  // namespace
 
-Telemetry::Telemetry(bus::Bus& out, int64_t interval) : out_(out), interval_(interval), queue_(kFirstCapacity) {}
+Telemetry::Telemetry(bus::Bus& out, int64_t interval)
+    : out_(out), interval_(interval), queue_(kFirstCapacity) {}
 
 void Telemetry::Add(bus::Bus& joint, const std::string& suffix, int64_t phase,
                     std::function<bool(int64_t session)> is_own) {
@@ -81,7 +84,8 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
 // Those in between are not missing, so what goes out is counted anew: receivers look for gaps. A state tells of all ticks that were
 // skipped since the one before it.
 void Telemetry::OnSample(const Stack& stack, Channel& channel, const bus::RawMessage& message) {
-  if (channel.part == bus::LoopPart::kState) channel.skipped += std::max<int64_t>(0, NumberAt(message, kSkippedPlace));
+  if (channel.part == bus::LoopPart::kState)
+    channel.skipped += std::max<int64_t>(0, NumberAt(message, kSkippedPlace));
   const int64_t slot = (NumberAt(message, channel.places.tick) + stack.phase) / interval_;
   const auto size = static_cast<size_t>(message.size);
   if (interval_ > 1 && slot == channel.slot) {

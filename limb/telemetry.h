@@ -47,9 +47,9 @@ class Telemetry {
     bus::LoopPart part = bus::LoopPart::kNone;
     Passage passage = Passage::kNever;
     bus::NumberPlaces places;
-    int64_t slot = -1;      // of the newest sample
-    int64_t sequence = 0;   // of the next
-    int64_t skipped = 0;    // ticks, of the states since the newest sample
+    int64_t slot = -1;                 // of the newest sample
+    int64_t sequence = 0;              // of the next
+    int64_t skipped = 0;               // ticks, of the states since the newest sample
     std::vector<uint8_t> newest = {};  // the message, where it was left out; else empty
   };
   struct Stack {

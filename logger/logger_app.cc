@@ -36,7 +36,8 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       recording_({options.file, options.rotate_bytes, static_cast<size_t>(config.logger.memory_mb * 1e6)},
                  participant_.channels().Of<run_description_t>(), clock),
       limb_(!config.joints.empty()),
-      progress_ticks_(std::max<int64_t>(1, kProgressTicks / std::max<int64_t>(1, std::ssize(config.joints)))) {
+      progress_ticks_(
+          std::max<int64_t>(1, kProgressTicks / std::max<int64_t>(1, std::ssize(config.joints)))) {
   FindStacks(config);
   // A limb's messages come from one process, in order.
   if (config.time.mode == settings::TimeMode::kLockstep && !limb_) {
@@ -53,7 +54,8 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
 }
 
 void LoggerApp::FindStacks(const settings::StackConfig& config) {
-  for (const std::string& suffix : settings::JointSuffixes(config)) stacks_.push_back({bus::Channels(suffix)});
+  for (const std::string& suffix : settings::JointSuffixes(config))
+    stacks_.push_back({bus::Channels(suffix)});
   for (size_t i = 0; i < stacks_.size(); ++i) {
     bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>& row) {
       if (row.part != bus::LoopPart::kNone) stack_of_channel_.emplace(stacks_[i].channels.Of<Message>(), i);

@@ -82,8 +82,8 @@ class LoggerApp : public process::App {
   int64_t received_ = 0;
   int64_t largest_queue_ = 0;  // since the last statistics report
   int64_t largest_queue_total_ = 0;
-  std::vector<Stack> stacks_;                                           // one, or a limb's joints
-  std::unordered_map<std::string_view, size_t> stack_of_channel_;       // of the loops
+  std::vector<Stack> stacks_;                                      // one, or a limb's joints
+  std::unordered_map<std::string_view, size_t> stack_of_channel_;  // of the loops
   const bool limb_;
   const int64_t progress_ticks_;
   int64_t state_tick_ = -1;  // newest tick received of every stack

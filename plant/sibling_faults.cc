@@ -5,7 +5,8 @@
 
 namespace hydro::plant {
 
-SiblingFaults::SiblingFaults(process::Participant& participant, const std::vector<settings::Sibling>& siblings)
+SiblingFaults::SiblingFaults(process::Participant& participant,
+                             const std::vector<settings::Sibling>& siblings)
     : participant_(participant) {
   bus::Bus& bus = participant.bus();
   for (const settings::Sibling& sibling : siblings) {
@@ -15,12 +16,15 @@ SiblingFaults::SiblingFaults(process::Participant& participant, const std::vecto
     bus.Subscribe<fault_t>(channels.Of<fault_t>(), [this, &heard](const fault_t& fault) {
       heard.faults.Observe(fault, participant_.clock().Now());
     });
-    bus.Subscribe<active_faults_t>(channels.Of<active_faults_t>(), [this, &heard](const active_faults_t& active) {
-      heard.faults.Observe(active, participant_.clock().Now());
-    });
-    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [&heard](const process_status_t& status) {
-      if (process::HasLeft(status)) heard.faults.ForgetSession(status.session);
-    });
+    bus.Subscribe<active_faults_t>(channels.Of<active_faults_t>(),
+                                   [this, &heard](const active_faults_t& active) {
+                                     heard.faults.Observe(active, participant_.clock().Now());
+                                   });
+    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
+                                    [&heard](const process_status_t& status) {
+                                      if (process::HasLeft(status))
+                                        heard.faults.ForgetSession(status.session);
+                                    });
   }
 }
 

@@ -21,7 +21,8 @@ class ActuatorAlone final : public SimulatedMachine {
     return options;
   }
 
-  std::unique_ptr<trajectory::Trajectory> motion_;  // of a driven shaft; declared first, actuator_ points to it
+  std::unique_ptr<trajectory::Trajectory>
+      motion_;  // of a driven shaft; declared first, actuator_ points to it
   model::Actuator actuator_;
   double voltage_ = 0;
 };

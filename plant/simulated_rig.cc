@@ -7,7 +7,8 @@
 
 namespace hydro::plant {
 
-SimulatedRig::SimulatedRig(const settings::StackConfig& config) : SimulatedRig(config, MakeActuator(config)) {}
+SimulatedRig::SimulatedRig(const settings::StackConfig& config)
+    : SimulatedRig(config, MakeActuator(config)) {}
 
 SimulatedRig::SimulatedRig(const settings::StackConfig& config, std::unique_ptr<SimulatedMachine> machine)
     : noise_(config.noise),

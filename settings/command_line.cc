@@ -205,7 +205,8 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
         if (seed < 0) Refuse(name, text, "a whole number of at least 0");
         return "noise.seed=" + std::to_string(seed);
       });
-  add("--joint", "NAME of a configuration with [[joint]] sections, the stack of this joint; as --set joint=NAME",
+  add("--joint",
+      "NAME of a configuration with [[joint]] sections, the stack of this joint; as --set joint=NAME",
       [](const std::string& name, const std::string& text) {
         return "joint=" + Filled(name, text, "NAME of a [[joint]]");
       });

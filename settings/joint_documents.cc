@@ -21,14 +21,15 @@ constexpr std::array kOfTheWhole{"joint", "limb", "arm"};
 constexpr size_t kLongestName = 24;
 
 bool IsPlain(const std::string& name) {
-  return !name.empty() && name.size() <= kLongestName && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-');
-  });
+  return !name.empty() && name.size() <= kLongestName &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-'); });
 }
 
 std::string NameOf(const TomlNode& joint) {
   constexpr char kAllowed[] = "a name of up to 24 letters, digits, underscores and hyphens";
-  if (!joint.is(TomlNode::Kind::kTable)) throw KeyError(joint.place, "joint", joint.Shown(), "sections [[joint]]");
+  if (!joint.is(TomlNode::Kind::kTable))
+    throw KeyError(joint.place, "joint", joint.Shown(), "sections [[joint]]");
   const TomlNode* name = joint.Find("name");
   if (name == nullptr) throw KeyError(joint.place, "joint.name", "nothing", kAllowed);
   if (!name->is(TomlNode::Kind::kString) || !IsPlain(name->text)) {
@@ -146,8 +147,8 @@ std::optional<std::string> TakeJointChoice(std::vector<std::string>* overrides) 
 std::vector<JointDocument> SplitJoints(const TomlNode& root, const std::vector<std::string>& overrides) {
   const std::vector<std::string> names = JointNames(root);
   const std::vector<std::string> of_all = OfAStack(overrides);
-  const bool seed_given = std::any_of(of_all.begin(), of_all.end(),
-                                      [](const auto& one) { return Concerns(one, "noise.seed"); });
+  const bool seed_given =
+      std::any_of(of_all.begin(), of_all.end(), [](const auto& one) { return Concerns(one, "noise.seed"); });
   TomlNode common = root;
   for (const char* key : kOfTheWhole) common.Erase(key);
   const TomlNode* bus = root.Find("bus");

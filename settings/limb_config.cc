@@ -65,11 +65,13 @@ std::optional<model::ArmDescription> ArmOf(const TomlNode& root, const std::vect
   section.Finish();
   const size_t count = links != nullptr && links->is(TomlNode::Kind::kArray) ? links->items.size() : 0;
   if (count != joints.size()) {
-    throw KeyError(root, "arm.link", std::to_string(count) + " links",
-                   std::to_string(joints.size()) + ", a section [[arm.link]] for each joint, from the base outwards");
+    throw KeyError(
+        root, "arm.link", std::to_string(count) + " links",
+        std::to_string(joints.size()) + ", a section [[arm.link]] for each joint, from the base outwards");
   }
   for (const TomlNode& link : links->items) {
-    if (!link.is(TomlNode::Kind::kTable)) throw KeyError(link.place, "arm.link", link.Shown(), "sections [[arm.link]]");
+    if (!link.is(TomlNode::Kind::kTable))
+      throw KeyError(link.place, "arm.link", link.Shown(), "sections [[arm.link]]");
     arm.links.push_back(ReadLink(section.Item(link, "arm.link")));
   }
   for (const JointConfig& joint : joints) {

@@ -60,7 +60,8 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   if (IsWholeLimb(options)) {
     for (const auto& [option, given] : {std::pair("--tuning", tunings_of), {"--machine", machine_file}}) {
       if (given.empty()) continue;
-      throw hydro::InputError(std::string(option) + ": found it with joints, allowed is one joint's stack (--joint NAME)");
+      throw hydro::InputError(std::string(option) +
+                              ": found it with joints, allowed is one joint's stack (--joint NAME)");
     }
     const auto limb = std::make_shared<const hydro::settings::LimbConfig>(
         hydro::settings::LoadLimbConfig(options.config, options.overrides));
@@ -83,8 +84,8 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   };
 }
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file,
-        const std::string& tunings_of, const std::string& machine_file) {
+int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of,
+        const std::string& machine_file) {
   const Simulation simulate = SimulationOf(options, tunings_of, machine_file);
   hydro::CheckKeeps(file);
   hydro::process::CatchStopSignals();

@@ -124,16 +124,15 @@ std::optional<introduction_t> Authenticator::Ask(int64_t session, TimePoint now)
   return Introduction(session);
 }
 
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const std::vector<Channels>& channels,
-                                                 int port) {
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file,
+                                                 const std::vector<Channels>& channels, int port) {
   if (key_file.empty()) return nullptr;
   std::vector<std::string> sealed;
   for (const Channels& one : channels) {
     const std::vector<std::string> names = AuthenticatedChannels(one);
     sealed.insert(sealed.end(), names.begin(), names.end());
   }
-  return std::make_unique<Authenticator>(KeyForPort(ReadBusKey(key_file), port),
-                                         sealed);
+  return std::make_unique<Authenticator>(KeyForPort(ReadBusKey(key_file), port), sealed);
 }
 
 }  // namespace hydro::bus

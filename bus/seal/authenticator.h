@@ -99,7 +99,7 @@ class Authenticator {
 // The authenticator of a stack with that key file; null when `key_file` is empty. Throws InputError
 // (bus_key.h).
 // `channels`: the stack's own first, then those of its joints.
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const std::vector<Channels>& channels,
-                                                 int port);
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file,
+                                                 const std::vector<Channels>& channels, int port);
 
 }  // namespace hydro::bus

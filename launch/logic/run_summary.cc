@@ -57,10 +57,9 @@ void RunSummary::Add(const fault_t& fault) {
 }
 
 void RunSummary::Add(const output_left_t& left) {
-  const auto known = std::find_if(outputs_left_.begin(), outputs_left_.end(),
-                                  [&](const output_left_t& one) {
-                                    return one.session == left.session && one.role == left.role;
-                                  });
+  const auto known = std::find_if(outputs_left_.begin(), outputs_left_.end(), [&](const output_left_t& one) {
+    return one.session == left.session && one.role == left.role;
+  });
   if (known != outputs_left_.end()) {
     *known = left;
   } else if (outputs_left_.size() < kMostOutputs) {

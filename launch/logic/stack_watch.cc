@@ -16,8 +16,8 @@ constexpr size_t kMostStatusesOfAJoint = 8;
 
 }  // namespace
 
-StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config, bool spread,
-                       bool keep_timing)
+StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
+                       bool spread, bool keep_timing)
     : bus_(bus), clock_(clock), spread_(spread), identity_(bus::IdentityOn(bus, clock)) {
   stacks_.push_back({"", bus::Channels(config.bus.channel_suffix)});
   for (size_t i = 0; i < config.joints.size(); ++i) {
@@ -29,12 +29,13 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::S
 void StackWatch::Listen(size_t stack, bool keep_timing) {
   const bus::Channels& channels = stacks_[stack].channels;
   const std::string& joint = stacks_[stack].joint;
-  bus_.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this, stack](const process_status_t& status) {
-    const Key key(stack, status.role, status.pid);
-    if (status.session == identity_.session) return;
-    const size_t most = kMostStatuses + stacks_.size() * kMostStatusesOfAJoint;
-    if (statuses_.size() < most || statuses_.contains(key)) statuses_[key] = {stack, status};
-  });
+  bus_.Subscribe<process_status_t>(
+      channels.Of<process_status_t>(), [this, stack](const process_status_t& status) {
+        const Key key(stack, status.role, status.pid);
+        if (status.session == identity_.session) return;
+        const size_t most = kMostStatuses + stacks_.size() * kMostStatusesOfAJoint;
+        if (statuses_.size() < most || statuses_.contains(key)) statuses_[key] = {stack, status};
+      });
   bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this](const stop_t& stop) {
     if (!stop_ && stop.session != identity_.session && IsForThisStack(stop)) stop_ = stop;
   });

@@ -47,7 +47,8 @@ TEST(JointedArmTest, IsTheModelsCoupledArm) {
   ASSERT_EQ(hip.states.size(), 101U);
   ASSERT_EQ(knee.states.size(), 101U);
   for (size_t tick = 1; tick < hip.states.size(); ++tick) {
-    arm.Advance(std::vector{hip.states[tick].voltage, knee.states[tick].voltage}, static_cast<double>(tick) / 1000);
+    arm.Advance(std::vector{hip.states[tick].voltage, knee.states[tick].voltage},
+                static_cast<double>(tick) / 1000);
     EXPECT_EQ(arm.Measure(0).arm_angle, hip.states[tick].arm_angle);
     EXPECT_EQ(arm.Measure(1).arm_angle, knee.states[tick].arm_angle);
     EXPECT_EQ(arm.Measure(1).p1, knee.states[tick].p1);

@@ -30,13 +30,17 @@ class LimbAppTest : public ::testing::Test {
         states_[suffix].push_back(s);
         if (on_state_) on_state_(suffix, s);
       });
-      bus_.Subscribe<fault_t>(channels.Of<fault_t>(), [this, suffix](const fault_t& f) { faults_[suffix].push_back(f); });
-      bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this, suffix](const stop_t& s) { stops_[suffix].push_back(s); });
+      bus_.Subscribe<fault_t>(channels.Of<fault_t>(),
+                              [this, suffix](const fault_t& f) { faults_[suffix].push_back(f); });
+      bus_.Subscribe<stop_t>(channels.Of<stop_t>(),
+                             [this, suffix](const stop_t& s) { stops_[suffix].push_back(s); });
       bus_.Subscribe<output_left_t>(channels.Of<output_left_t>(),
                                     [this, suffix](const output_left_t& o) { left_[suffix].push_back(o); });
-      bus_.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this, suffix](const process_status_t& s) {
-        if (s.role == "limb" || s.role == "plant") states_of_[suffix].push_back(s.state);
-      });
+      bus_.Subscribe<process_status_t>(channels.Of<process_status_t>(),
+                                       [this, suffix](const process_status_t& s) {
+                                         if (s.role == "limb" || s.role == "plant")
+                                           states_of_[suffix].push_back(s.state);
+                                       });
     }
   }
 

@@ -101,8 +101,8 @@ TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
       EXPECT_EQ(ZeroFrom(i), zero) << i;
       if (i == which) continue;
       EXPECT_THAT(records_[i]->Codes(), ElementsAre("+other_joint"));
-      EXPECT_THAT(records_[i]->faults[0].text, HasSubstr("joint " + limb_->joints()[which]->name() +
-                                                         " has the fault motor_speed_limit"));
+      EXPECT_THAT(records_[i]->faults[0].text,
+                  HasSubstr("joint " + limb_->joints()[which]->name() + " has the fault motor_speed_limit"));
     }
     EXPECT_THAT(records_[which]->Codes(), Contains("+motor_speed_limit"));
     EXPECT_THAT(records_[which]->Codes(), ::testing::Not(Contains("+other_joint")));
@@ -111,7 +111,8 @@ TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
 
 // Tests that they go on by themselves once the joint that had the fault has been re-armed, although none of them is asked.
 TEST_F(LimbTest, OneRearmLetsAllGoOn) {
-  settings::LimbConfig config = WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);
+  settings::LimbConfig config =
+      WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);
   for (auto& joint : config.joints) joint.config.last_tick = 2000;
   config.common.last_tick = 2000;
   Make(config);
@@ -138,7 +139,8 @@ TEST_F(LimbTest, OneRearmLetsAllGoOn) {
 
 // Tests that two joints with faults do not hold each other for ever: each is re-armed by itself.
 TEST_F(LimbTest, TwoFaultsAreRearmedOneAfterTheOther) {
-  settings::LimbConfig config = WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);
+  settings::LimbConfig config =
+      WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);
   config.joints[0].config.limits.motor_speed_rad_s = 1;
   for (auto& joint : config.joints) joint.config.last_tick = 1200;
   config.common.last_tick = 1200;

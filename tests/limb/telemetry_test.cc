@@ -72,7 +72,8 @@ TEST_F(TelemetryTest, OneStateAnInterval) {
 
 // Tests that a state tells of the ticks that were skipped before the states in between.
 TEST_F(TelemetryTest, SkippedTicksAddUp) {
-  for (int64_t tick = 0; tick <= 20; ++tick) SayState(tick, tick == 3 ? 2 : tick == 7 ? 1 : tick == 20 ? 4 : 0);
+  for (int64_t tick = 0; tick <= 20; ++tick)
+    SayState(tick, tick == 3 ? 2 : tick == 7 ? 1 : tick == 20 ? 4 : 0);
   telemetry_.SendAll();
   Deliver();
   ASSERT_EQ(states_.size(), 3U);

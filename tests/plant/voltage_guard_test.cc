@@ -58,8 +58,8 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
       tick(true);
       tick(true);
       tick(false);
-      const bool latches = (rearm == settings::Rearm::kExplicit && cause != Cause::kOtherJoint) ||
-                           VoltageGuard::Trips(cause);
+      const bool latches =
+          (rearm == settings::Rearm::kExplicit && cause != Cause::kOtherJoint) || VoltageGuard::Trips(cause);
       EXPECT_EQ(guard.any_latched(), latches);
       guard.Release(&standing);
       EXPECT_THAT(standing, IsEmpty());

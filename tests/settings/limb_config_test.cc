@@ -99,8 +99,8 @@ TEST_F(LimbConfigTest, JointAlone) {
   ASSERT_EQ(alone.siblings.size(), 1U);
   EXPECT_EQ(alone.siblings[0].name, "hip");
   EXPECT_EQ(alone.siblings[0].suffix, "_hip");
-  const StackConfig unconcerned =
-      LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee", "limb.on_joint_fault=others_go_on"});
+  const StackConfig unconcerned = LoadStackConfig(File(std::string(kConfigText) + kJoints),
+                                                  {"joint=knee", "limb.on_joint_fault=others_go_on"});
   EXPECT_THAT(unconcerned.siblings, IsEmpty());
 }
 
@@ -115,16 +115,18 @@ TEST_F(LimbConfigTest, TextDescribesItself) {
 // Tests which joints a process has, and that two processes never have the same.
 TEST_F(LimbConfigTest, Processes) {
   EXPECT_THAT(JointsOf(Load().common.processes.at(0), Load().common), ElementsAre("hip", "knee"));
-  const std::string mixed = std::string(kJoints) +
-                            "[[process]]\nprogram = \"hydro-limb\"\n[[process]]\nprogram = \"hydro-plant\"\n"
-                            "joint = \"knee\"\n[[process]]\nprogram = \"hydro-pressure-ctrl\"\njoint = \"knee\"\n";
+  const std::string mixed =
+      std::string(kJoints) +
+      "[[process]]\nprogram = \"hydro-limb\"\n[[process]]\nprogram = \"hydro-plant\"\n"
+      "joint = \"knee\"\n[[process]]\nprogram = \"hydro-pressure-ctrl\"\njoint = \"knee\"\n";
   const LimbConfig limb = Load(mixed);
   EXPECT_THAT(JointsOf(limb.common.processes.at(0), limb.common), ElementsAre("hip"));
   EXPECT_THAT(JointsOf(limb.common.processes.at(1), limb.common), ElementsAre("knee"));
   EXPECT_EQ(limb.joints[1].config.processes.size(), 2U);
-  EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n[[process]]\n"
-                                           "program = \"hydro-limb\"\njoints = [\"knee\", \"hip\"]\n"),
-              HasSubstr("process.joints: found a second process with the joint \"hip\", allowed one"));
+  EXPECT_THAT(
+      Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n[[process]]\n"
+                                   "program = \"hydro-limb\"\njoints = [\"knee\", \"hip\"]\n"),
+      HasSubstr("process.joints: found a second process with the joint \"hip\", allowed one"));
   EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\n"),
               HasSubstr("found hydro-plant without a joint"));
   EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\njoint = \"toe\"\n"),
@@ -133,14 +135,17 @@ TEST_F(LimbConfigTest, Processes) {
 
 // Tests that what is wrong is named with its place, what was found and what is allowed.
 TEST_F(LimbConfigTest, Wrong) {
-  EXPECT_THAT(Error("[[joint]]\nname = \"a b\"\n"), HasSubstr("joint.name: found \"a b\", allowed a name of up to 24"));
+  EXPECT_THAT(Error("[[joint]]\nname = \"a b\"\n"),
+              HasSubstr("joint.name: found \"a b\", allowed a name of up to 24"));
   EXPECT_THAT(Error("[[joint]]\n[joint.model]\n"), HasSubstr("joint.name: found nothing"));
   EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[[joint]]\nname = \"a\"\n"), HasSubstr("a second joint \"a\""));
-  EXPECT_THAT(Error("[joint]\nname = \"a\"\n"), HasSubstr("joint: found a section, allowed sections [[joint]]"));
+  EXPECT_THAT(Error("[joint]\nname = \"a\"\n"),
+              HasSubstr("joint: found a section, allowed sections [[joint]]"));
   EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.bus]\nurl = \"x\"\n"),
               HasSubstr("joint.a.bus: found a key that no joint has of its own"));
   EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.position]\nc3 = 1\n"), HasSubstr("c3"));
-  EXPECT_THAT(Error("[limb]\ntelemetry_hz = 3\n[[joint]]\nname = \"a\"\n"), HasSubstr("telemetry_hz: found 3"));
+  EXPECT_THAT(Error("[limb]\ntelemetry_hz = 3\n[[joint]]\nname = \"a\"\n"),
+              HasSubstr("telemetry_hz: found 3"));
   EXPECT_THAT(Error("[limb]\non_joint_fault = \"panic\"\n[[joint]]\nname = \"a\"\n"),
               HasSubstr("\"all_to_zero\" or \"others_go_on\""));
   EXPECT_THAT(Error(""), HasSubstr("found no [[joint]] section"));
@@ -151,7 +156,8 @@ TEST_F(LimbConfigTest, Wrong) {
 // Tests that an arm has a link for each joint, is read, and is checked.
 TEST_F(LimbConfigTest, Arm) {
   const std::string link = "[[arm.link]]\nmass = 0.02\nlength = 15\ncentre = 7\ninertia = 0.4\n";
-  const LimbConfig limb = Load(std::string(kJoints) + "[arm]\ngravity = 386\n" + link + link + "angle_rad = 0.5\n");
+  const LimbConfig limb =
+      Load(std::string(kJoints) + "[arm]\ngravity = 386\n" + link + link + "angle_rad = 0.5\n");
   ASSERT_TRUE(limb.arm.has_value());
   EXPECT_EQ(limb.arm->gravity, 386);
   ASSERT_EQ(limb.arm->links.size(), 2U);
@@ -159,9 +165,12 @@ TEST_F(LimbConfigTest, Arm) {
   EXPECT_EQ(limb.arm->links[1].angle, 0.5);
   EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link),
               HasSubstr("arm.link: found 1 links, allowed 2, a section [[arm.link]] for each joint"));
-  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = -1\n"), HasSubstr("mass: found -1"));
-  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = 1\n"), HasSubstr("length"));
-  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + link + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n"),
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = -1\n"),
+              HasSubstr("mass: found -1"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = 1\n"),
+              HasSubstr("length"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + link +
+                    "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n"),
               HasSubstr("found some of the joints of an [arm], allowed all of them in one hydro-limb"));
 }
 
