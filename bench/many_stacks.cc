@@ -37,7 +37,7 @@ namespace hydro {
 namespace {
 
 constexpr int kProcesses = 3;
-constexpr int kRounds = 5;  // of the largest limb
+constexpr int kRounds = 6;  // of the largest limb
 // Deadlines count as lost when the share of ticks missed or answered late exceeds that of a single stack by
 // more than this.
 constexpr double kMostMissed = 0.01;
@@ -258,6 +258,7 @@ void Limbs(const Options& options) {
   std::vector<int> counts;
   for (int joints = 1; joints < options.joints; joints *= 4) counts.push_back(joints);
   for (int round = 0; round < kRounds; ++round) counts.push_back(options.joints);
+  int turn = 0;
   for (const int joints : counts) {
     SharedResults<LimbResult> results(2);
     const settings::LimbConfig many = LimbOf(joints, options), one = LimbOf(1, options);
