@@ -70,7 +70,8 @@ export class Scope {
     this.ghost = false;
     this.signals.emit('run', run);
     this.signals.emit('layout');
-    for (const name of kOfARun) this.signals.emit(name, this.#told[name].get(number) ?? { run: number, entries: [], list: [] });
+    for (const name of kOfARun)
+      this.signals.emit(name, this.#told[name].get(number) ?? { run: number, entries: [], list: [] });
   }
 
   setLayout(layout) {
