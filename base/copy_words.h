@@ -20,9 +20,8 @@ void CopyFresh(Value* to, const Value& from) {
       asm("" : "+r"(bits));  // keeps the compiler from joining two
       std::memcpy(reinterpret_cast<char*>(to) + 8 * word, &bits, 8);
     };
-    [&]<size_t... word>(std::index_sequence<word...>) {
-      (copy(word), ...);
-    }(std::make_index_sequence<sizeof(Value) / 8>());
+    [&]<size_t... word>(std::index_sequence<word...>) { (copy(word), ...); }
+    (std::make_index_sequence<sizeof(Value) / 8>());
   } else {
     *to = from;
   }

@@ -137,9 +137,9 @@ settings::StackConfig Config(std::vector<std::string> overrides) {
 
 // As bench_model has it: the command of a tick acts from that tick on.
 settings::StackConfig SquareWave(const std::string& shaft) {
-  return Config({"model.shaft=" + shaft, "plant.command_delay_ticks=0", "pressure.k_p=0.134", "pressure.k_v=8.4",
-                 "reference.signal=pressure", "reference.kind=square", "reference.amplitude=300",
-                 "reference.frequency_hz=10"});
+  return Config({"model.shaft=" + shaft, "plant.command_delay_ticks=0", "pressure.k_p=0.134",
+                 "pressure.k_v=8.4", "reference.signal=pressure", "reference.kind=square",
+                 "reference.amplitude=300", "reference.frequency_hz=10"});
 }
 
 }  // namespace
@@ -149,8 +149,8 @@ settings::StackConfig SquareWave(const std::string& shaft) {
 int main(int argc, char** argv) {
   using namespace hydro;
   const int pairs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 31;
-  std::printf("us per tick of 5 kHz, medians of %d pairs\n%-34s %8s %8s %7s %8s %12s %s\n", pairs, "", "alone", "stack",
-              "ratio", "goal", "x real time", "pressures");
+  std::printf("us per tick of 5 kHz, medians of %d pairs\n%-34s %8s %8s %7s %8s %12s %s\n", pairs, "",
+              "alone", "stack", "ratio", "goal", "x real time", "pressures");
   ComparePairs("bench_model's, clamped", SquareWave("clamped"), SquareWaveAlone, pairs);
   ComparePairs("bench_model's, free arm", SquareWave("free"), SquareWaveAlone, pairs);
   ComparePairs("the paper's, both loops, free arm", Config({}), BothLoopsAlone, pairs);

@@ -113,7 +113,7 @@ class PlantApp {
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
-  Multiples pressure_ticks_, position_ticks_;  // at which each loop answers
+  Multiples pressure_ticks_, position_ticks_;         // at which each loop answers
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
   std::vector<std::string> rig_faults_;  // codes of those that are active

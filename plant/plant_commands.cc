@@ -129,11 +129,11 @@ void PlantApp::CheckCommand(bus::Clock::TimePoint now) {
   // A sender that contradicts itself: the command before it is no better.
   safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
   safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(now), [&] {
-                return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
-                                           participant_.NameOf(command_monitor_.session()),
-                                           participant_.NameOf(command_monitor_.second_session())),
-                               2, 1};
-              });
+    return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
+                               participant_.NameOf(command_monitor_.session()),
+                               participant_.NameOf(command_monitor_.second_session())),
+                   2, 1};
+  });
   safety_.CheckController(command_ && command_->status == motor_command_t::SAFE, now);
   // In lockstep the plant itself asks for repeats; in real time nobody does.
   if (realtime_) {

@@ -86,7 +86,8 @@ void PositionApp::OnState(const state_t& state) {
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
       // Later states that were not samples have overtaken it in the network: it is still the newest sample.
-      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && interval_.Contains(state.tick)) {
+      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() &&
+          interval_.Contains(state.tick)) {
         Sample(state, now);
       }
       return;

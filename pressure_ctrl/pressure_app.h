@@ -76,12 +76,12 @@ class PressureApp : public process::App {
   bus::Publisher<motor_command_t> publisher_;
   Multiples interval_;           // ticks between two commands of this loop
   Multiples position_interval_;  // ticks between two pressure commands
-  const int64_t delay_;              // ticks from a command's tick to the tick at which it acts
-  const int64_t stale_ticks_;        // a pressure command older than this is stale
-  const int64_t ramp_ticks_;         // its reference then goes to zero within this many ticks
-  const double k_2_;                 // in-lbf/psi
-  const UnitSystem units_;           // of the model, for texts
-  const double half_dac_step_;       // psi
+  const int64_t delay_;          // ticks from a command's tick to the tick at which it acts
+  const int64_t stale_ticks_;    // a pressure command older than this is stale
+  const int64_t ramp_ticks_;     // its reference then goes to zero within this many ticks
+  const double k_2_;             // in-lbf/psi
+  const UnitSystem units_;       // of the model, for texts
+  const double half_dac_step_;   // psi
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;
   tuning::TunedValues values_;  // in force
@@ -98,9 +98,9 @@ class PressureApp : public process::App {
   std::optional<pressure_command_t> pressure_command_;  // in force
   std::optional<int64_t> future_command_;               // tick of a refused one, until a plausible one comes
   std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
-  motor_command_t command_{};   // the last one, or the one that is being made
-  bool answered_ = false;       // one was sent
-  bool acted_by_law_ = false;   // and came from the law
+  motor_command_t command_{};             // the last one, or the one that is being made
+  bool answered_ = false;                 // one was sent
+  bool acted_by_law_ = false;             // and came from the law
   int64_t sequence_ = 0;
   bus::Clock::TimePoint last_state_time_;
   bool stalled_ = false;  // lockstep: the plant is silent

@@ -87,12 +87,11 @@ bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Cl
                            fmt::arg("unit", units_.UnitFor("rad", 1)));
                      });
   safe &= PressureCommandIsSafe(state, ticks_stale, now);
-  safe &= Check(!state_monitor_.SecondSenderAlive(now),
-                process::kSecondSender<state_t>, 2, 1, [&] {
-                  return fmt::format("two processes send states: {} and {}; allowed is one",
-                                     participant_.NameOf(state_monitor_.session()),
-                                     participant_.NameOf(state_monitor_.second_session()));
-                });
+  safe &= Check(!state_monitor_.SecondSenderAlive(now), process::kSecondSender<state_t>, 2, 1, [&] {
+    return fmt::format("two processes send states: {} and {}; allowed is one",
+                       participant_.NameOf(state_monitor_.session()),
+                       participant_.NameOf(state_monitor_.second_session()));
+  });
   if (safe && participant_.any_fault()) participant_.Clear("stale_state");
   return safe;
 }
@@ -101,15 +100,14 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
                                         bus::Clock::TimePoint now) {
   const int64_t age = SaturatingDifference(state.tick, pressure_command_ ? pressure_command_->tick : 0);
   const bool fresh = Check(
-      ticks_stale == 0, "stale_pressure_command", static_cast<double>(age),
-      static_cast<double>(stale_ticks_), [&] {
+      ticks_stale == 0, "stale_pressure_command", static_cast<double>(age), static_cast<double>(stale_ticks_),
+      [&] {
         return fmt::format(
             "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
             state.tick, age, stale_ticks_);
       });
   // Only a pressure reference can be ramped down; an open-loop voltage is cut at once.
-  const bool ramps =
-      pressure_command_ && !pressure_command_->open_loop && ticks_stale < ramp_ticks_;
+  const bool ramps = pressure_command_ && !pressure_command_->open_loop && ticks_stale < ramp_ticks_;
   bool safe = fresh || ramps;
   const double reference = pressure_command_ ? pressure_command_->pressure_ref : 0;
   const bool finite =
@@ -132,12 +130,12 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
                       "a pressure command for tick {} at tick {}; is another run's log being played?",
                       future_command_.value_or(0), state.tick);
                 });
-  safe &= Check(!command_monitor_.SecondSenderAlive(now),
-                process::kSecondSender<pressure_command_t>, 2, 1, [&] {
-                  return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
-                                     participant_.NameOf(command_monitor_.session()),
-                                     participant_.NameOf(command_monitor_.second_session()));
-                });
+  safe &=
+      Check(!command_monitor_.SecondSenderAlive(now), process::kSecondSender<pressure_command_t>, 2, 1, [&] {
+        return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
+                           participant_.NameOf(command_monitor_.session()),
+                           participant_.NameOf(command_monitor_.second_session()));
+      });
   return safe;
 }
 

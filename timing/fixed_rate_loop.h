@@ -28,8 +28,8 @@ class FixedRateLoop {
   int64_t Wait();
 
   bus::Clock::TimePoint woke() const { return woke_; }  // when the last tick began, or the loop
-  int64_t tick() const { return tick_; }        // the newest tick that was due
-  int64_t skipped() const { return skipped_; }  // ticks for which Wait() did not return
+  int64_t tick() const { return tick_; }                // the newest tick that was due
+  int64_t skipped() const { return skipped_; }          // ticks for which Wait() did not return
 
  private:
   bus::Clock::TimePoint DueTime(int64_t tick) const;

@@ -36,7 +36,7 @@ class Histogram {
 
   int64_t Count() const { return count_; }
   int64_t Min() const { return count_ == 0 ? 0 : min_; }  // exact; 0 when nothing was recorded
-  int64_t Max() const { return max_; }  // exact; 0 when nothing was recorded
+  int64_t Max() const { return max_; }                    // exact; 0 when nothing was recorded
 
   // Adds the records of `other`.
   void Merge(const Histogram& other);
