@@ -26,6 +26,12 @@ constexpr auto kActiveFaultsPeriod = std::chrono::seconds(1);
 constexpr int kFarewells = 3;       // lists that are empty, after the last fault has ended
 constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
 
+// " (knee)" for the channels of the joint knee: a process may have several.
+std::string Where(const bus::Channels& channels) {
+  const std::string suffix = channels.suffix();
+  return suffix.empty() ? "" : " (" + suffix.substr(suffix.front() == '_' ? 1 : 0) + ")";
+}
+
 }  // namespace
 
 Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels,
@@ -213,7 +219,7 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
   active_[code] = fault;
   latched_ += latched ? 1 : 0;
   PublishFault(fault);
-  if (!simulated_) spdlog::error("fault {}: {}", code, text);
+  if (!simulated_) spdlog::error("fault {}{}: {}", code, Where(channels_), text);
   return true;
 }
 
@@ -242,7 +248,7 @@ void Participant::End(const std::string& code) {
   latched_ -= fault.latched ? 1 : 0;
   fault.active = false;
   PublishFault(fault);
-  if (!simulated_) spdlog::info("fault {} has gone", code);
+  if (!simulated_) spdlog::info("fault {}{} has gone", code, Where(channels_));
 }
 
 std::string Participant::NameOf(std::optional<int64_t> session) const {
