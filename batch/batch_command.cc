@@ -114,7 +114,7 @@ void AddOptions(settings::CommandLine* line, BatchOptions* options) {
   AddSlurmOptions(line, &options->slurm);
 }
 
-int Run(BatchOptions options) {
+int Run(const BatchOptions& options) {
   if (options.jobs < 0 || options.jobs > 4096)
     throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
   CheckSlurmOptions(options.slurm);

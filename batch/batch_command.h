@@ -23,6 +23,6 @@ struct BatchOptions {
 void AddOptions(settings::CommandLine* line, BatchOptions* options);
 
 // Exit code: 0 all cases are done, 1 some failed or are missing. Throws InputError, StoreError, WriteError.
-int Run(BatchOptions options);
+int Run(const BatchOptions& options);
 
 }  // namespace hydro::batch

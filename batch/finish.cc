@@ -10,7 +10,7 @@ TableCounts FinishStudy(const std::string& folder, int jobs) {
   const Study study = OpenStudy(folder);
   CaseStore(folder).SweepStaging();
   StudyNumbers numbers(study);
-  const TableCounts counts = WriteTable(study, folder, jobs, [&](const TableRow& row) { numbers.Add(row); });
+  TableCounts counts = WriteTable(study, folder, jobs, [&](const TableRow& row) { numbers.Add(row); });
   WritePage(study, folder, counts, numbers);
   return counts;
 }

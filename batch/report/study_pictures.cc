@@ -62,6 +62,7 @@ page::Panel DistributionPanel(const NumberColumn& column) {
 
 std::vector<std::string> Names(const std::vector<double>& values) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const double value : values) names.push_back(ShortNumber(value));
   return names;
 }

@@ -149,7 +149,7 @@ std::optional<std::string> CaseRunner::Attempt(int64_t index, const std::vector<
   try {
     Prepare(values);
     for (size_t step = 0; step < study_.steps.size(); ++step) {
-      const auto reason = RunStep(step, index, values, timing, bell);
+      auto reason = RunStep(step, index, values, timing, bell);
       if (!reason || !reason->empty()) return reason;
     }
     result_.numbers = CollectNumbers(study_, folder_, exit_codes_);

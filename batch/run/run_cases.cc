@@ -46,6 +46,7 @@ class Pool {
     const auto jobs = static_cast<int>(std::clamp<int64_t>(to_run_, 1, request_.jobs));
     std::vector<std::jthread> threads;
     running_ = jobs;
+    threads.reserve(static_cast<size_t>(jobs));
     for (int slot = 0; slot < jobs; ++slot) threads.emplace_back([this, slot] { Work(slot); });
     std::jthread syncs([this](const std::stop_token& stop) { SyncNowAndThen(stop); });
     Watch();

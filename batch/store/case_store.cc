@@ -91,7 +91,7 @@ bool CaseStore::IsDone(int64_t index) const { return Exists(CaseFolder(index, fa
 bool CaseStore::IsFailed(int64_t index) const { return Exists(CaseFolder(index, true)) && !IsDone(index); }
 
 std::string CaseStore::StagingFolder(int slot) {
-  const std::string path = folder_ + "/staging/" + own_ + "." + std::to_string(slot);
+  std::string path = folder_ + "/staging/" + own_ + "." + std::to_string(slot);
   if (mkdir(path.c_str(), 0777) == 0) return path;
   if (errno == EEXIST) {
     RemoveAll(path);

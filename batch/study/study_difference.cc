@@ -26,7 +26,7 @@ std::string Difference(const std::string& path, const TomlNode& was, const TomlN
     const std::string prefix = path.empty() ? "" : path + ".";
     for (const auto& [key, value] : was.members) {
       const TomlNode* other = is.Find(key);
-      const std::string difference =
+      std::string difference =
           other == nullptr ? Told(prefix + key, &value, nullptr) : Difference(prefix + key, value, *other);
       if (!difference.empty()) return difference;
     }
@@ -40,8 +40,7 @@ std::string Difference(const std::string& path, const TomlNode& was, const TomlN
       const std::string place = path + "[" + std::to_string(i) + "]";
       const TomlNode* a = i < was.items.size() ? &was.items[i] : nullptr;
       const TomlNode* b = i < is.items.size() ? &is.items[i] : nullptr;
-      const std::string difference =
-          a != nullptr && b != nullptr ? Difference(place, *a, *b) : Told(place, a, b);
+      std::string difference = a != nullptr && b != nullptr ? Difference(place, *a, *b) : Told(place, a, b);
       if (!difference.empty()) return difference;
     }
     return "";

@@ -7,6 +7,7 @@
 #include "base/text_file.h"
 #include "batch/study/case_inputs.h"
 #include "batch/study/factor_reader.h"
+#include "batch/study/step_reader.h"
 #include "batch/study/study.h"
 #include "settings/model_file.h"
 #include "settings/stack_config.h"
@@ -17,19 +18,6 @@ namespace {
 using settings::SectionReader;
 using settings::TomlNode;
 using Kind = TomlNode::Kind;
-
-std::vector<std::string> Texts(SectionReader* section, const std::string& key) {
-  std::vector<std::string> texts;
-  const TomlNode* node = section->Take(key);
-  if (node == nullptr) return texts;
-  const std::string allowed = "a list of texts";
-  if (!node->is(Kind::kArray)) throw section->Error(key, node->Shown(), allowed);
-  for (const TomlNode& item : node->items) {
-    if (!item.is(Kind::kString) || item.text.empty()) throw section->Error(key, item.Shown(), allowed);
-    texts.push_back(item.text);
-  }
-  return texts;
-}
 
 // A file of a case: in its folder, and none of ours.
 std::string CaseFile(const std::string& place, const std::string& key, const std::string& name) {
@@ -69,7 +57,7 @@ class Reader {
       study_.keep.push_back(CaseFile(Place("keep"), "keep", name));
     ReadInputs();
     ReadFactors();
-    ReadSteps();
+    study_.steps = ReadSteps(&top_, scope_.has_config);
     ReadCollect();
     ReadReport();
     top_.Finish();
@@ -104,17 +92,11 @@ class Reader {
     if (!kept_files.items.empty()) *Member(&kept_, "files") = kept_files;
   }
 
-  // The configuration with its model and reference in the study's folder, so that this alone is enough anywhere.
+  // The configuration with its model in the study's folder, so that this alone is enough anywhere. A reference from a table stands in the text.
   void TakeConfig(const std::string& path, const std::vector<std::string>& changes) {
     const settings::StackConfig config = settings::LoadStackConfig(path, changes);
     TomlNode tree = settings::ParseToml(config.text, path);
     *Member(Member(&tree, "model"), "file") = settings::StringNode("model.toml");
-    if (!config.reference.trajectory.file.empty()) {
-      const std::string name =
-          "inputs/" + std::filesystem::path(config.reference.trajectory.file).filename().string();
-      AddFile("config", name, ReadTextFile(PathBeside(path, config.reference.trajectory.file)));
-      *Member(Member(&tree, "reference"), "file") = settings::StringNode(name);
-    }
     study_.config_text = settings::FormatToml(tree);
     study_.model_text = config.model.text;
     scope_.has_config = true;
@@ -124,7 +106,7 @@ class Reader {
   }
 
   std::string TakeFile(const std::string& key, const std::string& name) {
-    const std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
+    std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
     AddFile(key, kept, ReadTextFile(PathBeside(file_, name)));
     return kept;
   }
@@ -164,64 +146,6 @@ class Reader {
     if (!study_.list.keys.empty()) count *= static_cast<double>(study_.list.rows.size());
     if (count <= static_cast<double>(kMostCases)) return;
     throw top_.Error("grid", ShortNumber(count) + " cases in all", "at most " + std::to_string(kMostCases));
-  }
-
-  void ReadSteps() {
-    const TomlNode* node = top_.Take("step");
-    if (node == nullptr) {
-      if (!scope_.has_config) throw top_.Error("step", "nothing", "a command, or config for hydro-sim");
-      AddStep("hydro-sim", {0});
-      AddStep("summary", {0});
-      return;
-    }
-    if (!node->is(Kind::kArray) || node->items.empty())
-      throw top_.Error("step", node->Shown(), "sections [[step]]");
-    for (const TomlNode& item : node->items) {
-      if (!item.is(Kind::kTable)) throw top_.Error("step", item.Shown(), "sections [[step]]");
-      ReadStep(top_.Item(item, "step"));
-    }
-  }
-
-  void ReadStep(SectionReader section) {
-    std::vector<int> codes = {0};
-    if (const TomlNode* node = section.Take("exit_codes")) {
-      codes.clear();
-      for (const TomlNode& item : node->items) {
-        if (!item.is(Kind::kInteger) || item.integer < 0 || item.integer > 255)
-          throw section.Error("exit_codes", item.Shown(), "a list of whole numbers from 0 to 255");
-        codes.push_back(static_cast<int>(item.integer));
-      }
-      if (codes.empty())
-        throw section.Error("exit_codes", node->Shown(), "a list of whole numbers from 0 to 255");
-    }
-    const TomlNode* run = section.Take("run");
-    section.Finish();
-    if (run == nullptr) throw section.Error("run", "nothing", "a command");
-    if (run->is(Kind::kString)) {
-      if (!AddStep(run->text, codes)) {
-        throw section.Error(
-            "run", run->Shown(),
-            "\"hydro-sim\", \"summary\", \"hydro-tune\" or a list: a program and its arguments");
-      }
-      return;
-    }
-    study_.steps.push_back({Texts(&section, "run"), codes});
-    if (study_.steps.back().argv.empty())
-      throw section.Error("run", run->Shown(), "a program and its arguments");
-  }
-
-  // A step known by name; false for another name.
-  bool AddStep(const std::string& name, const std::vector<int>& codes) {
-    if (name == "hydro-sim") {
-      study_.steps.push_back({{"hydro-sim", "config.toml", "-o", "run.lcmlog"}, codes});
-    } else if (name == "summary") {
-      study_.steps.push_back({{"hydro-log", "summary", "run.lcmlog", "--json", "summary.json"}, codes});
-    } else if (name == "hydro-tune") {
-      study_.steps.push_back({{"hydro-tune", "config.toml", "-o", "tuned.toml", "--jobs", "1"}, codes});
-    } else {
-      return false;
-    }
-    return true;
   }
 
   void ReadCollect() {
@@ -303,7 +227,7 @@ class Reader {
       if (study_.config_text.empty()) {
         settings::ParseModel(model, "model.toml");
       } else {
-        CheckConfig(inputs.Config(values), model);
+        settings::ParseStackConfig(inputs.Config(values), "config.toml", model, "model.toml");
       }
     } catch (const std::exception& error) {
       std::string shown;
@@ -312,17 +236,6 @@ class Reader {
         shown += (i == 0 ? "" : ", ") + keys[i] + " = " + PlainText(values[i]);
       throw InputError(file_ + ": case " + std::to_string(index) + " (" + shown + "): " + error.what());
     }
-  }
-
-  void CheckConfig(const std::string& config, const std::string& model) const {
-    TomlNode tree = settings::ParseToml(config, "config.toml");
-    // The reference's file is not there yet: its text is known to be in order.
-    if (TomlNode* reference = tree.Find("reference"); reference != nullptr &&
-                                                      reference->Find("file") != nullptr &&
-                                                      reference->Find("file")->is(Kind::kString)) {
-      return;
-    }
-    settings::ParseStackConfig(config, "config.toml", model, "model.toml");
   }
 
   const std::string file_;

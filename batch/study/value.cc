@@ -7,6 +7,8 @@
 namespace hydro::batch {
 namespace {
 
+using Kind = settings::TomlNode::Kind;
+
 // A number that looks like one with a fraction, so that TOML reads a float again.
 std::string FloatText(double value) {
   std::string text = ShortestNumber(value);
@@ -43,7 +45,6 @@ std::optional<double> AsNumber(const Value& value) {
 }
 
 std::optional<Value> ValueOf(const settings::TomlNode& node) {
-  using Kind = settings::TomlNode::Kind;
   switch (node.kind) {
     case Kind::kFloat:
       return node.number;

@@ -29,6 +29,28 @@ rows = [[5000, "lockstep", 0.02, 0.5, 3.0]]
   EXPECT_EQ(config.model.description.effects[0].parameters.at("speed"), 3);
 }
 
+// Tests that a reference from a CSV file comes along into the study's folder.
+TEST(CaseInputsTest, TakesTheReferencesTableAlong) {
+  const StudyFolder folder;
+  folder.Write("arm.csv", "time_s,arm_rad\n0,0\n1,0.1\n");
+  folder.Write("model.toml", ReadTextFile(std::string(HYDRO_CONFIG) + "/models/table1.toml"));
+  folder.Write(
+      "stack.toml",
+      "[model]\nfile = \"model.toml\"\n[time]\nduration_s = 1.0\n[pressure]\nnatural_frequency_rad_s = "
+      "150.0\n"
+      "damping_ratio = 0.5\n[position]\nsample_interval_s = 0.005\nc1 = 6000.0\nc2 = 1200.0\n[reference]\n"
+      "signal = \"arm_angle\"\nkind = \"csv\"\nfile = \"arm.csv\"\ncolumn = \"arm_rad\"\n");
+  const std::string text =
+      "config = \"stack.toml\"\n[[grid]]\nkey = \"position.c1\"\nvalues = [1000, 2000]\n";
+  const Study study = folder.Read(text);
+  std::filesystem::create_directories(folder / "out/inputs");
+  for (const auto& [name, content] : study.files) folder.Write("out/" + name, content);
+  const Study again = ReadStudy(folder / "out/study.toml");
+  EXPECT_EQ(again.files, study.files);
+  folder.Write("out/config.toml", CaseInputs(again).Config(again.Values(1)));
+  EXPECT_EQ(settings::LoadStackConfig(folder / "out/config.toml").reference.trajectory.points.size(), 2u);
+}
+
 // Tests that the same case has the same files, byte by byte, when the study is read from its folder again.
 TEST(CaseInputsTest, SurvivesTheFolder) {
   const StudyFolder folder;
