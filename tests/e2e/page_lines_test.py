@@ -173,7 +173,9 @@ PAGES = {
         "$ hydro-set config/demo.toml position.c2=9000": Prints("UNSTABLE", 1),
         "hydro-launch config/demo.toml --set position.c2=350": Not("25 s of a stack while one runs; its log is that of the summary below"),
     }),
-    "studies.md": (None, f"cp -r {ROOT}/examples .\n", {}),
+    "studies.md": (None, f"cp -r {ROOT}/examples .\n", {
+        "build/bin/hydro-batch examples/studies/position_gains.toml --out out/gains --slurm": Not("needs a Slurm cluster", "slurm"),
+    }),
     "tuning_gains.md": (None, "", {}),
 }
 
