@@ -52,6 +52,10 @@ int RunWorker(const BatchOptions& options) {
     request.first = CaseNumber(options.cases.substr(0, colon), options.cases);
     const std::string end = colon == std::string::npos ? "" : options.cases.substr(colon + 1);
     request.end = std::min(study.cases(), CaseNumber(end, options.cases));
+    if (request.first >= request.end) {
+      throw InputError("--cases: found " + Quoted(options.cases) + ", allowed A:B with A below B and below " +
+                       std::to_string(study.cases()) + ", the cases of this study");
+    }
   }
   const RunOutcome outcome = RunCases(study, request);
   std::printf("%lld cases, %lld failed, %.3g s\n", static_cast<long long>(outcome.progress.ran),
@@ -118,6 +122,9 @@ int Run(const BatchOptions& options) {
   if (options.jobs < 0 || options.jobs > 4096)
     throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
   CheckSlurmOptions(options.slurm);
+  if (!options.cases.empty() && options.worker.empty())
+    throw InputError("--cases: found " + Quoted(options.cases) +
+                     " without --worker, allowed with --worker DIR only");
   if (!options.worker.empty()) return RunWorker(options);
   if (!options.finish.empty()) {
     const Study study = OpenStudy(options.finish);

@@ -34,7 +34,12 @@ int Run(SetRequest request, const std::vector<std::string>& arguments, std::vect
   if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);
   hydro::settings::BusSection section;
   if (!request.config_file.empty()) {
-    section = hydro::settings::LoadStackConfig(request.config_file, overrides).bus;
+    const hydro::settings::StackConfig config =
+        hydro::settings::LoadStackConfig(request.config_file, overrides);
+    if (const std::string remark = ArmRemark(config); !remark.empty()) {
+      std::fprintf(stderr, "hydro-set: warning: %s\n", hydro::Printable(remark).c_str());
+    }
+    section = config.bus;
   } else if (!overrides.empty()) {
     throw hydro::InputError((request.joint.empty() ? "--set: found " : "--joint: found ") +
                             hydro::Quoted(request.joint.empty() ? overrides.front() : request.joint) +

@@ -221,7 +221,14 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
   const LimbSection limb = ReadLimbSection(root, chosen->plant.rate_hz);
   if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
+  chosen->without_its_arm = root.Find("arm") != nullptr;
   return *chosen;
+}
+
+std::string ArmRemark(const StackConfig& config) {
+  if (!config.without_its_arm) return "";
+  return "the [arm] of " + config.file +
+         " is left out: loads and margins are those of the joint alone, with J_a and mgl of its model";
 }
 
 bool IsLimbFile(const std::string& file) { return HasJoints(ReadConfigDocument(file)); }

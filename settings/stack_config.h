@@ -193,6 +193,7 @@ struct StackConfig {
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  bool without_its_arm = false;     // one joint's stack of a limb with an [arm], which this does not have
   std::vector<Sibling> siblings;    // of one joint's stack: those whose faults take its voltage to zero too
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
@@ -230,6 +231,9 @@ std::vector<std::string> JointSuffixes(const StackConfig& config);
 
 // Those of all stacks on its bus: its own, and those of a limb's joints.
 std::vector<std::string> StackSuffixes(const StackConfig& config);
+
+// One line for people on what a joint's stack lacks of its limb; empty: nothing.
+std::string ArmRemark(const StackConfig& config);
 
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);

@@ -69,6 +69,9 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   }
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
+  if (const std::string remark = ArmRemark(*config); !remark.empty()) {
+    std::fprintf(stderr, "hydro-sim: warning: %s\n", hydro::Printable(remark).c_str());
+  }
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) {
     std::vector<std::string> overrides = options.overrides;

@@ -49,6 +49,9 @@ settings::StackConfig Load(const TuneRequest& request) {
   }
   if (config.model.shaft != model::Shaft::kFree) refuse("model.shaft", "a shaft that is held", "\"free\"");
   if (config.model.bypass) refuse("model.bypass", "true", "false");
+  if (const std::string remark = ArmRemark(config); !remark.empty()) {
+    std::fprintf(stderr, "hydro-tune: warning: %s\n", Printable(remark).c_str());
+  }
   return config;
 }
 

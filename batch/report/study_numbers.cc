@@ -94,7 +94,7 @@ size_t SurfaceAxis::CellOf(double value) const {
 }
 
 StudyNumbers::StudyNumbers(const Study& study) : study_(study), surface_(WantedSurface(study)) {
-  for (const Collected& each : study.collect) columns_.push_back({&each, {}, {}});
+  for (const Collected& each : study.collect) columns_.push_back({.of = &each, .values = {}, .cases = {}});
 }
 
 void StudyNumbers::Add(const TableRow& row) {
@@ -104,7 +104,11 @@ void StudyNumbers::Add(const TableRow& row) {
   for (size_t i = 0; i < columns_.size(); ++i) {
     const auto& value = row.result.numbers[i];
     const auto number = value ? AsNumber(*value) : std::nullopt;
-    if (!number || !std::isfinite(*number)) continue;
+    if (!number || !std::isfinite(*number)) {
+      ++columns_[i].without_count;
+      if (columns_[i].without.size() < kMostFailures) columns_[i].without.push_back(row.index);
+      continue;
+    }
     columns_[i].values.push_back(*number);
     columns_[i].cases.push_back(row.index);
     if (!surface_.there() || surface_.number != i) continue;

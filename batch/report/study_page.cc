@@ -109,24 +109,37 @@ std::string NumbersTable(const StudyNumbers& numbers, int64_t done) {
                      rows);
 }
 
+std::string WorstRow(const Study& study, int64_t index, const std::string& number) {
+  std::string cells = RightCell(std::to_string(index)) + number;
+  for (const Value& value : study.Values(index)) {
+    const auto known = AsNumber(value);
+    cells += known && !std::holds_alternative<bool>(value) ? page::NumberCell(*known)
+                                                           : RightCell(PlainText(value));
+  }
+  return Row(cells);
+}
+
+// A case without the number (one that never settles) is worse than any with it.
 std::string WorstTable(const Study& study, const StudyNumbers& numbers) {
   const NumberColumn* column = numbers.worst();
   if (column == nullptr) return "";
   std::vector<std::string> heads = {"#case", "#" + column->Label()};
   const std::vector<std::string> keys = study.Keys();
   for (const std::string& key : keys) heads.push_back("#" + key);
+  const size_t without = std::min(column->without.size(), kWorst);
   std::string rows;
-  for (const size_t place : WorstPlaces(*column, kWorst)) {
-    std::string cells =
-        RightCell(std::to_string(column->cases[place])) + page::NumberCell(column->values[place]);
-    for (const Value& value : study.Values(column->cases[place])) {
-      const auto number = AsNumber(value);
-      cells += number && !std::holds_alternative<bool>(value) ? page::NumberCell(*number)
-                                                              : RightCell(PlainText(value));
-    }
-    rows += Row(cells);
+  for (size_t i = 0; i < without; ++i) rows += WorstRow(study, column->without[i], RightCell("none"));
+  for (const size_t place : WorstPlaces(*column, kWorst - without)) {
+    rows += WorstRow(study, column->cases[place], page::NumberCell(column->values[place]));
   }
-  return page::Table(heads, rows, keys.size() > kManyKeys ? "small" : "narrow");
+  const std::string note =
+      without == 0
+          ? ""
+          : fmt::format("<p>{} case{} done but {} no {}: {} first here; table.csv has all of them.</p>\n",
+                        column->without_count, column->without_count == 1 ? " is" : "s are",
+                        column->without_count == 1 ? "has" : "have", page::EscapeMarkup(column->of->name),
+                        column->without_count == 1 ? "it stands" : "they stand");
+  return note + page::Table(heads, rows, keys.size() > kManyKeys ? "small" : "narrow");
 }
 
 std::string FailuresSection(const TableCounts& counts, const StudyNumbers& numbers) {

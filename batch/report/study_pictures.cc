@@ -146,8 +146,10 @@ std::optional<page::Figure> SurfaceFigure(const StudyNumbers& numbers) {
   if (!any) return std::nullopt;
   page::Figure figure;
   figure.drawing = page::HeatMapDrawing(map);
-  figure.caption = fmt::format("{} over {} and {}{}.", surface.of->name, surface.x.key, surface.y.key,
-                               most > 1 ? ", the mean of the cases in each cell" : "");
+  const bool gaps = std::ranges::any_of(surface.counts, [](double count) { return count == 0; });
+  figure.caption = fmt::format("{} over {} and {}{}{}.", surface.of->name, surface.x.key, surface.y.key,
+                               most > 1 ? ", the mean of the cases in each cell" : "",
+                               gaps ? "; white: no case with this number" : "");
   return figure;
 }
 
