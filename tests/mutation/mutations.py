@@ -445,7 +445,7 @@ MUTATIONS = [
     ),
     # The control laws.
     *_rows(
-        "pressure_ctrl/law/pressure_law.cc",
+        "pressure_ctrl/law/pressure_law.h",
         ("eq16.reference", "const double pressure_error = input.pressure_ref -",
          "const double pressure_error = -input.pressure_ref -"),
         ("eq16.pressure", "input.pressure_ref - (input.p2 - input.p1)", "input.pressure_ref + (input.p2 - input.p1)"),
@@ -454,6 +454,9 @@ MUTATIONS = [
         ("eq16.feedforward", "* speed) +\n                         settings.reference_feedforward",
          "* speed) -\n                         settings.reference_feedforward"),
         ("eq16.limit", "std::clamp(voltage, -settings.voltage_limit, settings.voltage_limit)", "voltage"),
+    ),
+    *_rows(
+        "pressure_ctrl/law/pressure_law.cc",
         ("eq16.feedforward_leakage", "(p.c_I + p.c_E) / p.D", "(p.c_I - p.c_E) / p.D"),
         ("eq16.feedforward_viscous", "(p.D + p.b * speed_per_psi)", "(p.D - p.b * speed_per_psi)"),
         ("eq16.feedforward_speed", "/ p.k_1 + gains.k_p * gains.k_v * speed_per_psi",
