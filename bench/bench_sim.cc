@@ -116,6 +116,7 @@ void ComparePairs(const char* name, const settings::StackConfig& config, Alone a
 void MeasureLogged(const settings::StackConfig& config, int runs) {
   const std::string file = (std::filesystem::temp_directory_path() / "bench_sim.lcmlog").string();
   std::vector<double> seconds;
+  seconds.reserve(static_cast<size_t>(runs));
   for (int i = 0; i < runs; ++i) {
     seconds.push_back(SecondsOf([&] {
       log::LogWriter writer(file, Opening::kTemporary);
