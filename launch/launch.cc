@@ -48,7 +48,7 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const La
       {.status = LabelledOutput::CanDrawStatus(out_fd, err_fd), .quiet = request.quiet, .json = request.json},
       request.log_file);
   StackLaunch launch(*bus, clock, supervisor, report, config, plan, timing);
-  lock.emplace(config, RolesOf(plan), plan.spread);
+  lock.emplace(config, plan);
   return launch.Run();
 }
 

@@ -5,20 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "launch/logic/plan.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
 
 class LaunchLock {
  public:
-  // Takes the roles on the configuration's port and channels, until this object or its process ends. Throws InputError where
-  // another launch has one of them. A spread stack's logger is not locked: each part may have one.
-  LaunchLock(const settings::StackConfig& config, const std::vector<std::string>& roles, bool spread);
+  // Takes what the children of `plan` do, on the configuration's port and on the channels of the stack or of their joints, until this
+  // object or its process ends. Throws InputError where another launch does one of them. A spread stack's logger is not locked: each
+  // part may have one.
+  LaunchLock(const settings::StackConfig& config, const LaunchPlan& plan);
   ~LaunchLock();
   LaunchLock(const LaunchLock&) = delete;
   LaunchLock& operator=(const LaunchLock&) = delete;
 
  private:
+  void Take(const std::string& suffix, const std::string& role, const settings::StackConfig& config);
   void Release();
 
   std::vector<int> sockets_;  // bound to names in Linux's abstract namespace, which leave nothing behind

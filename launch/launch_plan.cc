@@ -40,9 +40,9 @@ std::string Join(const std::set<std::string>& names) {
   return text;
 }
 
-// Waits for the logger before the run begins. A joint's own stack beside a limb does not: the logger is the limb's.
+// Waits for the logger before the run begins.
 bool AwaitsLogger(const settings::ProcessSection& process) {
-  return process.joint.empty() && process::IsPlant(process::RoleOf(process.program));
+  return process::IsPlant(process::RoleOf(process.program));
 }
 
 // Which joints a limb's process has, where it does not have them all.

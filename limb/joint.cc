@@ -11,6 +11,7 @@ namespace {
 settings::StackConfig InsideALimb(settings::StackConfig config) {
   config.agreed.clear();
   config.siblings.clear();
+  config.bus.limb_suffix.reset();
   return config;
 }
 

@@ -58,7 +58,8 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
       options_(std::move(options)),
       participant_(bus, clock, bus::Channels(config.common.bus.channel_suffix), kRole, config.common.agreed),
       roll_call_(options_.expected),
-      logger_watch_(participant_, bus::FromSeconds(std::max(config.common.limits.stale_logger_s, 1.0))),
+      logger_watch_(participant_, {participant_.channels()},
+                    bus::FromSeconds(std::max(config.common.limits.stale_logger_s, 1.0))),
       elsewhere_(participant_, JointsElsewhere(config_, options_.joints)),
       limb_(config_, {.joints = options_.joints,
                       .program = "hydro-limb",
@@ -99,6 +100,7 @@ void LimbApp::Forward(Joint& joint) {
   ForwardTo<rearm_t>(joint);
   ForwardTo<process_status_t>(joint);
   ForwardTo<tuning_request_t>(joint);
+  ForwardTo<run_description_t>(joint);  // of another plant on these channels: a fault
   if (joint.config().reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner) {
     ForwardTo<arm_plan_t>(joint);
   }

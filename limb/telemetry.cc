@@ -74,6 +74,7 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
       }
       return;
     case Passage::kInBetween:
+      if (!stack.is_own(NumberAt(message, channel->places.session))) return;
       Enqueue(*channel, message.data, static_cast<size_t>(message.size));
       return;
     case Passage::kNever:

@@ -19,6 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
+constexpr int64_t kEndedTicks = 32;     // joints of a limb in lockstep are never so far apart
 constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's own last message to come back
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
@@ -36,6 +37,7 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       recording_({options.file, options.rotate_bytes, static_cast<size_t>(config.logger.memory_mb * 1e6)},
                  participant_.channels().Of<run_description_t>(), clock),
       limb_(!config.joints.empty()),
+      lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       progress_ticks_(
           std::max<int64_t>(1, kProgressTicks / std::max<int64_t>(1, std::ssize(config.joints)))) {
   FindStacks(config);
@@ -49,6 +51,12 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
   }
   bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
+  if (limb_) {
+    for (const Stack& stack : stacks_) {
+      bus.Subscribe<process_status_t>(stack.channels.Of<process_status_t>(),
+                                      [this](const process_status_t& status) { OnStatus(status); });
+    }
+  }
   if (!options_.disk_is_ready) thread_.emplace(recording_);
   participant_.Announce(process_status_t::READY);
 }
@@ -100,12 +108,21 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
   }
 }
 
+// In lockstep a limb waits for the slowest of its joints to be recorded; one that is far behind has ended.
+int64_t LoggerApp::ProgressTick() const {
+  int64_t newest = -1;
+  for (const Stack& stack : stacks_) newest = std::max(newest, stack.state_tick);
+  int64_t slowest = newest;
+  for (const Stack& stack : stacks_) {
+    if (lockstep_ && newest - stack.state_tick <= kEndedTicks) slowest = std::min(slowest, stack.state_tick);
+  }
+  return slowest;
+}
+
 void LoggerApp::OnState(Stack& stack, const bus::LoopNumbers& numbers) {
   if (!limb_) FollowPlant(numbers.session);  // a limb's joints have sessions of their own
   stack.state_tick = numbers.tick;
-  state_tick_ = std::min_element(stacks_.begin(), stacks_.end(), [](const Stack& a, const Stack& b) {
-                  return a.state_tick < b.state_tick;
-                })->state_tick;
+  state_tick_ = ProgressTick();
   participant_.set_tick(state_tick_);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   // A state that is sent again asks for the answer again; it may have been lost.

@@ -54,6 +54,7 @@ class LoggerApp : public process::App {
   void FindStacks(const settings::StackConfig& config);
   Stack* StackOf(std::string_view channel);
   void OnState(Stack& stack, const bus::LoopNumbers& numbers);
+  int64_t ProgressTick() const;
   void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived);
   void FollowPlant(int64_t session);
@@ -85,6 +86,7 @@ class LoggerApp : public process::App {
   std::vector<Stack> stacks_;                                      // one, or a limb's joints
   std::unordered_map<std::string_view, size_t> stack_of_channel_;  // of the loops
   const bool limb_;
+  const bool lockstep_;
   const int64_t progress_ticks_;
   int64_t state_tick_ = -1;  // newest tick received of every stack
   int64_t reported_tick_ = -1;

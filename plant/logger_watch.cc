@@ -14,15 +14,17 @@ constexpr size_t kMostLoggers = 64;  // a flood of made-up ones is not kept
 
 }  // namespace
 
-LoggerWatch::LoggerWatch(process::Participant& participant, bus::Clock::Duration limit)
+LoggerWatch::LoggerWatch(process::Participant& participant, const std::vector<bus::Channels>& channels,
+                         bus::Clock::Duration limit)
     : participant_(participant), limit_(limit) {
   bus::Bus& bus = participant_.bus();
-  bus.Subscribe<log_progress_t>(participant_.channels().Of<log_progress_t>(),
-                                [this](const log_progress_t& progress) { Heard(progress.session); });
-  bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
-                                  [this](const process_status_t& status) {
-                                    if (status.role == "logger") OnStatus(status);
-                                  });
+  for (const bus::Channels& each : channels) {
+    bus.Subscribe<log_progress_t>(each.Of<log_progress_t>(),
+                                  [this](const log_progress_t& progress) { Heard(progress.session); });
+    bus.Subscribe<process_status_t>(each.Of<process_status_t>(), [this](const process_status_t& status) {
+      if (status.role == "logger") OnStatus(status);
+    });
+  }
 }
 
 void LoggerWatch::OnStatus(const process_status_t& status) {

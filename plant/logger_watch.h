@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "process/participant.h"
 
@@ -15,7 +16,9 @@ namespace hydro::plant {
 class LoggerWatch {
  public:
   // A logger counts as gone when it has been silent for longer than `limit` or has announced that it leaves.
-  LoggerWatch(process::Participant& participant, bus::Clock::Duration limit);
+  // `channels`: on which loggers may be.
+  LoggerWatch(process::Participant& participant, const std::vector<bus::Channels>& channels,
+              bus::Clock::Duration limit);
 
   // Call it often during the run. It raises logger_gone when a known logger is gone, and clears the fault
   // when another one is heard twice. Time in which it was not called does not count as silence.

@@ -18,6 +18,13 @@ using namespace std::chrono_literals;
 constexpr auto kConfigurationTime = 300ms;
 constexpr auto kDescriptionPeriod = 1s;  // often enough that logs and plots which start late get one too
 
+// On whose channels loggers may be: a joint's logger may be that of its limb.
+std::vector<bus::Channels> LoggersChannels(const settings::BusSection& bus) {
+  std::vector<bus::Channels> channels{bus::Channels(bus.channel_suffix)};
+  if (bus.limb_suffix) channels.emplace_back(*bus.limb_suffix);
+  return channels;
+}
+
 std::vector<std::string> WithControllers(std::vector<std::string> roles) {
   roles.insert(roles.begin(), {"pressure_ctrl", "position_ctrl"});
   return roles;
@@ -39,8 +46,9 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                      rig_.SetNoise(values.noise);
                    },
                .held = [this] { return !safety_.Latched().empty(); }}),
-      logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
-                                                            3 / (config.plant.rate_hz * config.time.speed)))),
+      logger_watch_(participant_, LoggersChannels(config.bus),
+                    bus::FromSeconds(std::max(config.limits.stale_logger_s,
+                                              3 / (config.plant.rate_hz * config.time.speed)))),
       siblings_(participant_, config.siblings),
       roll_call_(WithControllers(expected)),
       program_(program),
@@ -68,11 +76,19 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                                     });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
-  bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {
-    // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
-    const auto known = log_progress_.find(progress.session);
-    if (known != log_progress_.end()) known->second = progress.tick;
-  });
+  for (const bus::Channels& loggers : LoggersChannels(config.bus)) {
+    bus.Subscribe<log_progress_t>(loggers.Of<log_progress_t>(), [this](const log_progress_t& progress) {
+      // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
+      const auto known = log_progress_.find(progress.session);
+      if (known != log_progress_.end()) known->second = progress.tick;
+    });
+  }
+  if (config.bus.limb_suffix) {
+    bus.Subscribe<process_status_t>(bus::Channels(*config.bus.limb_suffix).Of<process_status_t>(),
+                                    [this](const process_status_t& status) {
+                                      if (status.role == "logger") roll_call_.Observe(status);
+                                    });
+  }
   participant_.OnRefusal([this](int64_t session, const std::string& text) { OnRefusal(session, text); });
 }
 

@@ -27,7 +27,7 @@ class SiblingFaults {
     std::string joint;
     // That the others are at zero volts because one has a fault is no fault of theirs: they would hold each other for ever.
     process::RemoteFaults faults{[](std::string_view, std::string_view code) {
-      return process::ZeroesVoltage(code) && code != "other_joint";
+      return process::LeadsToZeroVolts(code) && code != "other_joint";
     }};
   };
 

@@ -71,6 +71,8 @@ bool ZeroesVoltage(std::string_view code) {
   return true;
 }
 
+bool LeadsToZeroVolts(std::string_view code) { return !IsWarning(code); }
+
 bool IsWarning(std::string_view code) {
   return std::any_of(kCodes.begin(), kCodes.end(), [&](const FaultCode& known) {
     return known.code == code && known.effect == FaultEffect::kWarning;

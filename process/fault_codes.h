@@ -23,6 +23,9 @@ std::span<const FaultCode> FaultCodes();
 // True unless `code` is known not to zero the voltage at once; an unknown code counts as one that does.
 bool ZeroesVoltage(std::string_view code);
 
+// The same, or in the end: a reference that is ramped to zero counts too.
+bool LeadsToZeroVolts(std::string_view code);
+
 // True when `code` is known to be a warning only.
 bool IsWarning(std::string_view code);
 

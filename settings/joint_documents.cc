@@ -117,8 +117,9 @@ bool HasJoints(const TomlNode& root) { return root.Find("joint") != nullptr; }
 
 std::vector<std::string> JointNames(const TomlNode& root) {
   const TomlNode* joints = root.Find("joint");
-  if (!joints->is(TomlNode::Kind::kArray)) {
-    throw KeyError(joints->place, "joint", joints->Shown(), "sections [[joint]], each with a name");
+  if (!joints->is(TomlNode::Kind::kArray) || joints->items.empty()) {
+    throw KeyError(joints->place, "joint", joints->is(TomlNode::Kind::kArray) ? "none" : joints->Shown(),
+                   "sections [[joint]], each with a name");
   }
   std::vector<std::string> names;
   for (const TomlNode& joint : joints->items) {

@@ -221,6 +221,9 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
   const LimbSection limb = ReadLimbSection(root, chosen->plant.rate_hz);
   if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
+  const TomlNode* bus = root.Find("bus");
+  const TomlNode* suffix = bus != nullptr ? bus->Find("channel_suffix") : nullptr;
+  chosen->bus.limb_suffix = suffix != nullptr ? suffix->text : "";
   chosen->without_its_arm = root.Find("arm") != nullptr;
   return *chosen;
 }

@@ -55,7 +55,9 @@ struct ModelSection {
 
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_suffix;               // appended to every channel name
+  std::string channel_suffix;  // appended to every channel name
+  // Of one joint's stack: the suffix of its limb's own channels, on which the logger is; none: it has none but channel_suffix.
+  std::optional<std::string> limb_suffix;
   std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
   std::string key_file;                     // "": messages are not authenticated; docs/security.md
   std::string resolved_key_file;            // path to read it from
@@ -192,8 +194,8 @@ struct StackConfig {
   std::optional<DriverSection> driver;  // only a stack with hydro-driver needs it
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
-      processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
-  bool without_its_arm = false;     // one joint's stack of a limb with an [arm], which this does not have
+      processes;                 // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  bool without_its_arm = false;  // one joint's stack of a limb with an [arm], which this does not have
   std::vector<Sibling> siblings;    // of one joint's stack: those whose faults take its voltage to zero too
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 

@@ -1,5 +1,6 @@
 #include "batch/study/value.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/number_text.h"
@@ -47,7 +48,8 @@ std::optional<double> AsNumber(const Value& value) {
 std::optional<Value> ValueOf(const settings::TomlNode& node) {
   switch (node.kind) {
     case Kind::kFloat:
-      return node.number;
+      // No result can hold another: JSON has none.
+      return std::isfinite(node.number) ? std::optional<Value>(node.number) : std::nullopt;
     case Kind::kInteger:
       return node.integer;
     case Kind::kBoolean:
@@ -63,7 +65,7 @@ Value ValueOfCell(const std::string& cell) {
   if (cell == "true") return true;
   if (cell == "false") return false;
   if (const auto whole = ParseInteger(cell)) return *whole;
-  if (const auto number = ParseNumber(cell)) return *number;
+  if (const auto number = ParseNumber(cell); number && std::isfinite(*number)) return *number;
   return cell;
 }
 

@@ -109,7 +109,7 @@ void Processes(const uint8_t* data, size_t size) {
   const bus::Channels channels;
   pressure_ctrl::PressureApp pressure(bus, clock, config);
   position_ctrl::PositionApp position(bus, clock, config);
-  launch::StackWatch watch(bus, clock, channels, true, true);
+  launch::StackWatch watch(bus, clock, config, true, true);
   plant::RollCall roll_call({"pressure_ctrl"});
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [&](const process_status_t& status) { roll_call.Observe(status); });
