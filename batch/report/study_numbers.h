@@ -14,7 +14,7 @@ namespace hydro::batch {
 struct NumberColumn {
   const Collected* of = nullptr;
   std::vector<double> values;
-  std::vector<int64_t> cases;  // beside them
+  std::vector<int64_t> cases;         // beside them
   std::vector<int64_t> without = {};  // cases that are done and have no number here, the first of them
   int64_t without_count = 0;
 

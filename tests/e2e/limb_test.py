@@ -126,6 +126,42 @@ class LimbTest(stack.TestCase):
         self.assertEqual(launch.wait(60), 0, launch.report())
         self.assertEqual(stack.still_running([pressure_loop]), [])
 
+    # Tests that a second limb on the same channels, which no launcher has seen, holds both at zero volts within two seconds, and that
+    # both name it.
+    def test_another_limb(self):
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(LIMB, "--time", "realtime", "--duration", "0", "--log", log_file, *PATIENT)
+        launch.wait_for("ready")
+        live = JointLog(self, log_file)
+        live.wait_for("hip", "HYDRO_STATE", lambda s: s.tick > 300 and s.voltage != 0, "the hip moves")
+        other = self.start("hydro-limb", LIMB, "--set", f"bus.url={self.url}", "--time", "realtime", "--duration", "0")
+        for joint in JOINTS:
+            live.wait_for(joint, "HYDRO_FAULT", lambda f: f.code == "other_stack" and f.active, "another plant is named")
+        other.wait_for("fault other_stack")
+        launch.send(signal.SIGINT)
+        other.send(signal.SIGINT)
+        self.assertIn(launch.wait(60), (0, 1), launch.report())
+        other.wait(60)
+
+    # Tests that two limbs of one configuration run on one host, and that the log has both from their first states on.
+    def test_two_limbs_and_two_own_joints(self):
+        with open(LIMB, encoding="utf-8") as file:
+            text = file.read().replace('"models/', f'"{os.path.dirname(LIMB)}/models/').split("[[process]]")[0]
+        own = "".join(f'[[process]]\nprogram = "{program}"\njoint = "{joint}"\n' for joint in JOINTS
+                      for program in ("hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl"))
+        limbs = "".join(f'[[process]]\nprogram = "hydro-limb"\njoints = ["{joint}"]\n' for joint in JOINTS)
+        for name, sections in (("own.toml", own), ("limbs.toml", limbs)):
+            with self.subTest(name):
+                with open(self.path(name), "w", encoding="utf-8") as file:
+                    file.write(text + sections)
+                log_file = self.path(name + ".lcmlog")
+                launch = self.launch(self.path(name), "--time", "realtime", "--duration", "0.5", "--log", log_file, *PATIENT)
+                self.assertEqual(launch.wait(60), 0, launch.report())
+                for joint in JOINTS:
+                    log = event_log.Log(log_file, f"_{joint}")
+                    self.assertEqual(log.states[0].tick, 0)
+                    self.assertEqual(log.descriptions[0].rate_hz, 1000)
+
     def child_of(self, launch, program):
         for pid in filter(str.isdigit, os.listdir("/proc")):
             try:
@@ -155,6 +191,10 @@ class LimbTest(stack.TestCase):
         refuse("hydro-sim", LIMB, "--set", "limb.telemetry_hz=300",
                says='telemetry_hz: found 300, allowed plant.rate_hz = 1000 divided by a whole number, or "every_tick"')
         refuse("hydro-sim", LIMB, "--set", "limb.colour=3", says="colour.*unknown key")
+        with open(self.path("none.toml"), "w", encoding="utf-8") as file:
+            file.write("joint = []\n")
+        for name in ("hydro-sim", "hydro-limb", "hydro-plant"):
+            refuse(name, self.path("none.toml"), says="none.toml:1: joint: found none, allowed sections")
         refuse("hydro-limb", stack.config("demo.toml"), says="found no \\[\\[joint\\]\\] section")
         refuse("hydro-limb", LIMB, "--joints", "toe", says='--joints: found "toe", allowed "hip" or "knee"')
 
