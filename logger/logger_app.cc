@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/saturating.h"
+#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::logger {
@@ -54,7 +55,10 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
   if (limb_) {
     for (const Stack& stack : stacks_) {
       bus.Subscribe<process_status_t>(stack.channels.Of<process_status_t>(),
-                                      [this](const process_status_t& status) { OnStatus(status); });
+                                      [this](const process_status_t& status) {
+                                        OnStatus(status);
+                                        AnswerJoint(status);
+                                      });
     }
   }
   if (!options_.disk_is_ready) thread_.emplace(recording_);
@@ -183,6 +187,13 @@ void LoggerApp::OnStatus(const process_status_t& status) {
   } else if (status.session == participant_.session()) {
     left_ = process::HasLeft(status);
   }
+}
+
+// A joint's own plant waits for its limb's logger, which it may not have heard yet.
+void LoggerApp::AnswerJoint(const process_status_t& status) {
+  const bool asks = process::IsPlant(status.role) && status.state == process_status_t::READY;
+  if (asks && participant_.state() == process_status_t::RUNNING)
+    participant_.Announce(process_status_t::RUNNING);
 }
 
 void LoggerApp::ReportProgress() {

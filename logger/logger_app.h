@@ -62,6 +62,7 @@ class LoggerApp : public process::App {
   void CheckOverflow();
   void OnMessage(const bus::RawMessage& message);
   void OnStatus(const process_status_t& status);
+  void AnswerJoint(const process_status_t& status);
   void ReportRefused();
   void ReportProgress();
   void AwaitFarewells();

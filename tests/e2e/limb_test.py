@@ -112,7 +112,8 @@ class LimbTest(stack.TestCase):
                              "limits.stale_input_s=0.3", "--set", "limb.telemetry_hz=every_tick")
         launch.wait_for("ready")
         live = JointLog(self, log_file)
-        live.wait_for("hip", "HYDRO_STATE", lambda s: s.tick > 300 and s.voltage != 0, "the hip moves")
+        for joint in JOINTS:
+            live.wait_for(joint, "HYDRO_STATE", lambda s: s.tick > 300 and s.voltage != 0, "the joint moves")
         pressure_loop = self.child_of(launch, "hydro-pressure-ctrl")
         os.kill(pressure_loop, signal.SIGSTOP)
         try:
