@@ -68,7 +68,7 @@ std::optional<std::string> LimbOf(const std::string& suffix, const std::set<std:
 
 // The suffix of the joint that `choice` names. A name may be the end of another, so the limb's own channels count too.
 std::string SuffixOfJoint(const RunLog& log, const StackChoice& choice) {
-  const std::string end = "_" + *choice.joint;
+  std::string end = "_" + *choice.joint;
   const std::set<std::string> all = SuffixesOf(log, false);
   std::set<std::string> found, of_a_limb;
   for (const std::string& suffix : all) {

@@ -55,7 +55,7 @@ void Summarise(log::LogReader& reader, RunLog& log) {
 // Decodes the messages of several stacks.
 class Decoder {
  public:
-  Decoder(std::vector<RunLog*> logs, Undecodable undecodable) : undecodable_(undecodable) {
+  Decoder(const std::vector<RunLog*>& logs, Undecodable undecodable) : undecodable_(undecodable) {
     stacks_.reserve(logs.size());
     for (RunLog* log : logs) stacks_.push_back({log, bus::Channels(log->suffix)});
     for (Stack& stack : stacks_) {
