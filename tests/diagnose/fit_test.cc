@@ -54,6 +54,20 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_EQ(fitted.runs.size(), runs.size());
 }
 
+// Starts one or more cogging teeth off. Which of them hold a fit there depends on the last bits of the processor's libm: a test takes the
+// first that does.
+std::vector<model::StartState> TeethOff(const model::StartState& start) {
+  std::vector<model::StartState> teeth;
+  for (const double speed : {-60.0, -66.0, -54.0, -72.0}) {
+    for (const double angle : {0.05, 0.06, 0.04}) {
+      model::StartState& tooth = teeth.emplace_back(start);
+      tooth[model::kMotorSpeed] = speed;
+      tooth[model::kArmAngle] += angle;
+    }
+  }
+  return teeth;
+}
+
 // Tests that a start which puts a fit one cogging tooth off is given up for the measured one, where nothing holds it.
 TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   const model::ModelDescription truth =
@@ -62,17 +76,18 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
   runs[0].angle_counts = true;
   runs[0].start_error = diagnose::kUnknownStart;
-  std::vector<model::StartState> elsewhere = StartsOf(runs);
-  elsewhere[0][model::kMotorSpeed] = -60;
-  elsewhere[0][model::kArmAngle] += 0.05;
   diagnose::FitOptions options;
   options.most_iterations = 15;
   options.tolerance = 1e-5;
   diagnose::Hypothesis hypothesis;
   hypothesis.model = truth;
-  const diagnose::Fitted held = diagnose::Fit(hypothesis, PointersTo(runs), elsewhere, options);
-  ASSERT_TRUE(held.ok()) << held.failure;
-  EXPECT_GT(held.squared_gap(), 1.5);
+  const std::vector<model::StartState> teeth = TeethOff(StartsOf(runs)[0]);
+  const auto held = std::find_if(teeth.begin(), teeth.end(), [&](const model::StartState& tooth) {
+    const diagnose::Fitted fitted = diagnose::Fit(hypothesis, PointersTo(runs), {tooth}, options);
+    return fitted.ok() && fitted.squared_gap() > 1.5;
+  });
+  ASSERT_NE(held, teeth.end());
+  const std::vector<model::StartState> elsewhere{*held};
   diagnose::SearchContext context;
   context.given = Table1With();
   context.runs = context.held_out = PointersTo(runs);
@@ -90,16 +105,18 @@ TEST(FitStart, TriesRest) {
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
   runs[0].angle_counts = true;
-  model::StartState moving = runs[0].start;
-  moving[model::kMotorSpeed] = -60;
-  moving[model::kArmAngle] += 0.05;  // so far that no processor's rounding brings it back
   runs[0].at_rest = runs[0].start;
-  runs[0].start = moving;
   runs[0].start_error = diagnose::kUnknownStart;
   diagnose::Hypothesis hypothesis;
   hypothesis.model = truth;
   constexpr double kNoDoubt = std::numeric_limits<double>::infinity();
-  EXPECT_GT(FitStart(hypothesis, runs[0], moving, kNoDoubt).squared_gap(), 1.5);
+  const std::vector<model::StartState> teeth = TeethOff(runs[0].start);
+  const auto held = std::find_if(teeth.begin(), teeth.end(), [&](const model::StartState& tooth) {
+    runs[0].start = tooth;
+    return FitStart(hypothesis, runs[0], tooth, kNoDoubt).squared_gap() > 1.5;
+  });
+  ASSERT_NE(held, teeth.end());
+  const model::StartState moving = *held;
   const diagnose::Fitted fitted = diagnose::FitStart(hypothesis, runs[0], moving, 1.1);
   ASSERT_TRUE(fitted.ok());
   EXPECT_LT(fitted.squared_gap(), 1.15);

@@ -81,22 +81,21 @@ TEST_F(LimbAppTest, WhatOthersSee) {
 }
 
 // Tests that a stop on the limb's channel and one on a joint's end all joints in order.
-TEST_F(LimbAppTest, Stops) {
-  for (const std::string suffix : {"", "_knee"}) {
-    states_.clear();
-    on_state_ = [&](const std::string&, const state_t& state) {
-      if (state.tick < 40) return;
-      stop_t stop{};
-      stop.session = 77;
-      stop.source = "launch";
-      stop.reason = "enough";
-      bus_.Publish(bus::Channels(suffix).Of<stop_t>(), stop);
-    };
-    EXPECT_EQ(Run(), 0) << suffix;
-    EXPECT_LT(states_["_hip"].back().tick, 60);
-    EXPECT_LT(states_["_knee"].back().tick, 60);
-  }
+class LimbStopTest : public LimbAppTest, public ::testing::WithParamInterface<std::string> {};
+TEST_P(LimbStopTest, EndsAllJoints) {
+  on_state_ = [&](const std::string&, const state_t& state) {
+    if (state.tick < 40) return;
+    stop_t stop{};
+    stop.session = 77;
+    stop.source = "launch";
+    stop.reason = "enough";
+    bus_.Publish(bus::Channels(GetParam()).Of<stop_t>(), stop);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_LT(states_["_hip"].back().tick, 60);
+  EXPECT_LT(states_["_knee"].back().tick, 60);
 }
+INSTANTIATE_TEST_SUITE_P(Suffixes, LimbStopTest, ::testing::Values("", "_knee"));
 
 // Tests that a fault in a joint that another process runs holds these at zero volts while it lasts, and that it is told on their
 // channels.
