@@ -15,6 +15,7 @@
 #include "design/configured_laws.h"
 #include "log/log_writer.h"
 #include "maths/median.h"
+#include "plant/simulated_machine.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 
@@ -32,18 +33,9 @@ struct End {
   bool operator==(const End&) const = default;
 };
 
-model::ActuatorOptions OptionsOf(const settings::StackConfig& config) {
-  model::ActuatorOptions options;
-  options.shaft = config.model.shaft;
-  options.arm_angle = config.model.arm_angle_rad;
-  options.integrator = config.plant.integrator;
-  options.relative_tolerance = config.plant.relative_tolerance;
-  return options;
-}
-
 // bench_model's loop.
 End SquareWaveAlone(const settings::StackConfig& config) {
-  model::Actuator actuator(config.model.description, OptionsOf(config));
+  model::Actuator actuator(config.model.description, plant::ActuatorOptionsOf(config));
   for (int tick = 0; tick < kTicks; ++tick) bench::AdvanceTick(actuator, tick);
   const model::Measurement m = actuator.Measure();
   return {m.p1, m.p2};
@@ -51,7 +43,7 @@ End SquareWaveAlone(const settings::StackConfig& config) {
 
 // Both loops of a configuration with one tick of delay.
 End BothLoopsAlone(const settings::StackConfig& config) {
-  model::Actuator actuator(config.model.description, OptionsOf(config));
+  model::Actuator actuator(config.model.description, plant::ActuatorOptionsOf(config));
   const auto pressure_law = design::PressureLawSettingsFor(config);
   position_ctrl::PositionLaw position_law(design::PositionLawSettingsFor(config));
   const auto reference = settings::MakeTrajectory(config.reference.trajectory);

@@ -96,6 +96,10 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   std::vector<std::string> others = overrides;
   const std::optional<std::string> joint = TakeJointChoice(&others);
   if (HasJoints(root) || joint) return StackOfJoint(root, others, joint);
+  for (const char* key : {"limb", "arm"}) {
+    if (root.Find(key) != nullptr)
+      throw KeyError(root, key, "it without joints", "it with [[joint]] sections");
+  }
   ApplyOverrides(others, &root);
   StackConfig config = StackOf(&root, file);
   CheckHasNoJoints(config);

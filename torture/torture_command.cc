@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/input_error.h"
+#include "base/new_file.h"
 #include "base/text_file.h"
 #include "torture/active_fault.h"
 #include "torture/campaign.h"
@@ -40,6 +41,16 @@ int Replay(const TortureOptions& options) {
   }
   fmt::print("{:.3f} s simulated, trace {:016x}\n", outcome.coverage.simulated_s, outcome.trace);
   return outcome.violations.empty() ? 0 : 1;
+}
+
+// Of seeds, and of nothing that takes time: the same seeds give the same numbers.
+void WriteNumbers(const std::string& file, const CampaignOptions& options, const CampaignResult& result) {
+  const Coverage& coverage = result.coverage;
+  WriteWholeFile(file,
+                 fmt::format("{{\"first_seed\": {}, \"runs\": {}, \"simulated_s\": {:.17g}, \"ticks\": {}, "
+                             "\"faults_injected\": {}, \"failed_runs\": {}, \"findings\": {}}}\n",
+                             options.first_seed, coverage.runs, coverage.simulated_s, coverage.ticks,
+                             coverage.injected, result.failed_runs, result.findings.size()));
 }
 
 // The findings come last, where the end of a long output shows them.
@@ -77,6 +88,7 @@ void AddOptions(settings::CommandLine* line, TortureOptions* options) {
                 "with --replay: print each fault that a process publishes, as it begins and ends");
   line->AddOption("--out", &options->out,
                   "DIR where to put the schedules of failed runs; default out/torture");
+  line->AddOption("--numbers", &options->numbers, "FILE.json write runs, faults and findings as numbers");
   line->AddOption("--without", &options->without,
                   "KIND a kind of fault that is not injected; may be repeated");
   line->AddFlag("--first", &options->first, "end at the first run that fails");
@@ -115,7 +127,9 @@ int Run(const TortureOptions& options) {
   campaign.first_only = options.first;
   fmt::print("hydro-torture --seed {}\n", campaign.first_seed);
   std::fflush(stdout);
-  return Report(campaign, RunCampaign(campaign));
+  const CampaignResult result = RunCampaign(campaign);
+  if (!options.numbers.empty()) WriteNumbers(options.numbers, campaign, result);
+  return Report(campaign, result);
 }
 
 }  // namespace hydro::torture

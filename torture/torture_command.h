@@ -21,6 +21,7 @@ struct TortureOptions {
   double tail = 0;      // s of a replay whose messages are printed
   bool faults = false;  // a replay prints the faults that its processes publish
   std::string out = "out/torture";
+  std::string numbers;  // file; empty: none
   std::vector<std::string> without;
   bool first = false;
   bool list = false;

@@ -139,6 +139,21 @@ class BatchTest(stack.TestCase):
         with open(self.path("hand.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["tracking"]["rms_error_rad"], row["numbers"]["rms_error_rad"])
 
+    # Tests that the shipped study of torture runs hydro-torture from seeds that the study draws, and has its numbers.
+    def test_torture_is_a_study(self):
+        with open(os.path.join(os.path.dirname(stack.CONFIG), "examples", "studies", "torture.toml"), encoding="utf-8") as file:
+            shipped = file.read()
+        study = shipped.replace("draws = 20", "draws = 2").replace('"--runs", "50"', '"--runs", "3"')
+        self.assertEqual(len(study), len(shipped) - 2)
+        self.batch(self.study(study), "--out", self.path("torture"))
+        with open(self.path("torture/table.json"), encoding="utf-8") as file:
+            rows = json.load(file)["rows"]
+        self.assertEqual(len({row["values"]["first_seed"] for row in rows}), 2)
+        for row in rows:
+            self.assertEqual((row["numbers"]["failed_runs"], row["numbers"]["findings"]), (0, 0))
+            self.assertGreater(row["numbers"]["faults_injected"], 0)
+            self.assertGreater(row["numbers"]["ticks"], 1000)
+
     # Tests that a driver killed at any point leaves whole cases, that the next goes on, repeats none of them, and that the results are those
     # of a study that was never killed.
     def test_killed_driver_goes_on(self):

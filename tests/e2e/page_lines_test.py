@@ -156,6 +156,7 @@ PAGES = {
         "build/bin/hydro-torture --replay out/torture/seed_4711.torture --tail": Not("there is one where a seed failed", "torture"),
         "build/bin/hydro-torture --list": Prints("launcher_crash"),
         "scripts/torture 8": Not("eight hours"),
+        "scripts/torture --study 2000": Not("hours"),
         "scripts/torture --real": Not("minutes", "torture"),
         "hydro-torture 1": Not("the first line of a schedule"),
     }),

@@ -47,7 +47,12 @@ export function until(page, condition, argument) {
 
 // Live, streaming, and with this many seconds of run.
 export async function streaming(page, seconds = 0.5) {
-  await page.locator('#link[data-state=open]').waitFor();
+  await page
+    .locator('#link[data-state=open]')
+    .waitFor()
+    .catch(async () => {
+      throw new Error(`not streaming: the page says "${await page.locator('#link').textContent()}"`);
+    });
   await until(
     page,
     (least) => hydroScope.panes.frames > 3 && hydroScope.display.last > least && hydroScope.panes.panes.length > 0,

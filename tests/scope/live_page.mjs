@@ -1,6 +1,7 @@
 // What most tests of the page begin with: a stack that moves to and fro, hydro-scope beside it, and a page that streams.
 
-import { after, before } from 'node:test';
+import assert from 'node:assert/strict';
+import { after, before, beforeEach } from 'node:test';
 import { openBrowser, openPage, streaming } from './browser.mjs';
 import { Bench } from './stack.mjs';
 
@@ -8,17 +9,20 @@ import { Bench } from './stack.mjs';
 // stack;
 // scopeSets: of hydro-scope; seconds: of the run, before the first test.
 export function onALivePage(use, { log = 'run.lcmlog', sets = [], scopeSets = [], seconds = 1 } = {}) {
-  let bench, browser;
+  let bench, browser, stack;
   before(async () => {
     bench = await Bench.make();
-    const stack = await bench.launch(bench.file(log), sets);
+    stack = await bench.launch(bench.file(log), sets);
     const scope = await bench.scope(undefined, { sets: scopeSets });
     browser = await openBrowser();
     const page = await openPage(browser, scope.address);
     await streaming(page, seconds);
     await use({ bench, stack, scope, browser, page });
   });
+  // Where the stack has ended by itself, each test would wait in vain.
+  beforeEach(() => assert.ok(!stack.over || stack.stopped, 'the stack has ended'));
   after(async () => {
+    console.log(stack?.lines.join('\n'));
     await browser?.close();
     await bench?.close();
   });

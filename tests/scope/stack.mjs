@@ -73,6 +73,7 @@ class Program {
   }
 
   async stop(signal = 'SIGINT') {
+    this.stopped = true;
     if (!this.over) this.child.kill(signal);
     const late = setTimeout(() => this.child.kill('SIGKILL'), kPatience_ms);
     const outcome = await this.ended;

@@ -28,6 +28,7 @@ test('re-arm asks first', async () => {
 // Tests that one press of STOP ends the stack with its output at zero, that this is confirmed, and that it is
 // an event.
 test('STOP stops with one press', async () => {
+  stack.stopped = true;
   await page.getByRole('button', { name: /^STOP/ }).click();
   await page.getByText(/^STOPPED: /).waitFor();
   await page.locator('.events [data-kind=stop]').first().waitFor();
