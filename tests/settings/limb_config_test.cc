@@ -152,8 +152,9 @@ TEST_F(LimbConfigTest, Wrong) {
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(File(std::string(kConfigText) + kJoints)); }),
               HasSubstr("joint: found joints (\"hip\" or \"knee\"), allowed a stack with one"));
   for (const std::string section : {"limb", "arm"}) {
-    EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(File(std::string(kConfigText) + "[" + section + "]\n")); }),
-                HasSubstr(section + ": found it without joints, allowed it with [[joint]] sections"));
+    EXPECT_THAT(
+        InputErrorOf([&] { LoadStackConfig(File(std::string(kConfigText) + "[" + section + "]\n")); }),
+        HasSubstr(section + ": found it without joints, allowed it with [[joint]] sections"));
   }
 }
 
