@@ -3,8 +3,8 @@
 # The standard library's headers are a fifth of all compiling. Builds of everything (presets release and asan) precompile them
 # once for each set of flags; the preset dev compiles every file alone, and so finds includes that are missing.
 option(HYDRO_PRECOMPILE "Precompile the standard library's headers" OFF)
-# They also compile a library's files in batches of eight: half of compiling is reading the same headers. Files whose names in
-# anonymous namespaces are also those of others in their library stay alone.
+# They also compile a library's files in batches of 24: most of compiling is reading the same headers and templates. Files whose names in
+# anonymous namespaces are also those of others in their batch stay alone.
 option(HYDRO_UNITY "Compile each library's files in batches" OFF)
 set(hydro_alone_file ${CMAKE_CURRENT_LIST_DIR}/compiled_alone.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hydro_alone_file})
@@ -20,7 +20,7 @@ add_compile_options(-pthread)
 # raw bytes, and that check is much of all compiling.
 set(HYDRO_COMPUTES_OPTIONS "")
 if(HYDRO_SANITIZE)
-  set(HYDRO_COMPUTES_OPTIONS -O1 -fno-sanitize=alignment)
+  set(HYDRO_COMPUTES_OPTIONS -O1 -fno-sanitize=alignment,object-size)
 endif()
 
 if(HYDRO_PRECOMPILE)
@@ -75,7 +75,7 @@ function(hydro_library name)
 endfunction()
 
 function(hydro_compile_in_batches name)
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
   foreach(source ${ARGN})
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -19,10 +19,10 @@ std::string VariableName(const std::string& text, std::set<std::string>* taken) 
   return free;
 }
 
-using Fields = std::vector<MatField>;
+using MatFields = std::vector<MatField>;
 
-Fields FieldsOf(const Sheet& sheet) {
-  Fields fields, units, meanings;
+MatFields FieldsOf(const Sheet& sheet) {
+  MatFields fields, units, meanings;
   for (SheetColumn& column : WithTimes(sheet)) {
     const definitions::Field& field = column.field;
     units.push_back({field.name, {field.unit}});
@@ -35,8 +35,8 @@ Fields FieldsOf(const Sheet& sheet) {
   return fields;
 }
 
-Fields FieldsOf(const ExportedRun& run) {
-  Fields fields;
+MatFields FieldsOf(const ExportedRun& run) {
+  MatFields fields;
   for (const Sheet& sheet : run.sheets) {
     if (!sheet.is_table) {
       fields.push_back({sheet.name, {FieldsOf(sheet)}});
@@ -44,7 +44,7 @@ Fields FieldsOf(const ExportedRun& run) {
     }
     for (MatField& field : FieldsOf(sheet)) fields.push_back(std::move(field));
   }
-  Fields log;
+  MatFields log;
   for (const auto& [fact, value] : run.facts) log.push_back({fact, {value}});
   log.push_back({"config", {run.config_text}});
   log.push_back({"model", {run.model_text}});
@@ -55,7 +55,7 @@ Fields FieldsOf(const ExportedRun& run) {
 }  // namespace
 
 std::vector<MatField> MatVariables(const std::vector<ExportedRun>& runs) {
-  Fields variables;
+  MatFields variables;
   if (runs.size() > 1) {
     std::set<std::string> names;
     for (const ExportedRun& run : runs)

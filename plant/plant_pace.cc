@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRepeatPeriod = 100ms;  // lockstep: how often an unanswered state is sent again
+constexpr auto kStateRepeatPeriod = 100ms;  // lockstep: how often an unanswered state is sent again
 // Lockstep: how far the plant may run ahead of a logger; about half of what Linux's default receive buffer
 // (208 KiB) holds.
 constexpr int64_t kLoggerWindowTicks = 64;
@@ -119,7 +119,7 @@ void PlantApp::RunLockstep() {
 bool PlantApp::AwaitAnswers(bus::Clock::TimePoint* now) {
   if (Unanswered() == nullptr) return true;
   const auto deadline = *now + stall_time_;
-  auto next_repeat = *now + kRepeatPeriod;
+  auto next_repeat = *now + kStateRepeatPeriod;
   while (!Ended()) {
     participant_.bus().HandleUntil(std::min(next_repeat, deadline));
     const char* const who = Unanswered();
@@ -130,7 +130,7 @@ bool PlantApp::AwaitAnswers(bus::Clock::TimePoint* now) {
     }
     if (who != nullptr && *now >= next_repeat) {
       state_publisher_.Send(state_);  // the state or its answer may have been lost
-      next_repeat = *now + kRepeatPeriod;
+      next_repeat = *now + kStateRepeatPeriod;
     }
     PollIfDue(*now);
     if (who == nullptr) return !Ended();

@@ -14,8 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kReportPeriod = 1s;
-constexpr auto kAnswerTime = 500ms;    // in which every controller says whether it can act by a proposal
-constexpr auto kRepeatPeriod = 20ms;   // of what is proposed and decided, should a message be lost
+constexpr auto kAnswerTime = 500ms;        // in which every controller says whether it can act by a proposal
+constexpr auto kWordsRepeatPeriod = 20ms;  // of what is proposed and decided, should a message be lost
 constexpr double kOldRequest_s = 5;    // a request that names a tick older than this comes from a recording
 constexpr size_t kMostSessions = 64;   // whose last answer is kept, should they ask again
 constexpr size_t kMostText = 1 << 16;  // bytes of a request
@@ -117,7 +117,7 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   pending_->version = Version{std::move(change.config), std::move(change.message)};
   pending_->text = std::move(change.text);
   pending_->deadline = participant_.clock().Now() + kAnswerTime;
-  pending_->next_repeat = participant_.clock().Now() + kRepeatPeriod;
+  pending_->next_repeat = participant_.clock().Now() + kWordsRepeatPeriod;
   Publish(&pending_->version->message, tuned_settings_t::PROPOSED);
 }
 
@@ -169,7 +169,7 @@ void TuningDesk::PollDue(bus::Clock::TimePoint now) {
   }
   if (pending_ && pending_->version) {
     if (now >= pending_->next_repeat) {
-      pending_->next_repeat = now + kRepeatPeriod;
+      pending_->next_repeat = now + kWordsRepeatPeriod;
       tuned_settings_t& message = pending_->version->message;
       Publish(&message, message.acts_at < 0 ? tuned_settings_t::PROPOSED : tuned_settings_t::DECIDED);
     }

@@ -8,7 +8,7 @@
 namespace hydro::settings {
 namespace {
 
-using Kind = TomlNode::Kind;
+using NodeKind = TomlNode::Kind;
 
 void SetOrigin(TomlNode* node, const std::string& place) {
   node->place = place;
@@ -26,7 +26,7 @@ void MarkAsOption(TomlNode* node, bool option) {
 void LayOver(const TomlNode& own, TomlNode* under) {
   for (const auto& [key, node] : own.members) {
     TomlNode* below = under->Find(key);
-    if (below != nullptr && below->is(Kind::kTable) && node.is(Kind::kTable)) {
+    if (below != nullptr && below->is(NodeKind::kTable) && node.is(NodeKind::kTable)) {
       LayOver(node, below);
     } else if (below != nullptr) {
       *below = node;
@@ -55,8 +55,8 @@ TomlNode ParseValue(const std::string& value) {
 TomlNode* FindJoint(TomlNode* joints, const std::string& name, const std::string& place) {
   std::vector<std::string> names;
   for (TomlNode& joint : joints->items) {
-    const TomlNode* own = joint.is(Kind::kTable) ? joint.Find("name") : nullptr;
-    if (own == nullptr || !own->is(Kind::kString)) continue;
+    const TomlNode* own = joint.is(NodeKind::kTable) ? joint.Find("name") : nullptr;
+    if (own == nullptr || !own->is(NodeKind::kString)) continue;
     if (own->text == name) return &joint;
     names.push_back(own->text);
   }
@@ -76,12 +76,12 @@ void ApplyOne(const std::string& option, TomlNode* root) {
     const size_t end = std::min(path.find('.', begin), path.size());
     const std::string key = path.substr(begin, end - begin);
     if (key.empty()) throw InputError(place + ": found " + Quoted(path) + ", allowed section.key=value");
-    if (node->is(Kind::kArray) && path.substr(0, begin) == "joint." && end < path.size()) {
+    if (node->is(NodeKind::kArray) && path.substr(0, begin) == "joint." && end < path.size()) {
       node = FindJoint(node, key, place);
       begin = end + 1;
       continue;
     }
-    if (!node->is(Kind::kTable)) {
+    if (!node->is(NodeKind::kTable)) {
       throw InputError(place + ": " + path.substr(0, begin - 1) + ": found " + node->Shown() + " at " +
                        node->place + ", allowed a section");
     }
@@ -116,7 +116,7 @@ void DropAlternative(const std::vector<std::string>& chosen, const std::vector<s
 
 void DropOtherKinds(TomlNode* section) {
   const TomlNode* kind = section->Find("kind");
-  if (kind == nullptr || !kind->from_option || !kind->is(Kind::kString)) return;
+  if (kind == nullptr || !kind->from_option || !kind->is(NodeKind::kString)) return;
   const std::vector<std::string> own = KeysOfTrajectory(kind->text);
   if (own.empty()) return;
   for (const char* other : {"steps", "sine", "square", "chirp", "csv", "planner"}) {
@@ -130,7 +130,7 @@ void DropOtherKinds(TomlNode* section) {
 void DropAlternatives(TomlNode* root) {
   const auto section = [](TomlNode* in, const char* key) {
     TomlNode* node = in == nullptr ? nullptr : in->Find(key);
-    return node != nullptr && node->is(Kind::kTable) ? node : nullptr;
+    return node != nullptr && node->is(NodeKind::kTable) ? node : nullptr;
   };
   if (TomlNode* pressure = section(root, "pressure")) {
     const std::vector<std::string> gains = {"k_p", "k_v"};
@@ -141,7 +141,7 @@ void DropAlternatives(TomlNode* root) {
   TomlNode* model = section(root, "model");
   if (model != nullptr && FromOption(*model, "shaft")) {
     const TomlNode* shaft = model->Find("shaft");
-    const char* unfit = shaft->is(Kind::kString) && shaft->text == "driven" ? "arm_angle_rad" : "motion";
+    const char* unfit = shaft->is(NodeKind::kString) && shaft->text == "driven" ? "arm_angle_rad" : "motion";
     const TomlNode* node = model->Find(unfit);
     const bool motion_by_option =
         node != nullptr && std::any_of(node->members.begin(), node->members.end(),

@@ -12,8 +12,8 @@
 namespace hydro::tables {
 namespace {
 
-constexpr size_t kLooked = 500;  // lines from the top
-constexpr size_t kJudged = 20;   // lines of numbers that must fit for the most part
+constexpr size_t kLookedLines = 500;  // lines from the top
+constexpr size_t kJudged = 20;        // lines of numbers that must fit for the most part
 constexpr char kSeparators[] = {',', ';', '\t', ' '};
 
 // A way to read the top of a text: lines of numbers, with names above them.
@@ -172,7 +172,7 @@ CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSe
   text = WithoutByteOrderMark(text);
   const size_t skipped = settings.skip_lines.value_or(0);
   // Tabs at the ends of lines matter only between tabs, and leave the lines of the others as they are.
-  const Lines lines = LinesOf(text, '\t', skipped, kLooked);
+  const Lines lines = LinesOf(text, '\t', skipped, kLookedLines);
   CsvLayout layout;
   layout.separator = settings.separator.value_or(',');
   layout.decimal = settings.decimal.value_or('.');

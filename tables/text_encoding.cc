@@ -7,7 +7,7 @@ namespace hydro::tables {
 namespace {
 
 constexpr uint32_t kNoCharacter = 0xfffd;
-constexpr size_t kLooked = 1024;  // bytes
+constexpr size_t kLookedBytes = 1024;  // bytes
 
 void AppendUtf8(uint32_t character, std::string& text) {
   const auto tail = [&](int shift) { text += static_cast<char>(0x80 | ((character >> shift) & 0x3f)); };
@@ -36,11 +36,11 @@ bool IsLowHalf(uint32_t unit) { return unit >= 0xdc00 && unit < 0xe000; }
 std::optional<std::string> FromUtf16(std::string_view text, const std::string& file) {
   const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");
   if (!little && !big) {
-    if (text.substr(0, kLooked).find('\0') == std::string_view::npos) return std::nullopt;
+    if (text.substr(0, kLookedBytes).find('\0') == std::string_view::npos) return std::nullopt;
     // Every other byte is 0 where UTF-16 lost its mark. Single zero bytes are left to the reader's errors.
     size_t zeros = 0;
-    for (const char c : text.substr(0, kLooked)) zeros += c == '\0';
-    if (4 * zeros < text.substr(0, kLooked).size()) return std::nullopt;
+    for (const char c : text.substr(0, kLookedBytes)) zeros += c == '\0';
+    if (4 * zeros < text.substr(0, kLookedBytes).size()) return std::nullopt;
     throw InputError(file +
                      ": found a text of zero bytes, UTF-16 without its byte order mark or no text at all, "
                      "allowed UTF-8, or UTF-16 with the mark: save it as UTF-8");

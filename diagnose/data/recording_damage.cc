@@ -16,7 +16,7 @@ namespace {
 
 using Run = runs::MeasuredRun;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kByChance = 1e-3;  // how often chance may hold a value so long, a run
 constexpr size_t kShortestHold = 8;
 constexpr std::ptrdiff_t kFew = 10;
@@ -146,12 +146,12 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
     size_t count = 0;
     for (const Stretch& one : held) {
       for (size_t i = one.first; i < one.last; ++i) {
-        values[i] = kNone;
+        values[i] = kNoValue;
         ++(*held_there)[i];
         ++count;
       }
     }
-    for (const size_t i : spikes) values[i] = kNone;
+    for (const size_t i : spikes) values[i] = kNoValue;
     const std::string place = RunNamed(run->name) + ": " + sensor.ours;
     if (count > 0) {
       lines->push_back(place + " repeats one value in " + std::to_string(held.size()) +

@@ -13,20 +13,20 @@ namespace hydro::diagnose {
 namespace {
 
 // Angle, rate and acceleration, in a unit of time that gives them similar magnitudes.
-using State = Eigen::Vector3d;
+using MotionState = Eigen::Vector3d;
 using Covariance = Eigen::Matrix3d;
 
 // Quintic polynomials between points that each have a value, a rate and an acceleration.
 class Quintics : public trajectory::Trajectory {
  public:
   // `unit`: the unit of time of the points' rates and accelerations, in s.
-  Quintics(std::vector<double> times, const std::vector<State>& points, double unit)
+  Quintics(std::vector<double> times, const std::vector<MotionState>& points, double unit)
       : times_(std::move(times)), first_(points.front()[0]), last_(points.back()[0]) {
     min_ = max_ = first_;
     for (size_t i = 1; i < times_.size(); ++i) {
       const double h = (times_[i] - times_[i - 1]) / unit;
-      const State& a = points[i - 1];
-      const State& b = points[i];
+      const MotionState& a = points[i - 1];
+      const MotionState& b = points[i];
       // With s from 0 to 1 over the interval: value = sum of coefficients[k] s^k.
       const double rise = b[0] - a[0] - h * a[1] - h * h * a[2] / 2;
       const double rate = h * (b[1] - a[1] - h * a[2]);
@@ -81,7 +81,7 @@ class Quintics : public trajectory::Trajectory {
 };
 
 struct Belief {
-  State mean = State::Zero();
+  MotionState mean = MotionState::Zero();
   Covariance covariance = Covariance::Zero();
 
   // Takes in a reading of one of the states; returns -2 times its log likelihood.
@@ -143,8 +143,8 @@ class Smoother {
   }
 
   // Call after Misfit.
-  std::vector<State> Smooth() const {
-    std::vector<State> points(time_.size());
+  std::vector<MotionState> Smooth() const {
+    std::vector<MotionState> points(time_.size());
     points.back() = filtered_.back().mean;
     for (size_t i = time_.size() - 1; i-- > 0;) {
       const Belief& next = predicted_[i + 1];
@@ -175,8 +175,8 @@ std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& 
   Smoother smoother(time, angle, angle_noise, rate, rate_noise);
   if (smoother.range() == 0) {
     const double held = *std::find_if(angle.begin(), angle.end(), [](double a) { return !std::isnan(a); });
-    return std::make_unique<Quintics>(std::vector<double>{time.front()}, std::vector<State>{{held, 0, 0}},
-                                      1.0);
+    return std::make_unique<Quintics>(std::vector<double>{time.front()},
+                                      std::vector<MotionState>{{held, 0, 0}}, 1.0);
   }
   // Search in steps of a decade over all possible strengths, then of a fifth of a decade around the best.
   const double lowest =

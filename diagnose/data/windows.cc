@@ -48,8 +48,8 @@ std::vector<double> IntegratedSpeed(const RunData& run) {
   return angle;
 }
 
-RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
-               const std::vector<double>& motor_angle, const model::Parameters& model) {
+RunData CutWindow(const RunData& run, size_t first, size_t compared, size_t last,
+                  const std::vector<double>& motor_angle, const model::Parameters& model) {
   RunData window;
   window.name = run.name;
   window.most_steps_per_sample = kStepsPerSample;
@@ -101,7 +101,7 @@ std::vector<RunData> WindowsOf(const RunData& run, double seconds, const model::
     const bool whole = last < time.size() || time.back() > end - 0.1 * seconds;
     if (!whole) break;
     if (last - compared >= kFewestCompared) {
-      RunData window = Window(run, first, compared, last, motor_angle, model);
+      RunData window = CutWindow(run, first, compared, last, motor_angle, model);
       if (!window.signals.empty()) windows.push_back(std::move(window));
     }
     // The next one's comparison begins where this one's ends.

@@ -21,7 +21,7 @@ namespace {
 // The effect's term is evaluated at about so many samples of each run, and averaged over so many steps of its
 // variable.
 constexpr size_t kSamplesOfARun = 2000;
-constexpr size_t kSteps = 60;
+constexpr size_t kTermSteps = 60;
 
 model::ModelDescription WithoutEffect(const model::ModelDescription& model, const std::string& effect) {
   model::ModelDescription without = model;
@@ -106,15 +106,15 @@ void SetCurve(const std::vector<Point>& points, FoundTerm* term) {
     high = std::max(high, point.at);
   }
   if (!(high > low)) return;
-  std::vector<double> sum(kSteps, 0.0), count(kSteps, 0.0);
+  std::vector<double> sum(kTermSteps, 0.0), count(kTermSteps, 0.0);
   for (const Point& point : points) {
-    const auto step = static_cast<size_t>((point.at - low) / (high - low) * kSteps);
-    sum[std::min(step, kSteps - 1)] += point.value;
-    count[std::min(step, kSteps - 1)] += 1;
+    const auto step = static_cast<size_t>((point.at - low) / (high - low) * kTermSteps);
+    sum[std::min(step, kTermSteps - 1)] += point.value;
+    count[std::min(step, kTermSteps - 1)] += 1;
   }
-  for (size_t s = 0; s < kSteps; ++s) {
+  for (size_t s = 0; s < kTermSteps; ++s) {
     if (count[s] == 0) continue;
-    term->at.push_back(low + (high - low) * (static_cast<double>(s) + 0.5) / kSteps);
+    term->at.push_back(low + (high - low) * (static_cast<double>(s) + 0.5) / kTermSteps);
     term->value.push_back(sum[s] / count[s]);
   }
 }

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json Interval(const Estimated& estimated) { return Json::array({estimated.low, estimated.high}); }
 
-Json Places(const Diagnosis& diagnosis) {
+Json PlacesAsJson(const Diagnosis& diagnosis) {
   Json places = Json::array();
   for (const Location& location : diagnosis.location) {
     Json windows = Json::array();
@@ -28,7 +28,7 @@ Json Places(const Diagnosis& diagnosis) {
   return places;
 }
 
-Json MissingTerms(const Diagnosis& diagnosis) {
+Json MissingTermsAsJson(const Diagnosis& diagnosis) {
   Json terms = Json::array();
   for (const MissingTerm& term : diagnosis.missing) {
     terms.push_back({{"balance", term.balance},
@@ -176,8 +176,8 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
   const Json report = {{"verdict", VerdictName(diagnosis.verdict)},
                        {"sentence", diagnosis.sentence},
                        {"recording", Recording(diagnosis)},
-                       {"location", Places(diagnosis)},
-                       {"missing_terms", MissingTerms(diagnosis)},
+                       {"location", PlacesAsJson(diagnosis)},
+                       {"missing_terms", MissingTermsAsJson(diagnosis)},
                        {"effects", Effects(diagnosis)},
                        {"closure", ClosureJson(diagnosis)},
                        {"parameters", ChangedParameters(diagnosis)},

@@ -18,7 +18,7 @@ constexpr double kToSettleWindows = 1e-4;
 constexpr double kIndependent = 10;
 
 // How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
-double Evidence(const std::vector<const RunData*>& runs) {
+double EvidenceOf(const std::vector<const RunData*>& runs) {
   double pieces = 0;
   for (const RunData* run : runs) {
     const double stretches = std::max(1.0, run->duration() / kHorizon);
@@ -91,7 +91,7 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
 }
 
 std::shared_ptr<const Knowledge> KnownAt(const SearchContext& context, double sum) {
-  return std::make_shared<Knowledge>(Knowledge{context.given, sum / Evidence(context.runs)});
+  return std::make_shared<Knowledge>(Knowledge{context.given, sum / EvidenceOf(context.runs)});
 }
 
 void Settle(const SearchContext& context, Explanation* one) {

@@ -13,13 +13,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kMostWindows = 16;  // of each horizon
+constexpr size_t kMostOfAHorizon = 16;  // of each horizon
 
 // The mean over one horizon's windows; NaN where the runs are shorter than the horizon.
 double Score(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs, double seconds,
              int jobs) {
   const std::vector<RunData> windows = WindowsOf(runs, seconds, hypothesis.model.parameters);
-  const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostWindows);
+  const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostOfAHorizon);
   std::vector<double> logarithms(chosen.size());
   ParallelFor(chosen.size(), jobs, [&](size_t w) {
     const Fitted fitted = FitStart(hypothesis, *chosen[w], chosen[w]->start, kStartInDoubt);

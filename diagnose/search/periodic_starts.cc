@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostPeriods = 48;
+constexpr int kMostTriedPeriods = 48;
 // The least share of a balance's mean square that a number of periods must explain to be tried, and the least
 // share of what the best one explains that a second one must. Where nothing repeats, the best of 48 waves with an angle of its own
 // in each of four runs explained 0.027.
@@ -32,7 +32,7 @@ class Periodogram {
  public:
   // `others`: how many other regressors describe what the balance may lack besides.
   explicit Periodogram(Index others) : others_(others) {
-    normal_.assign(kMostPeriods, MatrixXd::Zero(others + 3, others + 3));
+    normal_.assign(kMostTriedPeriods, MatrixXd::Zero(others + 3, others + 3));
   }
 
   // Adds one sample: `x` holds the other regressors; sine and cosine are multiplied by `carrier`.
@@ -41,7 +41,7 @@ class Periodogram {
     VectorXd row(others_ + 3);
     row.head(others_) = x;
     row(others_ + 2) = target;
-    for (int n = 1; n <= kMostPeriods; ++n) {
+    for (int n = 1; n <= kMostTriedPeriods; ++n) {
       row(others_) = carrier * std::sin(n * angle);
       row(others_ + 1) = carrier * std::cos(n * angle);
       normal_[static_cast<size_t>(n - 1)].selfadjointView<Eigen::Lower>().rankUpdate(row);
@@ -135,7 +135,7 @@ std::vector<PeriodicEffect> PeriodicAmong(const std::vector<Change>& changes) {
 // explains, their mean amplitude, and the phase of the first that has one.
 std::vector<Periodogram::Wave> Likeliest(const std::vector<Periodogram>& of_run) {
   std::vector<Periodogram::Wave> waves;
-  for (int n = 1; n <= kMostPeriods; ++n) {
+  for (int n = 1; n <= kMostTriedPeriods; ++n) {
     Periodogram::Wave all;
     all.periods = n;
     double amplitudes = 0, carriers = 0, explained = 0, total = 0;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many others that choose. With 14 fitted, an arm's flexure was lost.
-constexpr size_t kMostWindows = 20;
+constexpr size_t kMostOfARun = 20;
 // And windows of each extreme of a signal, as many again that choose.
 constexpr size_t kMostExtremes = 1;
 // Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
@@ -70,8 +70,8 @@ double SearchHorizon(const std::vector<const RunData*>& runs) {
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model) {
   SearchWindows windows;
   windows.all = WindowsOf(runs, SearchHorizon(runs), model);
-  windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
-  windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
+  windows.fitted = EvenlySpread(windows.all, kMostOfARun, 0, 2);
+  windows.choosing = EvenlySpread(windows.all, kMostOfARun, 1, 2);
   for (const model::Channel channel :
        {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
     for (const double sign : {1.0, -1.0}) AddExtremes(channel, sign, &windows);

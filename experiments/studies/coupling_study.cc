@@ -17,14 +17,14 @@
 namespace hydro::experiments {
 namespace {
 
-using Numbers = std::array<double, kArmJoints>;
+using OfEachJoint = std::array<double, kArmJoints>;
 
 constexpr double kGravity = 386.09;  // in/s^2
 constexpr double kHold = 1;          // s at rest before the path, in which the arm finds its balance
 
 // The reference of all joints at one time.
 struct Reference {
-  Numbers angle{}, speed{}, acceleration{};
+  OfEachJoint angle{}, speed{}, acceleration{};
 };
 
 Reference ReferenceAt(const SmoothPath& path, const Moving& moving, double time) {
@@ -53,7 +53,7 @@ class Joints {
     if (coupled) arm_ = std::make_unique<model::CoupledArm>(StudiedArm(), joints);
   }
 
-  void Advance(const Numbers& voltages, double until) {
+  void Advance(const OfEachJoint& voltages, double until) {
     if (arm_) arm_->Advance(voltages, until);
     for (size_t i = 0; i < rigs_.size(); ++i) rigs_[i].Advance(voltages[i], until);
   }
@@ -98,13 +98,13 @@ class JointLoops {
 };
 
 // The torque that the arm needs of each joint along the reference, as far as this feed-forward knows it.
-Numbers KnownTorques(const model::PlanarArm& arm, const std::array<model::Parameters, kArmJoints>& own,
-                     const Reference& at, FeedForward feed_forward) {
-  Numbers coupling{};
+OfEachJoint KnownTorques(const model::PlanarArm& arm, const std::array<model::Parameters, kArmJoints>& own,
+                         const Reference& at, FeedForward feed_forward) {
+  OfEachJoint coupling{};
   if (feed_forward == FeedForward::kWhole) {
     model::CouplingTorques(arm, own, at.angle, at.speed, at.acceleration, coupling);
   } else if (feed_forward == FeedForward::kGravity) {
-    model::CouplingTorques(arm, own, at.angle, Numbers{}, Numbers{}, coupling);
+    model::CouplingTorques(arm, own, at.angle, OfEachJoint{}, OfEachJoint{}, coupling);
   }
   for (int i = 0; i < kArmJoints; ++i) {
     coupling[i] += own[i].J_a * at.acceleration[i] + own[i].mgl * std::cos(at.angle[i]);
@@ -143,11 +143,11 @@ ArmRun RunArm(const CouplingStudy& study, const tune::StepTrial& settings, const
   const int ticks = before + static_cast<int>(study.time.size());
   for (int k = 0; k < ticks; ++k) {
     const Reference at = ReferenceAt(path, run.moving, (k - before) * settings.tick);
-    const Numbers known = KnownTorques(arm, study.own, at, run.feed_forward);
-    const Numbers own = KnownTorques(arm, study.own, at, FeedForward::kOwn);
-    const Numbers needed =
+    const OfEachJoint known = KnownTorques(arm, study.own, at, run.feed_forward);
+    const OfEachJoint own = KnownTorques(arm, study.own, at, FeedForward::kOwn);
+    const OfEachJoint needed =
         KnownTorques(arm, study.own, at, run.coupled ? FeedForward::kWhole : FeedForward::kOwn);
-    Numbers voltages{};
+    OfEachJoint voltages{};
     for (int i = 0; i < kArmJoints; ++i) {
       const model::Parameters& p = study.own[i];
       double ahead = 0;
@@ -217,7 +217,7 @@ CouplingStudy RunCouplingStudy() {
   CouplingStudy study;
   study.c1 = settings.position.c1;
   study.own.fill(ShippedModel("table1").parameters);
-  model::SetOwnLoads(model::PlanarArm(StudiedArm()), Numbers{}, study.own);
+  model::SetOwnLoads(model::PlanarArm(StudiedArm()), OfEachJoint{}, study.own);
   for (int k = 0; k < static_cast<int>(std::lround(path.duration() / settings.tick)); ++k) {
     study.time.push_back(k * settings.tick);
     study.reference.push_back(path.angle(study.time.back()));
@@ -264,11 +264,11 @@ std::array<CouplingAlongPath, kArmJoints> ExpectedCoupling(const CouplingStudy& 
     const double g1 = arm.gravity * (upper.mass * upper.centre + mass * upper.length) *
                           std::cos(upper.angle + at.angle[0]) +
                       g2;
-    const Numbers inertia = {(M_11 - study.own[0].J_a) * a1 + M_12 * a2,
-                             M_12 * a1 + (M_22 - study.own[1].J_a) * a2};
-    const Numbers velocity = {h * (2 * v1 * v2 + v2 * v2), -h * v1 * v1};
-    const Numbers gravity = {g1 - study.own[0].mgl * std::cos(at.angle[0]),
-                             g2 - study.own[1].mgl * std::cos(at.angle[1])};
+    const OfEachJoint inertia = {(M_11 - study.own[0].J_a) * a1 + M_12 * a2,
+                                 M_12 * a1 + (M_22 - study.own[1].J_a) * a2};
+    const OfEachJoint velocity = {h * (2 * v1 * v2 + v2 * v2), -h * v1 * v1};
+    const OfEachJoint gravity = {g1 - study.own[0].mgl * std::cos(at.angle[0]),
+                                 g2 - study.own[1].mgl * std::cos(at.angle[1])};
     for (int i = 0; i < kArmJoints; ++i) {
       CouplingAlongPath& joint = found[i];
       joint.inertia.push_back(inertia[i]);

@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kListen = 300ms;  // long enough to hear a second plant
-constexpr auto kRepeat = 100ms;
+constexpr auto kRearmRepeat = 100ms;
 
 // The plant of a stack, or of a joint, that is asked.
 class Asked {
@@ -134,7 +134,8 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
   const Joints joints = PlantsOf(bus, config, bus::IdentityOn(bus, clock).session);
   const auto heard = [](const Asked& joint) { return joint.heard(); };
   const auto start = clock.Now();
-  while (!All(joints, heard) && clock.Now() - start < timing.presence) bus.HandleUntil(clock.Now() + kRepeat);
+  while (!All(joints, heard) && clock.Now() - start < timing.presence)
+    bus.HandleUntil(clock.Now() + kRearmRepeat);
   if (All(joints, heard)) {
     for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
   }
@@ -145,7 +146,7 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
     for (const auto& joint : joints) {
       if (!joint->answered()) joint->Ask(clock.Utime());
     }
-    for (const auto until = clock.Now() + kRepeat; !All(joints, answered) && clock.Now() < until;)
+    for (const auto until = clock.Now() + kRearmRepeat; !All(joints, answered) && clock.Now() < until;)
       bus.HandleUntil(until);
   }
   const bool accepted = All(joints, [](const Asked& joint) { return joint.accepted(); });

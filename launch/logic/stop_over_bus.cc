@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr size_t kMostProcesses = 256;  // a stack has five; a flood of made-up ones is not kept
 constexpr size_t kMostPartsOfAJoint = 8;
-constexpr auto kRepeat = 50ms;           // UDP may lose a message
+constexpr auto kStopRepeat = 50ms;       // UDP may lose a message
 constexpr auto kUnheard = 500ms;         // for this long also when no process has been heard
 constexpr auto kLocalPatience = 1500ms;  // for processes of this machine to end because of the bus
 
@@ -132,7 +132,7 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
     if (now >= next_stop && (now - start < kUnheard || !remaining.empty())) {
       stop.utime = clock.Utime();
       for (const bus::Channels& channels : stacks) bus.Publish(channels.Of<stop_t>(), stop);
-      next_stop = now + kRepeat;
+      next_stop = now + kStopRepeat;
     }
     if (!presence.anybody() && local.found() == 0 && now - start > timing.presence) {
       return {1, "no process of a stack is heard on " + config.bus.url};
@@ -144,7 +144,7 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
     }
     if (here && remaining.empty() && now - newest > kLocalPatience) return {1, ""};
     if (now - start > timing.end) return {1, "has not ended: " + remaining};
-    bus.HandleUntil(now + kRepeat);
+    bus.HandleUntil(now + kStopRepeat);
   }
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kWindow = 2048;
 constexpr size_t kUpdateAfter = 512;
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 // A second difference of independent samples has sqrt(1 + 4 + 1) times their deviation; the median of a normal
 // distribution's absolute values is 0.67449 of its deviation.
@@ -17,7 +17,7 @@ constexpr double kOfNormal = 0.6744897501960817 * 2.449489742783178;
 
 }  // namespace
 
-NoiseEstimate::NoiseEstimate() : before_(kMissing), last_(kMissing), sigma_(kMissing) {}
+NoiseEstimate::NoiseEstimate() : before_(kNotKnown), last_(kNotKnown), sigma_(kNotKnown) {}
 
 void NoiseEstimate::Add(double value) {
   const double difference = std::abs(before_ - 2 * last_ + value);
@@ -40,7 +40,7 @@ void NoiseEstimate::Update() {
   std::vector<double> sorted = differences_;
   const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  sigma_ = *middle > 0 ? *middle / kOfNormal : kMissing;
+  sigma_ = *middle > 0 ? *middle / kOfNormal : kNotKnown;
 }
 
 }  // namespace hydro::scope

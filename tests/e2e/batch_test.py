@@ -174,12 +174,17 @@ class BatchTest(stack.TestCase):
                     self.assertEqual(file.read(), reference[os.path.relpath(os.path.join(path, "result.json"), self.path("out"))])
             kept = now
         print(f"killed {kills} times", flush=True)
+        # As a kill in the middle of the report leaves them; the notes are the user's.
+        for name in ("table.csv.part", "table.json.part1", "worst.svg.part", "notes.part"):
+            with open(self.path(f"out/{name}"), "w", encoding="utf-8") as file:
+                file.write("half")
         self.batch(study, "--out", self.path("out"))
         self.assertEqual(whole_cases(self.path("out")), kept | whole_cases(self.path("out")))
         self.assertEqual(results(self.path("out")), reference)
         self.assertEqual(os.listdir(self.path("out/staging")), [])
         self.assertEqual(sorted(os.listdir(self.path("out"))),
-                         sorted(["cases", "config.toml", "inputs", "model.toml", "staging", "study.toml", "times", *self.report_files()]))
+                         sorted(["cases", "config.toml", "inputs", "model.toml", "notes.part", "staging", "study.toml", "times",
+                                 *self.report_files()]))
 
     def report_files(self):
         return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]

@@ -69,7 +69,11 @@ class KeyedTest(stack.TestCase):
         self.assertNotIn("unauthenticated_command", {f.code for f in run.faults})
         self.assertEqual([stop.reason for stop in run.stops][:1], ["hydro-launch --stop"])
         self.assertEqual({s.acts_at for s in run.of("HYDRO_SETTINGS") if s.version == 1 and s.acts_at >= 0}, {tick})
-        self.assertEqual({s.since for s in run.of("HYDRO_TUNING_STATUS") if s.in_force == 1}, {tick})
+        # From that tick on, or from the first after it at which a loop of a busy machine woke.
+        since = {s.role: s.since for s in run.of("HYDRO_TUNING_STATUS") if s.in_force == 1}
+        self.assertEqual(set(since), {"pressure_ctrl", "position_ctrl"})
+        for role, kind in (("pressure_ctrl", "HYDRO_MOTOR_COMMAND"), ("position_ctrl", "HYDRO_PRESSURE_COMMAND")):
+            self.assertEqual(since[role], min(c.tick for c in run.of(kind) if c.tick >= tick), role)
         recorded = {s.tick: s.p1 for s in run.states}
         minima, maxima = shown["channels"][0]
         seen = {round((shown["t0"] + (n + 0.5) * shown["width"]) * 1000): pair
