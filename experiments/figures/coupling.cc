@@ -56,7 +56,7 @@ std::vector<double> Sum(const CouplingAlongPath& parts) {
 
 double StiffnessOf(const CouplingStudy& study) { return study.c1 * study.own[0].k_2; }
 
-json RunJson(const ArmRun& run) {
+json RunJson(const CoupledArmRun& run) {
   json out = {{"highest_motor_torque_in_lbf", run.highest_motor_torque}};
   for (int i = 0; i < kArmJoints; ++i) {
     const JointRun& joint = run.joints[i];
@@ -83,7 +83,7 @@ json Numbers(const CouplingStudy& study) {
                                         {"peak_of_inertia_in_lbf", expected[i].peak_inertia},
                                         {"angle_error_at_peak_rad", expected[i].peak / StiffnessOf(study)}};
     }
-    for (const ArmRun& run : study.runs) {
+    for (const CoupledArmRun& run : study.runs) {
       if (run.moving == moving) {
         one[run.coupled ? "coupled" : "uncoupled"][Name(run.feed_forward)] = RunJson(run);
       }
@@ -95,7 +95,7 @@ json Numbers(const CouplingStudy& study) {
 page::Panel TorquePanel(const CouplingStudy& study, const Moving& moving, int joint) {
   const std::vector<double> time = Thin(study.time);
   const CouplingAlongPath expected = ExpectedCoupling(study, moving)[joint];
-  const ArmRun& run = study.Find(moving, FeedForward::kWhole, true);
+  const CoupledArmRun& run = study.Find(moving, FeedForward::kWhole, true);
   return {.title = fmt::format("Torque at the {} beyond what its own model knows", kJointWords[joint]),
           .x = {.label = "", .min = 0, .numbers = false},
           .y = {.label = "torque, in-lbf"},
@@ -116,12 +116,12 @@ page::Panel ErrorPanel(const CouplingStudy& study, const Moving& moving, int joi
                     .curves = {},
                     .notes = {},
                     .rules = {}};
-  const ArmRun& alone = study.Find(moving, FeedForward::kOwn, false);
+  const CoupledArmRun& alone = study.Find(moving, FeedForward::kOwn, false);
   panel.curves.push_back(page::Line("own model, not coupled", time,
                                     Thin(alone.joints[joint].angle_error, 1e3), 5, page::Stroke::kDotted));
   int colour = 0;
   for (const FeedForward feed_forward : {FeedForward::kOwn, FeedForward::kGravity, FeedForward::kWhole}) {
-    const ArmRun& run = study.Find(moving, feed_forward, true);
+    const CoupledArmRun& run = study.Find(moving, feed_forward, true);
     panel.curves.push_back(
         page::Line(Words(feed_forward), time, Thin(run.joints[joint].angle_error, 1e3), colour++));
   }

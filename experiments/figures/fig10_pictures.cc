@@ -10,7 +10,6 @@
 namespace hydro::experiments {
 namespace {
 
-constexpr double kStep = kFigure10Step;
 const page::Axis kTime{.label = "time since the step, s", .min = 0, .max = 2};
 const page::Axis kShortTime{.label = "time since the step, s", .min = 0, .max = 1};
 const page::Axis kAngle{.label = "α, rad", .min = 0};
@@ -22,7 +21,7 @@ Picture FormsPicture(const Figure10Runs& figure) {
           {.caption = fmt::format(
                "Step of {:g} rad at g = {:g}, T = {:g} ms, m g l = 0: Figure 8's linear model and the full "
                "model over the stack, the derivative on the error.",
-               kStep, kPaperGain, 1e3 * kFigure10Interval),
+               kFigure10Step, kPaperGain, 1e3 * kFigure10Interval),
            .panels = {{.title = "Arm",
                        .x = kTime,
                        .y = kAngle,
@@ -32,7 +31,7 @@ Picture FormsPicture(const Figure10Runs& figure) {
                                              figure.forms[1].linear.angle, 1),
                                   page::Line("full model", full.time, full.angle, 2)},
                        .notes = {},
-                       .rules = {{"", false, kStep}},
+                       .rules = {{"", false, kFigure10Step}},
                        .height = 1.6},
                       {.title = "Motor torque, full model",
                        .x = kTime,
@@ -49,13 +48,13 @@ Picture CausesPicture(const Figure10Runs& figure) {
                    .y = kAngle,
                    .curves = {},
                    .notes = {},
-                   .rules = {{"", false, kStep}}};
+                   .rules = {{"", false, kFigure10Step}}};
   page::Panel fast{.title = "Without the k_v term braking the arm",
                    .x = kTime,
                    .y = kAngle,
                    .curves = {},
                    .notes = {},
-                   .rules = {{"", false, kStep}}};
+                   .rules = {{"", false, kFigure10Step}}};
   for (size_t i = 0; i < kCauses.size(); ++i) {
     const ArmRun& run = figure.causes.runs[i];
     page::Panel& panel = i < kFeedforward ? slow : fast;
@@ -67,7 +66,7 @@ Picture CausesPicture(const Figure10Runs& figure) {
   return {"-causes",
           {.caption = fmt::format("What makes the full model differ from Figure 8's, switched off one after "
                                   "another: step of {:g} rad at g = {:g}, derivative on the measurement.",
-                                  kStep, kPaperGain),
+                                  kFigure10Step, kPaperGain),
            .panels = {slow, fast},
            .drawing = ""}};
 }
@@ -80,29 +79,30 @@ Picture RetunedPicture(const Figure10Runs& figure) {
   const auto tail = run.angle.end() - std::min<ptrdiff_t>(500, std::ssize(run.angle));
   const auto [lowest, highest] = std::minmax_element(tail, run.angle.end());
   const double ripple = (*highest - *lowest) / 2;
-  return {"-retuned",
-          {.caption = fmt::format(
-               "The retuned loop of config/retuned.toml. The motor cannot bring the arm to within 2 % of "
-               "{:g} rad, to stay, before {:.3f} s; the loop takes {}. After that its torque ripples, "
-               "because the arm swings on the oil by {:.0e} rad, hardly damped.",
-               kStep, figure.retuned.shortest, SettlingText(run.response), ripple),
-           .panels = {{.title = "Arm",
-                       .x = kShortTime,
-                       .y = {.label = "α, rad", .min = 0, .max = 0.15},
-                       .curves = {page::Line("retuned", run.time, run.angle, 0),
-                                  page::Line("g = 350 with arm-speed feed-forward", assisted.time,
-                                             assisted.angle, 1)},
-                       .notes = {},
-                       .rules = {{"", false, kStep}, {"shortest settling", true, figure.retuned.shortest}},
-                       .height = 1.6},
-                      {.title = "Motor torque",
-                       .x = kShortTime,
-                       .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
-                       .curves = {page::Line("", run.time, run.torque, 0),
-                                  page::Line("", assisted.time, assisted.torque, 1)},
-                       .notes = {},
-                       .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
-           .drawing = ""}};
+  return {
+      "-retuned",
+      {.caption = fmt::format(
+           "The retuned loop of config/retuned.toml. The motor cannot bring the arm to within 2 % of "
+           "{:g} rad, to stay, before {:.3f} s; the loop takes {}. After that its torque ripples, "
+           "because the arm swings on the oil by {:.0e} rad, hardly damped.",
+           kFigure10Step, figure.retuned.shortest, SettlingText(run.response), ripple),
+       .panels =
+           {{.title = "Arm",
+             .x = kShortTime,
+             .y = {.label = "α, rad", .min = 0, .max = 0.15},
+             .curves = {page::Line("retuned", run.time, run.angle, 0),
+                        page::Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle, 1)},
+             .notes = {},
+             .rules = {{"", false, kFigure10Step}, {"shortest settling", true, figure.retuned.shortest}},
+             .height = 1.6},
+            {.title = "Motor torque",
+             .x = kShortTime,
+             .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
+             .curves = {page::Line("", run.time, run.torque, 0),
+                        page::Line("", assisted.time, assisted.torque, 1)},
+             .notes = {},
+             .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
+       .drawing = ""}};
 }
 
 Picture StepsPicture(const Figure10Runs& figure) {

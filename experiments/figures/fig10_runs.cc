@@ -17,9 +17,8 @@
 namespace hydro::experiments {
 namespace {
 
-constexpr double kStep = kFigure10Step;
 constexpr double kInterval = kFigure10Interval;
-constexpr double kStart = 0.1;               // s, when the reference steps
+constexpr double kStepStart = 0.1;           // s, when the reference steps
 constexpr double kMotorSpeed = 6000 * kRpm;  // rad/s: "a larger 6000 rpm motor"
 constexpr double kNoLimit = 1e6;             // in-lbf
 
@@ -44,7 +43,7 @@ std::string Figure10Stack(const Figure10Runs& figure, const std::vector<std::str
   std::vector<std::string> settings = {fmt::format("position.c1={:.17g}", figure.c1),
                                        fmt::format("position.c2={:.17g}", figure.c2),
                                        fmt::format("position.sample_interval_s={}", kInterval),
-                                       fmt::format("reference.steps=[[{}, {}]]", kStart, kStep)};
+                                       fmt::format("reference.steps=[[{}, {}]]", kStepStart, kFigure10Step)};
   settings.insert(settings.end(), more.begin(), more.end());
   return ShippedStackText("paper", settings);
 }
@@ -53,12 +52,12 @@ FormRuns RunForm(const Figure10Runs& figure, design::DerivativeForm form, const 
   const int points = static_cast<int>(std::lround(kInterval * 5000));
   const char* name = form == design::DerivativeForm::kError ? "error" : "measurement";
   FormRuns runs;
-  runs.linear = design::SampledStep(figure.design, kPaperGain, kInterval, form, kStep, 2, points);
-  runs.linear_step = Measure(runs.linear, kStep);
+  runs.linear = design::SampledStep(figure.design, kPaperGain, kInterval, form, kFigure10Step, 2, points);
+  runs.linear_step = Measure(runs.linear, kFigure10Step);
   runs.nonlinear =
       RunArm(run_stack, fmt::format("fig10-{}", name),
              Figure10Stack(figure, {fmt::format("position.derivative={}", name), "time.duration_s=5.1"}),
-             figure.model, kStep);
+             figure.model, kFigure10Step);
   return runs;
 }
 
@@ -78,7 +77,7 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
       settings.push_back("model.initial_pressure_psi=5000");
     }
     causes.runs[i] = RunArm(options.run_stack, fmt::format("fig10-{}", cause.key),
-                            Figure10Stack(figure, settings), model, kStep);
+                            Figure10Stack(figure, settings), model, kFigure10Step);
     options.progress(0.3 + 0.05 * static_cast<double>(i + 1));
   }
   const model::Parameters& p = figure.model.parameters;
@@ -88,8 +87,9 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
   pressure_ctrl::PressureLawSettings assisted = law;
   assisted.arm_speed_ratio = p.c / p.D;
   const auto exact = [&](const pressure_ctrl::PressureLawSettings& with) {
-    return Measure(design::LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3),
-                   kStep);
+    return Measure(
+        design::LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kFigure10Step, 4, 1e-3),
+        kFigure10Step);
   };
   causes.exact = exact(law);
   causes.exact_assisted = exact(assisted);
@@ -98,7 +98,7 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
 }
 
 std::string RetunedStack(const RetunedStep& r, int64_t seed) {
-  std::vector<std::string> settings = {fmt::format("reference.steps=[[{}, {}]]", kStart, r.step),
+  std::vector<std::string> settings = {fmt::format("reference.steps=[[{}, {}]]", kStepStart, r.step),
                                        "time.duration_s=2.1"};
   if (r.noise) {  // as in config/demo.toml
     for (const char* noise : {"p1_psi=1", "p2_psi=1", "motor_speed_rad_s=0.1", "arm_angle_rad=0.00002",
@@ -133,20 +133,21 @@ void RunSteps(const model::ModelDescription& model, const ExperimentOptions& opt
     if (!r.gravity) retuned->worst_ratio = std::max(retuned->worst_ratio, SettlingTime(r.run) / r.shortest);
   }
   const runs::StepResponse& sagging = retuned->steps.back().run.response;
-  retuned->expected_error = HoldingError(heavy.parameters, retuned->shipped.pressure,
-                                         retuned->shipped.position.c1, kStep + sagging.final_error_rad);
+  retuned->expected_error =
+      HoldingError(heavy.parameters, retuned->shipped.pressure, retuned->shipped.position.c1,
+                   kFigure10Step + sagging.final_error_rad);
 }
 
 RetunedRuns RunRetuned(const model::ModelDescription& model, const ExperimentOptions& options) {
   RetunedRuns retuned;
   retuned.drive = design::MakeRigidDrive(model.parameters, kMotorSpeed);
-  retuned.fastest = design::FastestRestToRest(retuned.drive, kStep);
-  retuned.shortest = design::FastestSettling(retuned.drive, kStep, runs::kSettlingBand);
-  retuned.shipped = TrialOf(ShippedStackText("retuned"), ShippedModelText("table1"), kStep);
+  retuned.fastest = design::FastestRestToRest(retuned.drive, kFigure10Step);
+  retuned.shortest = design::FastestSettling(retuned.drive, kFigure10Step, runs::kSettlingBand);
+  retuned.shipped = TrialOf(ShippedStackText("retuned"), ShippedModelText("table1"), kFigure10Step);
   const Candidate best = SearchGains(retuned.shipped, retuned.drive).front();
   retuned.shipped_is_best = best.c1 == retuned.shipped.position.c1 && best.c2 == retuned.shipped.position.c2;
   options.progress(0.75);
-  retuned.run = RunArm(options.run_stack, "fig10-retuned", ShippedStackText("retuned"), model, kStep);
+  retuned.run = RunArm(options.run_stack, "fig10-retuned", ShippedStackText("retuned"), model, kFigure10Step);
   retuned.ratio = SettlingTime(retuned.run) / retuned.shortest;
   RunSteps(model, options, &retuned);
   return retuned;

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kWatched = 2;  // s, after the step
-constexpr double kRunShare = 0.95;
+constexpr double kRecordedShare = 0.95;
 
 const std::string& NameOf(size_t base) { return model::BaseParameters()[base].info.name; }
 
@@ -204,7 +204,7 @@ ExperimentResult RunFig10Uncertainty(const ExperimentOptions& options) {
              ShippedModel("table1"), kFigure10Step);
   const UncertainSteps steps = StepDrawnModels(RetunedTrial(kFigure10Step, kWatched), options.machines,
                                                static_cast<uint64_t>(options.seed), options.jobs,
-                                               [&](double done) { options.progress(kRunShare * done); });
+                                               [&](double done) { options.progress(kRecordedShare * done); });
   const UncertainSpread spread = SpreadOf(steps);
   ExperimentResult result;
   result.conditions = Conditions(steps);

@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kTorque = 6;         // in-lbf: "low"
-constexpr double kDuration = 20;      // s; cycles are judged in its second half
-constexpr double kPictured = 8;       // s
-constexpr double kFasterTorque = 10;  // in-lbf, Figure 3's, which does not stick and slip
+constexpr double kStickSlipTorque = 6;     // in-lbf: "low"
+constexpr double kStickSlipDuration = 20;  // s; cycles are judged in its second half
+constexpr double kPictured = 8;            // s
+constexpr double kFasterTorque = 10;       // in-lbf, Figure 3's, which does not stick and slip
 // Static friction that acts only at rest: its excess vanishes at speeds at which the pump has hardly moved.
 constexpr double kAtRestOnly = 1e-4;  // rad/s
 
@@ -49,7 +49,7 @@ Scanned Scan(const model::ModelDescription& model, double torque, double static_
   return {torque, static_torque, run.sticks(), FindCycles(run)};
 }
 
-// The least static friction (in-lbf) that gives sustained cycles at kTorque, bracketed.
+// The least static friction (in-lbf) that gives sustained cycles at kStickSlipTorque, bracketed.
 struct Threshold {
   double none = 0;    // in-lbf, without cycles
   double cycles = 0;  // in-lbf, with cycles
@@ -58,7 +58,8 @@ Threshold FindThreshold() {
   Threshold threshold{4.0, 4.4};
   for (int i = 0; i < 7; ++i) {
     const double middle = (threshold.none + threshold.cycles) / 2;
-    const bool sustained = FindCycles(RunOpenLoop(WithStaticAtRest(middle), kTorque, kDuration)).sustained;
+    const bool sustained =
+        FindCycles(RunOpenLoop(WithStaticAtRest(middle), kStickSlipTorque, kStickSlipDuration)).sustained;
     (sustained ? threshold.cycles : threshold.none) = middle;
   }
   return threshold;
@@ -143,7 +144,7 @@ struct StickSlipStudy {
 
 void ScanTable1(const model::ModelDescription& table1, StickSlipStudy* study) {
   for (const double torque : {4.1, 4.5, 5.0, 6.0, 8.0, 10.0}) {
-    const OpenLoopRun run = RunOpenLoop(table1, torque, kDuration / 2);
+    const OpenLoopRun run = RunOpenLoop(table1, torque, kStickSlipDuration / 2);
     study->plain_scan.push_back({torque, study->p.T_s, run.sticks(), FindCycles(run)});
     if (torque == 4.5 || torque == 6 || torque == 8 || torque == 10) {
       study->scaled.push_back(DpCurve(run, fmt::format("T_p = {} in-lbf", torque), -1));
@@ -153,13 +154,14 @@ void ScanTable1(const model::ModelDescription& table1, StickSlipStudy* study) {
 
 void ScanStaticFriction(const model::ModelDescription& stribeck, StickSlipStudy* study) {
   for (const double at : {4.2, 4.22, 4.4, 4.8, 5.2, 5.6}) {
-    study->at_rest.push_back(Scan(WithStaticAtRest(at), kTorque, at, at > 5 ? 2 * kDuration : kDuration));
+    study->at_rest.push_back(Scan(WithStaticAtRest(at), kStickSlipTorque, at,
+                                  at > 5 ? 2 * kStickSlipDuration : kStickSlipDuration));
   }
   for (const double at : {4.4, 4.8}) {
-    study->at_rest.push_back(Scan(WithStaticAtRest(at), kFasterTorque, at, kDuration));
+    study->at_rest.push_back(Scan(WithStaticAtRest(at), kFasterTorque, at, kStickSlipDuration));
   }
   for (const double torque : {5.0, 8.0, 10.0}) {
-    study->stribeck_scan.push_back(Scan(stribeck, torque, study->static_torque, kDuration));
+    study->stribeck_scan.push_back(Scan(stribeck, torque, study->static_torque, kStickSlipDuration));
   }
 }
 
@@ -168,14 +170,14 @@ void SolveInClosedForm(StickSlipStudy* study) {
   // The end state of Table 1 alone: slipping steadily, side 1 held at p_3 by its valve, q_2 = 0 in eq. (12),
   // eq. (4).
   const double creep_per_psi = (p.c_E + p.c_I) / p.D;
-  study->creep_dp = (kTorque - p.T_s) / (p.D + p.b * creep_per_psi);
+  study->creep_dp = (kStickSlipTorque - p.T_s) / (p.D + p.b * creep_per_psi);
   // While the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp by eqs. (13), (14), both valves closed.
   study->leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E);
-  study->slip_dp = (kTorque - study->static_torque) / p.D;
+  study->slip_dp = (kStickSlipTorque - study->static_torque) / p.D;
   study->largest_static = p.T_s + study->threshold_ratio * (kFasterTorque - p.T_s);
 }
 
-StickSlipStudy RunStudy(const ExperimentOptions& options) {
+StickSlipStudy RunStickSlipStudy(const ExperimentOptions& options) {
   const model::ModelDescription table1 = ShippedModel("table1");
   const model::ModelDescription stribeck = ShippedModel("table1_stribeck");
   StickSlipStudy study;
@@ -184,14 +186,14 @@ StickSlipStudy RunStudy(const ExperimentOptions& options) {
   study.speed = stribeck.effects.at(0).parameters.at("speed");
   study.static_torque = study.p.T_s * (1 + study.excess);
 
-  study.plain = RunOpenLoop(table1, kTorque, kDuration);
-  study.cycling = RunOpenLoop(stribeck, kTorque, kDuration);
+  study.plain = RunOpenLoop(table1, kStickSlipTorque, kStickSlipDuration);
+  study.cycling = RunOpenLoop(stribeck, kStickSlipTorque, kStickSlipDuration);
   study.cycles = FindCycles(study.cycling);
   options.progress(0.2);
   ScanTable1(table1, &study);
   options.progress(0.4);
   study.threshold = FindThreshold();
-  study.threshold_ratio = (study.threshold.cycles - study.p.T_s) / (kTorque - study.p.T_s);
+  study.threshold_ratio = (study.threshold.cycles - study.p.T_s) / (kStickSlipTorque - study.p.T_s);
   options.progress(0.6);
   ScanStaticFriction(stribeck, &study);
   options.progress(0.9);
@@ -205,7 +207,8 @@ std::string Conditions(const StickSlipStudy& study) {
       "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic, falling off over {} "
       "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted from the model's own "
       "changes of mode, located within {} us.",
-      study.p.p_3, kTorque, kDuration, 100 * study.excess, study.speed, kLocatedWithin * 1e6);
+      study.p.p_3, kStickSlipTorque, kStickSlipDuration, 100 * study.excess, study.speed,
+      kLocatedWithin * 1e6);
 }
 
 std::string Explanation(const StickSlipStudy& study) {
@@ -225,9 +228,9 @@ std::string Explanation(const StickSlipStudy& study) {
       fmt::arg("stick_time", study.stick().time), fmt::arg("stick_dp", study.stick().dp),
       fmt::arg("slip_dp", study.slip().dp), fmt::arg("slip_time", study.slip().time),
       fmt::arg("static_torque", study.static_torque), fmt::arg("sticks", study.cycling.sticks()),
-      fmt::arg("duration", kDuration), fmt::arg("period", study.cycles.period),
+      fmt::arg("duration", kStickSlipDuration), fmt::arg("period", study.cycles.period),
       fmt::arg("low", study.cycles.low), fmt::arg("high", study.cycles.high),
-      fmt::arg("threshold_ratio", study.threshold_ratio), fmt::arg("torque", kTorque),
+      fmt::arg("threshold_ratio", study.threshold_ratio), fmt::arg("torque", kStickSlipTorque),
       fmt::arg("faster_torque", kFasterTorque), fmt::arg("threshold", study.threshold.cycles),
       fmt::arg("largest_static", study.largest_static));
 }
@@ -236,7 +239,7 @@ std::vector<Comparison> Comparisons(const StickSlipStudy& study) {
   return {
       {"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(study.plain.sticks()),
        "the paper's equations do not cycle: one stick, then creep"},
-      {"dp when it slips again, Table 1 alone", "psi", "", (kTorque - study.p.T_s) / study.p.D,
+      {"dp when it slips again, Table 1 alone", "psi", "", (kStickSlipTorque - study.p.T_s) / study.p.D,
        study.slip().dp, "expected: (T_p - T_s)/D"},
       {"how long that stick lasts, Table 1 alone", "s", "",
        std::log(study.stick().dp / study.slip().dp) / study.leak_rate, study.slip().time - study.stick().time,
@@ -244,7 +247,7 @@ std::vector<Comparison> Comparisons(const StickSlipStudy& study) {
       {"dp at the end, Table 1 alone", "psi", "", study.creep_dp, study.plain.dp.back(),
        "expected: steady creep, side 1 held at p_3"},
       {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
-       static_cast<double>(study.cycling.sticks()), fmt::format("in {} s", kDuration)},
+       static_cast<double>(study.cycling.sticks()), fmt::format("in {} s", kStickSlipDuration)},
       {"period of the cycles", "s", "", page::kAutomatic, study.cycles.period,
        "follows from the assumed friction"},
       {"dp at each slip of the cycles", "psi", "", study.slip_dp, study.cycles.slip_dp,
@@ -269,9 +272,9 @@ Finding TableFinding(const StickSlipStudy& study) {
                   "{threshold_ratio:.3f} (T_p - T_s). The shipped assumption ({static_torque:.1f} in-lbf, "
                   "{speed} rad/s) cycles every {period:.2f} s between {low:.0f} and {high:.0f} psi.",
                   fmt::arg("stick_time", study.stick().time), fmt::arg("end_dp", study.plain.dp.back()),
-                  fmt::arg("end_speed", study.plain.motor_speed.back()), fmt::arg("duration", kDuration),
-                  fmt::arg("torque", kTorque), fmt::arg("none", study.threshold.none),
-                  fmt::arg("threshold", study.threshold.cycles),
+                  fmt::arg("end_speed", study.plain.motor_speed.back()),
+                  fmt::arg("duration", kStickSlipDuration), fmt::arg("torque", kStickSlipTorque),
+                  fmt::arg("none", study.threshold.none), fmt::arg("threshold", study.threshold.cycles),
                   fmt::arg("threshold_ratio", study.threshold_ratio),
                   fmt::arg("static_torque", study.static_torque), fmt::arg("speed", study.speed),
                   fmt::arg("period", study.cycles.period), fmt::arg("low", study.cycles.low),
@@ -287,8 +290,8 @@ json Describe(const std::vector<Scanned>& scans, double kinetic) {
 }
 
 json Numbers(const StickSlipStudy& study) {
-  return {{"torque_in_lbf", kTorque},
-          {"duration_s", kDuration},
+  return {{"torque_in_lbf", kStickSlipTorque},
+          {"duration_s", kStickSlipDuration},
           {"table1",
            {{"sticks", study.plain.sticks()},
             {"stick_time_s", study.stick().time},
@@ -342,13 +345,13 @@ Picture CyclesPicture(const StickSlipStudy& study) {
   page::Panel often =
       DpPanel(fmt::format("Static friction {:.0f} % above kinetic: sustained stick-slip", 100 * study.excess),
               {DpCurve(study.cycling, "", 0)}, {});
-  once.rules = {{"(T_p - T_s)/D", false, (kTorque - study.p.T_s) / study.p.D}};
+  once.rules = {{"(T_p - T_s)/D", false, (kStickSlipTorque - study.p.T_s) / study.p.D}};
   often.rules = {{"(T_p - T_static)/D: slips", false, study.slip_dp}};
   return {"",
           {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
                                   "paper's equations and Table 1. Below: with static friction of {:.1f} "
                                   "in-lbf, which falls off to {} in-lbf over {} rad/s (assumed).",
-                                  kTorque, study.static_torque, study.p.T_s, study.speed),
+                                  kStickSlipTorque, study.static_torque, study.p.T_s, study.speed),
            .panels = {once, often},
            .drawing = ""}};
 }
@@ -369,7 +372,7 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
   page::Curve low{
       .label = "lowest", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
   for (const Scanned& scanned : scans) {
-    if (scanned.torque != kTorque || !scanned.cycles.sustained) continue;
+    if (scanned.torque != kStickSlipTorque || !scanned.cycles.sustained) continue;
     for (page::Curve* curve : {&period, &high, &low}) curve->x.push_back(scanned.ExcessRatio(kinetic));
     period.y.push_back(scanned.cycles.period);
     high.y.push_back(scanned.cycles.high);
@@ -383,7 +386,7 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
                       .curves = {period},
                       .notes = {},
                       .rules = {threshold}};
-  page::Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kTorque),
+  page::Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kStickSlipTorque),
                      .x = ratio,
                      .y = {.label = "p_2 - p_1, psi", .min = 0},
                      .curves = {high, low},
@@ -392,7 +395,7 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
   return {"-scan",
           {.caption = fmt::format("Static friction above kinetic at rest only (gone at {} rad/s), Table 1 "
                                   "otherwise, clamped at α = 0, T_p = {} in-lbf, second half of {} s.",
-                                  kAtRestOnly, kTorque, kDuration),
+                                  kAtRestOnly, kStickSlipTorque, kStickSlipDuration),
            .panels = {periods, swings},
            .drawing = ""}};
 }
@@ -400,7 +403,7 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
 }  // namespace
 
 ExperimentResult RunFig2(const ExperimentOptions& options) {
-  const StickSlipStudy study = RunStudy(options);
+  const StickSlipStudy study = RunStickSlipStudy(options);
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says =

@@ -20,8 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kTorque = 10;   // in-lbf
-constexpr double kDuration = 3;  // s
+constexpr double kAppliedTorque = 10;    // in-lbf
+constexpr double kOpenLoopDuration = 3;  // s
 
 // The second-order response of eqs. (4) and (14) while the pump turns forward and the valve holds p_1 at p_3:
 // from rest to the first peak, in closed form.
@@ -41,7 +41,7 @@ SpringAnalogy AnalyseSpring(const model::Parameters& p) {
   spring.natural_frequency = p.D * std::sqrt(s / p.J);
   spring.damping_ratio = decay / std::sqrt(stiffness);
   spring.peak_time = std::numbers::pi / std::sqrt(stiffness - decay * decay);
-  const double final_dp = (kTorque - p.T_s) * p.D / (p.D * p.D + p.b * c_L);
+  const double final_dp = (kAppliedTorque - p.T_s) * p.D / (p.D * p.D + p.b * c_L);
   spring.peak_dp = final_dp * (1 + std::exp(-decay * spring.peak_time));
   return spring;
 }
@@ -60,7 +60,7 @@ WithoutValves RunWithoutValves(const model::ModelDescription& model) {
   std::array<double, model::kMaxStates> y{};
   equations.Start(model.parameters.p_3, y.data(), &mode);
   mode.pump = 1;
-  const double voltage = kTorque / model.parameters.k_1;
+  const double voltage = kAppliedTorque / model.parameters.k_1;
   const auto rates = [&](double time, const double* at, double* rate) {
     equations.Rates(time, voltage, mode, at, rate);
   };
@@ -97,15 +97,15 @@ struct StepStudy {
   double bare_dp() const { return bare.dp[bare.peak]; }
 };
 
-StepStudy RunStudy() {
+StepStudy RunOpenLoopStudy() {
   const model::ModelDescription model = ShippedModel("table1");
   const model::Parameters& p = model.parameters;
   return {.p = p,
-          .run = RunOpenLoop(model, kTorque, kDuration),
+          .run = RunOpenLoop(model, kAppliedTorque, kOpenLoopDuration),
           .spring = AnalyseSpring(p),
           .bare = RunWithoutValves(model),
           .leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E),
-          .slip_dp = (kTorque - p.T_s) / p.D};
+          .slip_dp = (kAppliedTorque - p.T_s) / p.D};
 }
 
 std::string Explanation(const StepStudy& study) {
@@ -125,9 +125,10 @@ std::string Explanation(const StepStudy& study) {
       fmt::arg("p_3", p.p_3), fmt::arg("natural_frequency", study.spring.natural_frequency),
       fmt::arg("damping_ratio", study.spring.damping_ratio), fmt::arg("peak_time", study.spring.peak_time),
       fmt::arg("peak_dp", study.peak().dp), fmt::arg("stick_time", study.stick().time),
-      fmt::arg("back_dp", (kTorque + p.T_s) / p.D), fmt::arg("wait", study.slip().time - study.stick().time),
-      fmt::arg("slip_dp", study.slip().dp), fmt::arg("bare_dp", study.bare_dp()),
-      fmt::arg("negative_ms", 1e3 * bare.negative_since), fmt::arg("bare_p1", bare.p1[bare.peak]));
+      fmt::arg("back_dp", (kAppliedTorque + p.T_s) / p.D),
+      fmt::arg("wait", study.slip().time - study.stick().time), fmt::arg("slip_dp", study.slip().dp),
+      fmt::arg("bare_dp", study.bare_dp()), fmt::arg("negative_ms", 1e3 * bare.negative_since),
+      fmt::arg("bare_p1", bare.p1[bare.peak]));
 }
 
 std::vector<Comparison> Comparisons(const StepStudy& study) {
@@ -154,7 +155,7 @@ std::vector<Comparison> Comparisons(const StepStudy& study) {
 
 json Numbers(const StepStudy& study) {
   const WithoutValves& bare = study.bare;
-  return {{"torque_in_lbf", kTorque},
+  return {{"torque_in_lbf", kAppliedTorque},
           {"peak_p2_psi", study.peak().p2},
           {"peak_dp_psi", study.peak().dp},
           {"peak_time_s", study.peak().time},
@@ -180,7 +181,7 @@ std::vector<page::Panel> Panels(const StepStudy& study) {
   const PumpChange& stick = study.stick();
   const PumpChange& slip = study.slip();
   const WithoutValves& bare = study.bare;
-  const page::Axis time{.label = "time, s", .min = 0, .max = kDuration};
+  const page::Axis time{.label = "time, s", .min = 0, .max = kOpenLoopDuration};
   page::Panel difference{
       .title = "Pressure difference",
       .x = time,
@@ -208,13 +209,13 @@ std::vector<page::Panel> Panels(const StepStudy& study) {
 }  // namespace
 
 ExperimentResult RunFig3(const ExperimentOptions& options) {
-  const StepStudy study = RunStudy();
+  const StepStudy study = RunOpenLoopStudy();
   options.progress(0.9);
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1, clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf ({} V), "
       "open loop. Peak, stick and slip are located within {} us.",
-      study.p.p_3, kTorque, kTorque / study.p.k_1, kLocatedWithin * 1e6);
+      study.p.p_3, kAppliedTorque, kAppliedTorque / study.p.k_1, kLocatedWithin * 1e6);
   result.paper_says =
       "Figure 3 shows the response to 10 in-lb, experiment and simulation: no sustained stick-slip. The "
       "response is that of a mass-spring-damper to a constant force; the spring is the fluid's "
@@ -231,7 +232,7 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
       {"",
        {.caption = fmt::format("Open loop, Table 1, clamped at α = 0, T_p = {} in-lbf from rest at p_1 = p_2 "
                                "= p_3. Dashed: without the one-way valves.",
-                               kTorque),
+                               kAppliedTorque),
         .panels = Panels(study),
         .drawing = ""}});
   options.progress(1);

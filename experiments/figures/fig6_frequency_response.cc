@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFitToHz = 60;
-constexpr double kShownToHz = 100;
+constexpr double kFigure6ShownToHz = 100;
 // psi, amplitudes of a reference about zero. The first is the figure's own.
 constexpr double kAmplitudes[] = {60, 10, 20, 30, 100, 300};
 
@@ -90,7 +90,7 @@ BodeCurve Measured(const BodeCase& bode_case, int colour) {
 }
 
 BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, page::Stroke stroke, int colour) {
-  return PredictedCurve(bode_case, label, kShownToHz, stroke, colour);
+  return PredictedCurve(bode_case, label, kFigure6ShownToHz, stroke, colour);
 }
 
 // On a sine of the motor's speed, Coulomb friction acts like viscous friction 4 T_s/(pi speed) (describing
@@ -132,7 +132,7 @@ void SolveInClosedForm(MidStrokeStudy* study) {
   study->followed = p.T_pmax * stiffness / (p.J * w * w);
 }
 
-MidStrokeStudy RunStudy(const ExperimentOptions& options) {
+MidStrokeStudy RunMidStrokeStudy(const ExperimentOptions& options) {
   const model::ModelDescription table1 = ShippedModel("table1");
   MidStrokeStudy study;
   study.p = table1.parameters;
@@ -353,7 +353,7 @@ Picture SidesPicture(const MidStrokeStudy& study) {
 }  // namespace
 
 ExperimentResult RunFig6(const ExperimentOptions& options) {
-  const MidStrokeStudy study = RunStudy(options);
+  const MidStrokeStudy study = RunMidStrokeStudy(options);
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says =

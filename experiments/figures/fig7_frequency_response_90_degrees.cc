@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kShownToHz = 200;
+constexpr double kFigure7ShownToHz = 200;
 constexpr double kQuarterTurn = std::numbers::pi / 2;
 const std::vector<SweptBand> kBands = {{1, 6, 16, 4}, {6, 200, 16, 2}};
 
@@ -37,7 +37,7 @@ std::string Refusal(const model::ModelDescription& model, double arm_angle) {
   }
 }
 
-struct Cases {
+struct QuarterTurnCases {
   BodeCase mid_stroke;    // the same gains at alpha = 0
   BodeCase quarter_turn;  // the figure
   BodeCase large;         // a larger amplitude
@@ -53,8 +53,9 @@ struct Cases {
   }
 };
 
-Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::PressureGains& gains,
-                const pressure_ctrl::PressureGains& redesigned) {
+QuarterTurnCases MakeQuarterTurnCases(const model::ModelDescription& wide,
+                                      const pressure_ctrl::PressureGains& gains,
+                                      const pressure_ctrl::PressureGains& redesigned) {
   const auto make = [&](const std::string& key, const std::string& title, const model::Mode& mode,
                         double amplitude, double offset) {
     BodeCase made;
@@ -72,7 +73,7 @@ Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::Pressu
     made.sweep.bands = kBands;
     return made;
   };
-  Cases cases;
+  QuarterTurnCases cases;
   // Friction and saturation depend on k_1 k_p A: about as much of both as in Figure 6.
   cases.quarter_turn = make("quarter_turn", "α = π/2", BothCompress(), 20, 0);
   cases.mid_stroke = make("mid_stroke", "α = 0", BothCompress(), 20, 0);
@@ -87,8 +88,9 @@ Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::Pressu
   return cases;
 }
 
-BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, page::Stroke stroke, int colour) {
-  return PredictedCurve(bode_case, label, kShownToHz, stroke, colour);
+BodeCurve PredictedAtQuarterTurn(const BodeCase& bode_case, const std::string& label, page::Stroke stroke,
+                                 int colour) {
+  return PredictedCurve(bode_case, label, kFigure7ShownToHz, stroke, colour);
 }
 
 json Dynamics(const pressure_ctrl::SecondOrder& loop) {
@@ -100,7 +102,7 @@ struct QuarterTurnStudy {
   model::ModelDescription wide;
   std::string refusal;  // Table 1's, for a quarter turn
   pressure_ctrl::PressureGains gains, redesigned;
-  Cases cases;
+  QuarterTurnCases cases;
 
   // In closed form.
   double limit = 0;         // rad, where Table 1's V_1 is 0
@@ -138,7 +140,7 @@ void SolveInClosedForm(QuarterTurnStudy* study) {
           .BandwidthHz();
 }
 
-QuarterTurnStudy RunStudy(const ExperimentOptions& options) {
+QuarterTurnStudy RunQuarterTurnStudy(const ExperimentOptions& options) {
   const model::ModelDescription table1 = ShippedModel("table1");
   QuarterTurnStudy study;
   study.table1 = table1.parameters;
@@ -148,7 +150,7 @@ QuarterTurnStudy RunStudy(const ExperimentOptions& options) {
   study.gains = pressure_ctrl::DerivePressureGains(p, 0, kLoopNaturalFrequency, kLoopDampingRatio, 2);
   study.redesigned =
       pressure_ctrl::DerivePressureGains(p, kQuarterTurn, kLoopNaturalFrequency, kLoopDampingRatio, 2);
-  study.cases = MakeCases(study.wide, study.gains, study.redesigned);
+  study.cases = MakeQuarterTurnCases(study.wide, study.gains, study.redesigned);
   const std::vector<BodeCase*> all = study.cases.all();
   for (size_t i = 0; i < all.size(); ++i) {
     const bool slow = all[i] == &study.cases.redesigned || all[i] == &study.cases.mid_stroke;
@@ -171,7 +173,7 @@ std::string Conditions(const QuarterTurnStudy& study) {
 }
 
 std::string Explanation(const QuarterTurnStudy& study) {
-  const Cases& cases = study.cases;
+  const QuarterTurnCases& cases = study.cases;
   const BodeCase& figure = study.figure();
   return fmt::format(
       "Table 1's actuator cannot be at π/2: its V_1 would be negative beyond {limit:.3f} rad. On one that "
@@ -209,7 +211,7 @@ std::string Explanation(const QuarterTurnStudy& study) {
 }
 
 std::vector<Comparison> Comparisons(const QuarterTurnStudy& study) {
-  const Cases& cases = study.cases;
+  const QuarterTurnCases& cases = study.cases;
   const BodeCase& figure = study.figure();
   return {
       {"bandwidth (-3 dB)", "Hz", "about 32", study.two_sided_hz, figure.bandwidth_hz,
@@ -273,7 +275,7 @@ page::Rule PaperRule() { return {"paper: 32 Hz", true, kPaperBandwidthHz}; }
 
 Picture ResponsePicture(const QuarterTurnStudy& study) {
   const BodeCase& figure = study.figure();
-  const Cases& cases = study.cases;
+  const QuarterTurnCases& cases = study.cases;
   return {"",
           {.caption = fmt::format(
                "Swept sine of ±{} psi about zero through the closed pressure loop, arm clamped at α "
@@ -287,7 +289,7 @@ Picture ResponsePicture(const QuarterTurnStudy& study) {
                            {"fitted second order",
                             Sampled(1, 200, [&](double hz) { return figure.fit.model.Gain(hz); }),
                             page::Stroke::kLine, 1},
-                           Predicted(figure, "linearised", page::Stroke::kDashed, 2),
+                           PredictedAtQuarterTurn(figure, "linearised", page::Stroke::kDashed, 2),
                            {"measured, α = 0", cases.mid_stroke.swept.points, page::Stroke::kPoints, 3}},
                           {PaperRule(),
                            {fmt::format("-3 dB: {:.1f} Hz", figure.bandwidth_hz), true, figure.bandwidth_hz}},
@@ -297,7 +299,7 @@ Picture ResponsePicture(const QuarterTurnStudy& study) {
            .drawing = ""}};
 }
 
-Picture CasesPicture(const Cases& cases) {
+Picture CasesPicture(const QuarterTurnCases& cases) {
   return {"-cases",
           {.caption = "At α = π/2: a larger amplitude, gains designed for this angle, and either side alone "
                       "compressing. Curves: the linearised loop for the cases with one side held.",
@@ -307,8 +309,8 @@ Picture CasesPicture(const Cases& cases) {
                 {cases.redesigned.title, cases.redesigned.swept.points, page::Stroke::kLinePoints, 1},
                 {cases.large_side.title, cases.large_side.swept.points, page::Stroke::kPoints, 2},
                 {cases.small_side.title, cases.small_side.swept.points, page::Stroke::kPoints, 3},
-                Predicted(cases.large_side, "", page::Stroke::kLine, 2),
-                Predicted(cases.small_side, "", page::Stroke::kLine, 3)},
+                PredictedAtQuarterTurn(cases.large_side, "", page::Stroke::kLine, 2),
+                PredictedAtQuarterTurn(cases.small_side, "", page::Stroke::kLine, 3)},
                {PaperRule()}, -40),
            .drawing = ""}};
 }
@@ -316,7 +318,7 @@ Picture CasesPicture(const Cases& cases) {
 }  // namespace
 
 ExperimentResult RunFig7(const ExperimentOptions& options) {
-  const QuarterTurnStudy study = RunStudy(options);
+  const QuarterTurnStudy study = RunQuarterTurnStudy(options);
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says =

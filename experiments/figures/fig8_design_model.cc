@@ -79,7 +79,7 @@ Bode SweepFrequencies(const DesignStudy& study, const design::LinearArmLoop& arm
   return bode;
 }
 
-DesignStudy RunStudy(const ExperimentOptions& options) {
+DesignStudy RunDesignStudy(const ExperimentOptions& options) {
   const model::ModelDescription table1 = ShippedModel("table1");
   DesignStudy study;
   study.p = table1.parameters;
@@ -274,7 +274,7 @@ Picture FreeArmPicture(const Bode& bode) {
 }  // namespace
 
 ExperimentResult RunFig8(const ExperimentOptions& options) {
-  const DesignStudy study = RunStudy(options);
+  const DesignStudy study = RunDesignStudy(options);
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says =

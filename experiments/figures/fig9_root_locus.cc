@@ -21,10 +21,10 @@ using nlohmann::json;
 
 constexpr double kNaN = page::kAutomatic;
 constexpr double kPaperCriticalGain = 770;
-constexpr double kPaperRatio = 484.7;  // transmission ratio printed in the paper's text
-constexpr double kStep = 0.1;          // rad; the model is linear
-constexpr double kDuration = 0.6;      // s
-constexpr double kResolution = 1e-5;   // s; simulation confirms the largest stable T to within this
+constexpr double kPaperRatio = 484.7;       // transmission ratio printed in the paper's text
+constexpr double kReferenceStep = 0.1;      // rad; the model is linear
+constexpr double kRootLocusDuration = 0.6;  // s
+constexpr double kResolution = 1e-5;        // s; simulation confirms the largest stable T to within this
 constexpr std::array<double, 4> kIntervals = {0.001, 0.002, 0.005, 0.010};
 
 struct Form {
@@ -68,17 +68,17 @@ page::Curve Points(const std::string& label, const std::vector<design::Complex>&
 }
 
 runs::StepResponse Measure(const design::Response& response) {
-  return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kStep);
+  return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kReferenceStep);
 }
 
 // Whether a simulated step dies away: compares its deviation late in the run with that earlier.
 bool SimulatedStepDecays(const design::DesignModel& model, double interval, design::DerivativeForm form) {
   constexpr int kSamples = 30000;
   const design::Response response =
-      design::SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
+      design::SampledStep(model, kPaperGain, interval, form, kReferenceStep, kSamples * interval, 1);
   const auto deviation = [&](size_t from, size_t to) {
     double most = 0;
-    for (size_t i = from; i < to; ++i) most = std::max(most, std::fabs(response.angle[i] - kStep));
+    for (size_t i = from; i < to; ++i) most = std::max(most, std::fabs(response.angle[i] - kReferenceStep));
     return most;
   };
   return deviation(kSamples - 1000, kSamples) < deviation(2000, 3000);
@@ -134,12 +134,12 @@ SampledLoop SampleLoop(const design::DesignModel& design, double interval) {
   const int points = static_cast<int>(std::lround(interval / 1e-4));
   for (size_t f = 0; f < kForms.size(); ++f) {
     loop.step[f] =
-        Measure(design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
+        Measure(design::SampledStep(design, kPaperGain, interval, kForms[f].form, kReferenceStep, 2, points));
   }
   return loop;
 }
 
-RootLocusStudy RunStudy(const ExperimentOptions& options) {
+RootLocusStudy RunRootLocusStudy(const ExperimentOptions& options) {
   RootLocusStudy study;
   study.p = ShippedModel("table1").parameters;
   const design::DesignModel design = study.design = design::Figure8Model(study.p);
@@ -151,7 +151,8 @@ RootLocusStudy RunStudy(const ExperimentOptions& options) {
   TraceLocus(&study);
   options.progress(0.3);
   for (size_t f = 0; f < kForms.size(); ++f) {
-    study.continuous[f] = Measure(design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, 2, 1e-4));
+    study.continuous[f] =
+        Measure(design::ContinuousStep(design, kPaperGain, kForms[f].form, kReferenceStep, 2, 1e-4));
   }
   for (size_t t = 0; t < kIntervals.size(); ++t) study.sampled[t] = SampleLoop(design, kIntervals[t]);
   study.largest = design::LargestStableInterval(design, kPaperGain);
@@ -339,12 +340,12 @@ page::Panel StepPanel(const design::DesignModel& design, size_t f) {
   panel.y = {
       .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
   const design::Response continuous =
-      design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
+      design::ContinuousStep(design, kPaperGain, kForms[f].form, kReferenceStep, kRootLocusDuration, 5e-4);
   panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
   for (size_t t = 0; t < kIntervals.size(); ++t) {
     const double interval = kIntervals[t];
     const design::Response step =
-        design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
+        design::SampledStep(design, kPaperGain, interval, kForms[f].form, kReferenceStep, kRootLocusDuration,
                             static_cast<int>(std::lround(interval / 5e-4)));
     panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
                             step.time,
@@ -354,7 +355,7 @@ page::Panel StepPanel(const design::DesignModel& design, size_t f) {
                             {},
                             {}});
   }
-  panel.rules = {{"", false, kStep}};
+  panel.rules = {{"", false, kReferenceStep}};
   return panel;
 }
 
@@ -363,7 +364,7 @@ Picture StepsPicture(const RootLocusStudy& study) {
           {.caption = fmt::format(
                "Figure 8's model at g = {:g} under the sampled law: a step of {:g} rad. At T = 10 ms the "
                "loop is unstable.",
-               kPaperGain, kStep),
+               kPaperGain, kReferenceStep),
            .panels = {StepPanel(study.design, 0), StepPanel(study.design, 1)},
            .drawing = ""}};
 }
@@ -396,7 +397,7 @@ Picture SampledPolesPicture(const RootLocusStudy& study) {
 }  // namespace
 
 ExperimentResult RunFig9(const ExperimentOptions& options) {
-  const RootLocusStudy study = RunStudy(options);
+  const RootLocusStudy study = RunRootLocusStudy(options);
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says = "Figure 9: with c_1/c_2 = 30 the loop is stable until g = 770. T is not printed.";

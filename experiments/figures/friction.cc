@@ -89,8 +89,6 @@ runs::MeasuredRun MeasureRamps(const ExperimentOptions& options) {
                         fmt::format("kind = \"csv\"\npoints = [{}]\n", points), options.seed));
 }
 
-json Interval(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
-
 // "Contains" as text.
 const char* Holds(const maths::Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
@@ -116,14 +114,14 @@ double TransientTorque(const PumpFriction& friction) {
 json FitNumbers(const PumpFriction& friction, const model::Parameters& p) {
   json numbers = {{"T_s", friction.T_s.value},
                   {"b", friction.b.value},
-                  {"ci95", {{"T_s", Interval(friction.T_s)}, {"b", Interval(friction.b)}}},
+                  {"ci95", {{"T_s", IntervalJson(friction.T_s)}, {"b", IntervalJson(friction.b)}}},
                   {"units", {{"T_s", "in-lbf"}, {"b", "in-lbf-s"}}},
                   {"T_s_forward", friction.T_s_forward.value},
-                  {"T_s_forward_ci95", Interval(friction.T_s_forward)},
+                  {"T_s_forward_ci95", IntervalJson(friction.T_s_forward)},
                   {"T_s_backward", friction.T_s_backward.value},
-                  {"T_s_backward_ci95", Interval(friction.T_s_backward)},
+                  {"T_s_backward_ci95", IntervalJson(friction.T_s_backward)},
                   {"T_s_difference", friction.difference.value},
-                  {"T_s_difference_ci95", Interval(friction.difference)},
+                  {"T_s_difference_ci95", IntervalJson(friction.difference)},
                   {"scatter_in_lbf", friction.scatter},
                   {"degrees_of_freedom", friction.degrees_of_freedom},
                   {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},

@@ -23,9 +23,9 @@ using nlohmann::json;
 constexpr double kPressureNoise = 3;             // psi
 constexpr double kPressureStep = 2000.0 / 4096;  // psi
 constexpr double kTorques[] = {10, 6, -10, -6};  // in-lbf, one run each
-constexpr double kStart = 0.1;                   // s, when the torque steps up
+constexpr double kTorqueStart = 0.1;             // s, when the torque steps up
 constexpr double kRelease = 2.5;                 // s, when it steps to 0
-constexpr double kDuration = 4.5;                // s
+constexpr double kLeakageDuration = 4.5;         // s
 
 runs::MeasuredRun Measure(const ExperimentOptions& options, size_t index, const model::Parameters& p) {
   const std::string& model = ShippedModelText("table1");
@@ -37,14 +37,13 @@ runs::MeasuredRun Measure(const ExperimentOptions& options, size_t index, const 
       "[position]\nsample_interval_s = 0.001\n"
       "[reference]\nsignal = \"voltage\"\nkind = \"steps\"\nsteps = [[{}, {}], [{}, 0.0]]\n"
       "[noise]\nseed = {}\np1_psi = {}\np2_psi = {}\np1_resolution_psi = {}\np2_resolution_psi = {}\n",
-      kDuration, kStart, kTorques[index] / p.k_1, kRelease, options.seed + static_cast<int64_t>(index),
-      kPressureNoise, kPressureNoise, kPressureStep, kPressureStep);
+      kLeakageDuration, kTorqueStart, kTorques[index] / p.k_1, kRelease,
+      options.seed + static_cast<int64_t>(index), kPressureNoise, kPressureNoise, kPressureStep,
+      kPressureStep);
   tables::Table table = options.run_stack({fmt::format("leakage-{}", index + 1), config, model});
   table.file = fmt::format("{} in-lbf", kTorques[index]);
   return runs::RunOfExport(table, config, model);
 }
-
-json Interval(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
 
 json Told(const LeakageInformation& information) {
   return {{"c_E_error_percent", 100 * information.c_E_error},
@@ -58,13 +57,13 @@ json Numbers(const LeakageFit& fit) {
   json numbers = {{"c_E", fit.c_E.value},
                   {"c_I", fit.c_I.value},
                   {"unit", "in^3/(s psi)"},
-                  {"ci95", {{"c_E", Interval(fit.c_E)}, {"c_I", Interval(fit.c_I)}}},
+                  {"ci95", {{"c_E", IntervalJson(fit.c_E)}, {"c_I", IntervalJson(fit.c_I)}}},
                   {"correlation", fit.information.correlation},
                   {"not_identifiable", fit.not_identifiable},
                   {"best_told",
                    {{"c_I_weight", fit.information.c_I_weight},
                     {"value", fit.combination.value},
-                    {"ci95", Interval(fit.combination)}}},
+                    {"ci95", IntervalJson(fit.combination)}}},
                   {"rms_residual", fit.rms},
                   {"converged", fit.converged},
                   {"told_by",
@@ -228,7 +227,7 @@ constexpr char kNotDescribed[] =
     "pressure or of the voltage, a wrong k_1, T_s or beta, or an effect that the model lacks would cause "
     "that.";
 
-ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
+ExperimentResult AnalyseMeasuredLeakage(const ExperimentOptions& options) {
   const std::vector<runs::MeasuredRun> runs = {runs::ReadMeasuredRun(options.measured_run)};
   const runs::MeasuredRun& run = runs.front();
   const model::ModelDescription model = run.model_text.empty()
@@ -324,7 +323,7 @@ Finding NamesFinding(const LeakageFit& fit, size_t runs, double low, double p_3)
 }  // namespace
 
 ExperimentResult RunLeakage(const ExperimentOptions& options) {
-  if (!options.measured_run.empty()) return AnalyseMeasured(options);
+  if (!options.measured_run.empty()) return AnalyseMeasuredLeakage(options);
   const model::ModelDescription model = ShippedModel("table1");
   const model::Parameters& p = model.parameters;
   const std::vector<runs::MeasuredRun> runs = MeasureAll(options, p);
@@ -338,7 +337,7 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
   result.conditions = fmt::format(
       "Table 1, clamped at α = 0, over the stack at 1 kHz, open loop: T_p = 10, 6, -10 and -6 in-lbf from {} "
       "to {} s, then none. Pressures read with {} psi of noise in steps of {:.3f} psi.",
-      kStart, kRelease, kPressureNoise, kPressureStep);
+      kTorqueStart, kRelease, kPressureNoise, kPressureStep);
   result.paper_says = kPaperSays;
   result.explanation = Explanation(fit);
   json numbers = Numbers(fit);

@@ -34,7 +34,7 @@ struct Study {
   }
 };
 
-Study RunStudy(const ExperimentOptions& options) {
+Study RunTorqueStudy(const ExperimentOptions& options) {
   Study study;
   study.feedforward = pressure_ctrl::SteadyStateFeedforward(PressureLoopParameters(), PressureLoopGains());
   for (const double command : {200.0, 1000.0, 3000.0, 5000.0}) {
@@ -375,7 +375,7 @@ std::vector<tables::Column> Columns(const Study& study) {
 }  // namespace
 
 ExperimentResult RunTorque(const ExperimentOptions& options) {
-  const Study study = RunStudy(options);
+  const Study study = RunTorqueStudy(options);
   const pressure_ctrl::PressureGains gains = PressureLoopGains();
   ExperimentResult result;
   result.conditions = fmt::format(

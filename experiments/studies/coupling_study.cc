@@ -133,9 +133,9 @@ void Summarise(JointRun* run) {
   run->rms_torque_error = std::sqrt(squares / static_cast<double>(run->torque_error.size()));
 }
 
-ArmRun RunArm(const CouplingStudy& study, const tune::StepTrial& settings, const SmoothPath& path,
-              const ArmRun& conditions) {
-  ArmRun run = conditions;
+CoupledArmRun RunArm(const CouplingStudy& study, const tune::StepTrial& settings, const SmoothPath& path,
+                     const CoupledArmRun& conditions) {
+  CoupledArmRun run = conditions;
   const model::PlanarArm arm(StudiedArm());
   Joints joints(study.own, ReferenceAt(path, run.moving, 0), run.coupled);
   std::vector<JointLoops> loops(kArmJoints, JointLoops(settings));
@@ -201,8 +201,8 @@ std::string Name(const Moving& moving) {
   return moving[0] ? "upper_moves" : "forearm_moves";
 }
 
-const ArmRun& CouplingStudy::Find(const Moving& moving, FeedForward feed_forward, bool coupled) const {
-  for (const ArmRun& run : runs) {
+const CoupledArmRun& CouplingStudy::Find(const Moving& moving, FeedForward feed_forward, bool coupled) const {
+  for (const CoupledArmRun& run : runs) {
     if (run.moving == moving && run.feed_forward == feed_forward && run.coupled == coupled) return run;
   }
   throw std::out_of_range("no such run of the arm");
@@ -225,7 +225,7 @@ CouplingStudy RunCouplingStudy() {
   for (const bool coupled : {true, false}) {
     for (const Moving& moving : kCases) {
       for (const FeedForward feed_forward : kFeedForwards) {
-        ArmRun conditions;
+        CoupledArmRun conditions;
         conditions.moving = moving;
         conditions.feed_forward = feed_forward;
         conditions.coupled = coupled;

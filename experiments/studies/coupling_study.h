@@ -51,7 +51,7 @@ struct JointRun {
   double peak_coupling = 0;
 };
 
-struct ArmRun {
+struct CoupledArmRun {
   Moving moving;
   FeedForward feed_forward = FeedForward::kNone;
   bool coupled = true;              // false: two rigs with their own J_a and mgl
@@ -73,11 +73,11 @@ struct CouplingStudy {
   std::vector<double> time;       // s, from the start of the path
   std::vector<double> reference;  // rad, of a joint that moves
   std::array<model::Parameters, kArmJoints>
-      own;                   // Table 1 with each joint's J_a and mgl, measured at mid-stroke
-  double c1 = 0;             // psi/rad
-  std::vector<ArmRun> runs;  // cases, feed-forwards; coupled first, then uncoupled
+      own;                          // Table 1 with each joint's J_a and mgl, measured at mid-stroke
+  double c1 = 0;                    // psi/rad
+  std::vector<CoupledArmRun> runs;  // cases, feed-forwards; coupled first, then uncoupled
 
-  const ArmRun& Find(const Moving& moving, FeedForward feed_forward, bool coupled) const;
+  const CoupledArmRun& Find(const Moving& moving, FeedForward feed_forward, bool coupled) const;
 };
 
 CouplingStudy RunCouplingStudy();

@@ -8,4 +8,6 @@ std::string JsonText(const nlohmann::json& value) { return value.dump(2); }
 
 nlohmann::json ParseJson(const std::string& text) { return nlohmann::json::parse(text); }
 
+nlohmann::json IntervalJson(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
+
 }  // namespace hydro::experiments

@@ -5,6 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "maths/estimate.h"
+
 namespace hydro::experiments {
 
 // Indented by 2; values that are not finite become null.
@@ -12,5 +14,8 @@ std::string JsonText(const nlohmann::json& value);
 
 // Throws nlohmann::json::parse_error.
 nlohmann::json ParseJson(const std::string& text);
+
+// [low, high].
+nlohmann::json IntervalJson(const maths::Estimate& estimate);
 
 }  // namespace hydro::experiments
