@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kGainMargins[] = {2, 2.5, 3, 4, 6, 10};
 
-std::string Number(double value) { return ShortNumber(value, 3); }
+std::string NumberText(double value) { return ShortNumber(value, 3); }
 
 // A gain with its unit in the model's units, or in SI.
 std::string WithUnit(double value, const char* paper_unit, int arm, const UnitSystem& units, bool si) {
@@ -32,11 +32,11 @@ std::string WithUnit(double value, const char* paper_unit, int arm, const UnitSy
 std::string GainsText(const StepJudge& judge, const Gains& gains, bool si) {
   const UnitSystem& units = judge.config().model.description.units;
   std::string text =
-      fmt::format("pressure loop {} rad/s, damping {}; c1 = {}, c2 = {}", Number(gains.natural_frequency),
-                  Number(gains.damping_ratio), WithUnit(gains.c1, "psi/rad", -1, units, si),
+      fmt::format("pressure loop {} rad/s, damping {}; c1 = {}, c2 = {}", NumberText(gains.natural_frequency),
+                  NumberText(gains.damping_ratio), WithUnit(gains.c1, "psi/rad", -1, units, si),
                   WithUnit(gains.c2, "psi s/rad", -1, units, si));
   if (std::isfinite(gains.deceleration)) {
-    text += fmt::format("; braking with {} {}", Number(gains.deceleration), units.UnitFor("rad/s^2", 1));
+    text += fmt::format("; braking with {} {}", NumberText(gains.deceleration), units.UnitFor("rad/s^2", 1));
   }
   return text;
 }
@@ -44,9 +44,9 @@ std::string GainsText(const StepJudge& judge, const Gains& gains, bool si) {
 std::string MarginRow(const char* loop, const design::CheckedLoop& checked) {
   const design::LoopMargins& m = checked.worst;
   if (!m.stable) return fmt::format("  {:<10} UNSTABLE: {}\n", loop, checked.worst_case);
-  return fmt::format("  {:<10} {:>6} {:>9} {:>7.0f} {:>9} {:>8} {:>7}  {}\n", loop, Number(m.gain),
-                     Number(m.gain_hz), m.phase_deg, Number(1e3 * m.delay),
-                     m.bandwidth_hz > 0 ? Number(m.bandwidth_hz) : "-", Number(m.damping_ratio),
+  return fmt::format("  {:<10} {:>6} {:>9} {:>7.0f} {:>9} {:>8} {:>7}  {}\n", loop, NumberText(m.gain),
+                     NumberText(m.gain_hz), m.phase_deg, NumberText(1e3 * m.delay),
+                     m.bandwidth_hz > 0 ? NumberText(m.bandwidth_hz) : "-", NumberText(m.damping_ratio),
                      checked.worst_case);
 }
 
@@ -61,7 +61,7 @@ std::string MarginsText(const Proposal& proposal) {
   if (uncertain.pressure && uncertain.position) {
     text += fmt::format(
         "  over the model's uncertainty: gain margins down to {} (pressure) and {} (position){}\n",
-        Number(uncertain.pressure->worst.gain), Number(uncertain.position->worst.gain),
+        NumberText(uncertain.pressure->worst.gain), NumberText(uncertain.position->worst.gain),
         uncertain.stable() ? "" : ", UNSTABLE");
   }
   return text;
@@ -82,10 +82,10 @@ std::string StepsText(const TuningReport& report) {
   text += "\n";
   for (size_t i = 0; i < report.judge->steps().size(); ++i) {
     const double step = report.judge->steps()[i];
-    text += fmt::format("  {:>8} {:>9}", Number(step), Number(report.judge->Nominal(step).shortest));
+    text += fmt::format("  {:>8} {:>9}", NumberText(step), NumberText(report.judge->Nominal(step).shortest));
     for (const Proposal& proposal : report.proposals) {
       const StepResult& r = proposal.steps[i];
-      text += fmt::format("  | {:>9} {:>6} {:>13.1f}", r.settled ? Number(r.settling) : "never",
+      text += fmt::format("  | {:>9} {:>6} {:>13.1f}", r.settled ? NumberText(r.settling) : "never",
                           RatioText(r.ratio), r.overshoot_percent);
     }
     text += "\n";
@@ -107,9 +107,10 @@ std::string TradeOffText(const TuningReport& report) {
                                  "uncertain", "band Hz", "c1", "c2");
   for (const TradeOff& row : report.trade_offs) {
     const Tried& t = row.tried;
-    text += fmt::format("  {:>11} {:>8} {:>10} {:>8} {:>10} {:>12}\n", ">= " + Number(row.gain_margin),
+    text += fmt::format("  {:>11} {:>8} {:>10} {:>8} {:>10} {:>12}\n", ">= " + NumberText(row.gain_margin),
                         RatioText(t.steps.ratio), RatioText(t.steps.uncertain_ratio),
-                        Number(t.check.position->worst.bandwidth_hz), Number(t.gains.c1), Number(t.gains.c2));
+                        NumberText(t.check.position->worst.bandwidth_hz), NumberText(t.gains.c1),
+                        NumberText(t.gains.c2));
   }
   return text;
 }

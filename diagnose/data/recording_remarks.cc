@@ -15,11 +15,11 @@ namespace {
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
 constexpr double kMostMissing = 0.05;    // of a signal that is present most of the time
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
-constexpr double kGap = 5;               // median sample intervals
-constexpr double kCoarse = 2;            // resolution, in standard deviations of the noise
+constexpr double kGapTold = 5;           // median sample intervals
+constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
 constexpr double kStill = 5;             // movement of a signal, in standard deviations of the noise
 
-std::string Percent(double share) { return ShortNumber(100 * share, 3) + " %"; }
+std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %"; }
 
 void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   const std::vector<double>& time = run.stimulus.time;
@@ -28,7 +28,7 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   double longest = 0;
   for (size_t i = 0; i + 1 < time.size(); ++i) {
     const double interval = time[i + 1] - time[i];
-    if (interval <= kGap * usual) continue;
+    if (interval <= kGapTold * usual) continue;
     if (gaps++ == 0) first = i;
     longest = std::max(longest, interval);
   }
@@ -45,14 +45,14 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   const auto there = static_cast<double>(signal.valid + signal.saturated);
   if (static_cast<double>(signal.saturated) > kMostSaturated * there) {
     remarks->push_back(name + " is at the end of its range in " +
-                       Percent(static_cast<double>(signal.saturated) / there) + " of its samples");
+                       InPercent(static_cast<double>(signal.saturated) / there) + " of its samples");
   }
   const double missing = 1 - there / samples;
   if (missing > kMostMissing && missing < kSlowerSensor) {
-    remarks->push_back(name + " is missing in " + Percent(missing) + " of the rows");
+    remarks->push_back(name + " is missing in " + InPercent(missing) + " of the rows");
   }
   // In a recording without noise, the noise is that of rounding, q / sqrt(12).
-  if (signal.resolution > kCoarse * signal.noise && !std::isnan(signal.stated_noise)) {
+  if (signal.resolution > kCoarseStep * signal.noise && !std::isnan(signal.stated_noise)) {
     remarks->push_back(name + " is recorded in steps of " + ShortNumber(signal.resolution, 3) + unit +
                        ", coarser than its noise");
   }

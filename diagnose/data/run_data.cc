@@ -13,21 +13,21 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr size_t kFewestValues = 20;  // of one signal: slower sensors leave gaps
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr size_t kFewestOfASignal = 20;  // of one signal: slower sensors leave gaps
+constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
 // The row of the table of signals (runs/measured_signals.h).
-constexpr const runs::SignalName* Row(runs::MeasuredSignal runs::MeasuredRun::*signal) {
+constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
   for (const runs::SignalName& one : runs::kSignals) {
     if (one.signal == signal) return &one;
   }
   return nullptr;
 }
 
-constexpr const runs::SignalName* kRows[model::kChannels] = {
-    Row(&runs::MeasuredRun::motor_angle), Row(&runs::MeasuredRun::motor_speed),
-    Row(&runs::MeasuredRun::arm_angle),   Row(&runs::MeasuredRun::arm_speed),
-    Row(&runs::MeasuredRun::p1),          Row(&runs::MeasuredRun::p2)};
+constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
+    SignalRow(&runs::MeasuredRun::motor_angle), SignalRow(&runs::MeasuredRun::motor_speed),
+    SignalRow(&runs::MeasuredRun::arm_angle),   SignalRow(&runs::MeasuredRun::arm_speed),
+    SignalRow(&runs::MeasuredRun::p1),          SignalRow(&runs::MeasuredRun::p2)};
 
 [[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
                          const std::string& allowed) {
@@ -60,9 +60,9 @@ void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std
 void CheckSignal(const runs::MeasuredRun& run, const runs::SignalName& row, const model::Parameters& model) {
   const std::vector<double>& values = (run.*row.signal).values;
   const size_t valid = CountValid(values);
-  if (valid < kFewestValues) {
+  if (valid < kFewestOfASignal) {
     Refuse(run.file, row.ours, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
-           std::to_string(kFewestValues) + " values or more, or leave the signal out");
+           std::to_string(kFewestOfASignal) + " values or more, or leave the signal out");
   }
   CheckRange(run, row.ours, values, LargestPossible(row, model), run.units.UnitFor(row.unit, row.arm));
   // An arm may well stand still. And a simulation without noise reports a single number for a side on its
@@ -94,7 +94,7 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRa
     }
     if (longest < kInARow) continue;
     for (double& value : rest) {
-      if (value == end) value = kNone;
+      if (value == end) value = kNoSample;
     }
   }
   return rest;
@@ -105,7 +105,7 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   SignalData signal;
   signal.channel = channel;
   signal.values = measured.values;
-  signal.stated_noise = measured.noise.value_or(kNone);
+  signal.stated_noise = measured.noise.value_or(kNoSample);
   signal.resolution = EstimateResolution(measured.values);
   const ValueRange range = RangeOfValues(measured.values);
   const double size = range.size();
@@ -153,7 +153,9 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
 
 }  // namespace
 
-const runs::SignalName& SignalOf(model::Channel channel) { return *kRows[static_cast<size_t>(channel)]; }
+const runs::SignalName& SignalOf(model::Channel channel) {
+  return *kSignalRows[static_cast<size_t>(channel)];
+}
 
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
   const runs::SignalName& row = SignalOf(channel);
@@ -210,8 +212,9 @@ std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>&
 }
 
 const std::string& ChannelName(model::Channel channel) {
-  static const std::array<std::string, model::kChannels> names = {
-      kRows[0]->ours, kRows[1]->ours, kRows[2]->ours, kRows[3]->ours, kRows[4]->ours, kRows[5]->ours};
+  static const std::array<std::string, model::kChannels> names = {kSignalRows[0]->ours, kSignalRows[1]->ours,
+                                                                  kSignalRows[2]->ours, kSignalRows[3]->ours,
+                                                                  kSignalRows[4]->ours, kSignalRows[5]->ours};
   return names.at(static_cast<size_t>(channel));
 }
 
@@ -251,7 +254,7 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
     if ((run.*SignalOf(channel).signal).measured()) CheckSignal(run, SignalOf(channel), model);
     if (!IsCompared(run, channel)) continue;
     SignalData signal = MakeSignal(run, channel);
-    if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
+    if (signal.valid >= kFewestOfASignal) data.signals.push_back(std::move(signal));
   }
   if (data.signals.empty()) {
     Refuse(run.file, "", "no signal to compare with a model",

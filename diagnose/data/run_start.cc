@@ -10,23 +10,23 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoStart = std::numeric_limits<double>::quiet_NaN();
 
 // The value and slope at the first time of a straight line through the first valid samples, with standard
 // errors; of a signal that is not measured the value is NaN.
-struct Line {
-  double value = kNone, slope = 0;
+struct StartLine {
+  double value = kNoStart, slope = 0;
   double value_error = 0, slope_error = 0;
   double noise = 0;  // of the signal
 };
-using Lines = std::array<Line, model::kChannels>;
+using StartLines = std::array<StartLine, model::kChannels>;
 
 // Takes a speed for 0 when the samples cannot tell it from 0. A motion that should begin at rest but gets a
 // little speed slips where friction or cogging hold it, and the fit then stays one tooth off.
 constexpr double kAtRest = 3;  // standard errors
 double Rest(double speed, double error) { return std::abs(speed) < kAtRest * error ? 0 : speed; }
 
-Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
+StartLine FirstLine(const std::vector<double>& time, const SignalData& signal) {
   std::vector<size_t> rows;
   for (size_t i = 0; i < time.size() && rows.size() < 10; ++i) {
     if (!std::isnan(signal.values[i])) rows.push_back(i);
@@ -46,8 +46,8 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
       tt += since * since;
       ty += since * (signal.values[rows[k]] - y);
     }
-    const Line line{y - ty / tt * t, ty / tt, signal.noise * std::sqrt(1 / n + t * t / tt),
-                    signal.noise / std::sqrt(tt)};
+    const StartLine line{y - ty / tt * t, ty / tt, signal.noise * std::sqrt(1 / n + t * t / tt),
+                         signal.noise / std::sqrt(tt)};
     for (size_t k = 0; k < count; ++k) {
       const double expected = line.value + line.slope * (time[rows[k]] - time[0]);
       off += std::pow(signal.values[rows[k]] - expected, 2);
@@ -58,10 +58,10 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   return {signal.values[rows[0]], slope};
 }
 
-Lines FirstLines(const RunData& data) {
-  Lines lines;
+StartLines FirstLines(const RunData& data) {
+  StartLines lines;
   for (const SignalData& signal : data.signals) {
-    Line& line = lines[static_cast<size_t>(signal.channel)];
+    StartLine& line = lines[static_cast<size_t>(signal.channel)];
     line = FirstLine(data.stimulus.time, signal);
     line.noise = signal.noise;
   }
@@ -70,20 +70,20 @@ Lines FirstLines(const RunData& data) {
 
 // How far the true state may be from what its line says, a standard deviation: noise, a scale that is wrong by
 // `scale`, and a sensor that is late. NaN without a line.
-double ErrorOf(const Line& line, double scale) {
+double ErrorOf(const StartLine& line, double scale) {
   constexpr double kLate = 0.005;  // s
   constexpr double kNoises = 3;
   return kNoises * line.noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
 }
 
 // The same of a speed that is known from the angle alone.
-double SlopeErrorOf(const Line& angle) {
+double SlopeErrorOf(const StartLine& angle) {
   constexpr double kScale = 0.1;
   constexpr double kErrors = 5;
   return kErrors * angle.slope_error + kScale * std::abs(angle.slope);
 }
 
-void SetStartErrors(const Lines& lines, RunData* data) {
+void SetStartErrors(const StartLines& lines, RunData* data) {
   constexpr double kScale = 0.03;  // of a pressure or speed; an angle counts from anywhere
   const auto line = [&lines](model::Channel channel) { return lines[static_cast<size_t>(channel)]; };
   const auto set = [data](size_t state, double error, double otherwise) {
@@ -92,12 +92,12 @@ void SetStartErrors(const Lines& lines, RunData* data) {
   };
   using enum model::Channel;
   const double p1 = ErrorOf(line(kP1), kScale), p2 = ErrorOf(line(kP2), kScale);
-  set(model::kMotorAngle, ErrorOf(line(kMotorAngle), 0), kNone);
+  set(model::kMotorAngle, ErrorOf(line(kMotorAngle), 0), kNoStart);
   set(model::kMotorSpeed, ErrorOf(line(kMotorSpeed), kScale), SlopeErrorOf(line(kMotorAngle)));
-  set(model::kP1, p1, data->stimulus.bypass ? p2 : kNone);
-  set(model::kP2, p2, kNone);
+  set(model::kP1, p1, data->stimulus.bypass ? p2 : kNoStart);
+  set(model::kP2, p2, kNoStart);
   if (data->stimulus.shaft != model::Shaft::kFree) return;
-  set(model::kArmAngle, ErrorOf(line(kArmAngle), 0), kNone);
+  set(model::kArmAngle, ErrorOf(line(kArmAngle), 0), kNoStart);
   set(model::kArmSpeed, ErrorOf(line(kArmSpeed), kScale), SlopeErrorOf(line(kArmAngle)));
 }
 
@@ -105,10 +105,11 @@ void SetStartErrors(const Lines& lines, RunData* data) {
 
 void SetStart(const model::Parameters& model, RunData* data) {
   const std::vector<double>& time = data->stimulus.time;
-  const Lines lines = FirstLines(*data);
+  const StartLines lines = FirstLines(*data);
   const auto line = [&lines](model::Channel channel) { return lines[static_cast<size_t>(channel)]; };
   const auto first_known = [](double a, double b) { return std::isnan(a) ? b : a; };
-  const Line motor_angle = line(model::Channel::kMotorAngle), motor_speed = line(model::Channel::kMotorSpeed);
+  const StartLine motor_angle = line(model::Channel::kMotorAngle),
+                  motor_speed = line(model::Channel::kMotorSpeed);
   data->start[model::kMotorAngle] = first_known(motor_angle.value, 0);
   data->start[model::kMotorSpeed] = first_known(Rest(motor_speed.value, motor_speed.value_error),
                                                 Rest(motor_angle.slope, motor_angle.slope_error));
@@ -127,7 +128,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
   data->start_free[model::kP2] = !data->stimulus.bypass;
 
   if (data->stimulus.shaft == model::Shaft::kFree) {
-    const Line arm_angle = line(model::Channel::kArmAngle), arm_speed = line(model::Channel::kArmSpeed);
+    const StartLine arm_angle = line(model::Channel::kArmAngle), arm_speed = line(model::Channel::kArmSpeed);
     data->start[model::kArmAngle] = first_known(arm_angle.value, 0);
     data->start[model::kArmSpeed] = first_known(Rest(arm_speed.value, arm_speed.value_error),
                                                 Rest(arm_angle.slope, arm_angle.slope_error));

@@ -20,8 +20,8 @@ namespace {
 using Run = runs::MeasuredRun;
 
 constexpr double kSeconds = 0.05;  // of a window, within these numbers of samples
-constexpr double kShortest = 40, kLongest = 200;
-constexpr size_t kFewestValues = 12;  // of a signal in a window
+constexpr double kShortestCheck = 40, kLongest = 200;
+constexpr size_t kFewestOfACheck = 12;  // of a signal in a window
 // A prediction need not be better than this share of the movement in the window, and of that in the run.
 constexpr double kOfWindow = 0.1, kOfRun = 0.01;
 constexpr double kMoves = 4;  // times the noise
@@ -105,7 +105,7 @@ RunData DataOf(const Run& window, const model::Parameters& model) {
   for (const model::Channel channel : kAll) {
     if (!IsCompared(window, channel)) continue;
     SignalData signal = SignalIn(window, channel);
-    if (signal.valid >= kFewestValues && !std::isnan(signal.values[0]))
+    if (signal.valid >= kFewestOfACheck && !std::isnan(signal.values[0]))
       data.signals.push_back(std::move(signal));
   }
   if (window.shaft == model::Shaft::kDriven) {
@@ -122,7 +122,8 @@ RunData DataOf(const Run& window, const model::Parameters& model) {
 std::vector<Run> MovingWindows(const Run& recorded, size_t most) {
   const Run run = WithErrors(recorded);
   const double interval = MedianInterval(run.time);
-  const auto length = static_cast<size_t>(std::lround(std::clamp(kSeconds / interval, kShortest, kLongest)));
+  const auto length =
+      static_cast<size_t>(std::lround(std::clamp(kSeconds / interval, kShortestCheck, kLongest)));
   std::vector<std::pair<double, size_t>> places;  // minus the movement, first sample
   for (size_t first = 0; first + length <= run.samples(); first += std::max<size_t>(1, length / 2)) {
     const double moves = MovementOfAll(run, first, first + length);

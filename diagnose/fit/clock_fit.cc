@@ -18,7 +18,7 @@ constexpr int kRounds = 3;                     // over all clocks, for each step
 // By how many samples command, motor and arm are later than the balances suggest.
 using Correction = std::array<int, 3>;
 
-double Interval(const RunData& run) { return run.duration() / static_cast<double>(run.samples() - 1); }
+double SampleInterval(const RunData& run) { return run.duration() / static_cast<double>(run.samples() - 1); }
 
 // The clock of a signal in ClockDelay::signals.
 size_t ClockOf(const std::string& signal) {
@@ -27,7 +27,7 @@ size_t ClockOf(const std::string& signal) {
 }
 
 RunData Corrected(const RunData& run, const Correction& correction, const model::Parameters& model) {
-  const double step = Interval(run);
+  const double step = SampleInterval(run);
   runs::MeasuredRun moved = run.measured;
   std::vector<runs::SignalDelay> delays = {{&runs::MeasuredRun::voltage, step * correction[0]},
                                            {&runs::MeasuredRun::pressure_ref, step * correction[0]},
@@ -93,7 +93,7 @@ class CorrectionSearch {
  private:
   // Whether any clock moved.
   bool MoveEachClock(int step) {
-    const int most = static_cast<int>(kMostCorrection / Interval(runs_.front()));
+    const int most = static_cast<int>(kMostCorrection / SampleInterval(runs_.front()));
     bool moved = false;
     for (size_t clock = 0; clock < at_.size(); ++clock) {
       for (const int sign : {1, -1}) {
@@ -142,7 +142,7 @@ void CorrectClocks(const model::ModelDescription& model, const std::vector<size_
   const Correction found = CorrectionSearch(*runs, Begin(model, allowed_base), jobs).Run();
   if (found == Correction{0, 0, 0}) return;
   for (ClockDelay& clock : *clocks) {
-    const double by = found[ClockOf(clock.signals.front())] * Interval(runs->front());
+    const double by = found[ClockOf(clock.signals.front())] * SampleInterval(runs->front());
     clock.delay += by;
     clock.error = std::hypot(clock.error, by);
   }

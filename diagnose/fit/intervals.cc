@@ -20,7 +20,7 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kBlocksPerRun = 12;
+constexpr Index kBlocksOfARun = 12;
 
 // A block that holds nearly all the information about a number says nothing about its own scatter; it counts
 // as if it held no more than this share.
@@ -61,14 +61,14 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
     inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
     columns -= starts * maths::SolveSymmetric(inner, maths::TransposeTimes(starts, columns));
   }
-  BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksPerRun),
-                     std::vector<MatrixXd>(kBlocksPerRun, MatrixXd::Zero(p, p))};
+  BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksOfARun),
+                     std::vector<MatrixXd>(kBlocksOfARun, MatrixXd::Zero(p, p))};
   for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
     const auto first = static_cast<Index>(residuals.first[s]);
     const Index count = static_cast<Index>(residuals.first[s + 1]) - first;
-    for (Index b = 0; b < kBlocksPerRun; ++b) {
-      const Index from = first + b * count / kBlocksPerRun;
-      const Index to = first + (b + 1) * count / kBlocksPerRun;
+    for (Index b = 0; b < kBlocksOfARun; ++b) {
+      const Index from = first + b * count / kBlocksOfARun;
+      const Index to = first + (b + 1) * count / kBlocksOfARun;
       const Map<const VectorXd> values(residuals.values.data() + from, to - from);
       const auto rows_of_block = columns.middleRows(from, to - from);
       blocks.gradients.col(b) += rows_of_block.transpose() * values;
@@ -142,7 +142,7 @@ Scatter ScatterOf(const Fitted& fitted, const Information& information,
   MatrixXd with_held = MatrixXd::Zero(p, h);
   for (size_t r = 0; r < blocks_of.size(); ++r) {
     const MatrixXd gradients = blocks_of[r].gradients.topRows(p);
-    for (Index b = 0; b < kBlocksPerRun; ++b) {
+    for (Index b = 0; b < kBlocksOfARun; ++b) {
       const MatrixXd& block = blocks_of[r].informations[static_cast<size_t>(b)];
       scatter.by_block += information.Influence(block.topLeftCorner(p, p), gradients.col(b)).cwiseAbs2();
       with_held += block.topRightCorner(p, h);
@@ -205,7 +205,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   std::vector<Interval> intervals;
   for (Index i = 0; i < p; ++i) {
     const double white = 1.96 * std::sqrt(information.inverse()(i, i) * squared_gap);
-    double half = std::max(white, HalfWidth(scatter.by_block(i), static_cast<double>(kBlocksPerRun) * count));
+    double half = std::max(white, HalfWidth(scatter.by_block(i), static_cast<double>(kBlocksOfARun) * count));
     if (runs.size() > 2) half = std::max(half, HalfWidth(scatter.by_run(i), count));
     intervals.push_back(Around(free[static_cast<size_t>(i)], half, scatter.by_held(i), sample));
   }

@@ -19,7 +19,7 @@ using Mistakes = std::vector<RecordingMistake>;
 
 constexpr double kSameGain = 1;  // a logarithm: a command in its right unit does far more than that
 constexpr size_t kWindows = 12;
-constexpr size_t kFewestWindows = 4;
+constexpr size_t kFewestOfARunCheck = 4;
 // Without its mistakes, every signal must be predicted this well: half its movement. A model that lacks an effect
 // or is wrong by a fifth does; one that predicts nothing does not.
 constexpr double kPredicted = 30;
@@ -53,7 +53,7 @@ RunCheck::RunCheck(const model::ModelDescription& model, const Run& run,
   if (!slow_) AlignClocks(model.parameters, &run_);
   windows_ = MovingWindows(run_, kWindows);
   for (const Run& window : windows_) moves_.push_back(ChannelsThatMove(window));
-  if (windows_.size() < kFewestWindows || time_is_up_()) return;
+  if (windows_.size() < kFewestOfARunCheck || time_is_up_()) return;
   given_ = slow_ ? Unpredicted() : Predict({}, windows_.size(), WindowStart::kFitted);
   as_recorded_ = WorstSignal(given_);
   in_order_ = as_recorded_ <= kInOrder;

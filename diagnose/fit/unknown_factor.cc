@@ -12,7 +12,7 @@ using Run = runs::MeasuredRun;
 constexpr double kLeast = 2, kMost = 1000;
 constexpr double kClosesMore = 1;  // than without the factor, a logarithm
 constexpr double kNearly = 0.2;
-const double kStep = std::log(1.05);
+const double kFactorStep = std::log(1.05);
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<RecordingMistake> UnknownFactors(const SignalBalances& balances, con
     if (!(run.*signals.front()).measured() || !(run.*signals.back()).measured()) continue;
     // What closes nearly as well as the best is as likely: the middle of it.
     std::vector<std::pair<double, double>> open;  // and the factor's logarithm
-    for (double size = std::log(kLeast); size < std::log(kMost); size += kStep) {
+    for (double size = std::log(kLeast); size < std::log(kMost); size += kFactorStep) {
       for (const double logarithm : {size, -size}) {
         SignalFactors with;
         AddFactors(UnknownUnit(signals, std::exp(logarithm)), &with);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t kPumpTorque = static_cast<size_t>(Balance::kPumpTorque);
 constexpr size_t kFlow1 = static_cast<size_t>(Balance::kFlow1);
-constexpr size_t kArmTorque = static_cast<size_t>(Balance::kArmTorque);
+constexpr size_t kModeArmTorque = static_cast<size_t>(Balance::kArmTorque);
 
 // The direction, +1 or -1, in which the torque overcomes static friction; 0 if it does not.
 int8_t BreaksAway(const model::Terms<double>& terms) {
@@ -84,7 +84,7 @@ void ModeAtSample::Set(const model::Equations& equations, size_t k, double volta
   SetValves(equations, k, state, *terms, mode, informative);
   equations.Evaluate(time, voltage, *mode, state, rate, terms);
   // An arm that an effect holds at rest feels no further torque.
-  if (setup_.free_arm() && rate[model::kArmSpeed] == 0) (*informative)[kArmTorque] = 0;
+  if (setup_.free_arm() && rate[model::kArmSpeed] == 0) (*informative)[kModeArmTorque] = 0;
 }
 
 }  // namespace hydro::diagnose::smoother

@@ -12,10 +12,10 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kStretchesARun = 25;
-constexpr size_t kShortest = 60;  // samples
+constexpr size_t kShortestStretch = 60;  // samples
 
 // A place in a run, and how far the two models are apart there in noise units.
-struct Place {
+struct StretchPlace {
   double apart = 0;
   size_t signal = 0, first = 0, end = 0;
 };
@@ -24,10 +24,10 @@ struct Responses {
   model::Response with, without;
 };
 
-Place MostIn(const RunData& run, const Responses& responses) {
-  Place most;
+StretchPlace MostIn(const RunData& run, const Responses& responses) {
+  StretchPlace most;
   const size_t samples = run.samples();
-  const size_t length = std::min(samples, std::max(kShortest, samples / kStretchesARun));
+  const size_t length = std::min(samples, std::max(kShortestStretch, samples / kStretchesARun));
   for (size_t s = 0; s < run.signals.size(); ++s) {
     const auto c = static_cast<size_t>(run.signals[s].channel);
     if (!(run.signals[s].noise > 0)) continue;
@@ -43,7 +43,7 @@ Place MostIn(const RunData& run, const Responses& responses) {
   return most;
 }
 
-std::vector<double> Part(const std::vector<double>& values, const Place& place) {
+std::vector<double> StretchPart(const std::vector<double>& values, const StretchPlace& place) {
   return {values.begin() + static_cast<std::ptrdiff_t>(place.first),
           values.begin() + static_cast<std::ptrdiff_t>(place.end)};
 }
@@ -56,7 +56,7 @@ std::optional<FoundStretch> StretchOf(const SearchContext& context, const Explan
   model::ModelDescription without = with;
   std::erase_if(without.effects, [&](const model::EffectDescription& one) { return one.id == effect; });
   std::vector<Responses> responses(context.runs.size());
-  std::vector<Place> places(context.runs.size());
+  std::vector<StretchPlace> places(context.runs.size());
   ParallelFor(context.runs.size(), context.jobs, [&](size_t r) {
     const RunData& run = *context.runs[r];
     try {
@@ -77,10 +77,10 @@ std::optional<FoundStretch> StretchOf(const SearchContext& context, const Explan
   const SignalData& signal = run.signals[places[r].signal];
   const auto c = static_cast<size_t>(signal.channel);
   FoundStretch stretch{effect, run.name, signal.channel, {}, {}, {}, {}};
-  stretch.time = Part(run.stimulus.time, places[r]);
-  stretch.measured = Part(signal.values, places[r]);
-  stretch.with = Part(responses[r].with.values[c], places[r]);
-  stretch.without = Part(responses[r].without.values[c], places[r]);
+  stretch.time = StretchPart(run.stimulus.time, places[r]);
+  stretch.measured = StretchPart(signal.values, places[r]);
+  stretch.with = StretchPart(responses[r].with.values[c], places[r]);
+  stretch.without = StretchPart(responses[r].without.values[c], places[r]);
   return stretch;
 }
 

@@ -17,13 +17,13 @@ constexpr double kLeastToExplain = 1.15 * 1.15;  // squared; below it there is n
 // Mains drift by a tenth of a hertz: over a stretch as short as this, the phase stays.
 constexpr double kStretch = 0.5;  // s
 
-struct Sums {
+struct HumSums {
   double square = 0, count = 0;
   std::array<double, kMains.size()> of_mains{};  // what each frequency explains of the square
 };
 
 // Adds one signal's residuals, whose samples are at `time`.
-void Add(const std::vector<double>& time, const double* residuals, Sums* sums) {
+void Add(const std::vector<double>& time, const double* residuals, HumSums* sums) {
   for (size_t begin = 0; begin < time.size();) {
     std::array<double, kMains.size()> sine{}, cosine{};
     size_t end = begin;
@@ -56,7 +56,7 @@ std::vector<double> ValidTimes(const RunData& run, const SignalData& signal) {
 std::vector<std::string> HumRemarks(const std::vector<const RunData*>& runs, const Fitted& fitted) {
   constexpr double kSamplesAPeriod = 2.5;
   if (runs.empty() || SampleInterval(runs) * kMains.back() * kSamplesAPeriod > 1) return {};
-  std::array<Sums, model::kChannels> sums;
+  std::array<HumSums, model::kChannels> sums;
   for (size_t r = 0; r < runs.size(); ++r) {
     Residuals residuals;
     try {

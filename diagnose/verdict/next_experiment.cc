@@ -18,7 +18,8 @@ namespace {
 
 constexpr size_t kStride = 5;       // one sample in this many is compared
 constexpr double kHeadroom = 1.05;  // over what the rig has seen
-constexpr size_t kFinalists = 3;  // for each way to hold the shaft: trials that base parameters are fitted to
+constexpr size_t kFinalExperiments =
+    3;  // for each way to hold the shaft: trials that base parameters are fitted to
 constexpr double kWorthwhile = 1;  // noise units; below this the models look the same
 
 model::Response Predict(const model::ModelDescription& model, const Trial& trial,
@@ -135,7 +136,7 @@ NextExperiment DesignNextExperiment(const std::vector<model::ModelDescription>& 
     const auto alike = std::count_if(finalists.begin(), finalists.end(), [&](const Trial& other) {
       return other.shaft == trial.shaft && other.arm_angle == trial.arm_angle && other.bypass == trial.bypass;
     });
-    if (static_cast<size_t>(alike) < kFinalists) finalists.push_back(trial);
+    if (static_cast<size_t>(alike) < kFinalExperiments) finalists.push_back(trial);
   }
   trials = std::move(finalists);
   judge(true);

@@ -18,7 +18,7 @@ namespace hydro::diagnose {
 namespace {
 
 // Windows of a run that are fitted, and as many that are predicted.
-constexpr size_t kMostWindows = 8;
+constexpr size_t kMostPerRun = 8;
 // A spread below this part of the value is within what any rig repeats.
 constexpr double kLeastSpread = 0.01;
 
@@ -30,7 +30,7 @@ Hypothesis Holding(const model::ModelDescription& model, const std::vector<size_
 }
 
 // What the parameters would gain with a value for each run, to first order: the fall of the sum of squares.
-std::vector<double> Gains(const std::vector<Fitted>& runs, size_t parameters) {
+std::vector<double> GainsOfRuns(const std::vector<Fitted>& runs, size_t parameters) {
   std::vector<double> gains(parameters, 0);
   const auto p = static_cast<Eigen::Index>(parameters);
   for (size_t i = 0; i < parameters; ++i) {
@@ -60,8 +60,8 @@ class ByRun {
     for (const RunData* run : runs_) {
       SearchWindows windows;
       windows.all = WindowsOf(*run, seconds, model.parameters);
-      windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
-      windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
+      windows.fitted = EvenlySpread(windows.all, kMostPerRun, 0, 2);
+      windows.choosing = EvenlySpread(windows.all, kMostPerRun, 1, 2);
       windows_.push_back(std::move(windows));
     }
   }
@@ -86,7 +86,7 @@ class ByRun {
       if (starts.ok()) fits[r] = Fit(Holding(model_, allowed), windows_[r].fitted, StartsOf(starts), once);
     });
     std::erase_if(fits, [](const Fitted& fit) { return !fit.ok() || fit.runs.empty(); });
-    const std::vector<double> gains = Gains(fits, allowed.size());
+    const std::vector<double> gains = GainsOfRuns(fits, allowed.size());
     const auto best = std::max_element(gains.begin(), gains.end());
     return best == gains.end() || !(*best > 0) ? model::BaseParameters().size()
                                                : allowed[static_cast<size_t>(best - gains.begin())];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kMostPoints = 1200;
 
-struct Sums {
+struct CurveSums {
   std::array<double, model::kChannels> square{};
   std::array<double, model::kChannels> count{};
   void Add(const RunData& run, const model::ModelDescription& model, const model::StartState& start) {
@@ -35,16 +35,16 @@ struct Sums {
   }
 };
 
-Sums OfFit(const SearchContext& context, const Explanation& one) {
-  Sums sums;
+CurveSums OfFit(const SearchContext& context, const Explanation& one) {
+  CurveSums sums;
   for (size_t r = 0; r < context.runs.size(); ++r) {
     sums.Add(*context.runs[r], one.fitted.hypothesis.model, one.fitted.runs[r].start);
   }
   return sums;
 }
 
-Sums OfHeldOut(const SearchContext& context, const Explanation& one) {
-  Sums sums;
+CurveSums OfHeldOut(const SearchContext& context, const Explanation& one) {
+  CurveSums sums;
   for (size_t r = 0; r < context.predicted().size(); ++r) {
     sums.Add(*context.predicted()[r], one.held_out.models[r], one.held_out.starts[r]);
   }
@@ -87,7 +87,7 @@ RunCurves Curves(const RunData& run, bool held_out, const model::ModelDescriptio
 std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanation& given,
                                   const Explanation& refit, const Explanation& best) {
   const Explanation* const all[] = {&given, &refit, &best};
-  Sums fit[3], held_out[3];
+  CurveSums fit[3], held_out[3];
   for (size_t i = 0; i < 3; ++i) {
     fit[i] = OfFit(context, *all[i]);
     held_out[i] = OfHeldOut(context, *all[i]);

@@ -8,9 +8,9 @@
 namespace hydro::scope {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoTick = std::numeric_limits<double>::quiet_NaN();
 
-double& At(PendingTicks::Row& row, TickColumn column) { return row[static_cast<size_t>(column)]; }
+double& AtTick(PendingTicks::Row& row, TickColumn column) { return row[static_cast<size_t>(column)]; }
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void PendingTicks::Reset() {
   early_.clear();
   early_references_.clear();
   newest_utime_ = 0;
-  dp_ref_ = voltage_asked_ = saturated_ = arm_ref_ = kMissing;
+  dp_ref_ = voltage_asked_ = saturated_ = arm_ref_ = kNoTick;
 }
 
 void PendingTicks::Add(const state_t& state, int64_t utime) {
@@ -29,18 +29,18 @@ void PendingTicks::Add(const state_t& state, int64_t utime) {
   tick.utime = utime;
   tick.time = state.time;
   Row& row = tick.row;
-  row.fill(kMissing);
-  At(row, TickColumn::kDp) = state.p2 - state.p1;
-  At(row, TickColumn::kP1) = state.p1;
-  At(row, TickColumn::kP2) = state.p2;
-  At(row, TickColumn::kArmAngle) = state.arm_angle;
-  At(row, TickColumn::kArmSpeed) = state.arm_speed;
-  At(row, TickColumn::kMotorSpeed) = state.motor_speed;
-  At(row, TickColumn::kMotorAngle) = state.motor_angle;
-  At(row, TickColumn::kVoltage) = state.voltage;
-  At(row, TickColumn::kSkipped) = static_cast<double>(state.skipped_ticks);
+  row.fill(kNoTick);
+  AtTick(row, TickColumn::kDp) = state.p2 - state.p1;
+  AtTick(row, TickColumn::kP1) = state.p1;
+  AtTick(row, TickColumn::kP2) = state.p2;
+  AtTick(row, TickColumn::kArmAngle) = state.arm_angle;
+  AtTick(row, TickColumn::kArmSpeed) = state.arm_speed;
+  AtTick(row, TickColumn::kMotorSpeed) = state.motor_speed;
+  AtTick(row, TickColumn::kMotorAngle) = state.motor_angle;
+  AtTick(row, TickColumn::kVoltage) = state.voltage;
+  AtTick(row, TickColumn::kSkipped) = static_cast<double>(state.skipped_ticks);
   if (newest_utime_ != 0)
-    At(row, TickColumn::kPeriod) = static_cast<double>(SaturatingDifference(utime, newest_utime_));
+    AtTick(row, TickColumn::kPeriod) = static_cast<double>(SaturatingDifference(utime, newest_utime_));
   newest_utime_ = utime;
   for (const Early& early : early_) {
     if (early.command.tick == state.tick) Answer(tick, early.command, early.utime);
@@ -57,10 +57,10 @@ void PendingTicks::Answer(Tick& tick, const motor_command_t& command, int64_t ut
   tick.commanded = true;
   const bool has_reference =
       command.pressure_command_tick >= 0 && command.status != motor_command_t::OPEN_LOOP;
-  At(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kMissing;
-  At(tick.row, TickColumn::kVoltageAsked) = command.voltage;
-  At(tick.row, TickColumn::kSaturated) = command.saturated != 0 ? 1 : 0;
-  At(tick.row, TickColumn::kLatency) = static_cast<double>(SaturatingDifference(utime, tick.utime));
+  AtTick(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kNoTick;
+  AtTick(tick.row, TickColumn::kVoltageAsked) = command.voltage;
+  AtTick(tick.row, TickColumn::kSaturated) = command.saturated != 0 ? 1 : 0;
+  AtTick(tick.row, TickColumn::kLatency) = static_cast<double>(SaturatingDifference(utime, tick.utime));
 }
 
 void PendingTicks::Add(const motor_command_t& command, int64_t utime) {
@@ -86,7 +86,7 @@ void PendingTicks::Add(const arm_reference_t& reference) {
   for (auto tick = ticks_.rbegin(); tick != ticks_.rend(); ++tick) {
     if (tick->tick != reference.tick) continue;
     tick->referred = true;
-    At(tick->row, TickColumn::kArmRef) = reference.value;
+    AtTick(tick->row, TickColumn::kArmRef) = reference.value;
     return;
   }
   arm_ref_ = reference.value;  // too late for its own tick
@@ -96,20 +96,20 @@ void PendingTicks::EmitFirst() {
   Tick& tick = ticks_.front();
   Row& row = tick.row;
   if (tick.commanded) {
-    dp_ref_ = At(row, TickColumn::kDpRef);
-    voltage_asked_ = At(row, TickColumn::kVoltageAsked);
-    saturated_ = At(row, TickColumn::kSaturated);
+    dp_ref_ = AtTick(row, TickColumn::kDpRef);
+    voltage_asked_ = AtTick(row, TickColumn::kVoltageAsked);
+    saturated_ = AtTick(row, TickColumn::kSaturated);
   } else {
-    At(row, TickColumn::kDpRef) = dp_ref_;
-    At(row, TickColumn::kVoltageAsked) = voltage_asked_;
-    At(row, TickColumn::kSaturated) = saturated_;
+    AtTick(row, TickColumn::kDpRef) = dp_ref_;
+    AtTick(row, TickColumn::kVoltageAsked) = voltage_asked_;
+    AtTick(row, TickColumn::kSaturated) = saturated_;
   }
   if (tick.referred) {
-    arm_ref_ = At(row, TickColumn::kArmRef);
+    arm_ref_ = AtTick(row, TickColumn::kArmRef);
   } else {
-    At(row, TickColumn::kArmRef) = arm_ref_;
+    AtTick(row, TickColumn::kArmRef) = arm_ref_;
   }
-  At(row, TickColumn::kPressureError) = At(row, TickColumn::kDpRef) - At(row, TickColumn::kDp);
+  AtTick(row, TickColumn::kPressureError) = AtTick(row, TickColumn::kDpRef) - AtTick(row, TickColumn::kDp);
   emit_(tick.time, row);
   ticks_.pop_front();
 }
