@@ -19,7 +19,8 @@ export function onALivePage(use, { log = 'run.lcmlog', sets = [], scopeSets = []
     await streaming(page, seconds);
     await use({ bench, stack, scope, browser, page });
   });
-  // Where the stack has ended by itself, each test would wait in vain.
+  // Where the stack has ended by itself (a machine that stood still lets the arm leave its limits), each test would wait in vain, and
+  // steady.py would have no time to repeat them.
   beforeEach(() => assert.ok(!stack.over || stack.stopped, 'the stack has ended'));
   after(async () => {
     console.log(stack?.lines.join('\n'));
