@@ -9,12 +9,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 
 #include "base/input_error.h"
 #include "base/read_files.h"
 
 namespace hydro {
 namespace {
+
+constexpr std::string_view kPart = ".part";
 
 [[noreturn]] void ThrowCannotCreate(const std::string& file, int error) {
   throw InputError(file + ": cannot be created: " + std::strerror(error) +
@@ -52,7 +55,7 @@ void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) 
 // writing to FILE under such a name.
 std::string FreePart(const std::string& name) {
   for (int i = 0;; ++i) {
-    std::string part = name + ".part" + (i == 0 ? "" : std::to_string(i));
+    std::string part = name + std::string(kPart) + (i == 0 ? "" : std::to_string(i));
     struct stat status;
     if (lstat(part.c_str(), &status) != 0) return part;
     if (S_ISREG(status.st_mode) && IsBeingWritten(part)) ThrowIsBeingWritten(name);
@@ -68,6 +71,13 @@ bool IsBeingWritten(const std::string& file) {
   const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);
   return locked;
+}
+
+std::string WholeOfPart(const std::string& name) {
+  const size_t at = name.rfind(kPart);
+  const bool is_part =
+      at != std::string::npos && name.find_first_not_of("0123456789", at + kPart.size()) == std::string::npos;
+  return is_part ? name.substr(0, at) : "";
 }
 
 void CheckCanBeCreated(const std::string& file) {

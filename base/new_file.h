@@ -23,6 +23,9 @@ enum class Opening {
 // Whether a NewFile, of this process or another, is writing to the file of this name.
 bool IsBeingWritten(const std::string& file);
 
+// The name that a file of this name had got from a NewFile (kTemporary): "a.csv" of "a.csv.part" and "a.csv.part2"; empty for other names.
+std::string WholeOfPart(const std::string& name);
+
 // Throws InputError if a NewFile of that name could not be created, so that a program fails before it works.
 // Leaves no file behind. An empty name is not checked.
 void CheckCanBeCreated(const std::string& file);

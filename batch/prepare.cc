@@ -29,7 +29,7 @@ void WriteStudy(const Study& study, const std::string& folder) {
     throw InputError(folder + ": found a file, allowed a folder");
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const std::string name = entry.path().filename();
-    if (study.files.contains(name) || name == "inputs" || name.starts_with("study.toml.part") ||
+    if (study.files.contains(name) || study.files.contains(WholeOfPart(name)) || name == "inputs" ||
         name.starts_with("lock"))
       continue;
     throw InputError(folder + ": found " + Quoted(name) +

@@ -16,7 +16,6 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
 constexpr char kSign[] = "sensor.sign";
 
 // Whether all that is wrong is the sign of single sensors, which the catalogue has as an effect.
@@ -81,7 +80,9 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
 
-void SetUntried(BeforeAfter* gap) { gap->before = gap->refit_only = gap->after = kNoGap; }
+void SetUntried(BeforeAfter* gap) {
+  gap->before = gap->refit_only = gap->after = std::numeric_limits<double>::quiet_NaN();
+}
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 #include "tables/table.h"
 
 namespace hydro::runs {
+
+// A value that is not there.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Where values come from: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
 struct ColumnSource {

@@ -1,4 +1,3 @@
-#include <limits>
 #include <set>
 
 #include "base/input_error.h"
@@ -11,8 +10,6 @@
 
 namespace hydro::runs {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Walks through the ordered messages of one channel as the rows' ticks increase.
 template <class Message>

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "base/host_name.h"
 #include "base/input_error.h"
@@ -13,7 +12,6 @@
 namespace hydro::runs {
 namespace {
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLatestTime = 1e12;              // s; in us it still fits the log's 64 bits
 constexpr double kLastTick = 9007199254740992.0;  // 2^53: above, a double does not hold every whole number
 
@@ -100,7 +98,7 @@ class Values {
  public:
   Values(const tables::Table& table, const char* name) : column_(table.Find(name)) {}
   bool present() const { return column_ != nullptr; }
-  double operator[](size_t row) const { return column_ != nullptr ? column_->values[row] : kNoNumber; }
+  double operator[](size_t row) const { return column_ != nullptr ? column_->values[row] : kMissing; }
 
  private:
   const tables::Column* column_;
@@ -149,7 +147,7 @@ class Import {
     state.p1 = p1_[row];
     state.p2 = p2_[row];
     // A table does not tell what acted before its first row; the actuator is taken to have been at rest.
-    state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : kNoNumber;
+    state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : kMissing;
     state.command_tick = row > 0 && voltage_.present() ? ticks_[row] - 1 : -1;
     log_.AppendMessage(channels_.Of<state_t>(), state, state.utime);
   }
@@ -172,10 +170,10 @@ class Import {
     const bool next_acts = row + 1 < rows && ticks_[row + 1] == ticks_[row] + 1;
     const bool last_follows = row + 2 == rows;
     if (row + 1 == rows && !std::isnan(voltage_[row]) && (row == 0 || ticks_[row - 1] + 1 != ticks_[row])) {
-      AppendCommand(utime, ticks_[row] - 1, voltage_[row], kNoNumber);
+      AppendCommand(utime, ticks_[row] - 1, voltage_[row], kMissing);
     }
     if (!std::isnan(pressure_ref_[row]) || (next_acts && last_follows && !std::isnan(voltage_[row + 1]))) {
-      AppendCommand(utime, ticks_[row], next_acts ? voltage_[row + 1] : kNoNumber, pressure_ref_[row]);
+      AppendCommand(utime, ticks_[row], next_acts ? voltage_[row + 1] : kMissing, pressure_ref_[row]);
     }
   }
 
@@ -199,7 +197,7 @@ class Import {
   const bus::Channels channels_;
   int64_t motor_sequence_ = 0;
   int64_t reference_sequence_ = 0;
-  double last_reference_ = kNoNumber;
+  double last_reference_ = kMissing;
 };
 
 }  // namespace

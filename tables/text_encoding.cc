@@ -7,7 +7,7 @@ namespace hydro::tables {
 namespace {
 
 constexpr uint32_t kNoCharacter = 0xfffd;
-constexpr size_t kLookedBytes = 1024;  // bytes
+constexpr size_t kLookedBytes = 1024;
 
 void AppendUtf8(uint32_t character, std::string& text) {
   const auto tail = [&](int shift) { text += static_cast<char>(0x80 | ((character >> shift) & 0x3f)); };

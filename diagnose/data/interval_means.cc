@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kIntervals = 150;
 constexpr size_t kSamplesOfOne = 4;  // of an interval
-constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -19,7 +17,7 @@ IntervalMeans::IntervalMeans(const runs::MeasuredRun& run)
       time_(Means(run.time)) {}
 
 std::vector<double> IntervalMeans::Means(const std::vector<double>& values) const {
-  std::vector<double> means(count_, kNoMean);
+  std::vector<double> means(count_, runs::kMissing);
   for (size_t i = 0; i < count_; ++i) {
     double sum = 0;
     size_t present = 0;
@@ -34,7 +32,7 @@ std::vector<double> IntervalMeans::Means(const std::vector<double>& values) cons
 }
 
 std::vector<double> IntervalMeans::Rates(const std::vector<double>& means) const {
-  std::vector<double> rates(count_, kNoMean);
+  std::vector<double> rates(count_, runs::kMissing);
   for (size_t i = 1; i + 1 < count_; ++i)
     rates[i] = (means[i + 1] - means[i - 1]) / (time_[i + 1] - time_[i - 1]);
   return rates;

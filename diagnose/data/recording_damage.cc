@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "base/number_text.h"
@@ -16,7 +15,6 @@ namespace {
 
 using Run = runs::MeasuredRun;
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kByChance = 1e-3;  // how often chance may hold a value so long, a run
 constexpr size_t kShortestHold = 8;
 constexpr std::ptrdiff_t kFew = 10;
@@ -146,12 +144,12 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
     size_t count = 0;
     for (const Stretch& one : held) {
       for (size_t i = one.first; i < one.last; ++i) {
-        values[i] = kNoValue;
+        values[i] = runs::kMissing;
         ++(*held_there)[i];
         ++count;
       }
     }
-    for (const size_t i : spikes) values[i] = kNoValue;
+    for (const size_t i : spikes) values[i] = runs::kMissing;
     const std::string place = RunNamed(run->name) + ": " + sensor.ours;
     if (count > 0) {
       lines->push_back(place + " repeats one value in " + std::to_string(held.size()) +

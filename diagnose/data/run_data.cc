@@ -14,7 +14,6 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kFewestOfASignal = 20;  // of one signal: slower sensors leave gaps
-constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
 // The row of the table of signals (runs/measured_signals.h).
 constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
@@ -94,7 +93,7 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRa
     }
     if (longest < kInARow) continue;
     for (double& value : rest) {
-      if (value == end) value = kNoSample;
+      if (value == end) value = runs::kMissing;
     }
   }
   return rest;
@@ -105,7 +104,7 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   SignalData signal;
   signal.channel = channel;
   signal.values = measured.values;
-  signal.stated_noise = measured.noise.value_or(kNoSample);
+  signal.stated_noise = measured.noise.value_or(runs::kMissing);
   signal.resolution = EstimateResolution(measured.values);
   const ValueRange range = RangeOfValues(measured.values);
   const double size = range.size();

@@ -10,12 +10,10 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kNoStart = std::numeric_limits<double>::quiet_NaN();
-
 // The value and slope at the first time of a straight line through the first valid samples, with standard
 // errors; of a signal that is not measured the value is NaN.
 struct StartLine {
-  double value = kNoStart, slope = 0;
+  double value = runs::kMissing, slope = 0;
   double value_error = 0, slope_error = 0;
   double noise = 0;  // of the signal
 };
@@ -92,12 +90,12 @@ void SetStartErrors(const StartLines& lines, RunData* data) {
   };
   using enum model::Channel;
   const double p1 = ErrorOf(line(kP1), kScale), p2 = ErrorOf(line(kP2), kScale);
-  set(model::kMotorAngle, ErrorOf(line(kMotorAngle), 0), kNoStart);
+  set(model::kMotorAngle, ErrorOf(line(kMotorAngle), 0), runs::kMissing);
   set(model::kMotorSpeed, ErrorOf(line(kMotorSpeed), kScale), SlopeErrorOf(line(kMotorAngle)));
-  set(model::kP1, p1, data->stimulus.bypass ? p2 : kNoStart);
-  set(model::kP2, p2, kNoStart);
+  set(model::kP1, p1, data->stimulus.bypass ? p2 : runs::kMissing);
+  set(model::kP2, p2, runs::kMissing);
   if (data->stimulus.shaft != model::Shaft::kFree) return;
-  set(model::kArmAngle, ErrorOf(line(kArmAngle), 0), kNoStart);
+  set(model::kArmAngle, ErrorOf(line(kArmAngle), 0), runs::kMissing);
   set(model::kArmSpeed, ErrorOf(line(kArmSpeed), kScale), SlopeErrorOf(line(kArmAngle)));
 }
 

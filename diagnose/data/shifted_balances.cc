@@ -18,7 +18,6 @@ using Eigen::VectorXd;
 constexpr double kFinestStep = 0.01;    // s: signals are averaged over this or a sample
 constexpr double kLongestDelay = 1.0;   // s; none exceeds this
 constexpr double kLongestShare = 0.02;  // or this share of the run
-constexpr double kNoBalance = std::numeric_limits<double>::quiet_NaN();
 
 VectorXd Averaged(const std::vector<double>& time, const std::vector<double>& values, double step) {
   const double duration = time.back() - time.front();
@@ -41,7 +40,7 @@ VectorXd Averaged(const std::vector<double>& time, const std::vector<double>& va
     }
     before = i;
   }
-  for (Index k = before + 1; k < cells; ++k) sum(k) = before < 0 ? kNoBalance : sum(before);
+  for (Index k = before + 1; k < cells; ++k) sum(k) = before < 0 ? runs::kMissing : sum(before);
   return sum;
 }
 
@@ -62,7 +61,7 @@ VectorXd Rate(const VectorXd& values, double step) {
 std::vector<double> Speed(const runs::MeasuredSignal& speed, const runs::MeasuredSignal& angle,
                           const std::vector<double>& time) {
   if (speed.measured() || !angle.measured()) return speed.values;
-  std::vector<double> rate(time.size(), kNoBalance);
+  std::vector<double> rate(time.size(), runs::kMissing);
   for (size_t i = 1; i + 1 < time.size(); ++i) {
     rate[i] = (angle.values[i + 1] - angle.values[i - 1]) / (time[i + 1] - time[i - 1]);
   }
@@ -131,7 +130,7 @@ ShiftedBalances::ShiftedBalances(EvenSignals signals, const model::Parameters& m
 double ShiftedBalances::Torque(int command, int speed, Index first, Index last) const {
   return ShareLeftOpen<6>(first, last, [&](Index i, double* x) {
     const double rate = signals_.speed(i + speed);
-    if (std::abs(rate) < slowest_) return kNoBalance;
+    if (std::abs(rate) < slowest_) return runs::kMissing;
     const double sign = rate > 0 ? 1 : -1;
     x[0] = signals_.p2(i) - signals_.p1(i);
     x[1] = signals_.acceleration(i + speed);
@@ -146,7 +145,7 @@ double ShiftedBalances::Torque(int command, int speed, Index first, Index last) 
 double ShiftedBalances::Flow(int speed, int arm, Index first, Index last) const {
   return ShareLeftOpen<5>(first, last, [&](Index i, double* x) {
     // Where both sides rest on their valves, the flows carry no information.
-    if (signals_.p1(i) < lowest_ && signals_.p2(i) < lowest_) return kNoBalance;
+    if (signals_.p1(i) < lowest_ && signals_.p2(i) < lowest_) return runs::kMissing;
     x[0] = signals_.arm_speed(i + arm);
     x[1] = signals_.p1_rate(i);
     x[2] = signals_.p2_rate(i);

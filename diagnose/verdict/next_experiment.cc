@@ -18,8 +18,8 @@ namespace {
 
 constexpr size_t kStride = 5;       // one sample in this many is compared
 constexpr double kHeadroom = 1.05;  // over what the rig has seen
-constexpr size_t kFinalExperiments =
-    3;  // for each way to hold the shaft: trials that base parameters are fitted to
+// For each way to hold the shaft: trials that base parameters are fitted to.
+constexpr size_t kFinalExperiments = 3;
 constexpr double kWorthwhile = 1;  // noise units; below this the models look the same
 
 model::Response Predict(const model::ModelDescription& model, const Trial& trial,

@@ -8,7 +8,7 @@
 namespace hydro::scope {
 namespace {
 
-constexpr double kNoTick = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 double& AtTick(PendingTicks::Row& row, TickColumn column) { return row[static_cast<size_t>(column)]; }
 
@@ -19,7 +19,7 @@ void PendingTicks::Reset() {
   early_.clear();
   early_references_.clear();
   newest_utime_ = 0;
-  dp_ref_ = voltage_asked_ = saturated_ = arm_ref_ = kNoTick;
+  dp_ref_ = voltage_asked_ = saturated_ = arm_ref_ = kNoValue;
 }
 
 void PendingTicks::Add(const state_t& state, int64_t utime) {
@@ -29,7 +29,7 @@ void PendingTicks::Add(const state_t& state, int64_t utime) {
   tick.utime = utime;
   tick.time = state.time;
   Row& row = tick.row;
-  row.fill(kNoTick);
+  row.fill(kNoValue);
   AtTick(row, TickColumn::kDp) = state.p2 - state.p1;
   AtTick(row, TickColumn::kP1) = state.p1;
   AtTick(row, TickColumn::kP2) = state.p2;
@@ -57,7 +57,7 @@ void PendingTicks::Answer(Tick& tick, const motor_command_t& command, int64_t ut
   tick.commanded = true;
   const bool has_reference =
       command.pressure_command_tick >= 0 && command.status != motor_command_t::OPEN_LOOP;
-  AtTick(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kNoTick;
+  AtTick(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kNoValue;
   AtTick(tick.row, TickColumn::kVoltageAsked) = command.voltage;
   AtTick(tick.row, TickColumn::kSaturated) = command.saturated != 0 ? 1 : 0;
   AtTick(tick.row, TickColumn::kLatency) = static_cast<double>(SaturatingDifference(utime, tick.utime));

@@ -88,6 +88,14 @@ TEST_F(NewFileTest, KeepsAForeignPart) {
   EXPECT_FALSE(std::filesystem::exists(Path("out.part2")));
 }
 
+// Tests that the names of what a killed process leaves are told from others.
+TEST_F(NewFileTest, NamesTheWholeOfAPart) {
+  EXPECT_EQ(WholeOfPart("a.csv.part"), "a.csv");
+  EXPECT_EQ(WholeOfPart("a.csv.part12"), "a.csv");
+  for (const char* name : {"a.csv", "a.parts", "a.part.csv", "a.part1b"})
+    EXPECT_EQ(WholeOfPart(name), "") << name;
+}
+
 // Tests that two at a time are refused under each temporary name.
 TEST_F(NewFileTest, OneWriterAtATime) {
   Make("out.part", "somebody's");

@@ -189,6 +189,16 @@ class BatchTest(stack.TestCase):
     def report_files(self):
         return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]
 
+    # Tests that a driver killed while it prepared the folder is followed by one that goes on, and leaves nothing half-written.
+    def test_killed_in_preparation(self):
+        os.makedirs(self.path("out/inputs"))
+        for name in ("config.toml.part", "study.toml.part1"):
+            with open(self.path(f"out/{name}"), "w", encoding="utf-8") as file:
+                file.write("half")
+        self.batch(self.study(), "--out", self.path("out"))
+        self.assertEqual(results(self.path("out")), self.reference())
+        self.assertEqual([name for name in os.listdir(self.path("out")) if ".part" in name], [])
+
     # Tests that a worker killed in mid-range loses nothing: another does what is left, and does no whole case again.
     def test_killed_worker(self):
         study, reference = self.study(), self.reference()
