@@ -3,6 +3,7 @@
 #include "base/input_error.h"
 #include "base/saturating.h"
 #include "bus/channels.h"
+#include "runs/measured_run.h"
 #include "runs/message_order.h"
 #include "runs/run_config.h"
 #include "runs/run_table.h"

@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "bus/channels.h"
 #include "log/log_writer.h"
+#include "runs/measured_run.h"
 #include "runs/run_table.h"
 
 namespace hydro::runs {
