@@ -123,6 +123,7 @@ void Limb::CheckAll() {
     if (!joint->ended()) joint->plant().Check(joint->clock().Now());
   }
   if (on_joint_fault_ == settings::OnJointFault::kOthersGoOn) return;
+  joints_.front()->plant().HoldForSilence(silence_);  // the others follow its fault
   Joint* const first = FirstFault(nullptr);
   Joint* const second = first != nullptr ? FirstFault(first) : nullptr;
   for (auto& joint : joints_) {

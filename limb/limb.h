@@ -36,8 +36,11 @@ class Limb {
   // Real time: as many ticks later as have elapsed. False: the run is over.
   bool StepRealtime(const plant::WakeUp& wake_up);
 
-  // While `text` is not empty, all joints are at zero volts: a fault elsewhere (a joint in another process).
-  void HoldForOthers(std::string text) { elsewhere_ = std::move(text); }
+  // While one of them is not empty, all joints are at zero volts: a joint in another process has a fault, or is no longer heard.
+  void HoldForOthers(std::string fault, std::string silence) {
+    elsewhere_ = std::move(fault);
+    silence_ = std::move(silence);
+  }
 
   // Ends all joints: zero volts for each before anything else. `after_each` (may be empty) is called when one has said so. Returns the exit
   // code: 0 when every joint's run ended well.
@@ -61,6 +64,7 @@ class Limb {
   bool over_ = false;
   size_t polled_ = 0;
   std::string elsewhere_;
+  std::string silence_;
 };
 
 }  // namespace hydro::limb

@@ -38,14 +38,16 @@ std::function<bool()> SharedHeartbeat(const std::function<bool()>& source, int64
   };
 }
 
-// Those whose faults matter here.
+// Those whose faults and silence matter here.
 std::vector<settings::Sibling> JointsElsewhere(const settings::LimbConfig& config,
                                                const std::vector<std::string>& here) {
   std::vector<settings::Sibling> elsewhere;
   if (here.empty() || config.limb.on_joint_fault == settings::OnJointFault::kOthersGoOn) return elsewhere;
   for (const settings::JointConfig& joint : config.joints) {
     if (std::find(here.begin(), here.end(), joint.name) == here.end()) {
-      elsewhere.push_back({joint.name, joint.config.bus.channel_suffix});
+      elsewhere.push_back({.name = joint.name,
+                           .suffix = joint.config.bus.channel_suffix,
+                           .silence_s = settings::AllowedSilence(config.common, config.limb)});
     }
   }
   return elsewhere;
@@ -199,7 +201,7 @@ void LimbApp::RunRealtime() {
   while (!Ended()) {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    limb_.HoldForOthers(elsewhere_.Text());
+    limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
     const bool goes_on = limb_.StepRealtime({elapsed, loop.skipped(), loop.woke(), loop.late()});
     participant_.set_tick(limb_.tick());
     if (!goes_on) return;

@@ -94,6 +94,8 @@ class PlantApp {
   std::string OwnFault() const;
   // While `text` is not empty, a fault elsewhere in the limb holds this rig at zero volts (after Check()).
   void HoldForOthers(const std::string& text);
+  // The same while another joint, of another process, is no longer heard.
+  void HoldForSilence(const std::string& text);
 
   process::Participant& participant() { return participant_; }
 

@@ -83,7 +83,9 @@ void PlantApp::Check(bus::Clock::TimePoint now) {
   if (!safety_.AllIsWell(state_, safe_command, rig_.faults()) || !CommandIsWell(now)) CheckAll(now);
   if (realtime_) CheckSupervisor(now);
   safety_.CheckSuspended(now);
-  if (!siblings_.empty()) HoldForOthers(siblings_.Text());
+  if (siblings_.empty()) return;
+  HoldForSilence(siblings_.Silence(now));
+  HoldForOthers(siblings_.Fault(now));
 }
 
 // The voltage of the command in force, or zero while any check fails. Drive() puts it out first and publishes the faults second.
@@ -111,6 +113,12 @@ std::string PlantApp::OwnFault() const {
 
 void PlantApp::HoldForOthers(const std::string& text) {
   safety_.Set(VoltageGuard::Cause::kOtherJoint, !text.empty(), [&] {
+    return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN};
+  });
+}
+
+void PlantApp::HoldForSilence(const std::string& text) {
+  safety_.Set(VoltageGuard::Cause::kJointGone, !text.empty(), [&] {
     return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN};
   });
 }

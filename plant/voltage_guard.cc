@@ -28,6 +28,8 @@ const char* VoltageGuard::CodeOf(Cause cause) {
       return "supervisor_gone";
     case Cause::kOtherJoint:
       return "other_joint";
+    case Cause::kJointGone:
+      return "joint_gone";
     case Cause::kSuspended:
       return "machine_suspended";
     case Cause::kPressureLimit:

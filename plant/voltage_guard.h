@@ -24,6 +24,7 @@ class VoltageGuard {
     kRigFault,
     kSupervisorGone,
     kOtherJoint,
+    kJointGone,
     kSuspended,
     kPressureLimit,
     kMotorSpeedLimit,

@@ -197,6 +197,12 @@ std::vector<std::string> JointsOf(const ProcessSection& process, const StackConf
   return joints;
 }
 
+double AllowedSilence(const StackConfig& own, const LimbSection& limb) {
+  if (own.time.mode == TimeMode::kLockstep) return 0;
+  const double period_s = static_cast<double>(limb.telemetry_interval_ticks) / (own.plant.rate_hz * own.time.speed);
+  return own.limits.stale_input_s + 3 * period_s;
+}
+
 StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
                          const std::optional<std::string>& joint) {
   if (!HasJoints(root)) {
@@ -215,11 +221,12 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
     if (document.name == *joint) {
       chosen = StackOf(&document.root, root.place);
     } else {
-      siblings.push_back({document.name, SuffixOf(document)});
+      siblings.push_back({.name = document.name, .suffix = SuffixOf(document)});
     }
   }
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
   const LimbSection limb = ReadLimbSection(root, chosen->plant.rate_hz);
+  for (Sibling& sibling : siblings) sibling.silence_s = AllowedSilence(*chosen, limb);
   if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
   const TomlNode* bus = root.Find("bus");
   const TomlNode* suffix = bus != nullptr ? bus->Find("channel_suffix") : nullptr;

@@ -55,6 +55,10 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
 // limb have in common. Throws InputError.
 StackConfig LoadCommonConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
+// How long a stack of the limb does without the states of a joint that runs in another process: Sibling::silence_s. Two of them may be
+// lost.
+double AllowedSilence(const StackConfig& own, const LimbSection& limb);
+
 // The joints that a process of a limb has, in the order of the configuration.
 std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common);
 

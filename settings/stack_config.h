@@ -175,6 +175,8 @@ struct ProcessSection {
 struct Sibling {
   std::string name;
   std::string suffix;  // of its channels
+  // Real time: how long a stack does without its states once it has heard one; 0: for ever.
+  double silence_s = 0;
 };
 
 struct StackConfig {
@@ -196,7 +198,7 @@ struct StackConfig {
   std::vector<ProcessSection>
       processes;                 // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
   bool without_its_arm = false;  // one joint's stack of a limb with an [arm], which this does not have
-  std::vector<Sibling> siblings;    // of one joint's stack: those whose faults take its voltage to zero too
+  std::vector<Sibling> siblings;    // of one joint's stack: those whose faults and silence take its voltage to zero too
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).

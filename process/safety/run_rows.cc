@@ -125,6 +125,23 @@ constexpr std::array kRows{
         .not_injected = "hydro-torture runs single stacks",
     },
     SafetyRow{
+        .id = "joint_gone",
+        .fault = "in a limb, a joint of another process or host is no longer heard (it hangs, the cable is out), "
+                 "and `limb.on_joint_fault` is \"all_to_zero\"",
+        .detected = "plant or limb: no state of that joint",
+        .codes = "joint_gone",
+        .within = {"5 ticks after `limits.stale_input_s` and three intervals of `limb.telemetry_hz`", 5,
+                   "limits.stale_input_s"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V of all joints",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, when it is heard again",
+        .tests = "plant/SilentJointTest.HoldsZeroVolts plant/SilentJointTest.WaitsForARearm "
+                 "limb/LimbAppTest.SilenceOfAJointElsewhere limb.LimbCableTest.test_cable_out",
+        .not_injected = "hydro-torture runs single stacks",
+    },
+    SafetyRow{
         .id = "wall_clock",
         .fault = "the wall clock is changed",
         .detected = "not at all: no control, limit or watchdog reads it",

@@ -33,14 +33,14 @@ joint = "knee"
 PATIENT = ("--set", "limits.stale_input_s=5", "--set", "limits.stale_supervisor_s=5")
 
 
-def with_processes(case, name, first="", second=""):
-    """The shipped limb with the knee in processes of its own; returns the file, beside the models."""
+def with_processes(case, name, first="", second="", sections=MIXED):
+    """The shipped limb with the knee in processes of its own, or these sections; returns the file, beside the models."""
     with open(LIMB, encoding="utf-8") as file:
         text = file.read()
     text = text.replace('"models/', f'"{os.path.dirname(LIMB)}/models/').split("[[process]]")[0]
     path = case.path(name)
     with open(path, "w", encoding="utf-8") as file:
-        file.write(text + MIXED.format(first=first, second=second))
+        file.write(text + sections.format(first=first, second=second))
     return path
 
 
@@ -231,6 +231,32 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
             self.assertEqual(launch.wait(60), 0, launch.report())
         self.assertIn("hip plant: the output reads back 0 V", launches["rig"].stdout)
         self.assertIn("knee plant: the output reads back 0 V", launches["desk"].stdout)
+
+
+class LimbCableTest(two_hosts.TestCase):
+    relay_options = ("--outage", 600, 1.5)
+
+    # Tests that joints on two hosts are at zero volts while neither host hears the other, and go on when they are heard again.
+    def test_cable_out(self):
+        config = with_processes(self, "hosts.toml", sections="".join(
+            f'[[process]]\nprogram = "hydro-limb"\nhost = "{host}"\njoints = ["{joint}"]\n'
+            for host, joint in (("rig", "hip"), ("desk", "knee"))))
+        launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "0", "--log", self.log_of(host), "--set",
+                                         "limits.stale_input_s=0.3", config=config) for host in ("desk", "rig")}
+        for host, joint in (("rig", "hip"), ("desk", "knee")):
+            log = JointLog(self, self.log_of(host))
+            fault = log.wait_for(joint, "HYDRO_FAULT", lambda f: f.code == "joint_gone" and f.active, f"{joint} is held")
+            self.assertRegex(fault.text, "joint (hip|knee), which another process runs, has not been heard for 0[.][34]")
+            over = log.wait_for(joint, "HYDRO_FAULT", lambda f: f.code == "joint_gone" and not f.active, f"{joint} goes on")
+            log.wait_for(joint, "HYDRO_STATE", lambda s: s.tick > over.tick and s.voltage != 0, f"{joint} moves again")
+            states = [event_log.TYPES["HYDRO_STATE"].decode(data) for data in log.messages[f"HYDRO_STATE_{joint}"]]
+            self.assertTrue(any(s.voltage != 0 for s in states if s.tick < fault.tick))
+            held = [s.voltage for s in states if fault.tick + 5 < s.tick <= over.tick]
+            self.assertGreater(len(held), 20)
+            self.assertEqual(set(held), {0.0})
+        launches["rig"].send(signal.SIGINT)
+        for launch in launches.values():
+            self.assertEqual(launch.wait(60), 0, launch.report())
 
 
 if __name__ == "__main__":

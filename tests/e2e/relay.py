@@ -45,14 +45,16 @@ class Message:
     """What a datagram carries, as far as it matters here."""
 
     def __init__(self, packet):
-        self.channel, self.session, self.sequence, self.tick = "?", None, None, None
+        self.channel, self.kind, self.session, self.sequence, self.tick = "?", None, None, None, None
         if len(packet) < 9 or struct.unpack_from(">I", packet)[0] != LCM_SHORT:
             return
         end = packet.find(b"\0", 8)
         if end < 0:
             return
         self.channel = packet[8:end].decode(errors="replace")
-        type_ = event_log.TYPES.get(self.channel)
+        self.kind = max((kind for kind in event_log.TYPES if self.channel == kind or self.channel.startswith(kind + "_")),
+                        key=len, default=None)  # without a joint's suffix
+        type_ = event_log.TYPES.get(self.kind)
         if type_ and "sequence" in type_.tuple._fields:
             decoded = type_.decode(packet[end + 1:])
             self.session, self.sequence = decoded.session, decoded.sequence
@@ -78,7 +80,7 @@ class Relay:
     def fate(self, message, now):
         """What becomes of it: forwarded, lost, outage (lost while the network is out) or dropped (asked for)."""
         lost = self.random.random() < self.options.loss  # drawn for each, whatever else is decided
-        if self.options.outage and self.outage_until is None and message.channel == "HYDRO_STATE" and \
+        if self.options.outage and self.outage_until is None and message.kind == "HYDRO_STATE" and \
                 message.tick >= self.options.outage[0]:
             self.outage_until = now + self.options.outage[1]
         if self.outage_until is not None and now < self.outage_until:

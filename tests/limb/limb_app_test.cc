@@ -124,6 +124,35 @@ TEST_F(LimbAppTest, FaultOfAJointElsewhere) {
   EXPECT_NE(states_["_hip"].back().voltage, 0);
 }
 
+// Tests that a joint of another process that is no longer heard holds all joints at zero volts until it is heard again: one says
+// which it is, the other follows that one.
+TEST_F(LimbAppTest, SilenceOfAJointElsewhere) {
+  config_.joints.push_back(config_.joints.back());
+  config_.joints.back().name = "ankle";
+  config_.joints.back().config.bus.channel_suffix = "_ankle";
+  config_.common.limits.stale_input_s = 0.005;
+  config_.limb.telemetry_interval_ticks = 1;  // three of them: 3 ms, so 8 in all
+  on_state_ = [&](const std::string& suffix, const state_t& state) {
+    if (suffix != "_hip" || (state.tick > 20 && state.tick < 70)) return;
+    state_t ankle{};
+    ankle.session = 77;
+    bus_.Publish("HYDRO_STATE_ankle", ankle);
+  };
+  EXPECT_EQ(Run({"hip", "knee"}), 0);
+  ASSERT_EQ(faults_["_hip"].size(), 2U);
+  EXPECT_EQ(faults_["_hip"][0].code, "joint_gone");
+  EXPECT_THAT(faults_["_hip"][0].text, HasSubstr("joint ankle, which another process runs, has not been heard"));
+  ASSERT_EQ(faults_["_knee"].size(), 2U);
+  EXPECT_EQ(faults_["_knee"][0].code, "other_joint");
+  EXPECT_THAT(faults_["_knee"][0].text, HasSubstr("joint hip has the fault joint_gone"));
+  for (const std::string suffix : {"_hip", "_knee"}) {
+    for (const state_t& state : states_[suffix]) {
+      if (state.tick >= 20 + 8 + 3 && state.tick < 70) EXPECT_EQ(state.voltage, 0) << suffix << state.tick;
+    }
+    EXPECT_NE(states_[suffix].back().voltage, 0);
+  }
+}
+
 // Tests that a joint that fails ends the limb with an error that names it.
 TEST_F(LimbAppTest, FailureNamesTheJoint) {
   config_.joints[1].config.limits.motor_speed_rad_s = 1;

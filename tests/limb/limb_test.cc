@@ -192,8 +192,8 @@ TEST_F(LimbTest, FaultElsewhere) {
   settings::LimbConfig config = SmallLimb({"hip", "knee"});
   Make(config);
   on_tick_ = [&](int64_t tick) {
-    if (tick == 40) limb_->HoldForOthers("joint ankle has the fault pressure_limit (plant)");
-    if (tick == 60) limb_->HoldForOthers("");
+    if (tick == 40) limb_->HoldForOthers("joint ankle has the fault pressure_limit (plant)", "");
+    if (tick == 60) limb_->HoldForOthers("", "");
   };
   EXPECT_EQ(Run(), 0);
   for (size_t i = 0; i < 2; ++i) {

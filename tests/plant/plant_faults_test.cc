@@ -180,6 +180,68 @@ TEST_F(PlantFaultsTest, SuspendWaitsForARearm) {
   ExpectVoltage(83, 100, 1.5);
 }
 
+// Of the joint knee, which another process runs.
+class SilentJointTest : public PlantFaultsTest {
+ protected:
+  SilentJointTest() { config_.siblings = {{.name = "knee", .suffix = "_knee", .silence_s = 0.010}}; }
+
+  void KneeIsHeard() {
+    state_t state{};
+    state.session = 77;
+    bus_->Publish("HYDRO_STATE_knee", state);
+  }
+};
+
+// Tests that a joint that was heard and is no longer holds zero volts until it is heard again, and that the fault says which.
+TEST_F(SilentJointTest, HoldsZeroVolts) {
+  on_state_ = [this](const state_t& s) {
+    if (s.tick <= 40 || s.tick >= 70) KneeIsHeard();
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+joint_gone", "-joint_gone"));
+  EXPECT_THAT(faults_[0].text, HasSubstr("joint knee, which another process runs, has not been heard for 0.011 s, "
+                                         "allowed are 0.01 s"));
+  ExpectVoltage(10, 51, 1.5);
+  ExpectVoltage(52, 71, 0);
+  ExpectVoltage(74, 100, 1.5);
+}
+
+// Tests that with explicit re-arming the motor does not start again when the joint is heard again, but by a re-arm.
+TEST_F(SilentJointTest, WaitsForARearm) {
+  config_.limits.rearm = settings::Rearm::kExplicit;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick <= 40 || s.tick >= 60) KneeIsHeard();
+    if (s.tick == 55 || s.tick == 80) AskToRearm(s.tick);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+joint_gone", "-joint_gone"));
+  ASSERT_EQ(answers_.size(), 2U);
+  EXPECT_EQ(answers_[0].kind, rearm_t::REFUSED);
+  EXPECT_THAT(answers_[0].text, HasSubstr("joint_gone persists: "));
+  EXPECT_EQ(answers_[1].kind, rearm_t::ACCEPTED);
+  ExpectVoltage(53, 81, 0);
+  ExpectVoltage(83, 100, 1.5);
+}
+
+// Tests that neither a joint that was never heard nor one that has said that it leaves is missed, though a state of it comes late.
+TEST_F(SilentJointTest, WhoLeavesIsNotMissed) {
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(faults_, IsEmpty());
+  StartAgain();
+  on_state_ = [this](const state_t& s) {
+    if (s.tick <= 30) KneeIsHeard();
+    if (s.tick != 30) return;
+    process_status_t left{};
+    left.session = 77;
+    left.role = "plant";
+    left.state = process_status_t::DONE;
+    bus_->Publish("HYDRO_PROCESS_STATUS_knee", left);
+    KneeIsHeard();
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(faults_, IsEmpty());
+}
+
 // Tests that setting the wall clock by ten seconds, forwards and back, changes nothing in a state but its
 // time stamp.
 TEST_F(PlantFaultsTest, ClockStepChangesNothing) {

@@ -104,6 +104,19 @@ TEST_F(LimbConfigTest, JointAlone) {
   EXPECT_THAT(unconcerned.siblings, IsEmpty());
 }
 
+// Tests that in real time a joint alone waits for another's states as long as for any input, and three of their intervals.
+TEST_F(LimbConfigTest, JointAloneMissesTheOthers) {
+  const StackConfig alone =
+      LoadStackConfig(File(std::string(kConfigText) + kJoints),
+                      {"joint=knee", "time.mode=realtime", "time.speed=0.5", "limb.telemetry_hz=50",
+                       "limits.stale_input_s=0.2"});
+  ASSERT_EQ(alone.siblings.size(), 1U);
+  EXPECT_NEAR(alone.siblings[0].silence_s, 0.2 + 3 * 0.02 / 0.5, 1e-12);
+  const StackConfig lockstep =
+      LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee", "time.mode=lockstep"});
+  EXPECT_EQ(lockstep.siblings.at(0).silence_s, 0);
+}
+
 // Tests that the text of the whole limb, read again, describes the same limb.
 TEST_F(LimbConfigTest, TextDescribesItself) {
   const LimbConfig limb = Load(kJoints, {"position.c2=123", "joint.knee.limits.pressure_psi=900"});
