@@ -6,8 +6,13 @@
 namespace hydro::process {
 
 std::unique_ptr<bus::UdpmBus> OpenStackBus(const settings::BusSection& section) {
-  std::vector<bus::Channels> channels{bus::Channels(section.channel_suffix)};
-  for (const std::string& suffix : section.joint_suffixes) channels.emplace_back(suffix);
+  // All processes of a limb introduce themselves on one channel, the limb's own, and hear each other's sealed.
+  std::vector<bus::Channels> channels;
+  if (section.limb_suffix) channels.emplace_back(*section.limb_suffix);
+  channels.emplace_back(section.channel_suffix);
+  for (const auto* suffixes : {&section.joint_suffixes, &section.sibling_suffixes}) {
+    for (const std::string& suffix : *suffixes) channels.emplace_back(suffix);
+  }
   return bus::OpenUdpmBus(section.url, bus::MakeAuthenticator(section.resolved_key_file, channels,
                                                               bus::ParseUdpmUrl(section.url).port));
 }

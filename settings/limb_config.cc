@@ -226,7 +226,10 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   }
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
   const LimbSection limb = ReadLimbSection(root, chosen->plant.rate_hz);
-  for (Sibling& sibling : siblings) sibling.silence_s = AllowedSilence(*chosen, limb);
+  for (Sibling& sibling : siblings) {
+    sibling.silence_s = AllowedSilence(*chosen, limb);
+    chosen->bus.sibling_suffixes.push_back(sibling.suffix);
+  }
   if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
   const TomlNode* bus = root.Find("bus");
   const TomlNode* suffix = bus != nullptr ? bus->Find("channel_suffix") : nullptr;

@@ -58,6 +58,7 @@ struct BusSection {
   std::string channel_suffix;  // appended to every channel name
   // Of one joint's stack: the suffix of its limb's own channels, on which the logger is; none: it has none but channel_suffix.
   std::optional<std::string> limb_suffix;
+  std::vector<std::string> sibling_suffixes;  // of one joint's stack: of the channels of its limb's other joints
   std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
   std::string key_file;                     // "": messages are not authenticated; docs/security.md
   std::string resolved_key_file;            // path to read it from

@@ -4,6 +4,7 @@ import os
 import signal
 
 import event_log
+import lcm_peer
 import outcome
 import stack
 import two_hosts
@@ -104,12 +105,42 @@ class LimbTest(stack.TestCase):
             self.assertEqual(set(after), {0.0})
         self.assertTrue(any(s.voltage != 0 for s in logs["hip"].states))
 
-    # Tests that a joint in processes of its own runs beside a limb, and that a fault of each zeroes the other.
+    # Tests that a joint in processes of its own runs beside a limb, and that a fault of one zeroes the other.
     def test_mixed(self):
-        config = with_processes(self, "mixed.toml")
+        self.check_mixed(with_processes(self, "mixed.toml"))
+
+    # Tests the same with a key; that each joint's values can be changed then, in the limb and in processes of its own; and that a
+    # fault without a seal holds nobody.
+    def test_mixed_with_a_key(self):
+        config = with_processes(self, "keyed.toml")
+        key = ("--set", "bus.key_file=" + self.path("limb.key"))
+        self.run_program("hydro-launch", config, "--make-key", *key)
+        self.check_mixed(config, *key)
+        fault = next(event.data for event in event_log.read_events(self.path("run.lcmlog")) if event.channel == "HYDRO_FAULT_knee")
+
+        log_file = self.path("again.lcmlog")
+        launch = self.launch(config, "--time", "realtime", "--duration", "0", "--log", log_file, *key, *PATIENT)
+        launch.wait_for("ready")
+        live = JointLog(self, log_file)
+        for joint in JOINTS:
+            live.wait_for(joint, "HYDRO_STATE", lambda s: s.tick > 300, "the joint runs")
+            self.run_program("hydro-set", config, *key, "--set", f"bus.url={self.url}", "--joint", joint, "position.c1=5500")
+        forger = lcm_peer.Peer(self.url, {})
+        self.addCleanup(forger.close)
+
+        def warned():
+            forger.publish_bytes("HYDRO_FAULT_knee", fault)
+            return "refused" in launch.stderr and "HYDRO_FAULT_knee" in launch.stderr
+
+        self.wait_until(warned, "the forged fault is refused")
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assertNotIn("other_joint", {f.code for f in event_log.Log(log_file, "_hip").faults})
+
+    def check_mixed(self, config, *options):
         log_file = self.path("run.lcmlog")
         launch = self.launch(config, "--time", "realtime", "--duration", "0", "--log", log_file, "--set",
-                             "limits.stale_input_s=0.3", "--set", "limb.telemetry_hz=every_tick")
+                             "limits.stale_input_s=0.3", "--set", "limb.telemetry_hz=every_tick", *options)
         launch.wait_for("ready")
         live = JointLog(self, log_file)
         for joint in JOINTS:

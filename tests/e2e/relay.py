@@ -52,8 +52,7 @@ class Message:
         if end < 0:
             return
         self.channel = packet[8:end].decode(errors="replace")
-        self.kind = max((kind for kind in event_log.TYPES if self.channel == kind or self.channel.startswith(kind + "_")),
-                        key=len, default=None)  # without a joint's suffix
+        self.kind = event_log.kind_of(self.channel)
         type_ = event_log.TYPES.get(self.kind)
         if type_ and "sequence" in type_.tuple._fields:
             decoded = type_.decode(packet[end + 1:])
