@@ -83,6 +83,11 @@ RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::st
   return RunCases(study, request);
 }
 
+int Stopped() {
+  std::fprintf(stderr, "hydro-batch: stopped; the same command goes on with the cases that are missing\n");
+  return 1;
+}
+
 int RunStudy(const BatchOptions& options) {
   const Study asked = ReadStudy(options.study);
   const std::string folder =
@@ -95,10 +100,17 @@ int RunStudy(const BatchOptions& options) {
     const SlurmEnd end = RunOnSlurm(study, folder, options.slurm, options.failed_again);
     if (end == SlurmEnd::kStopped) return options.slurm.detach && process::StopSignal() == 0 ? 0 : 1;
   } else if (RunAll(study, options, folder).stopped) {
-    std::fprintf(stderr, "hydro-batch: stopped; the same command goes on with the cases that are missing\n");
-    return 1;
+    return Stopped();
   }
-  return Told(study, folder, FinishStudy(folder, Jobs(options)));
+  TableCounts counts = FinishStudy(folder, Jobs(options));
+  // Each has run, so what is missing now was no result (a power cut while it was stored), and is away.
+  if (counts.missing > 0 && !options.slurm.on) {
+    std::fprintf(stderr, "hydro-batch: %lld stored results are not whole; their cases run again\n",
+                 static_cast<long long>(counts.missing));
+    if (RunAll(study, options, folder).stopped) return Stopped();
+    counts = FinishStudy(folder, Jobs(options));
+  }
+  return Told(study, folder, counts);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ class SiblingFaults {
     }};
     std::optional<bus::Clock::TimePoint> state_at = {};  // when the newest came, of a plant that has not left
     int64_t session = 0;                                 // that plant's
-    std::optional<int64_t> left = {};  // the session of one that has: states of it that come later are no sign of life
+    std::optional<int64_t> left =
+        {};  // the session of one that has: states of it that come later are no sign of life
   };
 
   void OnStatus(const process_status_t& status, Heard& heard);

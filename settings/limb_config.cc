@@ -199,7 +199,8 @@ std::vector<std::string> JointsOf(const ProcessSection& process, const StackConf
 
 double AllowedSilence(const StackConfig& own, const LimbSection& limb) {
   if (own.time.mode == TimeMode::kLockstep) return 0;
-  const double period_s = static_cast<double>(limb.telemetry_interval_ticks) / (own.plant.rate_hz * own.time.speed);
+  const double period_s =
+      static_cast<double>(limb.telemetry_interval_ticks) / (own.plant.rate_hz * own.time.speed);
   return own.limits.stale_input_s + 3 * period_s;
 }
 

@@ -58,7 +58,8 @@ struct BusSection {
   std::string channel_suffix;  // appended to every channel name
   // Of one joint's stack: the suffix of its limb's own channels, on which the logger is; none: it has none but channel_suffix.
   std::optional<std::string> limb_suffix;
-  std::vector<std::string> sibling_suffixes;  // of one joint's stack: of the channels of its limb's other joints
+  std::vector<std::string>
+      sibling_suffixes;  // of one joint's stack: of the channels of its limb's other joints
   std::vector<std::string> joint_suffixes;  // of what a limb's joints have in common: theirs; else empty
   std::string key_file;                     // "": messages are not authenticated; docs/security.md
   std::string resolved_key_file;            // path to read it from
@@ -199,7 +200,8 @@ struct StackConfig {
   std::vector<ProcessSection>
       processes;                 // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
   bool without_its_arm = false;  // one joint's stack of a limb with an [arm], which this does not have
-  std::vector<Sibling> siblings;    // of one joint's stack: those whose faults and silence take its voltage to zero too
+  std::vector<Sibling>
+      siblings;  // of one joint's stack: those whose faults and silence take its voltage to zero too
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).

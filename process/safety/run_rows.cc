@@ -126,8 +126,9 @@ constexpr std::array kRows{
     },
     SafetyRow{
         .id = "joint_gone",
-        .fault = "in a limb, a joint of another process or host is no longer heard (it hangs, the cable is out), "
-                 "and `limb.on_joint_fault` is \"all_to_zero\"",
+        .fault =
+            "in a limb, a joint of another process or host is no longer heard (it hangs, the cable is out), "
+            "and `limb.on_joint_fault` is \"all_to_zero\"",
         .detected = "plant or limb: no state of that joint",
         .codes = "joint_gone",
         .within = {"5 ticks after `limits.stale_input_s` and three intervals of `limb.telemetry_hz`", 5,

@@ -186,6 +186,16 @@ class BatchTest(stack.TestCase):
                          sorted(["cases", "config.toml", "inputs", "model.toml", "notes.part", "staging", "study.toml", "times",
                                  *self.report_files()]))
 
+    # Tests that cases that a power cut left torn run again in the same run, which says so, and end as they were.
+    def test_torn_cases_run_again(self):
+        reference = self.reference()
+        for number, text in ((3, b""), (17, b"\0" * 134)):
+            with open(self.path(f"reference/cases/000/000/{number:03}/result.json"), "wb") as file:
+                file.write(text)
+        done = self.batch(self.study(), "--out", self.path("reference"))
+        self.assertIn("2 stored results are not whole; their cases run again", done.stderr)
+        self.assertEqual(results(self.path("reference")), reference)
+
     def report_files(self):
         return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]
 

@@ -141,7 +141,8 @@ TEST_F(LimbAppTest, SilenceOfAJointElsewhere) {
   EXPECT_EQ(Run({"hip", "knee"}), 0);
   ASSERT_EQ(faults_["_hip"].size(), 2U);
   EXPECT_EQ(faults_["_hip"][0].code, "joint_gone");
-  EXPECT_THAT(faults_["_hip"][0].text, HasSubstr("joint ankle, which another process runs, has not been heard"));
+  EXPECT_THAT(faults_["_hip"][0].text,
+              HasSubstr("joint ankle, which another process runs, has not been heard"));
   ASSERT_EQ(faults_["_knee"].size(), 2U);
   EXPECT_EQ(faults_["_knee"][0].code, "other_joint");
   EXPECT_THAT(faults_["_knee"][0].text, HasSubstr("joint hip has the fault joint_gone"));

@@ -199,8 +199,9 @@ TEST_F(SilentJointTest, HoldsZeroVolts) {
   };
   EXPECT_EQ(Run(), 0);
   EXPECT_THAT(Codes(), ::testing::ElementsAre("+joint_gone", "-joint_gone"));
-  EXPECT_THAT(faults_[0].text, HasSubstr("joint knee, which another process runs, has not been heard for 0.011 s, "
-                                         "allowed are 0.01 s"));
+  EXPECT_THAT(faults_[0].text,
+              HasSubstr("joint knee, which another process runs, has not been heard for 0.011 s, "
+                        "allowed are 0.01 s"));
   ExpectVoltage(10, 51, 1.5);
   ExpectVoltage(52, 71, 0);
   ExpectVoltage(74, 100, 1.5);

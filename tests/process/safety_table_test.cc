@@ -56,7 +56,8 @@ TEST(SafetyTableTest, WordsOfAList) {
 // Tests that every code stands in a row, and that every code of a row exists.
 TEST(SafetyTableTest, HasEveryCode) {
   std::set<std::string_view> known, named;
-  for (const FaultCode& code : FaultCodes()) EXPECT_TRUE(known.insert(code.code).second) << code.code << " twice";
+  for (const FaultCode& code : FaultCodes())
+    EXPECT_TRUE(known.insert(code.code).second) << code.code << " twice";
   for (const SafetyRow& row : SafetyTable()) {
     for (const std::string_view code : WordsOf(row.codes)) named.insert(code);
   }

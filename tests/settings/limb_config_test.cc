@@ -106,10 +106,9 @@ TEST_F(LimbConfigTest, JointAlone) {
 
 // Tests that in real time a joint alone waits for another's states as long as for any input, and three of their intervals.
 TEST_F(LimbConfigTest, JointAloneMissesTheOthers) {
-  const StackConfig alone =
-      LoadStackConfig(File(std::string(kConfigText) + kJoints),
-                      {"joint=knee", "time.mode=realtime", "time.speed=0.5", "limb.telemetry_hz=50",
-                       "limits.stale_input_s=0.2"});
+  const StackConfig alone = LoadStackConfig(File(std::string(kConfigText) + kJoints),
+                                            {"joint=knee", "time.mode=realtime", "time.speed=0.5",
+                                             "limb.telemetry_hz=50", "limits.stale_input_s=0.2"});
   ASSERT_EQ(alone.siblings.size(), 1U);
   EXPECT_NEAR(alone.siblings[0].silence_s, 0.2 + 3 * 0.02 / 0.5, 1e-12);
   const StackConfig lockstep =
