@@ -68,8 +68,9 @@ int Told(const Study& study, const std::string& folder, const TableCounts& count
               static_cast<long long>(study.cases()), static_cast<long long>(counts.done),
               static_cast<long long>(counts.failed), static_cast<long long>(counts.missing), folder.c_str());
   if (!counts.first_failure.empty())
-    std::fprintf(stderr, "hydro-batch: %lld cases failed, the first: %s\n",
-                 static_cast<long long>(counts.failed), Printable(counts.first_failure).c_str());
+    std::fprintf(stderr, "hydro-batch: %lld %s failed, the first: %s\n",
+                 static_cast<long long>(counts.failed), counts.failed == 1 ? "case" : "cases",
+                 Printable(counts.first_failure).c_str());
   return counts.failed == 0 && counts.missing == 0 ? 0 : 1;
 }
 
@@ -79,7 +80,17 @@ RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::st
   const CaseCount there = CountCases(CaseStore(folder), 0, study.cases());
   Progress progress(stderr, isatty(STDERR_FILENO) != 0, study.cases(),
                     there.done + (options.failed_again ? 0 : there.failed));
-  request.progress = [&](const RunProgress& now) { progress.Show(now); };
+  bool told = false;
+  request.progress = [&](const RunProgress& now) {
+    // A mistake that every case makes: no need to wait for all of them.
+    constexpr int64_t kEnough = 10;
+    if (!told && now.ran >= kEnough && now.ran < now.to_run && now.failed == now.ran) {
+      told = true;
+      progress.Say("all of the first " + std::to_string(now.ran) +
+                   " cases failed, the first: " + now.first_failure + "; Ctrl-C stops the study");
+    }
+    progress.Show(now);
+  };
   return RunCases(study, request);
 }
 

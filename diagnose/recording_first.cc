@@ -80,6 +80,14 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
 
+// What is said before all else.
+std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
+  std::vector<std::string> remarks = checked.mistakes;
+  if (!checked.load.empty()) remarks.push_back(checked.load);
+  remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
+  return remarks;
+}
+
 void SetUntried(BeforeAfter* gap) {
   gap->before = gap->refit_only = gap->after = std::numeric_limits<double>::quiet_NaN();
 }
@@ -91,11 +99,14 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
                              std::vector<runs::MeasuredRun>* held_out,
                              const std::function<bool()>& time_is_up) {
   CheckedRecordings checked;
+  std::vector<runs::MeasuredRun> all = *runs;
+  all.insert(all.end(), held_out->begin(), held_out->end());
+  checked.load = LoadRemark(all);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> damage = SetAsideDamage(some);
     checked.damage.insert(checked.damage.end(), damage.begin(), damage.end());
   }
-  std::vector<runs::MeasuredRun> all = *runs;
+  all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
   std::map<size_t, std::string> twins;  // by run, what is wrong
   for (size_t r = 0; r < all.size(); ++r) {
@@ -129,8 +140,7 @@ Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecording
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::kUnexplained;
   diagnosis.sentence = MendFirstSentence(checked) + " Nothing was searched on top of it.";
-  diagnosis.remarks = checked.mistakes;
-  diagnosis.remarks.insert(diagnosis.remarks.end(), checked.damage.begin(), checked.damage.end());
+  diagnosis.remarks = RemarksOn(checked);
   SetUntried(&diagnosis.fit);
   SetUntried(&diagnosis.held_out);
   diagnosis.model = model;
@@ -143,8 +153,7 @@ Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecording
 }
 
 void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis) {
-  std::vector<std::string> remarks = checked.mistakes;
-  remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
+  const std::vector<std::string> remarks = RemarksOn(checked);
   diagnosis->remarks.insert(diagnosis->remarks.begin(), remarks.begin(), remarks.end());
   if (checked.mistakes.empty()) return;
   diagnosis->sentence = MendFirstSentence(checked) + " " + diagnosis->sentence;
@@ -160,6 +169,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   RecordingReport report;
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
+  if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.judged = checked.unjudged.empty();
   if (!report.judged) report.limits.push_back(checked.unjudged);
   if (checked.mend_first) return report;  // the rest is said of recordings that can be read

@@ -6,11 +6,9 @@
 #include <string>
 
 #include "base/new_file.h"
+#include "base/standard_output.h"
 
 namespace hydro::exports {
-
-// The name of the standard output.
-inline constexpr const char* kStandardOutput = "-";
 
 // Bytes in their order, as a pipe takes them.
 class Output {

@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "base/input_error.h"
-#include "base/new_file.h"
 #include "base/new_folder.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "exports/export_runs.h"
 #include "exports/output.h"
@@ -52,9 +52,9 @@ int ExportVerb::Run() const {
   if (messages && selection.channels.empty()) selection.all = true;
   if (exports::IsFolder(out_)) {
     const NewFolder attempt(out_);
-  } else if (out_ != exports::kStandardOutput) {
+  } else {
     CheckKeeps(out_, logs_);
-    CheckCanBeCreated(out_);
+    CheckCanBeWritten(out_);
   }
   const auto say = [](const std::string& line) {
     std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(line).c_str());

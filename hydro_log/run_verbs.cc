@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "base/input_error.h"
-#include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "hydro_log/own_controller.h"
 #include "hydro_log/own_replay.h"
@@ -24,7 +24,7 @@ namespace {
 // Called before anything is printed or written.
 void CheckOutput(const std::string& file, const std::string& log) {
   CheckKeeps(file, {log});
-  CheckCanBeCreated(file);
+  CheckCanBeWritten(file);
 }
 
 constexpr double kLongest_s = 3600;
@@ -77,17 +77,18 @@ SummaryVerb::SummaryVerb(settings::CommandLine& line) {
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   runs::AddStackChoice(&verb, &choice_);
-  verb.AddOption("--json", &json_, "FILE write the same there as JSON");
+  verb.AddOption("--json", &json_, "FILE write the same there as JSON; - for the standard output");
   verb.AddFlag("--si", &si_, "print figures in SI units too");
 }
 
 int SummaryVerb::Run() const {
   CheckOutput(json_, log_);
+  std::FILE* const said = OutputBeside({json_});
   const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
   if (all.whole()) {
     const runs::LimbInfo limb = runs::SummariseLimb(all, si_);
-    std::fputs(PrintableLines(runs::LimbSummaryText(limb)).c_str(), stdout);
-    if (!json_.empty()) WriteWholeFile(json_, runs::LimbSummaryJson(limb));
+    std::fputs(PrintableLines(runs::LimbSummaryText(limb)).c_str(), said);
+    if (!json_.empty()) WriteTextFile(json_, runs::LimbSummaryJson(limb));
     return 0;
   }
   const runs::RunLog& log = all.limb;
@@ -95,8 +96,8 @@ int SummaryVerb::Run() const {
     throw InputError(log_ + ": found no state; a log of a run is needed");
   const runs::Tracking tracking = runs::TrackArm(log);
   const runs::LogInfo info = runs::Summarise(log, si_);
-  std::fputs(PrintableLines(runs::SummaryText(tracking, info, si_)).c_str(), stdout);
-  if (!json_.empty()) WriteWholeFile(json_, runs::SummaryJson(tracking, info));
+  std::fputs(PrintableLines(runs::SummaryText(tracking, info, si_)).c_str(), said);
+  if (!json_.empty()) WriteTextFile(json_, runs::SummaryJson(tracking, info));
   return 0;
 }
 
@@ -105,8 +106,9 @@ TimingVerb::TimingVerb(settings::CommandLine& line) {
       line.AddVerb("timing", "How the loops kept time: periods, latencies, round trips, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   runs::AddStackChoice(&verb, &choice_);
-  verb.AddOption("--json", &json_, "FILE write the same there as JSON, with the histograms");
-  verb.AddOption("--page", &page_, "FILE write plots there (HTML)");
+  verb.AddOption("--json", &json_,
+                 "FILE write the same there as JSON, with the histograms; - for the standard output");
+  verb.AddOption("--page", &page_, "FILE write plots there (HTML); - for the standard output");
 }
 
 int TimingVerb::Run() const {
@@ -124,9 +126,9 @@ int TimingVerb::Run() const {
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
   WarnOf(log);
-  std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), stdout);
-  if (!json_.empty()) WriteWholeFile(json_, timing::TimingJson(processes, log_));
-  if (!page_.empty()) WriteWholeFile(page_, timing::TimingPage(processes, log_));
+  std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), OutputBeside({json_, page_}));
+  if (!json_.empty()) WriteTextFile(json_, timing::TimingJson(processes, log_));
+  if (!page_.empty()) WriteTextFile(page_, timing::TimingPage(processes, log_));
   return 0;
 }
 

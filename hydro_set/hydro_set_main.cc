@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   line.AddFlag("--watch", &request.watch, "show each change as it takes effect, until Ctrl-C");
   line.AddOption("--save", &request.save,
                  "FILE write CONFIG with the values in force, comments kept (without CONFIG: the whole "
-                 "configuration of the run)");
+                 "configuration of the run); - for the standard output");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-set", [&] { return Run(request, arguments, overrides); });
 }

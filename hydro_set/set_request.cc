@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "base/input_error.h"
-#include "base/new_file.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "base/text_lines.h"
 #include "bus/channels.h"
@@ -37,6 +37,7 @@ class Setter {
         url_(section.url),
         request_(request),
         output_(output),
+        said_(OutputBeside({request.save}, output.out, output.err)),
         client_(bus, clock, bus::Channels(section.channel_suffix), "hydro-set") {}
 
   int Run() {
@@ -104,7 +105,7 @@ class Setter {
       Print(output_.err, "hydro-set: refused: " + (answer ? answer->text : std::string("interrupted")));
       return false;
     }
-    Print(output_.out, fmt::format("version {}: {}", answer->version, answer->text));
+    Print(said_, fmt::format("version {}: {}", answer->version, answer->text));
     const bool acts = Wait(kTakeEffect, [&] { return client_.ActBy(answer->version); });
     std::string who;
     for (const auto& [role, status] : client_.controllers()) {
@@ -112,7 +113,7 @@ class Setter {
                          status.in_force == answer->version ? fmt::format("since tick {}", status.since)
                                                             : std::string("has not said so"));
     }
-    Print(acts ? output_.out : output_.err,
+    Print(acts ? said_ : output_.err,
           fmt::format("acts from tick {} on ({:.3f} s): {}", answer->acts_at,
                       static_cast<double>(answer->acts_at) / client_.run()->rate_hz, who));
     return acts;
@@ -122,16 +123,16 @@ class Setter {
     const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
                                       [](double value) { return fmt::format("{:g}", value); });
     constexpr const char* kRow = "{:<34} {:<22} {:<22} {:<41} {:<14} {}";
-    Print(output_.out, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
-                                   "what it does"));
+    Print(said_, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
+                             "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
-      Print(output_.out,
+      Print(said_,
             fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "(default)" : value->second,
                         row.unit, row.range, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
-    Print(output_.out,
+    Print(said_,
           fmt::format("version {} in force since tick {}: {}", in_force.version, in_force.acts_at,
                       in_force.changes.empty() ? "as configured" : tuning::OnOneLine(in_force.changes)));
   }
@@ -139,10 +140,9 @@ class Setter {
   void Save() const {
     const std::string text =
         SavedText(request_.config_file, request_.joint, request_.save, *client_.run(), *client_.in_force());
-    NewFile file(request_.save, Opening::kTemporary);
-    file.Write(text.data(), text.size());
-    file.Finish();
-    Print(output_.out,
+    WriteTextFile(request_.save, text, output_.out);
+    if (request_.save == kStandardOutput) return;
+    Print(said_,
           fmt::format("{}: the configuration with version {}", request_.save, client_.in_force()->version));
   }
 
@@ -153,17 +153,17 @@ class Setter {
       const tuned_settings_t& in_force = *client_.in_force();
       if (shown != in_force.version) {
         shown = in_force.version;
-        Print(output_.out, runs::DescribeTuning(in_force));
+        Print(said_, runs::DescribeTuning(in_force));
       }
       for (const auto& [role, status] : client_.controllers()) {
         const auto known = acting.find(role);
         if (known == acting.end() || known->second != status.in_force) {
-          Print(output_.out,
+          Print(said_,
                 fmt::format("{} acts by version {} since tick {}", role, status.in_force, status.since));
           acting[role] = status.in_force;
         }
       }
-      std::fflush(output_.out);
+      std::fflush(said_);
       bus_.HandleUntil(clock_.Now() + kTurn);
     }
   }
@@ -173,6 +173,7 @@ class Setter {
   const std::string url_;
   const SetRequest& request_;
   const SetOutput& output_;
+  std::FILE* const said_;  // what was asked for, beside a file
   TuningClient client_;
 };
 
@@ -194,7 +195,7 @@ void CheckRequest(const SetRequest& request) {
     throw InputError("--save: found " + Quoted(request.save) +
                      ", which is CONFIG; give another file, so that nothing is lost");
   }
-  CheckCanBeCreated(request.save);
+  CheckCanBeWritten(request.save);
 }
 
 int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section,

@@ -105,6 +105,18 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
   return here;
 }
 
+// The joints of the limb that other processes run, here or on another host: a plant, a driver or a limb begins when they are there.
+std::vector<std::string> JointsElsewhere(const settings::ProcessSection& process, const ChildSpec& child,
+                                         const settings::StackConfig& config) {
+  std::vector<std::string> elsewhere;
+  if (!process::IsPlant(process.role)) return elsewhere;
+  for (const std::string& joint : config.joints) {
+    if (std::find(child.joints.begin(), child.joints.end(), joint) == child.joints.end())
+      elsewhere.push_back(joint);
+  }
+  return elsewhere;
+}
+
 ChildSpec ChildFor(const settings::ProcessSection& process, const settings::StackConfig& config,
                    const LaunchRequest& request, const std::string& programs_folder) {
   const std::string& program = process.program;
@@ -126,6 +138,9 @@ ChildSpec ChildFor(const settings::ProcessSection& process, const settings::Stac
     child.argv.insert(child.argv.end(), {"-o", request.log_file});
   } else if (with_log && AwaitsLogger(process)) {
     child.argv.insert(child.argv.end(), {"--expect", "logger"});
+  }
+  for (const std::string& joint : JointsElsewhere(process, child, config)) {
+    child.argv.insert(child.argv.end(), {"--expect", "joint:" + joint});
   }
   return child;
 }

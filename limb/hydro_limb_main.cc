@@ -13,8 +13,9 @@ int main(int argc, char** argv) {
   command_line.AddCommon(&options);
   command_line.AddOption("--joints", &limb.joints,
                          "NAME run this joint; again for more. Without it, all that no other process has");
-  command_line.AddOption("--expect", &limb.expected,
-                         "ROLE wait for this process before the run begins, e.g. logger");
+  command_line.AddOption(
+      "--expect", &limb.expected,
+      "ROLE wait for this process before the run begins, e.g. logger; or for joint:NAME of another one");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   limb.heartbeat = hydro::process::HeartbeatArrived;
   hydro::settings::LimbConfig config;

@@ -40,6 +40,17 @@ void CheckSimulated(const settings::JointConfig& joint) {
 
 }  // namespace
 
+run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program) {
+  run_description_t description{};
+  description.config_file = config.common.file;
+  description.config_text = config.common.text;
+  description.program = program;
+  description.version = HYDRO_VERSION;
+  description.rate_hz = config.common.plant.rate_hz;
+  description.seed = config.common.seed;
+  return description;
+}
+
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
   CheckWanted(config, options.joints);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <hydro/run_description_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ struct LimbOptions {
   const bus::Clock* clock = nullptr;     // null: lockstep on simulated clocks
   std::function<bool()> heartbeat = {};  // as PlantApp's
 };
+
+// What a log needs to describe the limb as a whole. Its sender adds who and when it is.
+run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program);
 
 class Limb {
  public:

@@ -20,6 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr char kRole[] = "limb";
+constexpr char kProgram[] = "hydro-limb";
 constexpr auto kDescriptionPeriod = 1s;
 constexpr auto kFarewellPause = 500us;  // between the ends of two joints
 constexpr auto kWait = 50ms;            // how long a wait for others lasts before it looks around
@@ -38,11 +39,10 @@ std::function<bool()> SharedHeartbeat(const std::function<bool()>& source, int64
   };
 }
 
-// Those whose faults and silence matter here.
 std::vector<settings::Sibling> JointsElsewhere(const settings::LimbConfig& config,
                                                const std::vector<std::string>& here) {
   std::vector<settings::Sibling> elsewhere;
-  if (here.empty() || config.limb.on_joint_fault == settings::OnJointFault::kOthersGoOn) return elsewhere;
+  if (here.empty()) return elsewhere;
   for (const settings::JointConfig& joint : config.joints) {
     if (std::find(here.begin(), here.end(), joint.name) == here.end()) {
       elsewhere.push_back({.name = joint.name,
@@ -59,12 +59,18 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
     : config_(config),
       options_(std::move(options)),
       participant_(bus, clock, bus::Channels(config.common.bus.channel_suffix), kRole, config.common.agreed),
-      roll_call_(options_.expected),
+      roll_call_(plant::ExpectedRoles(options_.expected)),
       logger_watch_(participant_, {participant_.channels()},
                     bus::FromSeconds(std::max(config.common.limits.stale_logger_s, 1.0))),
-      elsewhere_(participant_, JointsElsewhere(config_, options_.joints)),
+      elsewhere_(participant_, JointsElsewhere(config_, options_.joints),
+                 {.follows = config.limb.on_joint_fault == settings::OnJointFault::kAllToZero,
+                  .last_tick = config.common.last_tick,
+                  .on_newcomer =
+                      [this] {
+                        for (auto& joint : limb_.joints()) joint->plant().participant().RepeatFaults();
+                      }}),
       limb_(config_, {.joints = options_.joints,
-                      .program = "hydro-limb",
+                      .program = kProgram,
                       .clock = config.common.time.mode == settings::TimeMode::kLockstep ? nullptr : &clock,
                       .heartbeat = SharedHeartbeat(options_.heartbeat, &heartbeats_)}),
       telemetry_(bus, config.common.time.mode == settings::TimeMode::kLockstep
@@ -121,21 +127,19 @@ int LimbApp::Run() {
 }
 
 bool LimbApp::Ended() const {
-  return participant_.stop().has_value() || process::StopSignal(participant_.bus()) != 0;
+  return participant_.stop().has_value() || (elsewhere_.follows() && elsewhere_.stop()) ||
+         process::StopSignal(participant_.bus()) != 0;
 }
 
 bool LimbApp::Begin() {
+  description_ = DescriptionOf(config_, kProgram);
   description_.session = participant_.session();
-  description_.config_file = config_.common.file;
-  description_.config_text = config_.common.text;
-  description_.program = "hydro-limb";
-  description_.version = HYDRO_VERSION;
   description_.host = participant_.host();
-  description_.rate_hz = config_.common.plant.rate_hz;
-  description_.seed = config_.common.seed;
   participant_.Announce(process_status_t::READY);
+  // Other processes of the limb wait for its joints.
+  for (auto& joint : limb_.joints()) joint->plant().participant().Announce(process_status_t::READY);
   const auto deadline = participant_.clock().Now() + bus::FromSeconds(config_.common.time.start_timeout_s);
-  for (std::vector<std::string> missing; !(missing = roll_call_.Missing()).empty();) {
+  for (std::vector<std::string> missing; !(missing = Missing()).empty();) {
     if (Ended()) return false;
     if (participant_.clock().Now() >= deadline) {
       participant_.RequestStop(fmt::format("not ready after {} s (time.start_timeout_s): {}",
@@ -144,13 +148,25 @@ bool LimbApp::Begin() {
       return false;
     }
     participant_.bus().HandleUntil(std::min(participant_.clock().Now() + kWait, deadline));
+    for (auto& joint : limb_.joints()) {
+      joint->plant().participant().Poll(joint->clock().Now());
+      joint->Dispatch(joint->clock().Now());
+    }
     Poll();
   }
   for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
   participant_.Announce(process_status_t::RUNNING);
+  PublishDescription();  // once more: a logger may have come since
   const bool began = limb_.Begin();
   telemetry_.SendAll();
   return began;
+}
+
+std::vector<std::string> LimbApp::Missing() const {
+  std::vector<std::string> missing = roll_call_.Missing();
+  for (const std::string& joint : elsewhere_.Missing(plant::ExpectedJoints(options_.expected)))
+    missing.push_back(joint);
+  return missing;
 }
 
 void LimbApp::RunLockstep() {
@@ -201,7 +217,8 @@ void LimbApp::RunRealtime() {
   while (!Ended()) {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
+    if (elsewhere_.follows())
+      limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
     const bool goes_on = limb_.StepRealtime({elapsed, loop.skipped(), loop.woke(), loop.late()});
     participant_.set_tick(limb_.tick());
     if (!goes_on) return;
@@ -223,14 +240,34 @@ void LimbApp::Poll() {
   if (participant_.clock().Now() >= next_description_) PublishDescription();
 }
 
+// What ends the limb, or one joint of it, ends all, and each says so.
+void LimbApp::AgreeOnTheEnd() {
+  if (const auto& stop = elsewhere_.stop(); stop && elsewhere_.follows())
+    participant_.RequestStop(stop->reason, stop->exit_code);
+  for (const auto& joint : limb_.joints()) {
+    const auto& stop = joint->plant().participant().stop();
+    if (stop && stop->exit_code == 0) participant_.RequestStop(stop->reason, 0, stop->source);
+  }
+  const auto& stop = participant_.stop();
+  if (!stop) return;
+  for (const auto& joint : limb_.joints()) {
+    if (!joint->ended())
+      joint->plant().participant().RequestStop(stop->reason, stop->exit_code, stop->source);
+  }
+}
+
 int LimbApp::End() {
   telemetry_.PassAll();
+  if (limb_.failure().empty()) AgreeOnTheEnd();
   const int exit_code = limb_.End([this] {
     telemetry_.SendAll();
     // Whoever listens has a buffer of limited size.
     participant_.bus().HandleUntil(participant_.clock().Now() + kFarewellPause);
   });
   const std::string failure = limb_.failure();
+  const bool others_go_on = !elsewhere_.follows() && limb_.joint_count() < config_.joints.size();
+  if (!failure.empty() && others_go_on && !participant_.stop())
+    return std::max(exit_code, participant_.Leave(failure));
   if (!failure.empty()) {
     participant_.RequestStop(failure, 1);
   } else if (const std::string reason = process::StopReason(); !reason.empty()) {

@@ -27,9 +27,10 @@
 namespace hydro::limb {
 
 struct LimbAppOptions {
-  std::vector<std::string> joints;    // those of the configuration that run here; empty: all
-  std::vector<std::string> expected;  // roles to wait for before the run begins: "logger"
-  std::function<bool()> heartbeat;    // as PlantApp's
+  std::vector<std::string> joints;  // those of the configuration that run here; empty: all
+  std::vector<std::string>
+      expected;  // to wait for before the run begins: "logger", "joint:knee" of another process
+  std::function<bool()> heartbeat;  // as PlantApp's
 };
 
 class LimbApp {
@@ -51,6 +52,8 @@ class LimbApp {
   bool Ended() const;
   bool LoggersKeepUp() const;
   bool AwaitLoggers();
+  std::vector<std::string> Missing() const;
+  void AgreeOnTheEnd();
   void Forward(Joint& joint);
   template <class Message>
   void ForwardTo(Joint& joint);

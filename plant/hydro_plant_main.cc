@@ -13,8 +13,10 @@ int main(int argc, char** argv) {
   hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   command_line.AddCommon(&options);
-  command_line.AddOption("--expect", &expected,
-                         "ROLE also wait for this process, besides the two controllers, e.g. logger");
+  command_line.AddOption(
+      "--expect", &expected,
+      "ROLE also wait for this process, besides the two controllers, e.g. logger; or for joint:NAME of "
+      "the same limb");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::process::RunProcess(
       "hydro-plant", options,

@@ -49,8 +49,12 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
       logger_watch_(participant_, LoggersChannels(config.bus),
                     bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                               3 / (config.plant.rate_hz * config.time.speed)))),
-      siblings_(participant_, config.siblings),
-      roll_call_(WithControllers(expected)),
+      siblings_(participant_, config.siblings,
+                {.follows = config.joints_concern_each_other,
+                 .last_tick = config.last_tick,
+                 .on_newcomer = [this] { participant_.RepeatFaults(); }}),
+      expected_joints_(ExpectedJoints(expected)),
+      roll_call_(WithControllers(ExpectedRoles(expected))),
       program_(program),
       heartbeat_(std::move(heartbeat)),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().Of<state_t>())),
@@ -185,7 +189,9 @@ bool PlantApp::WaitForParticipants() {
   auto next_notice = start + 2s;
   std::optional<bus::Clock::TimePoint> complete;
   while (!Ended()) {
-    const std::string missing = fmt::format("{}", fmt::join(roll_call_.Missing(), ", "));
+    std::vector<std::string> absent = roll_call_.Missing();
+    for (const std::string& joint : siblings_.Missing(expected_joints_)) absent.push_back(joint);
+    const std::string missing = fmt::format("{}", fmt::join(absent, ", "));
     const auto now = participant_.clock().Now();
     auto until = now + 5ms;
     if (missing.empty()) {

@@ -50,7 +50,8 @@ struct WakeUp {
 
 class PlantApp {
  public:
-  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger").
+  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger"), and joints of the same limb
+  // in other processes ("joint:knee").
   // `heartbeat`: whether one of the launcher's has come since it was asked last (process/supervision.h); from the
   // first on, their absence is a fault. None: nobody is asked.
   PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
@@ -143,6 +144,7 @@ class PlantApp {
   TuningDesk tuning_;
   LoggerWatch logger_watch_;
   SiblingFaults siblings_;
+  std::vector<std::string> expected_joints_;
   RollCall roll_call_;
   std::string program_;
   std::function<bool()> heartbeat_;

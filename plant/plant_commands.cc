@@ -83,9 +83,10 @@ void PlantApp::Check(bus::Clock::TimePoint now) {
   if (!safety_.AllIsWell(state_, safe_command, rig_.faults()) || !CommandIsWell(now)) CheckAll(now);
   if (realtime_) CheckSupervisor(now);
   safety_.CheckSuspended(now);
-  if (siblings_.empty()) return;
+  if (!siblings_.follows()) return;
   HoldForSilence(siblings_.Silence(now));
   HoldForOthers(siblings_.Fault(now));
+  if (const auto& stop = siblings_.stop()) participant_.RequestStop(stop->reason, stop->exit_code);
 }
 
 // The voltage of the command in force, or zero while any check fails. Drive() puts it out first and publishes the faults second.

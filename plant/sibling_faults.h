@@ -1,7 +1,11 @@
-// Whether another joint of the same limb, in another process, has a fault that zeroes its voltage, or is no longer heard.
+// The other joints of the same limb, in other processes: whether they are there, and what of them matters here. Where a fault of one
+// concerns all, that is a fault that zeroes its voltage, its silence, and its end.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <hydro/process_status_t.hpp>
+#include <hydro/stop_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,17 +19,33 @@
 
 namespace hydro::plant {
 
+// Of what a run waits for (--expect): the joints, "joint:NAME", and the roles of its own processes.
+std::vector<std::string> ExpectedJoints(const std::vector<std::string>& expected);
+std::vector<std::string> ExpectedRoles(const std::vector<std::string>& expected);
+
 class SiblingFaults {
  public:
-  // Subscribes to the siblings' faults on the participant's bus, and to the states of those whose silence matters; must outlive it.
-  SiblingFaults(process::Participant& participant, const std::vector<settings::Sibling>& siblings);
+  struct Options {
+    bool follows = true;     // what happens to them concerns this process
+    int64_t last_tick = -1;  // of the run; -1: it has none. A sibling that ends there ends in order
+    std::function<void()> on_newcomer =
+        {};  // a sibling's plant is about to begin: it may not know our faults
+  };
+  // Subscribes on the participant's bus; must outlive it.
+  SiblingFaults(process::Participant& participant, const std::vector<settings::Sibling>& siblings,
+                Options options);
 
-  bool empty() const { return siblings_.empty(); }
+  bool follows() const { return options_.follows && !siblings_.empty(); }
+
+  // Those of these joints whose plants have not announced themselves: "joint knee".
+  std::vector<std::string> Missing(const std::vector<std::string>& joints) const;
 
   // "joint knee has the fault pressure_limit (plant)"; empty when none has one. Both are cheap when all is well.
   std::string Fault(bus::Clock::TimePoint now);
   // "joint knee has not been heard for 0.2 s, ..."; empty when each is heard, has not been yet, or has said that it leaves.
   std::string Silence(bus::Clock::TimePoint now) const;
+  // The first stop or failure of one before the run was over, with the joint's name: it ends this run too.
+  const std::optional<stop_t>& stop() const { return stop_; }
 
  private:
   struct Heard {
@@ -35,15 +55,21 @@ class SiblingFaults {
       return process::LeadsToZeroVolts(code) && code != "other_joint";
     }};
     std::optional<bus::Clock::TimePoint> state_at = {};  // when the newest came, of a plant that has not left
-    int64_t session = 0;                                 // that plant's
+    std::optional<int64_t> plant = {};                   // the session of its plant
     std::optional<int64_t> left =
-        {};  // the session of one that has: states of it that come later are no sign of life
+        {};  // of one that has left: states of it that come later are no sign of life
   };
 
+  void Follow(Heard& heard, const bus::Channels& channels);
   void OnStatus(const process_status_t& status, Heard& heard);
+  void OnState(const state_t& state, Heard& heard);
+  void OnStop(const stop_t& stop, const Heard& heard);
+  void End(const Heard& heard, const std::string& reason, int exit_code);
 
   process::Participant& participant_;
+  const Options options_;
   std::vector<std::unique_ptr<Heard>> siblings_;
+  std::optional<stop_t> stop_;
 };
 
 }  // namespace hydro::plant

@@ -85,6 +85,10 @@ class Participant {
   void Release(const std::string& code);  // the operator has re-armed
   // Cheap, because it is asked on every tick.
   bool any_fault() const { return !active_.empty(); }
+  // Tells once more which faults are active, for who has just come.
+  void RepeatFaults() {
+    if (any_fault()) PublishActiveFaults();
+  }
   bool active(const std::string& code) const { return active_.contains(code); }
   bool latched() const { return latched_ > 0; }
 

@@ -96,9 +96,10 @@ std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& 
     return "differ: the joint " + joint->joint + " is in " + name_a + " alone";
   if (const RunLog* joint = lacks(b, a))
     return "differ: the joint " + joint->joint + " is in " + name_b + " alone";
-  for (size_t i = 0; i < a.joints.size(); ++i) {
-    const auto difference = FirstDifference(a.joints[i].messages, name_a, b.joints[i].messages, name_b);
-    if (difference) return "joint " + a.joints[i].joint + ": " + *difference;
+  for (const RunLog& joint : a.joints) {
+    const RunLog& other = *std::ranges::find(b.joints, joint.suffix, &RunLog::suffix);
+    const auto difference = FirstDifference(joint.messages, name_a, other.messages, name_b);
+    if (difference) return "joint " + joint.joint + ": " + *difference;
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "runs/limb_configs.h"
 #include "runs/measured_signals.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
@@ -137,6 +138,7 @@ MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSys
   MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
   RequireEveryState(log, "fitting a model to it");
   if (!log.joint.empty()) run.name += "_" + log.joint;
+  run.in_an_arm = HasArm(log.limb_config);
   run.caution = DescribeCaution(log);
   if (units.has_value()) Convert(*units, &run);
   return run;

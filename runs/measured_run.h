@@ -42,6 +42,9 @@ struct MeasuredRun {
   double arm_angle_rad = 0;  // kClamped: where the arm is held
   bool bypass = false;       // the valve between the two sides is open: p1 = p2
 
+  // A joint of a limb with an [arm], which loads it in the place of its model's J_a and mgl.
+  bool in_an_arm = false;
+
   // How its table was read, where that was not the plain way: "semicolons between cells, decimal commas".
   std::string layout;
 

@@ -13,6 +13,7 @@
 #include "log/log_reader.h"
 #include "log/message_kinds.h"
 #include "runs/channel_suffix.h"
+#include "runs/limb_configs.h"
 
 namespace hydro::runs {
 namespace {
@@ -31,14 +32,16 @@ std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& k
   return place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type;
 }
 
-// Counts events by channel; this pass detects a damaged log before anything is decoded.
-void Summarise(log::LogReader& reader, RunLog& log) {
+// Counts events by channel; this pass detects a damaged log before anything else is decoded than what limbs say of themselves.
+LimbConfigs Summarise(log::LogReader& reader, RunLog& log) {
+  LimbConfigs configs;
   std::map<std::string_view, ChannelSummary> channels;  // the names lie in the reader's file
   log::LogEvent event;
   while (reader.Next(event)) {
     const auto [place, is_new] = channels.try_emplace(event.channel);
     ChannelSummary& channel = place->second;
     if (is_new) {
+      configs.TakeFirst(event);
       channel.channel = std::string(event.channel);
       channel.first_utime = event.utime;
     }
@@ -50,6 +53,7 @@ void Summarise(log::LogReader& reader, RunLog& log) {
     ++log.events;
   }
   for (auto& [name, channel] : channels) log.channels.push_back(std::move(channel));
+  return configs;
 }
 
 // Decodes the messages of several stacks.
@@ -103,11 +107,12 @@ class Decoder {
   std::unordered_map<std::string_view, Stack*> by_channel_;  // the names lie in `stacks_`
 };
 
-// Those of state channels that are neither read nor of a joint of the same limb.
-void FindOthers(RunLog* log) {
+// Those of state channels that are neither read nor of a joint of the same limb; and what is said of this limb.
+void FindOthers(const LimbConfigs& configs, RunLog* log) {
   const std::vector<JointChannels> joints = JointsIn(*log);
   const auto self = std::ranges::find(joints, log->suffix, &JointChannels::suffix);
   if (self != joints.end() && joints.size() > 1) log->joint = self->name;
+  if (self != joints.end()) log->limb_config = configs.Of(self->limb);
   for (const std::string& other : StateSuffixes(*log)) {
     const auto joint = std::ranges::find(joints, other, &JointChannels::suffix);
     const bool sibling = self != joints.end() && joint != joints.end() && joint->limb == self->limb;
@@ -116,17 +121,19 @@ void FindOthers(RunLog* log) {
 }
 
 // A log of each joint, with nothing but what concerns its own channels.
-std::vector<RunLog> LogsOfJoints(const RunLog& limb) {
+std::vector<RunLog> LogsOfJoints(const LimbConfigs& configs, const RunLog& limb) {
   std::vector<RunLog> logs;
   RunLog without_channels = limb;
   without_channels.channels.clear();
   std::unordered_map<std::string, RunLog*> by_suffix;
-  const std::vector<JointChannels> joints = JointsIn(limb);
+  std::vector<JointChannels> joints = JointsIn(limb);
+  configs.Order(&joints);
   logs.reserve(joints.size());
   for (const JointChannels& joint : joints) {
     RunLog& log = logs.emplace_back(without_channels);
     log.suffix = joint.suffix;
     log.joint = joint.name;
+    log.limb_config = configs.Of(joint.limb);
     by_suffix[joint.suffix] = &log;
   }
   for (const ChannelSummary& channel : limb.channels) {
@@ -146,15 +153,15 @@ LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable und
   log::LogReader reader(file, on_damage);
   all.limb.verdict = reader.verdict();
   all.limb.bytes = reader.size();
-  Summarise(reader, all.limb);
+  const LimbConfigs configs = Summarise(reader, all.limb);
   std::vector<RunLog*> logs;
   if (with_joints && IsWholeLimb(all.limb, choice)) {
     all.limb.suffix = JointsIn(all.limb).front().limb;
-    all.joints = LogsOfJoints(all.limb);
+    all.joints = LogsOfJoints(configs, all.limb);
     for (RunLog& joint : all.joints) logs.push_back(&joint);
   } else {
     all.limb.suffix = ChooseSuffix(all.limb, choice);
-    FindOthers(&all.limb);
+    FindOthers(configs, &all.limb);
   }
   logs.push_back(&all.limb);
   Decoder decoder(logs, undecodable);

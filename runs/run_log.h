@@ -27,6 +27,8 @@ struct RunLog {
   log::LogVerdict verdict;
   std::string suffix;  // of the channels read
   std::string joint;   // of a limb: its name; empty: it is not one of several
+  std::string
+      limb_config;  // of a joint: its limb's configuration as TOML, where the log has the limb's description
   std::vector<std::string>
       other_suffixes;  // of state channels that were not read, and are not joints of the same limb
   RunMessages messages;
@@ -55,8 +57,9 @@ RunLog ReadRunLog(const std::string& file, const StackChoice& choice = {},
 
 // The joints of a limb, out of one log.
 struct LimbLog {
-  RunLog limb;                 // its own channels, and `channels` of the whole log
-  std::vector<RunLog> joints;  // by suffix; their `channels` are their own
+  RunLog limb;  // its own channels, and `channels` of the whole log
+  // In the order of the limb's configuration, by suffix without one; their `channels` are their own.
+  std::vector<RunLog> joints;
 
   bool whole() const { return !joints.empty(); }
 };

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <limits>
 
+#include "base/did_you_mean.h"
 #include "base/text_file.h"
 #include "settings/overrides.h"
 #include "settings/toml/section_reader.h"
@@ -16,6 +17,8 @@ constexpr char kChoice[] = "joint=";
 // What a joint may have of its own. The others (bus, time, plant, logger) are the process's, which all its joints share.
 constexpr std::array kOwnSections{"model", "pressure", "position", "reference", "limits", "noise", "driver"};
 constexpr std::array kOfTheWhole{"joint", "limb", "arm"};
+// What the limb has once, for all its joints.
+constexpr std::array kShared{"bus", "time", "plant", "logger", "scope", "limb", "arm", "process"};
 
 // LCM's channel names end at 63 bytes; the longest of ours is HYDRO_TUNING_REQUEST.
 constexpr size_t kLongestName = 24;
@@ -38,12 +41,23 @@ std::string NameOf(const TomlNode& joint) {
   return name->text;
 }
 
+InputError NotOfAJoint(const TomlNode& node, const std::string& joint, const std::string& key) {
+  const std::string dotted = "joint." + joint + "." + key;
+  if (std::find(kShared.begin(), kShared.end(), key) != kShared.end()) {
+    return KeyError(node.place, dotted, "what all joints of the limb share",
+                    "it outside [[joint]], as " + (key == "process" ? "[[process]]" : "[" + key + "]"));
+  }
+  std::vector<std::string> known{"name"};
+  known.insert(known.end(), kOwnSections.begin(), kOwnSections.end());
+  return KeyError(node.place, dotted, "a key that no joint has of its own",
+                  "name and the sections " + QuotedList(kOwnSections) + DidYouMean(key, known));
+}
+
 void CheckSections(const TomlNode& joint, const std::string& name) {
   for (const auto& [key, node] : joint.members) {
     if (key == "name") continue;
     if (std::find(kOwnSections.begin(), kOwnSections.end(), key) == kOwnSections.end()) {
-      throw KeyError(node.place, "joint." + name + "." + key, "a key that no joint has of its own",
-                     "name and the sections " + QuotedList(kOwnSections));
+      throw NotOfAJoint(node, name, key);
     }
     if (!node.is(TomlNode::Kind::kTable)) {
       throw KeyError(node.place, "joint." + name + "." + key, node.Shown(), "a section [joint." + key + "]");
@@ -117,6 +131,7 @@ bool HasJoints(const TomlNode& root) { return root.Find("joint") != nullptr; }
 
 std::vector<std::string> JointNames(const TomlNode& root) {
   const TomlNode* joints = root.Find("joint");
+  if (joints->is(TomlNode::Kind::kTable)) throw NotAList(joints->place, "joint");
   if (!joints->is(TomlNode::Kind::kArray) || joints->items.empty()) {
     throw KeyError(joints->place, "joint", joints->is(TomlNode::Kind::kArray) ? "none" : joints->Shown(),
                    "sections [[joint]], each with a name");

@@ -7,6 +7,7 @@
 #include "base/text_file.h"
 #include "model/terms/model_error.h"
 #include "settings/joint_documents.h"
+#include "settings/joint_stacks.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
 #include "settings/stack_checks.h"
@@ -63,6 +64,7 @@ std::optional<model::ArmDescription> ArmOf(const TomlNode& root, const std::vect
   section.Number("payload", &arm.payload, kNotNegative);
   const TomlNode* links = section.Take("link");
   section.Finish();
+  if (links != nullptr && links->is(TomlNode::Kind::kTable)) throw NotAList(links->place, "arm.link");
   const size_t count = links != nullptr && links->is(TomlNode::Kind::kArray) ? links->items.size() : 0;
   if (count != joints.size()) {
     throw KeyError(
@@ -112,6 +114,21 @@ void CheckJoint(const std::string& joint, const ProcessSection& process, const S
                  Quoted(joint), QuotedList(common.joints));
 }
 
+// `in_limbs`: the joints that a hydro-limb has.
+void CheckEachJointRuns(const StackConfig& common, const std::vector<std::string>& in_limbs) {
+  for (const std::string& joint : common.joints) {
+    const bool own =
+        std::any_of(common.processes.begin(), common.processes.end(), [&](const ProcessSection& process) {
+          return process.joint == joint && (process.role == "plant" || process.role == "driver");
+        });
+    if (own || std::find(in_limbs.begin(), in_limbs.end(), joint) != in_limbs.end()) continue;
+    const std::string place = common.processes.empty() ? common.file : common.processes.front().place;
+    throw KeyError(
+        place, "process", "no process that runs the joint " + Quoted(joint),
+        "one: hydro-limb with it in joints, or hydro-plant or hydro-driver with joint = " + Quoted(joint));
+  }
+}
+
 // Each joint is run by one process, or by one stack of them.
 void CheckProcesses(const StackConfig& common) {
   std::vector<std::string> taken;
@@ -127,8 +144,19 @@ void CheckProcesses(const StackConfig& common) {
     }
     if (!process.joint.empty()) CheckJoint(process.joint, process, common);
     if (process.role != "limb") continue;
-    for (const std::string& joint : process.joints) CheckJoint(joint, process, common);
-    for (const std::string& joint : JointsOf(process, common)) {
+    std::vector<std::string> named;
+    for (const std::string& joint : process.joints) {
+      CheckJoint(joint, process, common);
+      if (std::find(named.begin(), named.end(), joint) != named.end())
+        throw KeyError(process.place, "process.joints", Quoted(joint) + " twice", "each joint once");
+      named.push_back(joint);
+    }
+    const std::vector<std::string> joints = JointsOf(process, common);
+    if (joints.empty()) {
+      throw KeyError(process.place, "process", "hydro-limb, but other processes have all joints",
+                     "it with joints that no other has: name them in joints");
+    }
+    for (const std::string& joint : joints) {
       if (std::find(taken.begin(), taken.end(), joint) != taken.end()) {
         throw KeyError(process.place, "process.joints", "a second process with the joint " + Quoted(joint),
                        "one process for each joint");
@@ -136,6 +164,7 @@ void CheckProcesses(const StackConfig& common) {
       taken.push_back(joint);
     }
   }
+  CheckEachJointRuns(common, taken);
 }
 
 // What couples the joints is simulated in one process.
@@ -218,11 +247,12 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   }
   std::optional<StackConfig> chosen;
   std::vector<Sibling> siblings;
-  for (JointDocument& document : SplitJoints(root, overrides)) {
-    if (document.name == *joint) {
-      chosen = StackOf(&document.root, root.place);
+  const std::vector<JointDocument> documents = SplitJoints(root, overrides);
+  for (size_t i = 0; i < documents.size(); ++i) {
+    if (documents[i].name == *joint) {
+      chosen = StackOfDocument(root, documents, i, root.place);
     } else {
-      siblings.push_back({.name = document.name, .suffix = SuffixOf(document)});
+      siblings.push_back({.name = documents[i].name, .suffix = SuffixOf(documents[i])});
     }
   }
   if (!chosen) throw InputError("--joint: found " + Quoted(*joint) + ", allowed " + QuotedList(names));
@@ -231,7 +261,8 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
     sibling.silence_s = AllowedSilence(*chosen, limb);
     chosen->bus.sibling_suffixes.push_back(sibling.suffix);
   }
-  if (limb.on_joint_fault == OnJointFault::kAllToZero) chosen->siblings = std::move(siblings);
+  chosen->siblings = std::move(siblings);
+  chosen->joints_concern_each_other = limb.on_joint_fault == OnJointFault::kAllToZero;
   const TomlNode* bus = root.Find("bus");
   const TomlNode* suffix = bus != nullptr ? bus->Find("channel_suffix") : nullptr;
   chosen->bus.limb_suffix = suffix != nullptr ? suffix->text : "";
@@ -255,11 +286,10 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   }
   ApplyOverrides(others, &root);
   if (!HasJoints(root)) throw InputError(file + ": found no [[joint]] section, allowed one or more");
-  std::vector<JointDocument> documents = SplitJoints(root, others);
+  const std::vector<JointDocument> documents = SplitJoints(root, others);
   LimbConfig limb;
-  for (JointDocument& document : documents) {
-    TomlNode joint = document.root;
-    limb.joints.push_back({document.name, StackOf(&joint, file)});
+  for (size_t i = 0; i < documents.size(); ++i) {
+    limb.joints.push_back({documents[i].name, StackOfDocument(root, documents, i, file)});
   }
   TomlNode common = documents.front().root;
   const TomlNode* bus = root.Find("bus");
@@ -273,6 +303,7 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   }
   limb.limb = ReadLimbSection(root, limb.common.plant.rate_hz);
   limb.arm = ArmOf(root, limb.joints);
+  limb.common.joints_concern_each_other = limb.limb.on_joint_fault == OnJointFault::kAllToZero;
   CheckProcesses(limb.common);
   if (limb.arm) CheckArmIsWhole(limb.common);
   limb.common.agreed = AgreedByAll(limb.joints);

@@ -144,6 +144,7 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
     }
     return;
   }
+  if (node->is(TomlNode::Kind::kTable)) throw NotAList(node->place, "process");
   if (!node->is(TomlNode::Kind::kArray)) {
     throw document.Error("process", node->Shown(), "sections [[process]]");
   }

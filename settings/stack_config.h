@@ -200,8 +200,9 @@ struct StackConfig {
   std::vector<ProcessSection>
       processes;                 // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
   bool without_its_arm = false;  // one joint's stack of a limb with an [arm], which this does not have
-  std::vector<Sibling>
-      siblings;  // of one joint's stack: those whose faults and silence take its voltage to zero too
+  std::vector<Sibling> siblings;  // of one joint's stack: the other joints of its limb
+  // Of one joint's stack, and of what a limb's joints have in common: a fault, the silence or the end of one joint concerns all.
+  bool joints_concern_each_other = true;
   std::vector<std::string> joints;  // of what a limb's joints have in common: their names; else empty
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).

@@ -1,6 +1,8 @@
 #include "sim/simulation.h"
 
+#include "base/host_name.h"
 #include "base/input_error.h"
+#include "bus/channels.h"
 #include "bus/in_process_bus.h"
 #include "limb/limb.h"
 #include "plant/plant_app.h"
@@ -16,6 +18,19 @@ void CheckEnds(const settings::StackConfig& config) {
   throw InputError(config.file +
                    ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
                    "--duration S)");
+}
+
+// What the limb says of itself; each joint speaks on channels of its own.
+void DescribeLimb(const settings::LimbConfig& config,
+                  const std::function<void(const bus::RawMessage&)>& tap) {
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus(&clock);
+  bus.SubscribeAll(tap);
+  run_description_t description = limb::DescriptionOf(config, "hydro-sim");
+  description.utime = clock.Utime();
+  description.host = HostName();
+  bus.Publish(bus::Channels(config.common.bus.channel_suffix).Of<run_description_t>(), description);
+  bus.HandleUntil(clock.Now());
 }
 
 }  // namespace
@@ -59,6 +74,7 @@ SimulationResult SimulateLimb(const settings::LimbConfig& config,
   CheckEnds(config.common);
   limb::Limb limb(config, {.joints = {}, .program = "hydro-sim"});
   if (tap) {
+    DescribeLimb(config, tap);
     for (auto& joint : limb.joints()) joint->bus().SubscribeAll(tap);
   }
   if (limb.Begin()) {

@@ -32,6 +32,14 @@ void CheckNames(const CsvText& text, const std::vector<Column>& columns) {
   }
 }
 
+// An export of several runs has a first column that names them (exports/csv_export.h).
+std::string AllowedIn(const std::string& column) {
+  std::string allowed = "a number, nan or an empty cell";
+  if (column != "run") return allowed;
+  return allowed +
+         ": this is a table of several runs; export one, a limb's joint with hydro-log export --joint NAME";
+}
+
 }  // namespace
 
 Table ReadCsv(const std::string& file, const CsvSettings& settings) {
@@ -61,7 +69,7 @@ Table ReadCsv(const std::string& file, const CsvSettings& settings) {
     for (size_t i = 0; i < columns; ++i) {
       const bool missing = text.cell(i).empty();
       const std::optional<double> value = missing ? std::numeric_limits<double>::quiet_NaN() : text.Number(i);
-      if (!value.has_value()) throw text.CellError(i, "a number, nan or an empty cell");
+      if (!value.has_value()) throw text.CellError(i, AllowedIn(table.columns[i].name));
       table.columns[i].values.push_back(*value);
     }
   }

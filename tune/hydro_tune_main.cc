@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
                  "to tune for; several may be given. Without a goal: as fast as the margins allow");
   line.AddOption("--interval", &request.interval,
                  "S the position loop's sampling interval T (the configuration's)");
-  line.AddOption("-o,--output", &request.output, "FILE where to write the configuration with the gains");
+  line.AddOption("-o,--output", &request.output,
+                 "FILE where to write the configuration with the gains; - for the standard output");
   line.AddOption("--out", &request.folder, "DIR where to write the report: tune.html, tune.svg");
   line.AddOption("--samples", &request.samples,
                  "N of what may be true instead of the model, from [uncertainty] (8)");

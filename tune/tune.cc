@@ -8,6 +8,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "base/terminal_line.h"
 #include "base/text_file.h"
 #include "settings/limb_config.h"
@@ -136,11 +137,13 @@ std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& propo
     lines.push_back("written: " + request.folder + "/tune.html, " + request.folder + "/tune.svg");
   if (request.output.empty()) {
     lines.emplace_back("next: the same with -o TUNED.toml writes the configuration");
-  } else {
-    lines.push_back("written: " + request.output +
-                    " (comments beside the old gains are kept: see whether they still hold)");
-    lines.push_back("next: hydro-sim " + request.output + " -o tuned.lcmlog; hydro-log summary tuned.lcmlog");
+    return lines;
   }
+  const bool printed = request.output == kStandardOutput;
+  const std::string file = printed ? "TUNED.toml" : request.output;
+  lines.push_back("written: " + (printed ? "the configuration, for a file in this folder" : file) +
+                  " (comments beside the old gains are kept: see whether they still hold)");
+  lines.push_back("next: hydro-sim " + file + " -o tuned.lcmlog; hydro-log summary tuned.lcmlog");
   return lines;
 }
 
@@ -156,7 +159,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const Goals goals = ParseGoals(request.goals);
   const settings::StackConfig config = Load(request);
   CheckKeeps(request.output);
-  CheckCanBeCreated(request.output);
+  CheckCanBeWritten(request.output);
   if (!request.output.empty()) CheckCanBeChanged(config, request.output);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
@@ -186,12 +189,13 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   report.trade_offs = TradeOffs(chosen.tried);
   report.tried = chosen.tried;
   const std::string text = ReportText(report, request.si);
-  std::fwrite(text.data(), 1, text.size(), out);
+  std::FILE* const said = OutputBeside({request.output}, out, progress);
+  std::fwrite(text.data(), 1, text.size(), said);
   if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
   if (!request.output.empty()) {
-    WriteWholeFile(request.output, TunedText(config, With(config, chosen.best.gains), request.output));
+    WriteTextFile(request.output, TunedText(config, With(config, chosen.best.gains), request.output), out);
   }
-  for (const std::string& told : Epilogue(request, chosen.best)) std::fprintf(out, "%s\n", told.c_str());
+  for (const std::string& told : Epilogue(request, chosen.best)) std::fprintf(said, "%s\n", told.c_str());
   return 0;
 }
 

@@ -138,4 +138,12 @@ double Quantile(const std::vector<double>& sorted, double fraction) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
+std::optional<double> NoWorse(const NumberColumn& column, const std::vector<double>& sorted,
+                              double fraction) {
+  if (column.without_count == 0) return Quantile(sorted, fraction);
+  const double place = fraction * static_cast<double>(column.all() - 1);
+  if (sorted.empty() || place > static_cast<double>(sorted.size() - 1)) return std::nullopt;
+  return Quantile(sorted, place / std::max(1.0, static_cast<double>(sorted.size() - 1)));
+}
+
 }  // namespace hydro::batch

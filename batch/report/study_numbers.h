@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct NumberColumn {
   int64_t without_count = 0;
 
   std::string Label() const { return of->unit.empty() ? of->name : of->name + ", " + of->unit; }
+  int64_t all() const { return static_cast<int64_t>(values.size()) + without_count; }
 };
 
 // The key on an axis: its values where it is a factor of the grid, else bins of them.
@@ -67,5 +69,9 @@ class StudyNumbers {
 
 // Where in sorted values the part `fraction` of them ends. Of none: NaN.
 double Quantile(const std::vector<double>& sorted, double fraction);
+
+// The value that the part `fraction` of a column's cases is no worse than. A case without the number (one that never settles) is worse than
+// any with it: none where such cases begin. `sorted`: the column's values, the best first.
+std::optional<double> NoWorse(const NumberColumn& column, const std::vector<double>& sorted, double fraction);
 
 }  // namespace hydro::batch

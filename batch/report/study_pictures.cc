@@ -54,8 +54,9 @@ page::Panel DistributionPanel(const NumberColumn& column) {
   panel.y.max = 1.08 * *std::ranges::max_element(histogram.counts);
   panel.curves.push_back(bars);
   if (sorted.back() > sorted.front()) {
-    panel.rules.push_back({"median", true, Quantile(sorted, 0.5)});
-    panel.rules.push_back({"95 %", true, Quantile(sorted, column.of->smaller_is_worse ? 0.05 : 0.95)});
+    if (column.of->smaller_is_worse) std::ranges::reverse(sorted);
+    if (const auto median = NoWorse(column, sorted, 0.5)) panel.rules.push_back({"median", true, *median});
+    if (const auto most = NoWorse(column, sorted, 0.95)) panel.rules.push_back({"95 %", true, *most});
   }
   return panel;
 }
@@ -94,6 +95,8 @@ std::optional<page::Figure> DistributionsFigure(const StudyNumbers& numbers) {
   figure.panel_height = 190;
   figure.caption =
       "How the cases spread. Dashed: the median, and the value that one case in twenty is worse than.";
+  if (std::ranges::any_of(numbers.columns(), [](const auto& column) { return column.without_count > 0; }))
+    figure.caption += " Cases without the number are not drawn; they count as worse than any with it.";
   return figure;
 }
 
@@ -103,9 +106,12 @@ std::optional<page::Figure> WorstFigure(const StudyNumbers& numbers) {
   std::vector<double> sorted = column->values;
   std::ranges::sort(sorted);
   if (column->of->smaller_is_worse) std::ranges::reverse(sorted);
+  const auto share = [&](size_t place) {
+    return 100 * (static_cast<double>(place) + 0.5) / static_cast<double>(column->all());
+  };
   page::Curve curve;
   for (size_t i = 0; i < sorted.size(); ++i) {
-    curve.x.push_back(100 * (static_cast<double>(i) + 0.5) / static_cast<double>(sorted.size()));
+    curve.x.push_back(share(i));
     curve.y.push_back(sorted[i]);
   }
   page::Panel panel;
@@ -114,13 +120,15 @@ std::optional<page::Figure> WorstFigure(const StudyNumbers& numbers) {
   panel.curves.push_back(curve);
   const std::vector<size_t> places = WorstPlaces(*column, 3);
   for (size_t i = 0; i < places.size(); ++i) {
-    const double x =
-        100 * (static_cast<double>(sorted.size() - i) - 0.5) / static_cast<double>(sorted.size());
-    panel.notes.push_back({"case " + std::to_string(column->cases[places[i]]), x, column->values[places[i]]});
+    panel.notes.push_back({"case " + std::to_string(column->cases[places[i]]), share(sorted.size() - 1 - i),
+                           column->values[places[i]]});
   }
   page::Figure figure;
   figure.caption =
-      fmt::format("{} of all cases in order, the worst three by their number.", column->of->name);
+      fmt::format("{} of all cases in order; the worst three that have one are named.", column->of->name);
+  if (column->without_count > 0)
+    figure.caption +=
+        fmt::format(" {} of {} have none: the curve ends before them.", column->without_count, column->all());
   figure.panels = {panel};
   figure.panel_height = 260;
   return figure;
@@ -147,9 +155,12 @@ std::optional<page::Figure> SurfaceFigure(const StudyNumbers& numbers) {
   page::Figure figure;
   figure.drawing = page::HeatMapDrawing(map);
   const bool gaps = std::ranges::any_of(surface.counts, [](double count) { return count == 0; });
-  figure.caption = fmt::format("{} over {} and {}{}{}.", surface.of->name, surface.x.key, surface.y.key,
-                               most > 1 ? ", the mean of the cases in each cell" : "",
-                               gaps ? "; white: no case with this number" : "");
+  const NumberColumn& column = numbers.columns()[surface.number];
+  figure.caption = fmt::format(
+      "{} over {} and {}{}{}{}.", surface.of->name, surface.x.key, surface.y.key,
+      most > 1 ? ", the mean of the cases in each cell" : "", gaps ? "; white: no case with this number" : "",
+      column.without_count > 0 ? fmt::format("; {} cases have none and are left out", column.without_count)
+                               : "");
   return figure;
 }
 

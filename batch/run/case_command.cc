@@ -78,8 +78,12 @@ std::string ProgramPath(const std::string& name) {
 
 void CheckCommands(const Study& study) {
   for (const Step& step : study.steps) {
-    const std::string program = CaseCommand(step, study.Keys(), study.Values(0), {}).front();
-    if (program == step.argv.front()) ProgramPath(program);
+    try {
+      const std::string program = CaseCommand(step, study.Keys(), study.Values(0), {}).front();
+      if (program == step.argv.front()) ProgramPath(program);
+    } catch (const InputError& error) {
+      throw InputError(step.place + ": " + error.what());
+    }
   }
 }
 

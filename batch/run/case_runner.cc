@@ -104,6 +104,8 @@ void CaseRunner::Prepare(const std::vector<Value>& values) const {
   Empty();
   if (!study_.config_text.empty()) WriteSmallFile(folder_ + "/config.toml", case_inputs_.Config(values));
   if (!study_.model_text.empty()) WriteSmallFile(folder_ + "/model.toml", case_inputs_.Model(values));
+  if (const std::string machine = case_inputs_.Machine(values); !machine.empty())
+    WriteSmallFile(folder_ + "/machine.toml", machine);
   // So that commands and configurations name files alike wherever they run.
   if (symlink(inputs_.c_str(), (folder_ + "/inputs").c_str()) != 0) ThrowCannotWrite(folder_);
 }

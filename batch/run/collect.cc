@@ -1,6 +1,10 @@
 #include "batch/run/collect.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -39,9 +43,48 @@ json FromToml(const settings::TomlNode& node) {
   return node.text;
 }
 
+std::string Listed(std::vector<std::string> names) {
+  constexpr size_t kMost = 20;
+  if (names.size() > kMost) {
+    names.resize(kMost);
+    names.emplace_back("...");
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string FilesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed))
+    if (entry.path().filename() != "inputs") names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return Listed(names);
+}
+
+// How far a pointer leads into a document, and what stands there.
+std::string NothingThere(const json& document, const Collected& from) {
+  json::json_pointer deepest;
+  try {
+    deepest = json::json_pointer(from.pointer);
+    while (!deepest.empty() && !document.contains(deepest)) deepest = deepest.parent_pointer();
+  } catch (const json::exception&) {  // no pointer at all
+    deepest = json::json_pointer();
+  }
+  const json& there = document.at(deepest);
+  std::string has = "a value";
+  if (there.is_array()) has = "a list of " + std::to_string(there.size());
+  if (there.is_object()) {
+    std::vector<std::string> keys;
+    for (const auto& item : there.items()) keys.push_back(item.key());
+    has = "only " + Listed(keys);
+  }
+  return from.file + ":" + from.pointer + ": found nothing there; " +
+         (deepest.empty() ? "the file" : deepest.to_string()) + " has " + has;
+}
+
 json ReadDocument(const std::string& folder, const std::string& file) {
   const auto text = ReadSmallFile(folder + "/" + file);
-  if (!text) throw InputError(file + ": not written, allowed a file that the study collects from");
+  if (!text) throw InputError(file + ": not written by any step; there are " + FilesIn(folder));
   if (file.ends_with(".toml")) return FromToml(settings::ParseToml(*text, file));
   json document = json::parse(*text, nullptr, false);
   if (document.is_discarded())
@@ -73,7 +116,7 @@ std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::
     try {
       found = &document->second.at(json::json_pointer(each.pointer));
     } catch (const json::exception&) {
-      throw InputError(each.file + ":" + each.pointer + ": found nothing there, allowed a place in the file");
+      throw InputError(NothingThere(document->second, each));
     }
     numbers.push_back(Scalar(*found, each));
   }

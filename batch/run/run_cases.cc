@@ -86,7 +86,10 @@ class Pool {
     store_.Store(index, result.failed, text, files, slot);
     if (!result.failed && store_.IsThere(index, true)) store_.Remove(index, true, slot);
     unsynced_ = true;
-    failed_ += result.failed ? 1 : 0;
+    if (result.failed && failed_++ == 0) {
+      const std::lock_guard lock(mutex_);
+      first_failure_ = "case " + std::to_string(index) + ": " + result.reason;
+    }
     ++ran_;
   }
 
@@ -128,7 +131,10 @@ class Pool {
     }
   }
 
-  RunProgress Progress() const { return {to_run_, ran_, failed_, SecondsSince(start_)}; }
+  RunProgress Progress() {
+    const std::lock_guard lock(mutex_);
+    return {to_run_, ran_, failed_, first_failure_, SecondsSince(start_)};
+  }
 
   const Study& study_;
   const RunRequest& request_;
@@ -143,6 +149,7 @@ class Pool {
   std::condition_variable all_ended_;
   int running_ = 0;
   std::exception_ptr error_;
+  std::string first_failure_;
   bool stopped_ = false;
   int64_t to_run_ = 0;
   std::atomic<int64_t> ran_ = 0, failed_ = 0;

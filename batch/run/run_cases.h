@@ -10,9 +10,10 @@
 namespace hydro::batch {
 
 struct RunProgress {
-  int64_t to_run = 0;  // cases of the range that were not there
-  int64_t ran = 0;     // of those
-  int64_t failed = 0;  // of those that ran
+  int64_t to_run = 0;              // cases of the range that were not there
+  int64_t ran = 0;                 // of those
+  int64_t failed = 0;              // of those that ran
+  std::string first_failure = {};  // "case 3: why", of the first that failed
   double elapsed_s = 0;
 };
 

@@ -28,6 +28,7 @@ CaseInputs::CaseInputs(const Study& study) : study_(study), keys_(study.Keys()) 
     const KeyKind kind = ParseKey(key).kind;
     config_varies_ = config_varies_ || kind == KeyKind::kConfiguration;
     model_varies_ = model_varies_ || kind == KeyKind::kModel || kind == KeyKind::kEffect;
+    machine_varies_ = machine_varies_ || kind == KeyKind::kMachine;
   }
   if (!study.config_text.empty()) config_ = settings::ParseToml(study.config_text, "config.toml");
   if (!study.model_text.empty()) model_ = settings::ParseModel(study.model_text, "model.toml");
@@ -46,22 +47,31 @@ std::string CaseInputs::Config(const std::vector<Value>& values) const {
 }
 
 std::string CaseInputs::Model(const std::vector<Value>& values) const {
-  if (!model_varies_) return study_.model_text;
+  return model_varies_ ? settings::FormatModel(Changed(values, false)) : study_.model_text;
+}
+
+std::string CaseInputs::Machine(const std::vector<Value>& values) const {
+  return machine_varies_ ? settings::FormatModel(Changed(values, true)) : "";
+}
+
+// The machine is the case's model with keys of its own.
+model::ModelDescription CaseInputs::Changed(const std::vector<Value>& values, bool machine) const {
   model::ModelDescription model = model_;
   for (size_t i = 0; i < keys_.size(); ++i) {
     const Key key = ParseKey(keys_[i]);
-    if (key.kind != KeyKind::kModel && key.kind != KeyKind::kEffect) continue;
+    const bool of_model = key.kind == KeyKind::kModel || key.kind == KeyKind::kEffect;
+    if (!of_model && !(machine && key.kind == KeyKind::kMachine)) continue;
     const auto number = AsNumber(values[i]);
     if (!number) {
       throw InputError(keys_[i] + ": found " + Quoted(PlainText(values[i])) + ", allowed a number");
     }
-    if (key.kind == KeyKind::kEffect) {
+    if (!key.effect.empty()) {
       SetEffect(key, *number, &model);
     } else {
       model::BaseValue(model.parameters, model::BasePlace(key.parameter)) = *number;
     }
   }
-  return settings::FormatModel(model);
+  return model;
 }
 
 }  // namespace hydro::batch

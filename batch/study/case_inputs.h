@@ -1,4 +1,4 @@
-// The configuration and the model of a case: the study's, with the case's values.
+// The configuration, the model and the machine of a case: the study's, with the case's values.
 #pragma once
 
 #include <string>
@@ -17,13 +17,17 @@ class CaseInputs {
   // Empty where the study has none. `values`: of Study::Values(). Throws InputError where a key leads to nothing.
   std::string Config(const std::vector<Value>& values) const;
   std::string Model(const std::vector<Value>& values) const;
+  // The machine that hydro-sim has in the place of the model (--machine); empty where the study has no key of it.
+  std::string Machine(const std::vector<Value>& values) const;
 
  private:
+  model::ModelDescription Changed(const std::vector<Value>& values, bool machine) const;
+
   const Study& study_;
   std::vector<std::string> keys_;
   settings::TomlNode config_;
   model::ModelDescription model_;
-  bool config_varies_ = false, model_varies_ = false;
+  bool config_varies_ = false, model_varies_ = false, machine_varies_ = false;
 };
 
 }  // namespace hydro::batch

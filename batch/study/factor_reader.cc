@@ -24,29 +24,41 @@ std::vector<std::string> ParameterNames() {
   return names;
 }
 
+// The same for a parameter of an effect. `prefix`: what the key begins with.
+std::string WrongEffect(const Key& key, const std::string& prefix, const KeyScope& scope) {
+  std::vector<std::string> ids;
+  for (const model::EffectDescription& effect : scope.model->effects) {
+    if (effect.id == key.effect) return "";
+    ids.push_back(effect.id);
+  }
+  const model::EffectInfo* info = model::FindEffect(key.effect);
+  if (info == nullptr) {
+    for (const model::EffectInfo& each : model::EffectCatalogue()) ids.push_back(each.id);
+    return prefix + " with an effect's id and its parameter, as in " + prefix +
+           "pump.stribeck.static_excess" + DidYouMean(key.effect, ids);
+  }
+  std::vector<std::string> names;
+  for (const model::ParameterInfo& parameter : info->parameters) names.push_back(parameter.name);
+  if (std::ranges::find(names, key.parameter) != names.end()) return "";
+  return prefix + key.effect + ". and one of " + QuotedList(names) + DidYouMean(key.parameter, names);
+}
+
 // What is wrong with a key, as ", allowed ..." says it; empty: nothing.
 std::string WrongKey(const std::string& text, const KeyScope& scope) {
   const Key key = ParseKey(text);
-  switch (key.kind) {
-    case KeyKind::kOwn:
-      return text.empty() ? "a key" : "";
-    case KeyKind::kConfiguration:
-      return scope.has_config ? "" : "a name without a point in a study that has no config";
-    case KeyKind::kModel: {
-      if (!scope.model) return "model: only in a study with a config or a model";
-      const std::vector<std::string> names = ParameterNames();
-      if (std::ranges::find(names, key.parameter) != names.end()) return "";
-      return "model: and one of " + QuotedList(names) + DidYouMean(key.parameter, names);
-    }
-    case KeyKind::kEffect:
-      break;
+  if (key.kind == KeyKind::kOwn) return text.empty() ? "a key" : "";
+  if (key.kind == KeyKind::kConfiguration) {
+    if (scope.has_config) return "";
+    return "a name without a point in a study that has no config (above the first section of the file)";
   }
-  if (!scope.model) return "effect: only in a study with a config or a model";
-  for (const model::EffectDescription& effect : scope.model->effects) {
-    if (effect.id == key.effect) return "";
-  }
-  if (model::FindEffect(key.effect) != nullptr) return "";
-  return "effect: with an effect's id and its parameter, as in effect:pump.stribeck.static_excess";
+  const std::string prefix = text.substr(0, text.find(':') + 1);
+  if (!scope.model) return prefix + " only in a study with a config or a model";
+  if (key.kind == KeyKind::kMachine && !scope.has_config)
+    return prefix + " only in a study with a config, whose hydro-sim has the machine";
+  if (key.kind == KeyKind::kEffect || !key.effect.empty()) return WrongEffect(key, prefix, scope);
+  const std::vector<std::string> names = ParameterNames();
+  if (std::ranges::find(names, key.parameter) != names.end()) return "";
+  return prefix + " and one of " + QuotedList(names) + DidYouMean(key.parameter, names);
 }
 
 std::string ReadKey(SectionReader* section, const KeyScope& scope) {
@@ -101,7 +113,9 @@ GridFactor ReadFactor(SectionReader section, const KeyScope& scope) {
     if (from || to || has_steps) throw section.Error("values", "from, to or steps beside it", "either");
     return factor;
   }
-  if (!from || !to || !has_steps) throw section.Error("values", "nothing", "a list, or from, to and steps");
+  if (!from && !to && !has_steps) throw section.Error("values", "nothing", "a list, or from, to and steps");
+  if (!from || !to || !has_steps)
+    throw section.Error(!from ? "from" : !to ? "to" : "steps", "nothing", "all of from, to and steps");
   if (logarithmic && !(*from > 0 && *to > 0)) {
     throw section.Error("scale", "\"log\" from " + ShortestNumber(*from) + " to " + ShortestNumber(*to),
                         "bounds above 0");
@@ -186,21 +200,29 @@ void ReadNormal(SectionReader* section, Draw* draw) {
     throw section->Error("mean", ShortestNumber(draw->mean), "a number between min and max");
 }
 
-// The parameters that a key with "uncertainty" stands for: one, or with model:* all that are not 0.
+// The parameters that a key with "uncertainty" stands for: one, or with model:* or machine:* all that are not 0.
 void AddUncertain(const SectionReader& section, const std::string& key, const KeyScope& scope,
                   std::vector<Draw>* draws) {
-  if (!scope.model || !key.starts_with("model:"))
-    throw section.Error("key", Quoted(key), "\"model:*\" or \"model:\" and a parameter's name");
+  const std::string prefix = key.substr(0, key.find(':') + 1);
+  const std::string name_of_all = prefix + "*";
+  const bool known = prefix == "model:" || prefix == "machine:";
+  if (!scope.model || !known)
+    throw section.Error(
+        "key", Quoted(key),
+        "\"model:\" or \"machine:\" with a parameter's name or * (all), in a study with a config "
+        "or a model");
+  if (prefix == "machine:" && !scope.has_config)
+    throw section.Error("key", Quoted(key), "\"machine:\" only in a study with a config");
   const size_t before = draws->size();
   for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
     const std::string& name = model::BaseParameters()[base].info.name;
     model::Parameters parameters = scope.model->parameters;
     const double value = model::BaseValue(parameters, base);
     const double deviation = model::UncertaintyOf(*scope.model, base);
-    if (key != "model:*" && key != "model:" + name) continue;
-    if (key == "model:*" && (value == 0 || deviation == 0)) continue;
+    if (key != name_of_all && key != prefix + name) continue;
+    if (key == name_of_all && (value == 0 || deviation == 0)) continue;
     Draw draw;
-    draw.key = "model:" + name;
+    draw.key = prefix + name;
     draw.distribution = Distribution::kUncertainty;
     draw.mean = value;
     draw.standard_deviation = deviation;

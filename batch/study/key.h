@@ -1,26 +1,29 @@
 // What a study may vary: "position.c2" of the configuration, "model:b" of the model's parameters,
-// "effect:pump.stribeck.static_excess" of its effects, and names without a point ("trial") of its own, for commands.
+// "effect:pump.stribeck.static_excess" of its effects, "machine:b" and "machine:pump.stribeck.static_excess" of the simulated machine
+// alone, which the controllers do not know, and names without a point ("trial") of its own, for commands.
 #pragma once
 
 #include <string>
 
 namespace hydro::batch {
 
-enum class KeyKind { kOwn, kConfiguration, kModel, kEffect };
+enum class KeyKind { kOwn, kConfiguration, kModel, kEffect, kMachine };
 
 struct Key {
   KeyKind kind = KeyKind::kOwn;
-  std::string effect;     // kEffect: its id
-  std::string parameter;  // kModel, kEffect; else the whole text
+  std::string effect;     // kEffect, kMachine: its id; empty: the parameter is the model's
+  std::string parameter;  // kModel, kEffect, kMachine; else the whole text
 };
 
 inline Key ParseKey(const std::string& text) {
   if (text.starts_with("model:")) return {KeyKind::kModel, "", text.substr(6)};
-  if (text.starts_with("effect:")) {
-    const std::string path = text.substr(7);
+  const bool machine = text.starts_with("machine:");
+  if (machine || text.starts_with("effect:")) {
+    const KeyKind kind = machine ? KeyKind::kMachine : KeyKind::kEffect;
+    const std::string path = text.substr(text.find(':') + 1);
     const size_t point = path.rfind('.');
-    if (point == std::string::npos) return {KeyKind::kEffect, "", path};
-    return {KeyKind::kEffect, path.substr(0, point), path.substr(point + 1)};
+    if (point == std::string::npos) return {kind, "", path};
+    return {kind, path.substr(0, point), path.substr(point + 1)};
   }
   return {text.find('.') == std::string::npos ? KeyKind::kOwn : KeyKind::kConfiguration, "", text};
 }

@@ -9,9 +9,12 @@ using settings::SectionReader;
 using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
-// The command of a step that is known by name.
-std::optional<std::vector<std::string>> NamedCommand(const std::string& name) {
-  if (name == "hydro-sim") return {{"hydro-sim", "config.toml", "-o", "run.lcmlog"}};
+// The command of a step that is known by name. `machine`: cases have a machine that the controllers do not know.
+std::optional<std::vector<std::string>> NamedCommand(const std::string& name, bool machine) {
+  if (name == "hydro-sim") {
+    if (machine) return {{"hydro-sim", "config.toml", "--machine", "machine.toml", "-o", "run.lcmlog"}};
+    return {{"hydro-sim", "config.toml", "-o", "run.lcmlog"}};
+  }
   if (name == "summary") return {{"hydro-log", "summary", "run.lcmlog", "--json", "summary.json"}};
   if (name == "hydro-tune") return {{"hydro-tune", "config.toml", "-o", "tuned.toml", "--jobs", "1"}};
   return std::nullopt;
@@ -31,14 +34,15 @@ std::vector<int> ReadExitCodes(SectionReader* section) {
   return codes;
 }
 
-Step ReadStep(SectionReader section) {
+Step ReadStep(SectionReader section, const std::string& place, bool machine) {
   Step step;
+  step.place = place;
   step.exit_codes = ReadExitCodes(&section);
   const TomlNode* run = section.Take("run");
   section.Finish();
   if (run == nullptr) throw section.Error("run", "nothing", "a command");
   if (run->is(Kind::kString)) {
-    const auto command = NamedCommand(run->text);
+    const auto command = NamedCommand(run->text, machine);
     if (!command) {
       throw section.Error(
           "run", run->Shown(),
@@ -67,18 +71,23 @@ std::vector<std::string> Texts(SectionReader* section, const std::string& key) {
   return texts;
 }
 
-std::vector<Step> ReadSteps(SectionReader* study, bool has_config) {
+std::vector<Step> ReadSteps(SectionReader* study, bool has_config, bool has_machine) {
   const TomlNode* node = study->Take("step");
   if (node == nullptr) {
-    if (!has_config) throw study->Error("step", "nothing", "a command, or config for hydro-sim");
-    return {{*NamedCommand("hydro-sim"), {0}}, {*NamedCommand("summary"), {0}}};
+    if (!has_config) {
+      throw study->Error("step", "nothing",
+                         "a command, or config for hydro-sim (above the first section of the file)");
+    }
+    return {{.argv = *NamedCommand("hydro-sim", has_machine)}, {.argv = *NamedCommand("summary", false)}};
   }
   if (!node->is(Kind::kArray) || node->items.empty())
     throw study->Error("step", node->Shown(), "sections [[step]]");
   std::vector<Step> steps;
   for (const TomlNode& item : node->items) {
     if (!item.is(Kind::kTable)) throw study->Error("step", item.Shown(), "sections [[step]]");
-    steps.push_back(ReadStep(study->Item(item, "step")));
+    const TomlNode* run = item.Find("run");
+    steps.push_back(
+        ReadStep(study->Item(item, "step"), run != nullptr ? run->place : item.place, has_machine));
   }
   return steps;
 }

@@ -32,6 +32,7 @@ struct RowList {
 struct Step {
   std::vector<std::string> argv;      // with placeholders (run/placeholders.h)
   std::vector<int> exit_codes = {0};  // those that are no failure
+  std::string place = {};             // "file:line", for messages
 };
 
 // A number that a case leaves: where it stands in a file of JSON or TOML.

@@ -5,10 +5,12 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "batch/study/case_inputs.h"
 #include "batch/study/factor_reader.h"
+#include "batch/study/key.h"
 #include "batch/study/step_reader.h"
 #include "batch/study/study.h"
+#include "batch/study/study_check.h"
+#include "settings/limb_config.h"
 #include "settings/model_file.h"
 #include "settings/stack_config.h"
 
@@ -50,6 +52,7 @@ class Reader {
   Study Read() {
     study_.name = std::filesystem::path(file_).stem().string();
     top_.Text("name", &study_.name);
+    *Member(&kept_, "name") = settings::StringNode(study_.name);  // the folder's is called study.toml
     top_.Integer("seed", &study_.seed, 0, std::numeric_limits<int64_t>::max());
     top_.Integer("retries", &study_.retries, 0, 100);
     top_.Number("timeout_s", &study_.timeout_s, settings::kNotNegative);
@@ -57,19 +60,30 @@ class Reader {
       study_.keep.push_back(CaseFile(Place("keep"), "keep", name));
     ReadInputs();
     ReadFactors();
-    study_.steps = ReadSteps(&top_, scope_.has_config);
+    study_.steps = ReadSteps(&top_, scope_.has_config, HasMachine());
+    CheckDrawsDiffer();
     ReadCollect();
     ReadReport();
     top_.Finish();
     study_.files["study.toml"] = settings::FormatToml(kept_);
     if (!study_.config_text.empty()) study_.files["config.toml"] = study_.config_text;
     if (!study_.model_text.empty()) study_.files["model.toml"] = study_.model_text;
-    CheckConfigurations();
+    CheckConfigurations(study_, root_, file_);
     return std::move(study_);
   }
 
  private:
   std::string Place(const std::string& key) const { return root_.Find(key)->place; }
+
+  // What is wrong with a file that a key names, or with what a key changes in it, is said with the key's place.
+  template <class Take>
+  auto Placed(const std::string& key, const Take& take) const {
+    try {
+      return take();
+    } catch (const InputError& error) {
+      throw InputError(Place(key) + ": " + key + ": " + error.what());
+    }
+  }
 
   void ReadInputs() {
     std::string config, model;
@@ -79,9 +93,13 @@ class Reader {
     if (!config.empty() && !model.empty())
       throw top_.Error("model", "a model beside config", "one of them: a configuration names its model");
     if (config.empty() && !changes.empty()) throw top_.Error("set", "it without config", "with config only");
-    if (!config.empty()) TakeConfig(PathBeside(file_, config), changes);
+    if (!config.empty()) {
+      const bool changed = !changes.empty();
+      Placed(changed ? "set" : "config", [&] { TakeConfig(PathBeside(file_, config), changes); });
+    }
     if (!model.empty()) {
-      const settings::ModelWithText read = settings::LoadModelWithText(PathBeside(file_, model));
+      const settings::ModelWithText read =
+          Placed("model", [&] { return settings::LoadModelWithText(PathBeside(file_, model)); });
       study_.model_text = read.text;
       scope_.model = read.description;
       *Member(&kept_, "model") = settings::StringNode("model.toml");
@@ -94,6 +112,13 @@ class Reader {
 
   // The configuration with its model in the study's folder, so that this alone is enough anywhere. A reference from a table stands in the text.
   void TakeConfig(const std::string& path, const std::vector<std::string>& changes) {
+    const bool one_joint =
+        std::ranges::any_of(changes, [](const std::string& each) { return each.starts_with("joint="); });
+    if (!one_joint && settings::IsLimbFile(path)) {
+      throw InputError(path +
+                       ": found a limb, allowed a stack: set = [\"joint=NAME\"] takes one joint of it; for "
+                       "all of them name it in files and run it in a [[step]]");
+    }
     const settings::StackConfig config = settings::LoadStackConfig(path, changes);
     TomlNode tree = settings::ParseToml(config.text, path);
     *Member(Member(&tree, "model"), "file") = settings::StringNode("model.toml");
@@ -107,7 +132,7 @@ class Reader {
 
   std::string TakeFile(const std::string& key, const std::string& name) {
     std::string kept = "inputs/" + std::filesystem::path(name).filename().string();
-    AddFile(key, kept, ReadTextFile(PathBeside(file_, name)));
+    AddFile(key, kept, Placed(key, [&] { return ReadTextFile(PathBeside(file_, name)); }));
     return kept;
   }
   void AddFile(const std::string& key, const std::string& name, std::string text) {
@@ -135,9 +160,29 @@ class Reader {
     if (!study_.draws.empty() && !counted) throw top_.Error("draws", "nothing", "how many to draw");
     std::set<std::string> keys;
     for (const std::string& key : study_.Keys()) {
-      if (!keys.insert(key).second) throw top_.Error(key, "it twice", "one grid, list or draw for each key");
+      if (!keys.insert(key).second)
+        throw settings::KeyError(PlaceOfKey(root_, key, 1), key, "it twice",
+                                 "one grid, list or draw for each key");
     }
     CheckCount();
+  }
+
+  bool HasMachine() const {
+    const std::vector<std::string> keys = study_.Keys();
+    return std::ranges::any_of(
+        keys, [](const std::string& key) { return ParseKey(key).kind == KeyKind::kMachine; });
+  }
+
+  // Cases that nothing tells apart would be the same run again and again.
+  void CheckDrawsDiffer() const {
+    if (!study_.draws.empty() || study_.draw_count == 1) return;
+    for (const Step& step : study_.steps) {
+      for (const std::string& text : step.argv) {
+        if (text.find("{case}") != std::string::npos) return;
+      }
+    }
+    throw top_.Error("draws", std::to_string(study_.draw_count) + " and no section [[draw]]",
+                     "such a section, or a command with {case}: else all of them would be the same");
   }
 
   void CheckCount() const {
@@ -196,46 +241,16 @@ class Reader {
     if (surface.empty()) return;
     const std::vector<std::string> keys = study_.Keys();
     const auto is_key = [&](const std::string& key) { return std::ranges::find(keys, key) != keys.end(); };
-    if (surface.size() != 3 || !is_key(surface[0]) || !is_key(surface[1]) || surface[0] == surface[1] ||
-        std::ranges::find(numbers, surface[2]) == numbers.end()) {
-      throw section.Error("surface", std::to_string(surface.size()) + " names, " + QuotedList(surface),
-                          "two of the varied keys, " + QuotedList(keys) + ", and a number of [collect]");
+    if (surface.size() != 3)
+      throw section.Error("surface", std::to_string(surface.size()) + " names",
+                          "three: two varied keys and a number of [collect]");
+    for (size_t i = 0; i < 2; ++i) {
+      if (!is_key(surface[i]) || (i == 1 && surface[1] == surface[0]))
+        throw section.Error("surface", Quoted(surface[i]),
+                            "two different keys that vary: " + QuotedList(keys));
     }
-  }
-
-  // Every value of the grid and of the list's first rows gives a configuration that can run. What is drawn is not known beforehand.
-  void CheckConfigurations() const {
-    if (study_.model_text.empty()) return;
-    constexpr int64_t kMostChecked = 200;
-    const int64_t rows = study_.list.keys.empty() ? 1 : static_cast<int64_t>(study_.list.rows.size());
-    const CaseInputs inputs(study_);
-    std::set<int64_t> cases = {0};
-    for (int64_t row = 0; row < std::min(rows, kMostChecked); ++row) cases.insert(row * study_.draw_count);
-    int64_t stride = study_.draw_count * rows;
-    for (size_t i = study_.grid.size(); i-- > 0;) {
-      const auto count = static_cast<int64_t>(study_.grid[i].values.size());
-      for (int64_t k = 0; k < std::min(count, kMostChecked); ++k) cases.insert(k * stride);
-      stride *= count;
-    }
-    for (const int64_t index : cases) CheckCase(inputs, index);
-  }
-
-  void CheckCase(const CaseInputs& inputs, int64_t index) const {
-    const std::vector<Value> values = study_.Values(index);
-    try {
-      const std::string model = inputs.Model(values);
-      if (study_.config_text.empty()) {
-        settings::ParseModel(model, "model.toml");
-      } else {
-        settings::ParseStackConfig(inputs.Config(values), "config.toml", model, "model.toml");
-      }
-    } catch (const std::exception& error) {
-      std::string shown;
-      const std::vector<std::string> keys = study_.Keys();
-      for (size_t i = 0; i < keys.size(); ++i)
-        shown += (i == 0 ? "" : ", ") + keys[i] + " = " + PlainText(values[i]);
-      throw InputError(file_ + ": case " + std::to_string(index) + " (" + shown + "): " + error.what());
-    }
+    if (std::ranges::find(numbers, surface[2]) == numbers.end())
+      throw section.Error("surface", Quoted(surface[2]), "a number of [collect]: " + QuotedList(numbers));
   }
 
   const std::string file_;

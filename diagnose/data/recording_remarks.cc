@@ -165,6 +165,17 @@ std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs) 
   return remarks;
 }
 
+std::string LoadRemark(const std::vector<runs::MeasuredRun>& runs) {
+  std::vector<std::string> names;
+  for (const runs::MeasuredRun& run : runs) {
+    if (run.in_an_arm && run.shaft == model::Shaft::kFree) names.push_back(run.name);
+  }
+  if (names.empty()) return "";
+  return RunsNamed(names) +
+         ": the load is that of the limb's [arm], in the place of J_a and mgl, and the model lacks it: what "
+         "is found may stand for the arm";
+}
+
 std::vector<std::string> LimitRemarks(const model::Parameters& model,
                                       const std::vector<const RunData*>& runs) {
   std::vector<std::string> remarks;

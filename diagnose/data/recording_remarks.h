@@ -19,6 +19,9 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
 // How tables were read that were not plain CSV: one remark for all runs that share it. It is no fault.
 std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs);
 
+// The joints of a limb's [arm] among the runs, whose loads no model of one joint has; empty: there is none.
+std::string LoadRemark(const std::vector<runs::MeasuredRun>& runs);
+
 // What these runs cannot show though nothing is wrong with them: signals that no run has, and samples too far
 // apart for the model's fastest motion.
 std::vector<std::string> LimitRemarks(const model::Parameters& model,

@@ -69,15 +69,17 @@ void RunSummary::Add(const output_left_t& left) {
 
 std::vector<std::string> RunSummary::Lines() const {
   std::vector<std::string> lines;
+  size_t width = 14;
+  for (const Loop& loop : loops_) width = std::max(width, loop.shown.role.size() + 1);
   if (!loops_.empty()) {
-    lines.push_back(fmt::format("{:>44}{:>27}", "period us", "latency us"));
-    lines.push_back(fmt::format("{:<14}{:>10}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}", "process", "cycles",
-                                "p50", "p99", "p50", "p99", "max", "missed", "lost"));
+    lines.push_back(fmt::format("{:>{}}{:>27}", "period us", width + 30, "latency us"));
+    lines.push_back(fmt::format("{:<{}}{:>10}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}", "process", width,
+                                "cycles", "p50", "p99", "p50", "p99", "max", "missed", "lost"));
   }
   for (const Loop& loop : loops_) {
     const loop_statistics_t& s = loop.shown;
-    lines.push_back(fmt::format("{:<14}{:>10}{:>11.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>7}", s.role,
-                                loop.cycles, s.period_p50_us, s.period_p99_us, s.latency_p50_us,
+    lines.push_back(fmt::format("{:<{}}{:>10}{:>11.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>7}", s.role,
+                                width, loop.cycles, s.period_p50_us, s.period_p99_us, s.latency_p50_us,
                                 s.latency_p99_us, loop.latency_max_us, loop.missed_deadlines,
                                 loop.lost_messages));
   }

@@ -45,6 +45,7 @@ int StackLaunch::Run() {
     CheckReady();
     CheckPlantIsHeard();
     CheckEarlyEnd();
+    CheckJointsLeft();
     stop_announcer_.Repeat();
     ShowStatus();
   }

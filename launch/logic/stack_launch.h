@@ -43,6 +43,7 @@ class StackLaunch {
   void AskWhoIsThere();
   void CheckPlantIsHeard();
   void CheckEarlyEnd();
+  void CheckJointsLeft();
   void RepeatStopForOtherHosts();
   void Fail(const std::string& reason, int exit_code);
   void BeginStop(const std::string& reason, int exit_code);
@@ -67,8 +68,9 @@ class StackLaunch {
   bool ready_ = false;
   bool plant_heard_ = false;
   bool bus_failed_ = false;
-  bool stop_seen_ = false;  // another process's stop has been acted upon
-  bool failing_ = false;    // the run has failed: consequences of that are not reported again
+  bool stop_seen_ = false;     // another process's stop has been acted upon
+  bool failing_ = false;       // the run has failed: consequences of that are not reported again
+  bool joints_ended_ = false;  // of a process here, while others go on
   bool killed_ = false;
   bool plant_killed_ = false;  // a plant or driver ended by a signal, and could say no more
   int interrupts_ = 0;

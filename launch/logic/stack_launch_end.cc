@@ -73,6 +73,15 @@ void StackLaunch::OnEnded(const Ended& ended) {
   }
   if (end.signal == 0 && end.exit_code == 1 && failing_) return;  // because the run has failed
   std::string text = DescribeEnd(ended.program, end);
+  // A joint that has failed ends alone, and its process with the last of its joints (limb.on_joint_fault).
+  const bool of_joints =
+      !config_.joints_concern_each_other && process::IsPlant(process::RoleOf(ended.program));
+  if (of_joints && end.signal == 0 && end.exit_code == 1 && watch_.HasPlant()) {
+    PrintError(text + ": its joints have ended; the others go on (limb.on_joint_fault)");
+    exit_code_ = 1;
+    joints_ended_ = true;
+    return;
+  }
   if (const std::string why = watch_.FailureText(ended.program, ended.pid); !why.empty()) text += ": " + why;
   Fail(text, end.signal == 0 && end.exit_code == 2 ? 2 : 1);
 }
@@ -141,6 +150,11 @@ void StackLaunch::CheckPlantIsHeard() {
                ? fmt::format("; {} messages were refused: is bus.key_file the same on each host?", refused)
                : ""),
        1);
+}
+
+// The loggers of this host, when the last joint on any host has failed too.
+void StackLaunch::CheckJointsLeft() {
+  if (joints_ended_ && !children_.stopping() && !watch_.HasPlant()) Fail("no joint is left", 1);
 }
 
 void StackLaunch::CheckEarlyEnd() {

@@ -18,7 +18,14 @@ constexpr size_t kMostStatusesOfAJoint = 8;
 
 StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                        bool spread, bool keep_timing)
-    : bus_(bus), clock_(clock), spread_(spread), identity_(bus::IdentityOn(bus, clock)) {
+    : bus_(bus),
+      clock_(clock),
+      spread_(spread),
+      joints_concern_each_other_(config.joints_concern_each_other),
+      identity_(bus::IdentityOn(bus, clock)) {
+  for (const settings::ProcessSection& process : config.processes) {
+    if (!process.joint.empty()) own_processes_.insert(process.joint);
+  }
   stacks_.push_back({"", bus::Channels(config.bus.channel_suffix)});
   for (size_t i = 0; i < config.joints.size(); ++i) {
     stacks_.push_back({config.joints[i], bus::Channels(config.bus.joint_suffixes.at(i))});
@@ -36,8 +43,12 @@ void StackWatch::Listen(size_t stack, bool keep_timing) {
         const size_t most = kMostStatuses + stacks_.size() * kMostStatusesOfAJoint;
         if (statuses_.size() < most || statuses_.contains(key)) statuses_[key] = {stack, status};
       });
-  bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this](const stop_t& stop) {
-    if (!stop_ && stop.session != identity_.session && IsForThisStack(stop)) stop_ = stop;
+  bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this, joint](const stop_t& stop) {
+    // In lockstep the joints inside a limb have no session; the limb says why it ends.
+    const bool inside_a_limb = !joint.empty() && stop.session == 0 && process::IsPlant(stop.source);
+    const bool of_one_joint = !joint.empty() || (stop.source == "limb" && stop.addressee != 0);
+    if (of_one_joint && !joints_concern_each_other_ && stop.exit_code != 0) return;  // the others go on
+    if (!stop_ && !inside_a_limb && stop.session != identity_.session && IsForThisStack(stop)) stop_ = stop;
   });
   bus_.Subscribe<fault_t>(channels.Of<fault_t>(), [this, joint](const fault_t& heard) {
     fault_t fault = heard;
@@ -49,15 +60,22 @@ void StackWatch::Listen(size_t stack, bool keep_timing) {
     left.role = Named(joint, heard.role);
     if (IsOfAPlant(heard.session)) summary_.Add(left);
   });
-  if (!joint.empty()) return;  // the limb's own loop is the one that keeps time
+  if (!joint.empty() && !own_processes_.contains(joint))
+    return;  // the limb's own loop is the one that keeps time
   bus_.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(),
-                                    [this, keep_timing](const loop_statistics_t& report) {
+                                    [this, keep_timing, joint](const loop_statistics_t& heard) {
+                                      loop_statistics_t report = heard;
+                                      report.role = Named(joint, heard.role);
                                       summary_.Add(report);
                                       if (keep_timing) timing_.Add(report);
                                     });
   if (!keep_timing) return;
   bus_.Subscribe<loop_histogram_t>(channels.Of<loop_histogram_t>(),
-                                   [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
+                                   [this, joint](const loop_histogram_t& heard) {
+                                     loop_histogram_t histogram = heard;
+                                     histogram.role = Named(joint, heard.role);
+                                     timing_.Add(histogram);
+                                   });
 }
 
 std::string StackWatch::Named(const std::string& joint, const std::string& source) const {

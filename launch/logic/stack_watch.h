@@ -7,6 +7,7 @@
 #include <hydro/stop_t.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -99,6 +100,8 @@ class StackWatch {
   const bus::Clock& clock_;
   std::vector<Stack> stacks_;  // the stack's own first
   const bool spread_;
+  const bool joints_concern_each_other_;
+  std::set<std::string> own_processes_;  // joints that run as processes of their own
   const bus::HostedProcess identity_;
   std::vector<Expected> expected_;
   std::map<Key, Heard> statuses_;  // the latest of each

@@ -28,8 +28,10 @@ int main(int argc, char** argv) {
   std::vector<std::string> expected;
   bool check_sensors = false;
   command_line.AddCommon(&options);
-  command_line.AddOption("--expect", &expected,
-                         "ROLE also wait for this process, besides the two controllers, e.g. logger");
+  command_line.AddOption(
+      "--expect", &expected,
+      "ROLE also wait for this process, besides the two controllers, e.g. logger; or for joint:NAME of "
+      "the same limb");
   command_line.AddFlag("--check-sensors", &check_sensors,
                        "print the sensors' readings and drive nothing, for --duration or until stopped");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;

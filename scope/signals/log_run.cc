@@ -10,18 +10,23 @@
 #include "bus/channels.h"
 #include "log/log_reader.h"
 #include "runs/channel_suffix.h"
+#include "runs/limb_configs.h"
 #include "scope/signals/intake.h"
 
 namespace hydro::scope {
 namespace {
 
-// The names of the channels that the log holds.
-runs::RunLog ChannelsOf(log::LogReader& reader, const std::string& file) {
+// The names of the channels that the log holds; and what its limbs say of themselves.
+runs::RunLog ChannelsOf(log::LogReader& reader, const std::string& file, runs::LimbConfigs* configs) {
   std::map<std::string, int64_t, std::less<>> events;
   log::LogEvent event;
   while (reader.Next(event)) {
-    const auto known = events.find(event.channel);
-    known != events.end() ? ++known->second : events[std::string(event.channel)] = 1;
+    if (const auto known = events.find(event.channel); known != events.end()) {
+      ++known->second;
+      continue;
+    }
+    events[std::string(event.channel)] = 1;
+    configs->TakeFirst(event);
   }
   reader.Rewind();
   runs::RunLog names;
@@ -63,10 +68,12 @@ class StackOfLog {
 };
 
 // All joints of a limb, or the one stack that is meant; and what the limb's own channels end in.
-std::vector<std::unique_ptr<StackOfLog>> StacksOf(const runs::RunLog& channels, const std::string& name,
+std::vector<std::unique_ptr<StackOfLog>> StacksOf(const runs::RunLog& channels,
+                                                  const runs::LimbConfigs& configs, const std::string& name,
                                                   const runs::StackChoice& choice, std::string* limb) {
   std::vector<std::unique_ptr<StackOfLog>> stacks;
-  const std::vector<runs::JointChannels> joints = runs::JointsIn(channels);
+  std::vector<runs::JointChannels> joints = runs::JointsIn(channels);
+  configs.Order(&joints);
   const bool all = runs::IsWholeLimb(channels, choice);
   const std::string chosen = all ? "" : runs::ChooseSuffix(channels, choice);
   for (const runs::JointChannels& joint : joints) {
@@ -84,7 +91,9 @@ std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std
                                               std::string* problem, const runs::StackChoice& choice) {
   log::LogReader reader(file, log::OnDamage::kStop);
   std::string limb;
-  const auto stacks = StacksOf(ChannelsOf(reader, file), name, choice, &limb);
+  runs::LimbConfigs configs;
+  const runs::RunLog channels = ChannelsOf(reader, file, &configs);
+  const auto stacks = StacksOf(channels, configs, name, choice, &limb);
   std::unordered_map<std::string_view, StackOfLog*> by_channel;
   for (const auto& stack : stacks) {
     for (const std::string& channel : stack->channels().names()) by_channel.emplace(channel, stack.get());

@@ -3,6 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -82,6 +84,33 @@ class DepthScan {
   size_t at_ = 0;
   int line_ = 1;
 };
+
+// The sections of this project's documents that are lists.
+constexpr std::array kLists{"joint", "process", "arm.link"};
+
+// A line without blanks and comment.
+std::string Bare(std::string_view line) {
+  std::string bare(line.substr(0, line.find('#')));
+  std::erase_if(bare, [](unsigned char c) { return std::isspace(c); });
+  return bare;
+}
+
+// What toml++ calls a table defined twice, at line `at`, may be a list whose sections have single brackets. Throws InputError then, for the
+// first of them.
+void RefuseSingleBrackets(std::string_view text, const std::string& name, size_t at) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size() && lines.size() < at;) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(Bare(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  for (const std::string list : kLists) {
+    const std::string single = "[" + list + "]";
+    if (lines.empty() || (lines.back() != single && lines.back() != "[" + single + "]")) continue;
+    const auto first = std::find(lines.begin(), lines.end(), single);
+    if (first != lines.end()) throw NotAList(name + ":" + std::to_string(first - lines.begin() + 1), list);
+  }
+}
 
 TomlNode Convert(const toml::node& from, const std::string& name) {
   TomlNode node;
@@ -182,6 +211,11 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
   return node;
 }
 
+InputError NotAList(const std::string& place, const std::string& name) {
+  return InputError(place + ": " + name + ": found a section [" + name +
+                    "], allowed a list of sections: write [[" + name + "]]");
+}
+
 TomlNode ParseToml(const std::string& text, const std::string& name) {
   if (const std::string place = DepthScan(text).FirstTooDeep(); !place.empty()) {
     throw InputError(name + ":" + place);
@@ -189,6 +223,7 @@ TomlNode ParseToml(const std::string& text, const std::string& name) {
   try {
     return Convert(toml::parse(text, name), name);
   } catch (const toml::parse_error& error) {
+    RefuseSingleBrackets(text, name, error.source().begin.line);
     std::string description(error.description());
     std::replace_if(
         description.begin(), description.end(), [](unsigned char c) { return c < 0x20; }, ' ');

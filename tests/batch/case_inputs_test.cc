@@ -29,6 +29,32 @@ rows = [[5000, "lockstep", 0.02, 0.5, 3.0]]
   EXPECT_EQ(config.model.description.effects[0].parameters.at("speed"), 3);
 }
 
+// Tests that keys of the machine change it alone, over the case's model, and that hydro-sim gets it then.
+TEST(CaseInputsTest, TheControllersDoNotKnowTheMachine) {
+  const StudyFolder folder;
+  const std::string config = "config = \"" + std::string(HYDRO_CONFIG) + "/demo.toml\"\n";
+  const Study study = folder.Read(config + R"(
+[list]
+keys = ["model:b", "machine:D", "machine:pump.stribeck.static_excess", "machine:pump.stribeck.speed"]
+rows = [[0.02, 0.009, 0.5, 3.0]]
+)");
+  const CaseInputs inputs(study);
+  const auto model = settings::ParseModel(inputs.Model(study.Values(0)), "model.toml");
+  const auto machine = settings::ParseModel(inputs.Machine(study.Values(0)), "machine.toml");
+  EXPECT_EQ(model.parameters.b, 0.02);
+  EXPECT_EQ(machine.parameters.b, 0.02);
+  EXPECT_NE(model.parameters.D, 0.009);
+  EXPECT_EQ(machine.parameters.D, 0.009);
+  EXPECT_TRUE(model.effects.empty());
+  ASSERT_EQ(machine.effects.size(), 1u);
+  EXPECT_EQ(machine.effects[0].id, "pump.stribeck");
+  EXPECT_THAT(study.steps[0].argv, ::testing::ElementsAre("hydro-sim", "config.toml", "--machine",
+                                                          "machine.toml", "-o", "run.lcmlog"));
+  const Study known = folder.Read(config + "[[grid]]\nkey = \"model:b\"\nvalues = [0.02]\n");
+  EXPECT_EQ(CaseInputs(known).Machine(known.Values(0)), "");
+  EXPECT_EQ(known.steps[0].argv.size(), 4u);
+}
+
 // Tests that a reference from a CSV file comes along into the study's folder.
 TEST(CaseInputsTest, TakesTheReferencesTableAlong) {
   const StudyFolder folder;

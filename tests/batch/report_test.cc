@@ -50,10 +50,30 @@ values = [20, 10]
 key = "l"
 values = [1, 2, 3]
 [[step]]
-run = ["true"]
+run = ["true", "{case}"]
 [collect]
 x = "out.json:/x"
 )";
+
+// Tests that cases without a number count as the worst: the share of cases that are no worse is of all, and ends where they begin.
+TEST(NoWorseTest, CasesWithoutTheNumberAreTheWorst) {
+  const StudyFolder folder;
+  const Study study = folder.Read(kTwoKeys);
+  StudyNumbers numbers(study);
+  for (int64_t i = 0; i < 9; ++i) numbers.Add(Done(study, i, static_cast<double>(i)));
+  for (int64_t i = 9; i < 11; ++i) numbers.Add(Done(study, i, std::nullopt));
+  const NumberColumn& column = numbers.columns()[0];
+  EXPECT_EQ(column.all(), 11);
+  EXPECT_EQ(NoWorse(column, column.values, 0.5), 5.0);
+  EXPECT_EQ(NoWorse(column, column.values, 0.8), 8.0);
+  EXPECT_EQ(NoWorse(column, column.values, 0.9), std::nullopt);
+  const auto worst = WorstFigure(numbers);
+  ASSERT_TRUE(worst);
+  EXPECT_NEAR(worst->panels[0].curves[0].x.back(), 100 * 8.5 / 11, 1e-9);
+  EXPECT_THAT(worst->caption, HasSubstr("2 of 11 have none"));
+  EXPECT_THAT(DistributionsFigure(numbers)->caption, HasSubstr("count as worse"));
+  EXPECT_THAT(SurfaceFigure(numbers)->caption, HasSubstr("2 cases have none and are left out"));
+}
 
 // Tests that a surface's cell is the mean of the cases with its two values, with rising axes, whatever the order of the grid's values.
 TEST(SurfaceTest, AveragesCells) {

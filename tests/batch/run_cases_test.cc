@@ -133,7 +133,7 @@ TEST(RunCasesTest, GivesReasons) {
   EXPECT_THAT(ReasonOf(folder, "[[step]]\nrun = [\"inputs/none\"]\n"),
               HasSubstr("case 0: step 1: inputs/none: cannot be started"));
   EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"true\"]\n[collect]\nx = \"out.json:/x\"\n"),
-            "case 0: out.json: not written, allowed a file that the study collects from");
+            "case 0: out.json: not written by any step; there are step1.err, step1.out");
   EXPECT_EQ(
       ReasonOf(folder,
                "[[step]]\nrun = [\"sh\", \"-c\", \"echo no > out.json\"]\n[collect]\nx = \"out.json:/x\"\n"),
@@ -141,7 +141,13 @@ TEST(RunCasesTest, GivesReasons) {
   EXPECT_EQ(
       ReasonOf(folder,
                "[[step]]\nrun = [\"sh\", \"-c\", \"echo [1] > out.json\"]\n[collect]\nx = \"out.json:/x\"\n"),
-      "case 0: out.json:/x: found nothing there, allowed a place in the file");
+      "case 0: out.json:/x: found nothing there; the file has a list of 1");
+  const std::string nested =
+      "[[step]]\nrun = [\"sh\", \"-c\", \"echo '{\\\"a\\\": {\\\"b\\\": 1, \\\"c\\\": 2}}' > out.json\"]\n";
+  EXPECT_EQ(ReasonOf(folder, nested + "[collect]\nx = \"out.json:/a/d/e\"\n"),
+            "case 0: out.json:/a/d/e: found nothing there; /a has only b, c");
+  EXPECT_EQ(ReasonOf(folder, nested + "[collect]\nx = \"out.json:/a~x\"\n"),
+            "case 0: out.json:/a~x: found nothing there; the file has only a");
   EXPECT_EQ(ReasonOf(folder, "[[step]]\nrun = [\"sh\", \"-c\", \"echo {folder} >&2; exit 1\"]\n"),
             "case 0: step 1: sh ended with exit code 1: .");
   EXPECT_EQ(ReasonOf(folder, "keep = [\"run.log\"]\n[[step]]\nrun = [\"true\"]\n"),

@@ -22,7 +22,10 @@ std::string Shown(const std::vector<Value>& values) {
 // Tests that grid, list and draws are combined, and that the draws change fastest and the first factor of the grid slowest.
 TEST(StudyTest, CombinesAllFactors) {
   const StudyFolder folder;
-  const Study study = folder.Read("draws = 2\n" + kStep + R"(
+  const Study study = folder.Read(R"(
+draws = 2
+[[step]]
+run = ["true", "{case}"]
 [[grid]]
 key = "a"
 values = ["x", "y"]
@@ -98,7 +101,7 @@ TEST(StudyTest, RefusesWrongInput) {
       {"draws = 1\n" + kStep +
            "[[grid]]\nkey = \"a\"\nvalues = [1]\n[[draw]]\nkey = \"a\"\ndistribution = \"choice\"\nvalues = "
            "[1]\n",
-       "study.toml:1: a: found it twice"},
+       "study.toml:8: a: found it twice"},
       {kStep + "[list]\nkeys = [\"a\", \"b\"]\nrows = [[1, 2], [3]]\n",
        "study.toml:5: list.rows: found row 2 with 1 values"},
       {"[[step]]\nrun = \"hydro-smi\"\n",
@@ -114,10 +117,55 @@ TEST(StudyTest, RefusesWrongInput) {
       {kStep + "[report]\nworst = \"x\"\n", "study.toml:4: report.worst: found \"x\""},
       {"set = [\"a.b=1\"]\n" + kStep, "study.toml:1: set: found it without config"},
       {kConfig + "[[grid]]\nkey = \"position.c1\"\nvalues = [1000, -5]\n",
-       "study.toml: case 1 (position.c1 = -5): "},
-      {kConfig + "[[grid]]\nkey = \"position.c9\"\nvalues = [1]\n", "study.toml: case 0 (position.c9 = 1): "},
+       "study.toml:3: position.c1 = -5: position.c1: found -5, allowed"},
+      {kConfig + "[[grid]]\nkey = \"position.c9\"\nvalues = [1]\n",
+       "study.toml:3: position.c9 = 1: position: \"c9\": found an unknown key"},
+      {kConfig + "[list]\nkeys = [\"position.c1\", \"position.c9\"]\nrows = [[1000, 1]]\n",
+       "study.toml:3: position.c9 = 1: position: \"c9\": found an unknown key"},
+      {kConfig + "[list]\nkeys = [\"position.c8\", \"position.c9\"]\nrows = [[1000, 1]]\n",
+       "study.toml: case 0 (position.c8 = 1000, position.c9 = 1): position: \"c8\": found"},
+      {kConfig + "draws = 9\n[[draw]]\nkey = \"model:b\"\ndistribution = \"normal\"\nmean = 0.01\n"
+                 "standard_deviation = 0.02\n",
+       "study.toml:4: model:b = -"},
+      {kConfig + "draws = 9\n[[draw]]\nkey = \"machine:betta\"\ndistribution = \"uncertainty\"\n",
+       "study.toml:4: draw.key: found \"machine:betta\", allowed machine: and one of"},
+      {kConfig + "[[grid]]\nkey = \"machine:pump.stribeck.sped\"\nvalues = [1]\n",
+       "study.toml:3: grid.key: found \"machine:pump.stribeck.sped\", allowed machine:pump.stribeck. and one "
+       "of "
+       "\"static_excess\" or \"speed\", did you mean \"speed\"?"},
+      {kStep + "[[grid]]\nkey = \"machine:b\"\nvalues = [1]\n",
+       "study.toml:4: grid.key: found \"machine:b\", allowed machine: only in a study with a config"},
+      {"draws = 5\n" + kStep, "study.toml:1: draws: found 5 and no section [[draw]]"},
+      {kStep + "[[grid]]\nkey = \"a\"\nfrom = 1\nto = 2\n",
+       "study.toml:3: grid.steps: found nothing, allowed all of from, to and steps"},
+      {"config = \"none.toml\"\n", "study.toml:1: config: "},
+      {"files = [\"none.py\"]\n" + kStep, "study.toml:1: files: "},
+      {"config = \"" + std::string(HYDRO_CONFIG) + "/limb.toml\"\n",
+       "study.toml:1: config: " + std::string(HYDRO_CONFIG) + "/limb.toml: found a limb, allowed a stack"},
+      {kStep + "[[grid]]\nkey = \"a\"\nvalues = [1, 2]\n[collect]\nx = \"o.json:/x\"\n"
+               "[report]\nsurface = [\"a\", \"b\", \"x\"]\n",
+       "study.toml:9: report.surface: found \"b\", allowed two different keys that vary: \"a\""},
   };
   for (const auto& [text, line] : cases) EXPECT_THAT(folder.Refusal(text), StartsWith(line)) << text;
+}
+
+// Tests that one joint of a limb is a stack that a study may change.
+TEST(StudyTest, TakesAJointOfALimb) {
+  const StudyFolder folder;
+  const Study study = folder.Read("config = \"" + std::string(HYDRO_CONFIG) +
+                                  "/limb.toml\"\nset = [\"joint=knee\"]\n"
+                                  "[[grid]]\nkey = \"position.c2\"\nvalues = [800, 900]\n");
+  EXPECT_THAT(CaseInputs(study).Config(study.Values(1)), ::testing::HasSubstr("c2 = 900"));
+}
+
+// Tests that the name is that of the file, also of a study that is read from its folder.
+TEST(StudyTest, IsCalledAsItsFile) {
+  const StudyFolder folder;
+  folder.Write("gains.toml", kStep);
+  const Study study = ReadStudy(folder / "gains.toml");
+  EXPECT_EQ(study.name, "gains");
+  folder.Write("study.toml", study.files.at("study.toml"));
+  EXPECT_EQ(ReadStudy(folder / "study.toml").name, "gains");
 }
 
 // Tests that the examples are studies.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "diagnose/data/recording_remarks.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -56,6 +57,23 @@ TEST(RecordingFirst, OneSideIsMissing) {
 TEST(RecordingFirst, TimeIsUp) {
   std::vector<runs::MeasuredRun> runs = Bench(-1, 1), none;
   EXPECT_THAT(CheckFirst(kGiven, {}, 1, &runs, &none, [] { return true; }).mistakes, IsEmpty());
+}
+
+// Tests that the load of an arm is said of the joints that it loads, also where the recording is to be mended first.
+TEST(RecordingFirst, JointsOfAnArm) {
+  const std::string said = "the load is that of the limb's [arm], in the place of J_a and mgl";
+  std::vector<runs::MeasuredRun> runs = Bench(1, 1), none;
+  runs[0].in_an_arm = true;
+  EXPECT_EQ(LoadRemark(runs), "") << "clamped, it has no load";
+  runs[0].shaft = model::Shaft::kFree;
+  EXPECT_THAT(LoadRemark(runs), StartsWith("run bench: " + said));
+  EXPECT_THAT(ReportOnRecordings(kGiven, runs, 1).limits, ::testing::Contains(HasSubstr(said)));
+  CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &none);
+  checked.mistakes = {"what is to be mended"};
+  EXPECT_THAT(MendFirst(kGiven, checked, runs, none).remarks, ::testing::Contains(HasSubstr(said)));
+  Diagnosis diagnosis;
+  AddChecked(checked, &diagnosis);
+  EXPECT_THAT(diagnosis.remarks, ::testing::Contains(HasSubstr(said)));
 }
 
 // Tests that a wrong sign of the command ends the diagnosis before the search, and what it then says.

@@ -196,6 +196,18 @@ class BatchTest(stack.TestCase):
         self.assertIn("2 stored results are not whole; their cases run again", done.stderr)
         self.assertEqual(results(self.path("reference")), reference)
 
+    # Tests that the studies of docs/studies.md are studies whose cases are all done.
+    def test_the_pages_studies(self):
+        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+        with open(os.path.join(root, "docs", "studies.md"), encoding="utf-8") as file:
+            blocks = re.findall(r"```toml\n(.*?)```", file.read(), re.DOTALL)
+        whole = [block for block in blocks if "../../config/" in block]
+        self.assertEqual(len(whole), 2)
+        for number, block in enumerate(whole):
+            study = self.study(block.replace("../../config/", os.path.dirname(stack.config("demo.toml")) + "/"), f"page{number}.toml")
+            done = self.batch(study, "--out", self.path(f"page{number}"))
+            self.assertRegex(done.stdout, "cases: [1-9][0-9]* done, 0 failed, 0 missing")
+
     def report_files(self):
         return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]
 

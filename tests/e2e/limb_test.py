@@ -45,6 +45,13 @@ def with_processes(case, name, first="", second="", sections=MIXED):
     return path
 
 
+def two_limbs(case):
+    """The shipped limb with the hip in a hydro-limb on the rig, and the knee in one on the desk."""
+    return with_processes(case, "limbs.toml", sections="".join(
+        f'[[process]]\nprogram = "hydro-limb"\nhost = "{host}"\njoints = ["{joint}"]\n'
+        for host, joint in (("rig", "hip"), ("desk", "knee"))))
+
+
 class LimbTest(stack.TestCase):
     # Tests that in lockstep each joint of a limb gives, bit by bit, what it gives in hydro-sim and alone in processes of its own.
     def test_lockstep(self):
@@ -158,6 +165,16 @@ class LimbTest(stack.TestCase):
         self.assertEqual(launch.wait(60), 0, launch.report())
         self.assertEqual(stack.still_running([pressure_loop]), [])
 
+    # Tests that joints whose processes nobody has launched together end together all the same when one passes its limit.
+    def test_ends_without_a_launcher(self):
+        options = ("--time", "realtime", "--duration", "0", "--set", f"bus.url={self.url}", "--set", "limits.stale_input_s=5")
+        low = ("--set", "joint.hip.limits.motor_speed_rad_s=20")
+        limbs = [self.start("hydro-limb", LIMB, *options, *low, "--joints", joint, "--expect", f"joint:{other}")
+                 for joint, other in (JOINTS, reversed(JOINTS))]
+        for limb in limbs:
+            self.assertEqual(limb.wait(60), 1, limb.report())
+        limbs[1].wait_for("joint hip: .*motor_speed_limit")
+
     # Tests that a second limb on the same channels, which no launcher has seen, holds both at zero volts within two seconds, and that
     # both name it.
     def test_another_limb(self):
@@ -219,7 +236,7 @@ class LimbTest(stack.TestCase):
         refuse("hydro-sim", LIMB, "--joint", "toe", says='--joint: found "toe", allowed "hip" or "knee"')
         refuse("hydro-sim", stack.config("demo.toml"), "--joint", "hip", says="--joint: found \"hip\", allowed with")
         refuse("hydro-sim", LIMB, "--set", "joint.toe.position.c1=1", says='joint: found "toe", allowed "hip" or "knee"')
-        refuse("hydro-sim", LIMB, "--set", "joint.hip.bus.url='x'", says="joint.hip.bus: found a key that no joint has of its own")
+        refuse("hydro-sim", LIMB, "--set", "joint.hip.bus.url='x'", says="joint.hip.bus: found what all joints of the limb share")
         refuse("hydro-sim", LIMB, "--set", "limb.telemetry_hz=300",
                says='telemetry_hz: found 300, allowed plant.rate_hz = 1000 divided by a whole number, or "every_tick"')
         refuse("hydro-sim", LIMB, "--set", "limb.colour=3", says="colour.*unknown key")
@@ -263,15 +280,37 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
         self.assertIn("hip plant: the output reads back 0 V", launches["rig"].stdout)
         self.assertIn("knee plant: the output reads back 0 V", launches["desk"].stdout)
 
+    # Tests that half a limb does not begin: each half waits for the other, and names it when it does not come.
+    def test_half_a_limb(self):
+        config = with_processes(self, "hosts.toml", 'host = "rig"', 'host = "desk"')
+        for host, other in (("rig", "joint knee"), ("desk", "joint hip")):
+            launch = self.launch_on(host, "--time", "realtime", "--duration", "1", "--log", self.log_of(host), "--set",
+                                    "time.start_timeout_s=1", config=config)
+            self.assertEqual(launch.wait(60), 1, launch.report())
+            self.assertRegex(launch.stderr, "not ready after 1 s .time.start_timeout_s.: .*" + other)
+            for joint in JOINTS:
+                self.assertEqual(event_log.Log(self.log_of(host), f"_{joint}").states, [], joint)
+
+    # Tests that with "others_go_on" a joint that passes its limit on one host ends alone: that of the other host goes on to its end.
+    def test_others_go_on(self):
+        config = two_limbs(self)
+        launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "2", "--log", self.log_of(host), "--set",
+                                         "limb.on_joint_fault=others_go_on", "--set", "joint.hip.limits.motor_speed_rad_s=2",
+                                         *PATIENT, config=config) for host in ("desk", "rig")}
+        self.assertEqual(launches["rig"].wait(60), 1, launches["rig"].report())
+        self.assertEqual(launches["desk"].wait(60), 1, launches["desk"].report())
+        hip = event_log.Log(self.log_of("rig"), "_hip")
+        self.assertIn("motor_speed_limit", {f.code for f in hip.faults})
+        self.assertLess(hip.states[-1].tick, 2000)
+        self.assertEqual(event_log.Log(self.log_of("desk"), "_knee").states[-1].tick, 2000)
+
 
 class LimbCableTest(two_hosts.TestCase):
     relay_options = ("--outage", 600, 1.5)
 
     # Tests that joints on two hosts are at zero volts while neither host hears the other, and go on when they are heard again.
     def test_cable_out(self):
-        config = with_processes(self, "hosts.toml", sections="".join(
-            f'[[process]]\nprogram = "hydro-limb"\nhost = "{host}"\njoints = ["{joint}"]\n'
-            for host, joint in (("rig", "hip"), ("desk", "knee"))))
+        config = two_limbs(self)
         launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "0", "--log", self.log_of(host), "--set",
                                          "limits.stale_input_s=0.3", config=config) for host in ("desk", "rig")}
         for host, joint in (("rig", "hip"), ("desk", "knee")):

@@ -83,6 +83,12 @@ class TuningTest(fault_case.FaultCase):
         self.start_moving()
         saved = self.path("saved.toml")
         self.set("position.c2=900", "--save", saved)
+        # To the standard output it goes alone; what else is said goes to the standard error.
+        printed = self.set("--list", "--save", "-")
+        self.assertRegex(printed.stdout, r"^#")
+        self.assertRegex(printed.stdout, r"(?m)^c2 = 900 +# psi s/rad")
+        self.assertNotIn("in force", printed.stdout)
+        self.assertIn("value in force", printed.stderr)
         self.finish()
         done = subprocess.run(["diff", self.config_file, saved], capture_output=True, text=True, check=False)
         self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")

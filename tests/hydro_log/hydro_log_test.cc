@@ -243,6 +243,29 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
   }
 }
 
+// Tests that JSON and a page go to the standard output where their file is -, and nothing else then does.
+TEST_F(HydroLogTest, StandardOutput) {
+  log::WriteRun(Path("log"), log::SampleRun(9));
+  log::WriteEvents(Path("timed"), {LoopReport()});
+  const struct {
+    std::string verb, log, option, begins;
+  } cases[] = {{"summary", Path("log"), "--json", "{\n"},
+               {"timing", Path("timed"), "--json", "{\n"},
+               {"timing", Path("timed"), "--page", "<!DOCTYPE html>"}};
+  for (const auto& one : cases) {
+    const Outcome beside = HydroLog({one.verb, one.log, one.option, Path("file")});
+    const Outcome piped = HydroLog({one.verb, one.log, one.option, "-"});
+    EXPECT_EQ(piped.exit_code, 0) << piped.err;
+    EXPECT_THAT(piped.out, StartsWith(one.begins));
+    EXPECT_EQ(piped.out, log::ReadBytes(Path("file")));
+    EXPECT_EQ(piped.err, beside.out + beside.err);
+    EXPECT_FALSE(std::filesystem::exists("-"));
+  }
+  const Outcome both = HydroLog({"timing", Path("timed"), "--json", "-", "--page", "-"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.err, HasSubstr("-: found two outputs of this name"));
+}
+
 // Tests that a full disk is a failure of the work, not bad input.
 TEST_F(HydroLogTest, DiskFull) {
   log::WriteRun(Path("log"), log::SampleRun(3));
@@ -273,6 +296,10 @@ TEST_F(HydroLogTest, Joints) {
   EXPECT_EQ(HydroLog({"export", limb, "-o", Path("limb.csv")}).exit_code, 0);
   EXPECT_THAT(log::ReadBytes(Path("limb.csv")),
               AllOf(StartsWith("run,"), HasSubstr("\nlimb_hip,"), HasSubstr("\nlimb_knee,")));
+  const Outcome several = HydroLog({"import", Path("limb.csv"), "-o", Path("again")});
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_THAT(several.err, AllOf(HasSubstr("line 2, column run: found \"limb_hip\", allowed a number"),
+                                 HasSubstr("export one, a limb's joint with hydro-log export --joint NAME")));
   EXPECT_EQ(HydroLog({"export", limb, "--joint", "hip", "-o", Path("hip.csv")}).exit_code, 0);
   EXPECT_THAT(log::ReadBytes(Path("hip.csv")), StartsWith("time_s,"));
   const Outcome wrong = HydroLog({"summary", limb, "--joint", "ankle"});

@@ -233,6 +233,24 @@ TEST_F(StackLaunchTest, PatientAfterAStop) {
   EXPECT_LT(clock_.Now().time_since_epoch(), 5s);
 }
 
+// Tests that the limb says why it ends, and not a joint inside it, which has no session in lockstep.
+TEST_F(StackLaunchTest, TheLimbSaysWhy) {
+  config_.joints = {"hip"};
+  config_.bus.joint_suffixes = {"_hip"};
+  EXPECT_EQ(Run(1s,
+                [&] {
+                  stop_t stop{};
+                  stop.source = "plant";
+                  bus_.Publish("HYDRO_STOP_hip", stop);
+                  stop.session = 5;
+                  stop.source = "limb";
+                  stop.reason = "because";
+                  bus_.Publish("HYDRO_STOP", stop);
+                }),
+            0);
+  EXPECT_THAT(report_.lines, Contains("stopped by limb: because"));
+}
+
 // Tests that a stop with an error is one.
 TEST_F(StackLaunchTest, StopWithAnError) {
   EXPECT_EQ(Run(1s, [&] { PublishStop(1); }), 1);

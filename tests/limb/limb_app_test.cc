@@ -80,6 +80,25 @@ TEST_F(LimbAppTest, WhatOthersSee) {
   EXPECT_EQ(states_of_[""].back(), process_status_t::DONE);
 }
 
+// Tests that the limb describes itself again when the loggers that it waits for are there: a short run has no later description.
+TEST_F(LimbAppTest, DescribesItselfToTheLogger) {
+  int descriptions = 0;
+  bool logger = false;
+  bus_.Subscribe<run_description_t>("HYDRO_RUN", [&](const run_description_t& description) {
+    EXPECT_EQ(description.config_text, config_.common.text);
+    descriptions += logger ? 1 : 0;
+    if (std::exchange(logger, true)) return;
+    process_status_t status{};
+    status.session = 9;
+    status.role = "logger";
+    status.state = process_status_t::READY;
+    bus_.Publish("HYDRO_PROCESS_STATUS", status);
+  });
+  LimbApp app(bus_, clock_, config_, {.joints = {}, .expected = {"logger"}, .heartbeat = {}});
+  EXPECT_EQ(app.Run(), 0);
+  EXPECT_EQ(descriptions, 1);
+}
+
 // Tests that a stop on the limb's channel and one on a joint's end all joints in order.
 class LimbStopTest : public LimbAppTest, public ::testing::WithParamInterface<std::string> {};
 TEST_P(LimbStopTest, EndsAllJoints) {

@@ -63,7 +63,7 @@ class PlantFaultsTest : public ::testing::Test {
 
   int Run() {
     SimulatedRig rig(config_);
-    PlantApp plant(*bus_, clock_, config_, rig, {}, "hydro-plant", heartbeat_);
+    PlantApp plant(*bus_, clock_, config_, rig, expected_, "hydro-plant", heartbeat_);
     for (const char* role : {"pressure_ctrl", "position_ctrl"}) Status(role, 1, process_status_t::READY);
     const int exit_code = plant.Run();
     failure_ = plant.failure();
@@ -122,6 +122,7 @@ class PlantFaultsTest : public ::testing::Test {
   settings::StackConfig config_ = SmallStack();
   std::function<void(const state_t&)> on_state_;
   std::function<bool()> heartbeat_;
+  std::vector<std::string> expected_;
   bool answering_ = true;
   double voltage_ = 1.5;  // of our answers
   std::vector<state_t> states_;
@@ -190,6 +191,14 @@ class SilentJointTest : public PlantFaultsTest {
     state.session = 77;
     bus_->Publish("HYDRO_STATE_knee", state);
   }
+  void KneeSays(int8_t state, const std::string& text = "") {
+    process_status_t status{};
+    status.session = 77;
+    status.role = "plant";
+    status.state = state;
+    status.text = text;
+    bus_->Publish("HYDRO_PROCESS_STATUS_knee", status);
+  }
 };
 
 // Tests that a joint that was heard and is no longer holds zero volts until it is heard again, and that the fault says which.
@@ -224,6 +233,81 @@ TEST_F(SilentJointTest, WaitsForARearm) {
   ExpectVoltage(83, 100, 1.5);
 }
 
+// Tests that a stop of a joint, or its failure, ends this one's run too, with its name and exit code; but not where it ends at the run's last
+// tick, and not where joints do not concern each other.
+TEST_F(SilentJointTest, ItsEndIsOurs) {
+  const auto run = [this](int64_t at, int exit_code, int64_t addressee) {
+    StartAgain();
+    on_state_ = [this, at, exit_code, addressee](const state_t& s) {
+      KneeIsHeard();
+      if (s.tick != at) return;
+      stop_t stop{};
+      stop.session = 77;
+      stop.tick = at;
+      stop.addressee = addressee;
+      stop.exit_code = exit_code;
+      stop.reason = "a limit";
+      bus_->Publish("HYDRO_STOP_knee", stop);
+    };
+    return Run();
+  };
+  EXPECT_EQ(run(50, 1, 77), 1);
+  EXPECT_THAT(failure_, HasSubstr("joint knee: a limit"));
+  EXPECT_LT(states_.back().tick, 53);
+  EXPECT_EQ(run(50, 0, 0), 0);
+  EXPECT_LT(states_.back().tick, 53);
+  EXPECT_EQ(run(50, 0, 78), 0) << "another run's";
+  EXPECT_EQ(states_.back().tick, 100);
+  EXPECT_EQ(run(config_.last_tick, 0, 77), 0);
+  EXPECT_EQ(states_.back().tick, 100);
+  config_.joints_concern_each_other = false;
+  EXPECT_EQ(run(50, 1, 77), 0);
+  EXPECT_EQ(states_.back().tick, 100);
+}
+
+// Tests that a joint that has failed without a stop that was heard ends this one's run too.
+TEST_F(SilentJointTest, ItsFailureIsOurs) {
+  on_state_ = [this](const state_t& s) {
+    KneeIsHeard();
+    if (s.tick == 50) KneeSays(process_status_t::FAILED, "the board is gone");
+  };
+  EXPECT_EQ(Run(), 1);
+  EXPECT_THAT(failure_, HasSubstr("joint knee: the board is gone"));
+  EXPECT_LT(states_.back().tick, 53);
+}
+
+// Tests that the run waits for a joint of another process that it was told to expect, and names it when it does not come.
+TEST_F(SilentJointTest, IsExpected) {
+  config_.time.start_timeout_s = 0.5;
+  expected_ = {"joint:knee"};
+  EXPECT_EQ(Run(), 1);
+  EXPECT_THAT(failure_, HasSubstr("not ready after 0.5 s (time.start_timeout_s): joint knee"));
+  EXPECT_THAT(states_, IsEmpty());
+  StartAgain();
+  bus_->Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [this](const process_status_t& status) {
+    if (status.role == "plant" && status.state == process_status_t::READY) KneeSays(process_status_t::READY);
+  });
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(states_.back().tick, 100);
+}
+
+// Tests that a joint that is about to begin is told at once which faults this one has.
+TEST_F(SilentJointTest, ANewcomerIsToldOfFaults) {
+  std::vector<std::string> told;
+  bus_->Subscribe<active_faults_t>("HYDRO_ACTIVE_FAULTS",
+                                   [&](const active_faults_t& active) { told.push_back(active.codes); });
+  size_t before = 0;
+  on_state_ = [&](const state_t& s) {
+    if (s.tick <= 20) KneeIsHeard();
+    if (s.tick != 50) return;
+    before = told.size();
+    KneeSays(process_status_t::READY);
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_GT(told.size(), before);
+  EXPECT_EQ(told[before], "joint_gone");
+}
+
 // Tests that neither a joint that was never heard nor one that has said that it leaves is missed, though a state of it comes late.
 TEST_F(SilentJointTest, WhoLeavesIsNotMissed) {
   EXPECT_EQ(Run(), 0);
@@ -232,11 +316,7 @@ TEST_F(SilentJointTest, WhoLeavesIsNotMissed) {
   on_state_ = [this](const state_t& s) {
     if (s.tick <= 30) KneeIsHeard();
     if (s.tick != 30) return;
-    process_status_t left{};
-    left.session = 77;
-    left.role = "plant";
-    left.state = process_status_t::DONE;
-    bus_->Publish("HYDRO_PROCESS_STATUS_knee", left);
+    KneeSays(process_status_t::DONE);
     KneeIsHeard();
   };
   EXPECT_EQ(Run(), 0);

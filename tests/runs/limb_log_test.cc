@@ -29,6 +29,15 @@ log::EventContents StatusOn(const std::string& suffix) {
   return {bus::Channels(suffix).Of<process_status_t>(), data, 0};
 }
 
+// What a limb says of itself.
+log::EventContents DescriptionEvent(const std::string& config_text) {
+  run_description_t description{};
+  description.config_text = config_text;
+  std::string data(static_cast<size_t>(description.getEncodedSize()), '\0');
+  description.encode(data.data(), 0, static_cast<int>(data.size()));
+  return {"HYDRO_RUN", data, 0};
+}
+
 // What a limb sends of a run: a state in `interval` ticks, numbered anew.
 RunMessages Sampled(int64_t ticks, int64_t interval) {
   RunMessages run = log::SampleRun(ticks);
@@ -125,6 +134,40 @@ TEST_F(LimbLogTest, AllJoints) {
   for (const ChannelSummary& channel : log.joints[0].channels)
     EXPECT_THAT(channel.channel, testing::EndsWith("_hip"));
   EXPECT_FALSE(ReadLimbLog(Path("log"), {.joint = "hip"}).whole());
+}
+
+// Tests that joints come in the order of the limb's configuration where the log has it, that those it does not name come last, and that
+// text that is no configuration changes nothing.
+TEST_F(LimbLogTest, JointsInTheOrderOfTheConfiguration) {
+  const auto names = [&](const std::string& config_text) {
+    Write({{"_ankle", log::SampleRun(3)}, {"_hip", log::SampleRun(3)}, {"_knee", log::SampleRun(3)}});
+    std::vector<log::EventContents> all = log::ReadEvents(Path("log"));
+    all.insert(all.begin(), DescriptionEvent(config_text));
+    log::WriteEvents(Path("log"), all);
+    std::vector<std::string> joints;
+    for (const RunLog& joint : ReadLimbLog(Path("log"), {}).joints) joints.push_back(joint.joint);
+    return joints;
+  };
+  EXPECT_THAT(names("[[joint]]\nname = 'knee'\n[[joint]]\nname = 'hip'\n"),
+              ElementsAre("knee", "hip", "ankle"));
+  for (const std::string text : {"", "[[joint", "joint = 5", "joint = [1, {name = 2}]"})
+    EXPECT_THAT(names(text), ElementsAre("ankle", "hip", "knee")) << text;
+  names("[[joint]]\nname = 'knee'\n[[joint]]\nname = 'hip'\n");
+  const LimbLog ordered = ReadLimbLog(Path("log"), {});
+  EXPECT_THAT(LimbSummaryText(SummariseLimb(ordered, false)), HasSubstr("--joint knee and so on"));
+  Write({{"_ankle", log::SampleRun(3)}, {"_hip", log::SampleRun(3)}, {"_knee", log::SampleRun(3)}});
+  EXPECT_EQ(FirstDifference(ordered, "a", ReadLimbLog(Path("log"), {}), "b"), std::nullopt);
+}
+
+// Tests that a joint of a limb with an [arm] is known as one, by its limb's description.
+TEST_F(LimbLogTest, JointOfAnArm) {
+  for (const bool arm : {false, true}) {
+    Write({{"_hip", log::SampleRun(30)}, {"_knee", log::SampleRun(30)}});
+    std::vector<log::EventContents> all = log::ReadEvents(Path("log"));
+    all.push_back(DescriptionEvent(std::string("[[joint]]\nname = 'hip'\n") + (arm ? "[arm]\n" : "")));
+    log::WriteEvents(Path("log"), all);
+    EXPECT_EQ(ReadMeasuredRun(Path("log") + "#knee").in_an_arm, arm);
+  }
 }
 
 // Tests that limbs are compared joint by joint, and that a joint in one of them alone is a difference.

@@ -47,7 +47,7 @@ TEST(LogRunTest, RefusesOthers) {
   EXPECT_THROW(OpenLogRuns(file, "nothing", &problem), InputError);
 }
 
-// Tests that each joint of a limb is a run, that one can be chosen, and that what the limb itself says counts for each.
+// Tests that each joint of a limb is a run, in the order of its configuration, that one can be chosen, and that what the limb itself says counts for each.
 TEST(LogRunTest, OpensTheJointsOfALimb) {
   const std::string file = TestFile("limb.lcmlog");
   log::LogWriter writer(file, Opening::kTemporary);
@@ -61,15 +61,18 @@ TEST(LogRunTest, OpensTheJointsOfALimb) {
       writer.Append(message.channel, message.data.data(), message.data.size(), message.utime);
     }
   }
+  run_description_t description{};
+  description.config_text = "[[joint]]\nname = 'knee'\n[[joint]]\nname = 'hip'\n";
+  writer.AppendMessage("HYDRO_RUN", description, 0);
   const RecordedMessage status = Encoded("HYDRO_PROCESS_STATUS", limb, 0);
   writer.Append(status.channel, status.data.data(), status.data.size(), status.utime);
   writer.Finish();
   std::string problem;
   const auto runs = OpenLogRuns(file, "limb.lcmlog", &problem);
   ASSERT_EQ(runs.size(), 2u);
-  EXPECT_EQ(runs[0]->name, "hip of limb.lcmlog");
-  EXPECT_EQ(runs[1]->name, "knee of limb.lcmlog");
-  EXPECT_EQ(runs[1]->suffix, "_knee");
+  EXPECT_EQ(runs[0]->name, "knee of limb.lcmlog");
+  EXPECT_EQ(runs[1]->name, "hip of limb.lcmlog");
+  EXPECT_EQ(runs[0]->suffix, "_knee");
   for (const auto& run : runs) {
     EXPECT_EQ(run->ticks.end(), 501u);
     EXPECT_TRUE(run->processes.contains("limb on here"));

@@ -6,9 +6,13 @@
 namespace hydro::settings {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 constexpr char kJoints[] = R"(
 [limb]
@@ -101,7 +105,8 @@ TEST_F(LimbConfigTest, JointAlone) {
   EXPECT_EQ(alone.siblings[0].suffix, "_hip");
   const StackConfig unconcerned = LoadStackConfig(File(std::string(kConfigText) + kJoints),
                                                   {"joint=knee", "limb.on_joint_fault=others_go_on"});
-  EXPECT_THAT(unconcerned.siblings, IsEmpty());
+  EXPECT_FALSE(unconcerned.joints_concern_each_other);
+  EXPECT_TRUE(alone.joints_concern_each_other);
 }
 
 // Tests that in real time a joint alone waits for another's states as long as for any input, and three of their intervals.
@@ -139,6 +144,15 @@ TEST_F(LimbConfigTest, Processes) {
       Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n[[process]]\n"
                                    "program = \"hydro-limb\"\njoints = [\"knee\", \"hip\"]\n"),
       HasSubstr("process.joints: found a second process with the joint \"hip\", allowed one"));
+  EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n"),
+              HasSubstr("process: found no process that runs the joint \"knee\", allowed one"));
+  EXPECT_THAT(Error(std::string(kJoints) +
+                    "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\", \"knee\", \"hip\"]\n"),
+              HasSubstr("process.joints: found \"hip\" twice, allowed each joint once"));
+  EXPECT_THAT(
+      Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\", \"knee\"]\n"
+                                   "[[process]]\nprogram = \"hydro-limb\"\n"),
+      HasSubstr("process: found hydro-limb, but other processes have all joints"));
   EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\n"),
               HasSubstr("found hydro-plant without a joint"));
   EXPECT_THAT(Error(std::string(kJoints) + "[[process]]\nprogram = \"hydro-plant\"\njoint = \"toe\"\n"),
@@ -151,11 +165,15 @@ TEST_F(LimbConfigTest, Wrong) {
               HasSubstr("joint.name: found \"a b\", allowed a name of up to 24"));
   EXPECT_THAT(Error("[[joint]]\n[joint.model]\n"), HasSubstr("joint.name: found nothing"));
   EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[[joint]]\nname = \"a\"\n"), HasSubstr("a second joint \"a\""));
-  EXPECT_THAT(Error("[joint]\nname = \"a\"\n"),
-              HasSubstr("joint: found a section, allowed sections [[joint]]"));
-  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.bus]\nurl = \"x\"\n"),
-              HasSubstr("joint.a.bus: found a key that no joint has of its own"));
-  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.position]\nc3 = 1\n"), HasSubstr("c3"));
+  EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint.postion]\nc1 = 1\n"),
+              AllOf(HasSubstr("joint.a.postion: found a key that no joint has of its own"),
+                    HasSubstr("did you mean \"position\"?")));
+  for (const std::string section : {"bus", "time", "plant", "logger", "scope"}) {
+    EXPECT_THAT(Error("[[joint]]\nname = \"a\"\n[joint." + section + "]\nx = 1\n"),
+                HasSubstr("joint.a." + section +
+                          ": found what all joints of the limb share, allowed it outside [[joint]], as [" +
+                          section + "]"));
+  }
   EXPECT_THAT(Error("[limb]\ntelemetry_hz = 3\n[[joint]]\nname = \"a\"\n"),
               HasSubstr("telemetry_hz: found 3"));
   EXPECT_THAT(Error("[limb]\non_joint_fault = \"panic\"\n[[joint]]\nname = \"a\"\n"),
@@ -168,6 +186,37 @@ TEST_F(LimbConfigTest, Wrong) {
         InputErrorOf([&] { LoadStackConfig(File(std::string(kConfigText) + "[" + section + "]\n")); }),
         HasSubstr(section + ": found it without joints, allowed it with [[joint]] sections"));
   }
+}
+
+// Tests that single brackets around the name of a list are told from other mistakes, at the line of the first.
+TEST_F(LimbConfigTest, SingleBrackets) {
+  const size_t lines = static_cast<size_t>(std::ranges::count(std::string(kConfigText), '\n'));
+  const std::string one = "[joint]\nname = \"a\"\n", listed = "[[joint]]\nname = \"b\"\n";
+  const std::string said = "limb.toml:" + std::to_string(lines + 1) +
+                           ": joint: found a section [joint], allowed a list of sections: write [[joint]]";
+  for (const std::string& text : {one, one + one, one + listed}) EXPECT_THAT(Error(text), EndsWith(said));
+  EXPECT_THAT(Error(listed + one), HasSubstr("write [[joint]]"));
+  EXPECT_THAT(Error(listed + "[process]\nprogram = \"hydro-limb\"\n"), HasSubstr("write [[process]]"));
+  EXPECT_THAT(Error(listed + "[arm]\n[arm.link]\nmass = 1\n"), HasSubstr("write [[arm.link]]"));
+}
+
+// Tests that a mistake in a joint's own section, or one that only this joint makes, names the joint; one of all joints does not.
+TEST_F(LimbConfigTest, ErrorsNameTheJoint) {
+  const std::string text = "[[joint]]\nname = \"hip\"\n[[joint]]\nname = \"knee\"\n";
+  EXPECT_THAT(Error(text + "[joint.position]\nC2 = 1\n"),
+              AllOf(HasSubstr(": joint knee: position: \"C2\": found an unknown key"),
+                    HasSubstr("did you mean \"c2\"?")));
+  EXPECT_THAT(Error(text + "[joint.reference]\nkind = \"sin\"\n"),
+              ContainsRegex("limb.toml:[0-9]+: joint knee: reference.kind: found \"sin\""));
+  EXPECT_THAT(Error(text, {"joint.knee.position.c1=-1"}),
+              StartsWith("--set joint.knee.position.c1=-1: joint knee: position.c1: found -1"));
+  EXPECT_THAT(Error(text, {"position.c1=-1"}), StartsWith("--set position.c1=-1: position.c1: found -1"));
+  // The common motion is wrong for the joint that is not driven.
+  const std::string alone = InputErrorOf([&] {
+    LoadStackConfig(File(std::string(kConfigText) + text), {"joint=knee", "joint.knee.limits.return_s=-1"});
+  });
+  EXPECT_THAT(alone, HasSubstr("joint knee: limits.return_s"));
+  EXPECT_THAT(Error(text + "[joint.model]\nshaft = \"driven\"\n"), HasSubstr(": joint knee: "));
 }
 
 // Tests that an arm has a link for each joint, is read, and is checked.
@@ -187,7 +236,8 @@ TEST_F(LimbConfigTest, Arm) {
   EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + "[[arm.link]]\nmass = 1\n"),
               HasSubstr("length"));
   EXPECT_THAT(Error(std::string(kJoints) + "[arm]\n" + link + link +
-                    "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n"),
+                    "[[process]]\nprogram = \"hydro-limb\"\njoints = [\"hip\"]\n[[process]]\nprogram = "
+                    "\"hydro-limb\"\n"),
               HasSubstr("found some of the joints of an [arm], allowed all of them in one hydro-limb"));
 }
 

@@ -264,8 +264,8 @@ const std::vector<Malformed>& Table() {
       {With("[noise]\nseed = 1.5\n"), "stack.toml:16: ", "noise.seed: found 1.5"},
       {With("[noise]\nseed = 99999999999999999999\n"), "stack.toml:16: ", "syntax: "},
       // [[process]]
-      {With("[process]\nprogram = \"hydro-plant\"\n"),
-       "stack.toml:15: ", "process: found a section, allowed sections [[process]]"},
+      {With("[process]\nprogram = \"hydro-plant\"\n"), "stack.toml:15: ",
+       "process: found a section [process], allowed a list of sections: write [[process]]"},
       {"process = [1]\n" + With(""), "stack.toml:1: ", "process: found 1, allowed sections [[process]]"},
       {With("[[process]]\ncpu = 1\n"),
        "stack.toml:15: ", "process.program: found nothing, allowed the program's name"},

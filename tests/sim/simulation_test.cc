@@ -190,13 +190,14 @@ TEST(SimulationTest, NeedsADuration) {
   EXPECT_THROW(Simulate(config, nullptr), InputError);
 }
 
-// Tests that each joint of a limb says, message by message and bit by bit, what it says alone.
+// Tests that each joint of a limb says, message by message and bit by bit, what it says alone, and that the limb describes itself.
 TEST(SimulateLimbTest, EachJointAsAlone) {
   const settings::LimbConfig limb = testing::SmallLimb({"hip", "knee", "ankle"});
   Recording together;
   const SimulationResult result = SimulateLimb(limb, together.Tap());
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.ticks, 100);
+  EXPECT_THAT(together.Bytes("HYDRO_RUN"), ::testing::ElementsAre(::testing::HasSubstr(limb.common.text)));
   for (const settings::JointConfig& joint : limb.joints) {
     Recording alone;
     EXPECT_EQ(Simulate(joint.config, alone.Tap()).exit_code, 0);

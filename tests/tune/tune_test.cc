@@ -11,6 +11,7 @@
 
 #include "base/text_file.h"
 #include "settings/stack_config.h"
+#include "settings/toml/toml_document.h"
 #include "tests/settings/texts.h"
 #include "tune/gains.h"
 #include "tune/simulated_step.h"
@@ -84,6 +85,18 @@ TEST_F(TuneProgram, KeepsToFixedGainsWhenAsked) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, Not(HasSubstr("eq. (17) alone")));
   EXPECT_FALSE(settings::LoadStackConfig(tuned).position.braking_rad_s2);
+}
+
+// Tests that - is the standard output, that all else then goes to the standard error, and that the advice names a file.
+TEST_F(TuneProgram, WritesToTheStandardOutput) {
+  const Outcome outcome = Run("cd " HYDRO_CONFIG " && " HYDRO_TUNE,
+                              kRetuned + " --fixed-gains --goal step_rad=0.1 --samples 0 -o -");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(std::string(HYDRO_CONFIG) + "/-"));
+  EXPECT_EQ(settings::ParseToml(outcome.out, "out").Find("model")->Find("file")->text, "models/table1.toml");
+  EXPECT_THAT(outcome.out, HasSubstr("# psi s/rad"));
+  EXPECT_THAT(outcome.err, HasSubstr("as configured: pressure loop 150 rad/s"));
+  EXPECT_THAT(outcome.err, HasSubstr("next: hydro-sim TUNED.toml -o tuned.lcmlog"));
 }
 
 TEST_F(TuneProgram, RefusesGoalsWithTheLimitAndWritesNothing) {

@@ -29,9 +29,12 @@ TimingHistogram Read(const loop_histogram_t& message) {
   return histogram;
 }
 
+// "knee plant" is the plant of a limb's joint.
+std::string RoleIn(const std::string& name) { return name.substr(name.rfind(' ') + 1); }
+
 size_t PlaceOf(const std::string& role) {
-  static const std::array<std::string, 5> kOrder{"plant", "driver", "pressure_ctrl", "position_ctrl",
-                                                 "logger"};
+  static const std::array<std::string, 6> kOrder{"limb",          "plant",         "driver",
+                                                 "pressure_ctrl", "position_ctrl", "logger"};
   return static_cast<size_t>(std::find(kOrder.begin(), kOrder.end(), role) - kOrder.begin());
 }
 
@@ -125,13 +128,15 @@ std::vector<TimedProcess> TimingRecord::Processes() const {
     processes.push_back(std::move(process));
   }
   std::stable_sort(processes.begin(), processes.end(), [](const TimedProcess& a, const TimedProcess& b) {
-    return std::tuple(PlaceOf(a.role), a.role, a.session) < std::tuple(PlaceOf(b.role), b.role, b.session);
+    return std::tuple(PlaceOf(RoleIn(a.role)), a.role, a.session) <
+           std::tuple(PlaceOf(RoleIn(b.role)), b.role, b.session);
   });
   return processes;
 }
 
-const char* MeaningOfLatency(const std::string& role) {
-  if (role == "plant" || role == "driver") return "wake-up after its deadline";
+const char* MeaningOfLatency(const std::string& name) {
+  const std::string role = RoleIn(name);
+  if (role == "plant" || role == "driver" || role == "limb") return "wake-up after its deadline";
   if (role == "logger") return "arrival of a message to its write";
   return "arrival of a state to the command sent";
 }

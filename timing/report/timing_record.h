@@ -58,6 +58,6 @@ class TimingRecord {
 };
 
 // What `latency` means for a role, in a few words.
-const char* MeaningOfLatency(const std::string& role);
+const char* MeaningOfLatency(const std::string& name);
 
 }  // namespace hydro::timing
