@@ -240,7 +240,7 @@ class BatchTest(stack.TestCase):
 
     # Tests that SIGINT and SIGTERM end a study cleanly: one line, exit code 1, no process left, and the rest runs afterwards.
     def test_stop_signals(self):
-        study = self.study('draws = 6\n[[step]]\nrun = ["sh", "-c", "echo $$ > pid; exec sleep 0.3"]\n')
+        study = self.study('draws = 6\n[[step]]\nrun = ["sh", "-c", "echo $$ > pid; exec sleep 0.3", "{case}"]\n')
         for number in (signal.SIGINT, signal.SIGTERM):
             shutil.rmtree(self.path("out"), ignore_errors=True)
             driver = self.start("hydro-batch", study, "--out", self.path("out"), "--jobs", 2)
@@ -257,7 +257,7 @@ class BatchTest(stack.TestCase):
     # Tests that a second driver is refused with the first's name, that --status tells of it meanwhile, and that after its end, however
     # sudden, the folder is free.
     def test_one_driver_at_a_time(self):
-        study = self.study('draws = 2\n[[step]]\nrun = ["sleep", "60"]\n')
+        study = self.study('[[grid]]\nkey = "a"\nvalues = [1, 2]\n[[step]]\nrun = ["sleep", "60"]\n')
         driver = self.start("hydro-batch", study, "--out", self.path("out"))
         self.wait_until(lambda: os.path.exists(self.path("out/lock")), "the lock")
         self.wait_until(lambda: "driven by" in self.batch("--status", self.path("out")).stdout, "a driver in the status")
@@ -279,7 +279,7 @@ values = [1, 2, 3]
 run = ["sh", "-c", "echo {{case}} >> {self.folder}/ran; [ {{value:k}} != 2 ] || [ -e {self.folder}/mended ] || {{ echo no twos >&2; exit 9; }}"]
 """.replace("{{", "{").replace("}}", "}"))
         done = self.batch(study, "--out", self.path("out"), "--jobs", 1, expect=1)
-        self.assertEqual(self.one_line(done), "hydro-batch: 1 cases failed, the first: case 1: step 1: sh ended with exit code 9: no twos\n")
+        self.assertEqual(self.one_line(done), "hydro-batch: 1 case failed, the first: case 1: step 1: sh ended with exit code 9: no twos\n")
         self.batch(study, "--out", self.path("out"), expect=1)
         with open(self.path("ran"), encoding="utf-8") as file:
             self.assertEqual(file.read().split(), ["0", "1", "1", "1", "2"])
@@ -345,7 +345,7 @@ find out/cases -name '*.failed' | wc -l
         bad = {
             'config = "none.toml"\n': "none.toml",
             f'config = "{config}"\nsed = 1\n': 'bad.toml:2: "sed": found an unknown key',
-            f'config = "{config}"\n[[grid]]\nkey = "position.c3"\nvalues = [1]\n': "case 0 (position.c3 = 1): ",
+            f'config = "{config}"\n[[grid]]\nkey = "position.c3"\nvalues = [1]\n': 'bad.toml:3: position.c3 = 1: position: "c3": found an unknown key',
             '[[step]]\nrun = ["hydro-nonsense"]\n': 'step.run: found "hydro-nonsense"',
             '[[step]]\nrun = ["echo", "{valeu:k}"]\n': "step.run: found {valeu:k}",
         }
