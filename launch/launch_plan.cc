@@ -8,7 +8,7 @@
 
 #include "process/own_program.h"
 #include "process/role.h"
-#include "settings/limb_config.h"
+#include "settings/limb_processes.h"
 #include "settings/process_sections.h"
 
 namespace hydro::launch {

@@ -8,6 +8,7 @@
 #include "base/did_you_mean.h"
 #include "base/text_file.h"
 #include "settings/overrides.h"
+#include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

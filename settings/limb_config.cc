@@ -8,10 +8,12 @@
 #include "model/terms/model_error.h"
 #include "settings/joint_documents.h"
 #include "settings/joint_stacks.h"
+#include "settings/limb_processes.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
+#include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
@@ -108,74 +110,6 @@ void PutProcesses(const TomlNode& root, TomlNode* common) {
   common->members.push_back({"process", std::move(processes)});
 }
 
-void CheckJoint(const std::string& joint, const ProcessSection& process, const StackConfig& common) {
-  if (std::find(common.joints.begin(), common.joints.end(), joint) != common.joints.end()) return;
-  throw KeyError(process.place, "process." + std::string(process.joint.empty() ? "joints" : "joint"),
-                 Quoted(joint), QuotedList(common.joints));
-}
-
-// `in_limbs`: the joints that a hydro-limb has.
-void CheckEachJointRuns(const StackConfig& common, const std::vector<std::string>& in_limbs) {
-  for (const std::string& joint : common.joints) {
-    const bool own =
-        std::any_of(common.processes.begin(), common.processes.end(), [&](const ProcessSection& process) {
-          return process.joint == joint && (process.role == "plant" || process.role == "driver");
-        });
-    if (own || std::find(in_limbs.begin(), in_limbs.end(), joint) != in_limbs.end()) continue;
-    const std::string place = common.processes.empty() ? common.file : common.processes.front().place;
-    throw KeyError(
-        place, "process", "no process that runs the joint " + Quoted(joint),
-        "one: hydro-limb with it in joints, or hydro-plant or hydro-driver with joint = " + Quoted(joint));
-  }
-}
-
-// Each joint is run by one process, or by one stack of them.
-void CheckProcesses(const StackConfig& common) {
-  std::vector<std::string> taken;
-  for (const ProcessSection& process : common.processes) {
-    const bool whole = process.role == "limb" || process.role == "logger";
-    if (whole && !process.joint.empty()) {
-      throw KeyError(process.place, "process.joint", Quoted(process.joint), "none for " + NameOf(process));
-    }
-    if (!whole && process.joint.empty()) {
-      throw KeyError(
-          process.place, "process.program", NameOf(process) + " without a joint",
-          "joint = \"NAME\" beside it, or hydro-limb, which has the joints that no other process has");
-    }
-    if (!process.joint.empty()) CheckJoint(process.joint, process, common);
-    if (process.role != "limb") continue;
-    std::vector<std::string> named;
-    for (const std::string& joint : process.joints) {
-      CheckJoint(joint, process, common);
-      if (std::find(named.begin(), named.end(), joint) != named.end())
-        throw KeyError(process.place, "process.joints", Quoted(joint) + " twice", "each joint once");
-      named.push_back(joint);
-    }
-    const std::vector<std::string> joints = JointsOf(process, common);
-    if (joints.empty()) {
-      throw KeyError(process.place, "process", "hydro-limb, but other processes have all joints",
-                     "it with joints that no other has: name them in joints");
-    }
-    for (const std::string& joint : joints) {
-      if (std::find(taken.begin(), taken.end(), joint) != taken.end()) {
-        throw KeyError(process.place, "process.joints", "a second process with the joint " + Quoted(joint),
-                       "one process for each joint");
-      }
-      taken.push_back(joint);
-    }
-  }
-  CheckEachJointRuns(common, taken);
-}
-
-// What couples the joints is simulated in one process.
-void CheckArmIsWhole(const StackConfig& common) {
-  for (const ProcessSection& process : common.processes) {
-    if (process.role == "logger" || JointsOf(process, common) == common.joints) continue;
-    throw KeyError(process.place, process.joint.empty() ? "process.joints" : "process.joint",
-                   "some of the joints of an [arm]", "all of them in one hydro-limb");
-  }
-}
-
 // What the parts of a limb must have in common: all of every joint.
 std::string AgreedByAll(const std::vector<JointConfig>& joints) {
   std::string text;
@@ -208,22 +142,6 @@ LimbSection ReadLimbSection(const TomlNode& root, double rate_hz, std::vector<As
   SectionReader document(root, "", asked);
   ReadLimb(document.Section("limb"), rate_hz, &limb);
   return limb;
-}
-
-std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common) {
-  if (!process.joint.empty()) return {process.joint};
-  std::vector<std::string> joints;
-  for (const std::string& joint : common.joints) {
-    const auto has = [&](const ProcessSection& other) {
-      return other.joint == joint ||
-             std::find(other.joints.begin(), other.joints.end(), joint) != other.joints.end();
-    };
-    const bool mine = !process.joints.empty()
-                          ? has(process)
-                          : std::none_of(common.processes.begin(), common.processes.end(), has);
-    if (mine) joints.push_back(joint);
-  }
-  return joints;
 }
 
 double AllowedSilence(const StackConfig& own, const LimbSection& limb) {

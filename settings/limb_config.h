@@ -59,7 +59,4 @@ StackConfig LoadCommonConfig(const std::string& file, const std::vector<std::str
 // lost.
 double AllowedSilence(const StackConfig& own, const LimbSection& limb);
 
-// The joints that a process of a limb has, in the order of the configuration.
-std::vector<std::string> JointsOf(const ProcessSection& process, const StackConfig& common);
-
 }  // namespace hydro::settings

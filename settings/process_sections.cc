@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "settings/toml/section_lists.h"
+
 namespace hydro::settings {
 namespace {
 

@@ -3,13 +3,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <sstream>
 
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "settings/toml/section_lists.h"
 
 namespace hydro::settings {
 namespace {
@@ -84,33 +83,6 @@ class DepthScan {
   size_t at_ = 0;
   int line_ = 1;
 };
-
-// The sections of this project's documents that are lists.
-constexpr std::array kLists{"joint", "process", "arm.link"};
-
-// A line without blanks and comment.
-std::string Bare(std::string_view line) {
-  std::string bare(line.substr(0, line.find('#')));
-  std::erase_if(bare, [](unsigned char c) { return std::isspace(c); });
-  return bare;
-}
-
-// What toml++ calls a table defined twice, at line `at`, may be a list whose sections have single brackets. Throws InputError then, for the
-// first of them.
-void RefuseSingleBrackets(std::string_view text, const std::string& name, size_t at) {
-  std::vector<std::string> lines;
-  for (size_t begin = 0; begin < text.size() && lines.size() < at;) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(Bare(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  for (const std::string list : kLists) {
-    const std::string single = "[" + list + "]";
-    if (lines.empty() || (lines.back() != single && lines.back() != "[" + single + "]")) continue;
-    const auto first = std::find(lines.begin(), lines.end(), single);
-    if (first != lines.end()) throw NotAList(name + ":" + std::to_string(first - lines.begin() + 1), list);
-  }
-}
 
 TomlNode Convert(const toml::node& from, const std::string& name) {
   TomlNode node;
@@ -209,11 +181,6 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
   node.kind = TomlNode::Kind::kArray;
   node.items = std::move(items);
   return node;
-}
-
-InputError NotAList(const std::string& place, const std::string& name) {
-  return InputError(place + ": " + name + ": found a section [" + name +
-                    "], allowed a list of sections: write [[" + name + "]]");
 }
 
 TomlNode ParseToml(const std::string& text, const std::string& name) {

@@ -49,9 +49,6 @@ TomlNode ArrayNode(std::vector<TomlNode> items);
 // project.
 TomlNode ParseToml(const std::string& text, const std::string& name);
 
-// For the section `name` of a list of sections, where it stands as [name].
-InputError NotAList(const std::string& place, const std::string& name);
-
 // TOML text that ParseToml reads back as the same tree, doubles bit by bit.
 std::string FormatToml(const TomlNode& table);
 

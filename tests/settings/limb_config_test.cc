@@ -1,6 +1,7 @@
 #include "settings/limb_config.h"
 
 #include "settings/joint_documents.h"
+#include "settings/limb_processes.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {
@@ -211,12 +212,13 @@ TEST_F(LimbConfigTest, ErrorsNameTheJoint) {
   EXPECT_THAT(Error(text, {"joint.knee.position.c1=-1"}),
               StartsWith("--set joint.knee.position.c1=-1: joint knee: position.c1: found -1"));
   EXPECT_THAT(Error(text, {"position.c1=-1"}), StartsWith("--set position.c1=-1: position.c1: found -1"));
-  // The common motion is wrong for the joint that is not driven.
   const std::string alone = InputErrorOf([&] {
     LoadStackConfig(File(std::string(kConfigText) + text), {"joint=knee", "joint.knee.limits.return_s=-1"});
   });
   EXPECT_THAT(alone, HasSubstr("joint knee: limits.return_s"));
-  EXPECT_THAT(Error(text + "[joint.model]\nshaft = \"driven\"\n"), HasSubstr(": joint knee: "));
+  // Steps that all share, and that go too far for the knee alone.
+  EXPECT_THAT(Error(text + "[joint.limits]\narm_angle_rad = 0.05\n"),
+              ContainsRegex("limb.toml:[0-9]+: joint knee: reference.steps: found arm angle"));
 }
 
 // Tests that an arm has a link for each joint, is read, and is checked.
