@@ -118,7 +118,9 @@ int RunStudy(const BatchOptions& options) {
   if (counts.missing > 0 && !options.slurm.on) {
     std::fprintf(stderr, "hydro-batch: %lld stored results are not whole; their cases run again\n",
                  static_cast<long long>(counts.missing));
-    if (RunAll(study, options, folder).stopped) return Stopped();
+    BatchOptions missing_only = options;  // the failed ones have just run again
+    missing_only.failed_again = false;
+    if (RunAll(study, missing_only, folder).stopped) return Stopped();
     counts = FinishStudy(folder, Jobs(options));
   }
   return Told(study, folder, counts);

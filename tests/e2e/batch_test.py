@@ -196,6 +196,19 @@ class BatchTest(stack.TestCase):
         self.assertIn("2 stored results are not whole; their cases run again", done.stderr)
         self.assertEqual(results(self.path("reference")), reference)
 
+    # Tests that --again runs failed cases once, also where a torn result has others run after them.
+    def test_again_beside_a_torn_case(self):
+        ran = self.path("ran")
+        study = self.study('[[grid]]\nkey = "a"\nvalues = [1, 2]\n[[step]]\nrun = ["sh", "-c", '
+                           f'"echo {{value:a}} >> {ran}; exit $(({{value:a}} - 1))"]\n')
+        self.batch(study, "--out", self.path("out"), expect=1)
+        with open(self.path("out/cases/000/000/000/result.json"), "w", encoding="utf-8"):
+            pass
+        done = self.batch(study, "--out", self.path("out"), "--again", expect=1)
+        self.assertIn("1 stored results are not whole", done.stderr)
+        with open(ran, encoding="utf-8") as file:
+            self.assertEqual(sorted(file.read().split()), ["1", "1", "2", "2"])
+
     # Tests that the studies of docs/studies.md are studies whose cases are all done.
     def test_the_pages_studies(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
