@@ -10,7 +10,7 @@ namespace {
 // faults.
 settings::StackConfig InsideALimb(settings::StackConfig config) {
   config.agreed.clear();
-  config.siblings.clear();  // its limb looks after them
+  config.siblings.clear();
   config.bus.limb_suffix.reset();
   return config;
 }

@@ -127,7 +127,7 @@ int LimbApp::Run() {
 }
 
 bool LimbApp::Ended() const {
-  return participant_.stop().has_value() || (elsewhere_.follows() && elsewhere_.stop()) ||
+  return participant_.stop().has_value() || elsewhere_.stop().has_value() ||
          process::StopSignal(participant_.bus()) != 0;
 }
 
@@ -217,8 +217,7 @@ void LimbApp::RunRealtime() {
   while (!Ended()) {
     const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    if (elsewhere_.follows())
-      limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
+    limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
     const bool goes_on = limb_.StepRealtime({elapsed, loop.skipped(), loop.woke(), loop.late()});
     participant_.set_tick(limb_.tick());
     if (!goes_on) return;
@@ -242,8 +241,7 @@ void LimbApp::Poll() {
 
 // What ends the limb, or one joint of it, ends all, and each says so.
 void LimbApp::AgreeOnTheEnd() {
-  if (const auto& stop = elsewhere_.stop(); stop && elsewhere_.follows())
-    participant_.RequestStop(stop->reason, stop->exit_code);
+  if (const auto& stop = elsewhere_.stop()) participant_.RequestStop(stop->reason, stop->exit_code);
   for (const auto& joint : limb_.joints()) {
     const auto& stop = joint->plant().participant().stop();
     if (stop && stop->exit_code == 0) participant_.RequestStop(stop->reason, 0, stop->source);

@@ -129,6 +129,7 @@ class PlantApp {
   [[gnu::cold]] void CheckAll(bus::Clock::TimePoint now);
   void CheckCommand(bus::Clock::TimePoint now);
   void CheckCommandIsFresh();
+  void HoldWhile(VoltageGuard::Cause cause, const std::string& text);
   void CheckSupervisor(bus::Clock::TimePoint now);
   void OnMotorCommand(const motor_command_t& command);
   void ForgetCommandsOf(int64_t session);

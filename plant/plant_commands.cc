@@ -112,14 +112,12 @@ std::string PlantApp::OwnFault() const {
   return cause.empty() ? "the pressure loop commands a safe output" : cause;
 }
 
-void PlantApp::HoldForOthers(const std::string& text) {
-  safety_.Set(VoltageGuard::Cause::kOtherJoint, !text.empty(), [&] {
-    return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN};
-  });
-}
+void PlantApp::HoldForOthers(const std::string& text) { HoldWhile(VoltageGuard::Cause::kOtherJoint, text); }
 
-void PlantApp::HoldForSilence(const std::string& text) {
-  safety_.Set(VoltageGuard::Cause::kJointGone, !text.empty(), [&] {
+void PlantApp::HoldForSilence(const std::string& text) { HoldWhile(VoltageGuard::Cause::kJointGone, text); }
+
+void PlantApp::HoldWhile(VoltageGuard::Cause cause, const std::string& text) {
+  safety_.Set(cause, !text.empty(), [&] {
     return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN};
   });
 }

@@ -87,6 +87,13 @@ Surface WantedSurface(const Study& study) {
   return MakeSurface(study, numeric[0], numeric[1], number);
 }
 
+// Between the two values around a place, which counts from 0 and is at most that of the last.
+double ValueAt(const std::vector<double>& values, double place) {
+  const auto below = static_cast<size_t>(place);
+  const size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
 }  // namespace
 
 size_t SurfaceAxis::CellOf(double value) const {
@@ -120,6 +127,10 @@ void StudyNumbers::Add(const TableRow& row) {
   }
 }
 
+bool StudyNumbers::any_without() const {
+  return std::ranges::any_of(columns_, [](const NumberColumn& column) { return column.without_count > 0; });
+}
+
 const NumberColumn* StudyNumbers::worst() const {
   const NumberColumn* first = nullptr;
   for (const NumberColumn& column : columns_) {
@@ -132,18 +143,14 @@ const NumberColumn* StudyNumbers::worst() const {
 
 double Quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double place = fraction * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<size_t>(place);
-  const size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  return ValueAt(sorted, fraction * static_cast<double>(sorted.size() - 1));
 }
 
 std::optional<double> NoWorse(const NumberColumn& column, const std::vector<double>& sorted,
                               double fraction) {
-  if (column.without_count == 0) return Quantile(sorted, fraction);
   const double place = fraction * static_cast<double>(column.all() - 1);
   if (sorted.empty() || place > static_cast<double>(sorted.size() - 1)) return std::nullopt;
-  return Quantile(sorted, place / std::max(1.0, static_cast<double>(sorted.size() - 1)));
+  return ValueAt(sorted, place);
 }
 
 }  // namespace hydro::batch

@@ -49,6 +49,8 @@ class StudyNumbers {
   void Add(const TableRow& row);
 
   const std::vector<NumberColumn>& columns() const { return columns_; }
+  // Whether a case that is done lacks one of the numbers.
+  bool any_without() const;
   const Surface& surface() const { return surface_; }
   // The column that says which cases are the worst; null when there is no number.
   const NumberColumn* worst() const;

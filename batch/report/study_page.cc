@@ -104,10 +104,8 @@ std::string NumbersTable(const StudyNumbers& numbers, int64_t done) {
     for (const double part : {0.0, 0.05, 0.5, 0.95, 1.0}) cells += page::NumberCell(Quantile(sorted, part));
     rows += Row(cells + page::NumberCell(sum / static_cast<double>(sorted.size())));
   }
-  const bool without =
-      std::ranges::any_of(numbers.columns(), [](const auto& c) { return c.without_count > 0; });
   const std::string note =
-      without ? "<p>From smallest to mean: of the cases that have the number.</p>\n" : "";
+      numbers.any_without() ? "<p>From smallest to mean: of the cases that have the number.</p>\n" : "";
   return note + page::Table({"number", "unit", "#cases", "#no number", "#smallest", "#5 %", "#median",
                              "#95 %", "#largest", "#mean"},
                             rows);

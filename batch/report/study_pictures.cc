@@ -95,7 +95,7 @@ std::optional<page::Figure> DistributionsFigure(const StudyNumbers& numbers) {
   figure.panel_height = 190;
   figure.caption =
       "How the cases spread. Dashed: the median, and the value that one case in twenty is worse than.";
-  if (std::ranges::any_of(numbers.columns(), [](const auto& column) { return column.without_count > 0; }))
+  if (numbers.any_without())
     figure.caption += " Cases without the number are not drawn; they count as worse than any with it.";
   return figure;
 }

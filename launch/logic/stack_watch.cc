@@ -23,12 +23,12 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::S
       spread_(spread),
       joints_concern_each_other_(config.joints_concern_each_other),
       identity_(bus::IdentityOn(bus, clock)) {
-  for (const settings::ProcessSection& process : config.processes) {
-    if (!process.joint.empty()) own_processes_.insert(process.joint);
-  }
   stacks_.push_back({"", bus::Channels(config.bus.channel_suffix)});
   for (size_t i = 0; i < config.joints.size(); ++i) {
-    stacks_.push_back({config.joints[i], bus::Channels(config.bus.joint_suffixes.at(i))});
+    const std::string& joint = config.joints[i];
+    const bool own_processes = std::ranges::find(config.processes, joint, &settings::ProcessSection::joint) !=
+                               config.processes.end();
+    stacks_.push_back({joint, bus::Channels(config.bus.joint_suffixes.at(i)), own_processes});
   }
   for (size_t i = 0; i < stacks_.size(); ++i) Listen(i, keep_timing);
 }
@@ -60,8 +60,7 @@ void StackWatch::Listen(size_t stack, bool keep_timing) {
     left.role = Named(joint, heard.role);
     if (IsOfAPlant(heard.session)) summary_.Add(left);
   });
-  if (!joint.empty() && !own_processes_.contains(joint))
-    return;  // the limb's own loop is the one that keeps time
+  if (!stacks_[stack].reports) return;
   bus_.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(),
                                     [this, keep_timing, joint](const loop_statistics_t& heard) {
                                       loop_statistics_t report = heard;

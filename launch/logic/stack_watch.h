@@ -7,7 +7,6 @@
 #include <hydro/stop_t.hpp>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -80,6 +79,8 @@ class StackWatch {
   struct Stack {
     std::string joint;  // empty: the stack itself
     bus::Channels channels;
+    bool reports =
+        true;  // its loops say how they keep time; of joints inside a hydro-limb the limb's own does
   };
   // A process that has been heard.
   struct Heard {
@@ -101,7 +102,6 @@ class StackWatch {
   std::vector<Stack> stacks_;  // the stack's own first
   const bool spread_;
   const bool joints_concern_each_other_;
-  std::set<std::string> own_processes_;  // joints that run as processes of their own
   const bus::HostedProcess identity_;
   std::vector<Expected> expected_;
   std::map<Key, Heard> statuses_;  // the latest of each
