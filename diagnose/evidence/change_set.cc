@@ -1,0 +1,56 @@
+#include "diagnose/evidence/change_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace hydro::diagnose {
+
+namespace {
+
+// There are some thirty effects to choose from, and models usually lack one of them.
+constexpr double kOddsOfAChange = 1.0 / 30;
+// A curve that no known effect draws is to be said only where no effect will do: it can draw most of them.
+constexpr double kOddsOfAClosure = 1.0 / 300;
+
+bool IsClosure(std::string_view name) { return name.starts_with("closure."); }
+
+}  // namespace
+
+std::string_view ChangeOf(std::string_view name) { return name.substr(0, name.find('|')); }
+
+ChangeSet ChangesOf(const ChangeSet& set) {
+  ChangeSet changes;
+  for (const std::string& name : set) changes.emplace_back(ChangeOf(name));
+  std::sort(changes.begin(), changes.end());
+  return changes;
+}
+
+bool IsMissingTerm(std::string_view name) { return !name.starts_with("value.") && !name.starts_with("run."); }
+
+ChangeSet WithChange(const ChangeSet& set, const std::string& name) {
+  ChangeSet with = set;
+  with.insert(std::lower_bound(with.begin(), with.end(), name), name);
+  return with;
+}
+
+bool HasChange(const ChangeSet& set, std::string_view name) {
+  return std::any_of(set.begin(), set.end(),
+                     [&](const std::string& one) { return ChangeOf(one) == ChangeOf(name); });
+}
+
+ChangeOdds::ChangeOdds(const std::vector<std::string>& names) {
+  for (const std::string& name : names) ++variants_[std::string(ChangeOf(name))];
+}
+
+double ChangeOdds::LogOdds(const ChangeSet& set) const {
+  double sum = 0;
+  for (const std::string& name : set) {
+    const auto variants = variants_.find(ChangeOf(name));
+    sum += std::log(IsClosure(name) ? kOddsOfAClosure : kOddsOfAChange);
+    if (variants != variants_.end()) sum -= std::log(variants->second);
+  }
+  return sum;
+}
+
+}  // namespace hydro::diagnose

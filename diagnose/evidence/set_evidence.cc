@@ -1,0 +1,130 @@
+#include "diagnose/evidence/set_evidence.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "diagnose/evidence/set_solution.h"
+
+namespace hydro::diagnose {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kMostFromNothing = 25, kMostFromNull = 8;  // times that amounts and variances take turns
+
+}  // namespace
+
+SetEvidence::SetEvidence(const Rows& rows)
+    : SetEvidence(std::make_shared<const Grams>(GramsOf(rows)), std::vector<bool>()) {}
+
+SetEvidence::SetEvidence(std::shared_ptr<const Grams> grams, std::vector<bool> left_out)
+    : grams_(std::move(grams)), left_out_(std::move(left_out)) {
+  left_out_.resize(grams_->runs, false);
+  for (size_t i = 0; i < grams_->columns.size(); ++i)
+    if (grams_->columns[i].set.empty()) always_.push_back(static_cast<int>(i));
+  priors_ = std::make_shared<const Priors>(grams_->prior, always_);
+  PlaceBlocks();
+  FindNames();
+  SolveNull();
+}
+
+SetEvidence SetEvidence::Without(const std::vector<size_t>& runs) const {
+  std::vector<bool> left_out = left_out_;
+  for (const size_t run : runs) left_out.at(run) = true;
+  return SetEvidence(grams_, std::move(left_out));
+}
+
+void SetEvidence::PlaceBlocks() {
+  Index groups = 0;
+  for (const BlockGrams& grams : grams_->blocks) {
+    if (left_out_[grams.run]) continue;
+    PlacedBlock& block = blocks_.emplace_back(PlacedBlock{&grams, groups, {}});
+    for (const int column : grams.always)
+      block.always.push_back(std::lower_bound(always_.begin(), always_.end(), column) - always_.begin());
+    groups += static_cast<Index>(grams.groups());
+  }
+  numbers_ = floor_ = inertia_share_ = VectorXd(groups);
+  for (const PlacedBlock& block : blocks_) {
+    const auto count = static_cast<Index>(block.grams->groups());
+    numbers_.segment(block.first_group, count) = block.grams->numbers;
+    floor_.segment(block.first_group, count) = block.grams->floor;
+    inertia_share_.segment(block.first_group, count) = block.grams->inertia_share;
+  }
+}
+
+void SetEvidence::FindNames() {
+  std::map<std::string, std::vector<int>> columns;
+  std::vector<bool> seen(grams_->columns.size(), false);
+  for (const PlacedBlock& block : blocks_)
+    for (size_t i = 0; i < block.grams->changes.size(); ++i) {
+      const auto place = static_cast<Index>(block.always.size() + 1 + i);
+      if (block.grams->products.col(PairAt(place, place)).maxCoeff() > 0)
+        seen[static_cast<size_t>(block.grams->changes[i])] = true;
+    }
+  for (size_t i = 0; i < seen.size(); ++i)
+    if (seen[i]) columns[grams_->columns[i].set].push_back(static_cast<int>(i));
+  for (auto& [name, its] : columns) {
+    names_.push_back(name);
+    columns_of_names_.push_back(std::move(its));
+  }
+}
+
+void SetEvidence::SolveNull() {
+  const NormalEquations none(blocks_, static_cast<Index>(always_.size()), {});
+  const VectorXd whole = none.Squares(VectorXd::Zero(none.size()));
+  const VectorXd start = (floor_.array() + whole.array() / numbers_.array()).inverse();
+  // First without the Jacobian: only then is it known which part of the residuals is not the sensors' noise.
+  Solution null = Solve({}, start, kMostFromNothing);
+  VectorXd noise = none.NoiseSquares(null.amounts);
+  if (!noise.size() || noise.maxCoeff() <= 0) noise = numbers_.cwiseProduct(floor_);
+  const auto left = (null.squares + 2 * kVarianceShape * floor_).array();
+  inertia_numbers_ =
+      (numbers_.array() * inertia_share_.array() * (1 - noise.array() / left).max(0.0).min(1.0)).sum();
+  if (inertia_numbers_ > 0) null = Solve({}, start, kMostFromNothing);
+  null_noise_ = none.NoiseSquares(null.amounts);
+  null_squares_ = null.squares.cwiseMax(null_noise_) + 2 * kVarianceShape * floor_;
+  start_weights_ = null.next;
+}
+
+std::vector<int> SetEvidence::ColumnsOf(const ChangeSet& set) const {
+  std::vector<int> columns;
+  for (const std::string& name : set) {
+    const auto at = std::lower_bound(names_.begin(), names_.end(), name);
+    if (at == names_.end() || *at != name) throw std::out_of_range("the runs show no change '" + name + "'");
+    const std::vector<int>& its = columns_of_names_[static_cast<size_t>(at - names_.begin())];
+    columns.insert(columns.end(), its.begin(), its.end());
+  }
+  std::sort(columns.begin(), columns.end());
+  return columns;
+}
+
+double SetEvidence::Log(const ChangeSet& set) const { return LogOf(SolveFor(set)); }
+
+SetFit SetEvidence::Fit(const ChangeSet& set) const {
+  const Solution solution = SolveFor(set);
+  SetFit fit;
+  fit.log_evidence = LogOf(solution);
+  fit.columns = solution.columns;
+  fit.amounts = solution.amounts;
+  fit.covariance = solution.normal.solve(Eigen::MatrixXd::Identity(fit.amounts.size(), fit.amounts.size()));
+  fit.by_run.assign(runs(), 0.0);
+  const VectorXd likelihoods = LogLikelihoods(solution);
+  for (const PlacedBlock& block : blocks_)
+    for (size_t k = 0; k < block.grams->groups(); ++k) {
+      const Index g = block.first_group + static_cast<Index>(k);
+      fit.groups.push_back({block.grams->balance, block.grams->run, block.grams->band[k], numbers_[g],
+                            floor_[g], solution.weights[g], solution.squares[g],
+                            solution.counted_squares[g]});
+      fit.by_run[block.grams->run] += likelihoods[g];
+    }
+  return fit;
+}
+
+SetEvidence::Solution SetEvidence::SolveFor(const ChangeSet& set) const {
+  return Solve(ColumnsOf(set), start_weights_, kMostFromNull);
+}
+
+}  // namespace hydro::diagnose

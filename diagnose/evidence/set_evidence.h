@@ -1,0 +1,91 @@
+// The log evidence of any set of changes, from the balances' rows: nothing is simulated.
+//
+// Each group g of rows (balance, run, band of frequencies) has a variance of its own, integrated over an inverse-gamma
+// prior (a, b_g = a times the variance that is known beforehand, f_g):
+//   log E = -sum_g (a + n_g / 2) ln((b_g + RSS_g / 2) / f_g) - amounts' P^-1 amounts / 2 - ln|P A| / 2
+// at the amounts and the variances that agree with each other, with corrections: noise in the columns, a Jacobian
+// where a disturbance moves the shaft, and amounts that cannot be negative.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnose/evidence/change_set.h"
+#include "diagnose/evidence/grams.h"
+#include "diagnose/evidence/normal_equations.h"
+
+namespace hydro::diagnose {
+
+// One group of rows under a set of changes.
+struct GroupFit {
+  BalanceKind balance = BalanceKind::kTorque;
+  size_t run = 0;
+  int band = 0;
+  double numbers = 0;          // n: independent numbers
+  double floor = 0;            // f: variance of a number that is known beforehand
+  double weight = 0;           // 1 / variance, at which the amounts are the best
+  double squares = 0;          // of the residuals
+  double counted_squares = 0;  // RSS: the same, corrected for the noise in the columns
+};
+
+struct SetFit {
+  double log_evidence = 0;
+  std::vector<int> columns;  // of Rows::columns; those of every hypothesis first
+  Eigen::VectorXd amounts;
+  Eigen::MatrixXd covariance;  // of the amounts
+  std::vector<GroupFit> groups;
+  std::vector<double> by_run;  // log likelihood of each run: its groups' part of log E
+};
+
+class SetEvidence {
+ public:
+  // Of all runs. Throws as GramsOf().
+  explicit SetEvidence(const Rows& rows);
+
+  // As if these runs were not there.
+  SetEvidence Without(const std::vector<size_t>& runs) const;
+
+  // Changes that the runs can show: at least one of their columns is not zero. Sorted.
+  const std::vector<std::string>& names() const { return names_; }
+
+  // How many runs there are; those left out count.
+  size_t runs() const { return grams_->runs; }
+
+  // Throws std::out_of_range where a name is not among names().
+  double Log(const ChangeSet& set) const;
+  SetFit Fit(const ChangeSet& set) const;
+
+ private:
+  struct Solution;  // set_solution.h
+
+  SetEvidence(std::shared_ptr<const Grams> grams, std::vector<bool> left_out);
+  void PlaceBlocks();
+  void FindNames();
+  void SolveNull();
+
+  std::vector<int> ColumnsOf(const ChangeSet& set) const;
+  Solution SolveFor(const ChangeSet& set) const;
+  // Amounts and variances in turn, from `weights` on, `most` times at most.
+  Solution Solve(const std::vector<int>& changes, Eigen::VectorXd weights, int most) const;
+  void AddJacobian(const std::vector<Eigen::Index>& inertia, const Eigen::VectorXd& amounts,
+                   Eigen::MatrixXd* normal, Eigen::VectorXd* right) const;
+  Eigen::VectorXd NoiseFactors(const Eigen::VectorXd& passed) const;
+  Eigen::VectorXd LogLikelihoods(const Solution& solution) const;  // by group
+  double LogOf(const Solution& solution) const;
+
+  std::shared_ptr<const Grams> grams_;
+  std::vector<bool> left_out_;
+  std::vector<PlacedBlock> blocks_;
+  std::vector<int> always_;
+  std::shared_ptr<const Priors> priors_;
+  std::vector<std::string> names_;
+  std::vector<std::vector<int>> columns_of_names_;
+  Eigen::VectorXd numbers_, floor_, inertia_share_;  // by group
+  // Of the fit without changes.
+  Eigen::VectorXd start_weights_, null_noise_, null_squares_;
+  double inertia_numbers_ = 0;  // how many numbers the Jacobian of the torque balance counts
+};
+
+}  // namespace hydro::diagnose
