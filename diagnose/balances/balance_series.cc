@@ -1,0 +1,217 @@
+#include "diagnose/balances/balance_series.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace hydro::diagnose {
+
+namespace {
+
+size_t Place(BalanceKind balance) { return static_cast<size_t>(balance); }
+
+template <class T>
+const T& Part(const model::BalancesOf<T>& left, BalanceKind balance) {
+  switch (balance) {
+    case BalanceKind::kFlow1:
+      return left.flow_1;
+    case BalanceKind::kFlow2:
+      return left.flow_2;
+    case BalanceKind::kArm:
+      return left.arm;
+    case BalanceKind::kLevel1:
+      return left.level_1;
+    case BalanceKind::kLevel2:
+      return left.level_2;
+    case BalanceKind::kTorque:
+      break;
+  }
+  return left.torque;
+}
+
+Eigen::Index Count(const RunMotion& run) {
+  return static_cast<Eigen::Index>((run.size() + run.stride - 1) / run.stride);
+}
+
+BalanceSeries Empty(const RunMotion& run) {
+  BalanceSeries series;
+  for (const BalanceKind balance : kAllBalances) {
+    if (CanForm(run, balance)) series[Place(balance)] = Eigen::VectorXd::Zero(Count(run));
+  }
+  return series;
+}
+
+// A held value acts from its instant on: at the instant itself the mean of the two is what a filter sees.
+std::vector<double> SmoothHeld(const std::vector<double>& held, double step) {
+  std::vector<double> middle(held);
+  for (size_t k = 1; k < held.size(); ++k) middle[k] = 0.5 * (held[k - 1] + held[k]);
+  return Smoothed(middle, SmoothingOf(step) / step);
+}
+
+// Calls visit(k, balances) at every instant in turn, states along with the motion.
+template <class Visit>
+void WalkAlong(const model::ModelDescription& model, const RunMotion& run, size_t stride, Visit visit,
+               size_t last = std::numeric_limits<size_t>::max()) {
+  model::BalanceEquations equations(model, run.options);
+  const bool remembers = equations.remembers();
+  if (remembers) equations.Start(run.at.front());
+  for (size_t k = 0; k < std::min(last, run.size()); ++k) {
+    if (remembers && k > 0) equations.Advance(run.at[k - 1], run.at[k]);
+    if (k % stride == 0) visit(k, equations);
+  }
+}
+
+// Whether the first samples show that the model gives another torque of the motor.
+bool DriveChangesEarly(const model::ModelDescription& model, const RunMotion& run, const BaseSeries& base) {
+  constexpr size_t kSamples = 256;
+  bool changes = false;
+  WalkAlong(
+      model, run, 1,
+      [&](size_t k, const model::BalanceEquations& equations) {
+        changes = changes || equations.Values(run.at[k]).drive != base.drive.raw[k];
+      },
+      kSamples);
+  return changes;
+}
+
+}  // namespace
+
+bool CanForm(const RunMotion& run, BalanceKind balance) {
+  const bool flows =
+      run.pressures && run.speed_known && (run.options.shaft == model::Shaft::kClamped || run.arm_moves);
+  switch (balance) {
+    case BalanceKind::kTorque:
+      return run.speed_known && (run.options.bypass || run.pressures);
+    case BalanceKind::kFlow1:
+    case BalanceKind::kFlow2:
+    case BalanceKind::kLevel1:
+    case BalanceKind::kLevel2:
+      return flows;
+    case BalanceKind::kArm:
+      return run.pressures && run.arm_moves && run.options.shaft == model::Shaft::kFree;
+  }
+  return false;
+}
+
+BaseSeries SeriesOf(const model::ModelDescription& model, const RunMotion& run) {
+  BaseSeries base;
+  base.left = Empty(run);
+  base.drive.raw.resize(run.size());
+  WalkAlong(model, run, 1, [&](size_t k, const model::BalanceEquations& equations) {
+    const model::BalancesOf<double> left = equations.Values(run.at[k]);
+    base.drive.raw[k] = left.drive;
+    if (k % run.stride != 0) return;
+    for (const BalanceKind balance : kAllBalances) {
+      Eigen::VectorXd& series = base.left[Place(balance)];
+      if (series.size() > 0) series[static_cast<Eigen::Index>(k / run.stride)] = Part(left, balance);
+    }
+  });
+  base.drive.smooth = SmoothHeld(base.drive.raw, run.step);
+  Eigen::VectorXd& torque = base.left[Place(BalanceKind::kTorque)];
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    const auto k = static_cast<size_t>(i) * run.stride;
+    torque[i] += base.drive.smooth[k] - base.drive.raw[k];
+  }
+  return base;
+}
+
+BalanceSeries Beyond(const model::ModelDescription& model, const RunMotion& run, const BaseSeries& base) {
+  BalanceSeries beyond = Empty(run);
+  std::vector<double> drive(run.size(), 0.0);
+  const auto pass = [&](size_t stride) {
+    bool driven = false;
+    WalkAlong(model, run, stride, [&](size_t k, const model::BalanceEquations& equations) {
+      const model::BalancesOf<double> left = equations.Values(run.at[k]);
+      drive[k] = left.drive - base.drive.raw[k];
+      driven |= drive[k] != 0;
+      if (k % run.stride != 0) return;
+      for (const BalanceKind balance : kAllBalances) {
+        Eigen::VectorXd& series = beyond[Place(balance)];
+        const auto i = static_cast<Eigen::Index>(k / run.stride);
+        if (series.size() > 0) series[i] = Part(left, balance) - base.left[Place(balance)][i];
+      }
+    });
+    return driven;
+  };
+  // Where the motor's torque is the same, every stride-th instant tells all.
+  const bool likely = run.stride > 1 && DriveChangesEarly(model, run, base);
+  bool driven = pass(likely ? 1 : run.stride);
+  if (driven && !likely && run.stride > 1) driven = pass(1);
+  Eigen::VectorXd& torque = beyond[Place(BalanceKind::kTorque)];
+  if (torque.size() == 0) return beyond;
+  const std::vector<double> smooth = driven ? SmoothHeld(drive, run.step) : std::vector<double>{};
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    const auto k = static_cast<size_t>(i) * run.stride;
+    torque[i] += base.drive.smooth[k] - base.drive.raw[k];
+    if (driven) torque[i] += smooth[k] - drive[k];
+  }
+  return beyond;
+}
+
+bool DependsOnCommandAlone(const model::ModelDescription& model, const RunMotion& run,
+                           const BaseSeries& base) {
+  constexpr size_t kSamples = 512;
+  const model::BalanceEquations probe(model, run.options);
+  if (!probe.remembers()) return false;
+  RunMotion still = run;
+  still.at.resize(std::min(kSamples, run.size()));
+  RunMotion moving = still;
+  for (model::KnownMotion& at : still.at) {
+    const model::KnownMotion moved = at;
+    at = {.time = moved.time,
+          .voltage = moved.voltage,
+          .p1 = 0.9 * moved.p1,
+          .p2 = 1.1 * moved.p2,
+          .pump_direction = moved.pump_direction};
+  }
+  std::vector<double> drives[2];
+  bool only_drive = true;
+  for (const RunMotion* one : {&still, &moving}) {
+    WalkAlong(model, *one, 1, [&](size_t k, const model::BalanceEquations& equations) {
+      const model::BalancesOf<double> left = equations.Values(one->at[k]);
+      drives[one == &moving ? 1 : 0].push_back(left.drive);
+      if (one != &moving || k % run.stride != 0) return;
+      const auto i = static_cast<Eigen::Index>(k / run.stride);
+      for (const BalanceKind balance : kAllBalances) {
+        const Eigen::VectorXd& series = base.left[Place(balance)];
+        if (series.size() == 0 || balance == BalanceKind::kTorque) continue;
+        only_drive = only_drive && Part(left, balance) == series[i];
+      }
+    });
+  }
+  return only_drive && drives[0] == drives[1];
+}
+
+std::vector<BalanceSeries> DerivativesOf(const model::ModelDescription& model, const RunMotion& run,
+                                         const std::vector<model::Unknown>& unknowns) {
+  std::vector<BalanceSeries> all(unknowns.size(), Empty(run));
+  const model::BalanceEquations equations(model, run.options, unknowns);
+  for (size_t k = 0; k < run.size(); k += run.stride) {
+    const model::BalancesOf<model::Jet> left = equations.At(run.at[k]);
+    const auto i = static_cast<Eigen::Index>(k / run.stride);
+    for (size_t u = 0; u < unknowns.size(); ++u) {
+      const int direction = static_cast<int>(u);
+      if (left.drive.v[direction] != 0) return {};
+      for (const BalanceKind balance : kAllBalances) {
+        Eigen::VectorXd& series = all[u][Place(balance)];
+        if (series.size() > 0) series[i] = Part(left, balance).v[direction];
+      }
+    }
+  }
+  return all;
+}
+
+SignalErrors ErrorsOf(const model::ModelDescription& model, const RunMotion& run) {
+  SignalErrors errors;
+  for (std::vector<double>& of : errors.of) of.assign(run.size(), 0.0);
+  WalkAlong(model, run, 1, [&](size_t k, const model::BalanceEquations& equations) {
+    const model::ReadingErrors read = equations.Errors(run.at[k]);
+    const double values[kMeasured] = {read.motor_speed, read.motor_angle, read.arm_angle, read.p1, read.p2};
+    for (size_t s = 0; s < kMeasured; ++s) errors.of[s][k] = values[s];
+  });
+  for (std::vector<double>& of : errors.of) {
+    if (std::all_of(of.begin(), of.end(), [](double value) { return value == 0; })) of.clear();
+  }
+  return errors;
+}
+
+}  // namespace hydro::diagnose

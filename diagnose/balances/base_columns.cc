@@ -1,0 +1,107 @@
+// Columns of base parameters: relative deviations of the values as given.
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/balances/column_maker.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using model::BaseParameters;
+using model::Parameters;
+
+// A value given as 0 may well make a tenth of its balance.
+constexpr double kFromNothing = 0.1;
+// "One value is far off": by half as much again.
+constexpr double kFarOff = 0.5;
+// "One value differs by run": by so many times what each run may differ by in every hypothesis.
+constexpr double kDiffersByRun = 6;
+
+// One term of each balance keeps its value, and all others are measured by it: with every scale free, the smallest balance is the best.
+bool IsFixed(double Parameters::*member) { return member == &Parameters::k_1 || member == &Parameters::k_2; }
+
+// In the flows D w is what the others are measured by.
+bool CountsIn(double Parameters::*member, BalanceKind balance) {
+  return member != &Parameters::D || balance == BalanceKind::kTorque;
+}
+
+void PutBase(ColumnMaker* maker, int column, size_t run, const BalanceSeries& series, double factor,
+             double Parameters::*member) {
+  BalanceSeries counted = series;
+  for (const BalanceKind balance : kAllBalances) {
+    if (!CountsIn(member, balance)) counted[static_cast<size_t>(balance)].resize(0);
+  }
+  maker->Put(column, run, counted, factor);
+}
+
+// Of the limit of the motor's torque: a finite difference, as it acts through the held command.
+void AddLimit(ColumnMaker* maker, int column, double Parameters::*member) {
+  maker->works.back().push_back([maker, column, member](size_t run) {
+    constexpr double kPart = 1e-3;
+    model::ModelDescription more = maker->setup->given;
+    more.parameters.*member *= 1 + kPart;
+    maker->Put(column, run, Beyond(more, maker->Motion(run), (*maker->base)[run]), 1 / kPart);
+  });
+}
+
+}  // namespace
+
+void AddBaseColumns(ColumnMaker* maker) {
+  struct Free {
+    size_t base;
+    int column;
+  };
+  std::vector<Free> free;
+  const model::ModelDescription& given = maker->setup->given;
+  for (const size_t i : maker->setup->allowed) {
+    const model::BaseParameter& base = BaseParameters()[i];
+    if (IsFixed(base.member)) continue;
+    const double value = given.parameters.*base.member;
+    ScanColumn column{base.info.name, "", value != 0 ? model::UncertaintyOf(given, i) : kFromNothing / 0.15,
+                      false};
+    ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kBase, .base = i, .unit = value != 0 ? 1.0 : 0.0};
+    const int place = maker->Add(column, meaning);
+    if (base.member == &Parameters::T_pmax) {
+      AddLimit(maker, place, base.member);
+    } else {
+      free.push_back({i, place});
+    }
+  }
+  for (size_t first = 0; first < free.size(); first += model::kJetWidth) {
+    const std::vector<Free> some(
+        free.begin() + static_cast<std::ptrdiff_t>(first),
+        free.begin() + static_cast<std::ptrdiff_t>(std::min(free.size(), first + model::kJetWidth)));
+    maker->works.back().push_back([maker, some](size_t run) {
+      std::vector<model::Unknown> unknowns;
+      for (const Free& one : some) unknowns.push_back({model::Unknown::Kind::kBase, one.base});
+      const std::vector<BalanceSeries> all = DerivativesOf(maker->setup->given, maker->Motion(run), unknowns);
+      for (size_t u = 0; u < all.size(); ++u) {
+        double Parameters::*member = BaseParameters()[some[u].base].member;
+        const double value = maker->given().*member;
+        PutBase(maker, some[u].column, run, all[u], value != 0 ? value : 1, member);
+      }
+    });
+  }
+}
+
+void AddValueColumns(ColumnMaker* maker) {
+  const size_t columns = maker->table.columns.size();
+  for (size_t i = 0; i < columns; ++i) {
+    const ColumnMeaning meaning = maker->table.meaning[i];
+    const ScanColumn column = maker->table.columns[i];
+    if (meaning.kind == ColumnMeaning::Kind::kBase && meaning.run < 0) {
+      const bool zero = maker->given().*BaseParameters()[meaning.base].member == 0;
+      const double wide = std::max(kFarOff, 3 * column.sd) * (zero ? 3 : 1);
+      maker->AddAlias({"wide." + column.name, "value." + column.name, wide, false}, meaning,
+                      static_cast<int>(i), -1);
+    }
+    if (meaning.run < 0 || !column.set.empty() || meaning.kind == ColumnMeaning::Kind::kOther) continue;
+    const std::string name = column.name.substr(0, column.name.find('['));
+    maker->AddAlias({"run." + column.name, "run." + name, kDiffersByRun * column.sd, false}, meaning,
+                    static_cast<int>(i), meaning.run);
+  }
+}
+
+}  // namespace hydro::diagnose

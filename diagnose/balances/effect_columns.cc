@@ -1,0 +1,237 @@
+// Columns of the catalogue's effects, from their own equations.
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/balances/column_maker.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using Kind = EffectVariant::Kind;
+
+// Transducers err by about this part of what they read.
+constexpr double kReadingPart = 0.02;
+// s: filters and buses of recorders add a few milliseconds.
+constexpr double kReadingTime = 3e-3;
+// A parameter without a grid may well be off by half.
+constexpr double kMovedBy = 0.5;
+// What derivatives by such parameters are taken over.
+constexpr double kSmallStep = 0.05;
+// Of a balance's size: an amount that makes a change so small is as good as a derivative.
+constexpr double kSmallChange = 1e-4;
+
+model::ModelDescription With(const model::ModelDescription& given, const model::EffectDescription& effect) {
+  model::ModelDescription with = given;
+  with.effects.push_back(effect);
+  return with;
+}
+
+// An amount that is as good as none: of a time part of a sample.
+double Probe(const EffectVariant& variant, const RunMotion& run) {
+  return variant.is_time ? 0.25 * run.step : 1e-3;
+}
+
+model::EffectDescription AtAmount(const EffectVariant& variant, const std::string& parameter, double amount,
+                                  double others) {
+  model::EffectDescription effect = variant.at;
+  for (const std::string& one : variant.amounts) effect.parameters[one] = one == parameter ? amount : others;
+  return effect;
+}
+
+// How an effect acts: on the balances alone, on states of its own, or on what is read.
+enum class Way { kPlain, kWithMemory, kReading };
+
+Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
+  for (const RunMotion& run : *maker.runs) {
+    model::EffectDescription effect = variant.at;
+    for (const std::string& one : variant.amounts) effect.parameters[one] = Probe(variant, run);
+    RunMotion begin = run;
+    begin.at.resize(std::min<size_t>(begin.at.size(), 64));
+    const model::ModelDescription with = With(maker.setup->given, effect);
+    for (const std::vector<double>& of : ErrorsOf(with, begin).of) {
+      if (!of.empty()) return Way::kReading;
+    }
+    if (model::BalanceEquations(with, run.options).remembers()) return Way::kWithMemory;
+  }
+  return Way::kPlain;
+}
+
+// Columns that one evaluation with derivatives makes together.
+struct Together {
+  std::vector<size_t> variants;
+  std::vector<int> columns;  // of all amounts of the variants, in order
+  int switches = 0;
+};
+
+// One evaluation of the model with all these effects, at amounts of 0.
+void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
+  model::ModelDescription model = maker->setup->given;
+  struct Place {
+    std::string id, parameter;
+    size_t effect;
+  };
+  std::vector<Place> wanted;
+  for (const size_t v : together.variants) {
+    const EffectVariant& variant = maker->setup->variants[v];
+    for (const std::string& amount : variant.amounts)
+      wanted.push_back({variant.at.id, amount, model.effects.size()});
+    model.effects.push_back(variant.at);
+  }
+  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
+  std::vector<model::Unknown> unknowns;
+  for (const Place& place : wanted) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (all[i].effect == place.effect && all[i].name == place.parameter)
+        unknowns.push_back({model::Unknown::Kind::kEffect, i});
+    }
+  }
+  const std::vector<BalanceSeries> series = DerivativesOf(model, maker->Motion(run), unknowns);
+  for (size_t u = 0; u < series.size(); ++u) maker->Put(together.columns[u], run, series[u]);
+}
+
+// The series of an amount of an effect that has states: by a change that is small against the balances.
+void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
+  const EffectVariant& variant = maker->setup->variants[v];
+  double amount = Probe(variant, maker->Motion(run));
+  for (int pass = 0; pass < 2; ++pass) {
+    const model::ModelDescription with = With(maker->setup->given, AtAmount(variant, parameter, amount, 0));
+    const BalanceSeries change = Beyond(with, maker->Motion(run), (*maker->base)[run]);
+    double largest = 0;
+    for (size_t b = 0; b < kBalanceKinds; ++b) {
+      if (change[b].size() == 0 || !(maker->setup->sizes.of[b] > 0)) continue;
+      largest = std::max(largest, change[b].cwiseAbs().maxCoeff() / maker->setup->sizes.of[b]);
+    }
+    if (!(largest > 0) || !std::isfinite(largest)) return;
+    if (pass == 1 || variant.is_time) return maker->Put(column, run, change, 1 / amount);
+    amount *= kSmallChange / largest;
+  }
+}
+
+// The series of an amount of an effect of a sensor, and how much its signal then errs.
+void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
+  const EffectVariant& variant = maker->setup->variants[v];
+  const RunMotion& motion = maker->Motion(run);
+  const double amount = Probe(variant, motion);
+  const double others = variant.is_time ? amount : 0;
+  SignalErrors errors =
+      ErrorsOf(With(maker->setup->given, AtAmount(variant, parameter, amount, others)), motion);
+  for (std::vector<double>& of : errors.of) {
+    for (double& error : of) error /= amount;
+  }
+  maker->Put(column, run, ReadingColumn(*maker, run, errors));
+}
+
+// What an amount of 1 of a sensor's effect is: the usual part of the signals' range.
+double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const std::string& parameter) {
+  if (variant.is_time) return kReadingTime;
+  double unit = 0;
+  for (const RunMotion& run : *maker.runs) {
+    const double amount = Probe(variant, run);
+    const SignalErrors errors =
+        ErrorsOf(With(maker.setup->given, AtAmount(variant, parameter, amount, 0)), run);
+    for (size_t s = 0; s < kMeasured; ++s) {
+      if (errors.of[s].empty() || !run.signals[s].measured()) continue;
+      double sum = 0;
+      for (const double error : errors.of[s]) sum += error * error;
+      const double size = std::sqrt(sum / static_cast<double>(run.size())) / amount;
+      const double range = RangeOfValues(run.signals[s].values).size();
+      unit = std::max(unit, kReadingPart * range / size);
+    }
+  }
+  return unit;
+}
+
+// An effect as a whole, and the derivatives by the logarithms of what has no grid.
+void PutWhole(ColumnMaker* maker, size_t v, const std::vector<int>& columns, size_t run) {
+  const EffectVariant& variant = maker->setup->variants[v];
+  const RunMotion& motion = maker->Motion(run);
+  const BaseSeries& base = (*maker->base)[run];
+  const BalanceSeries whole = Beyond(With(maker->setup->given, variant.at), motion, base);
+  maker->Put(columns[0], run, whole);
+  for (size_t m = 0; m < variant.moved.size(); ++m) {
+    model::EffectDescription moved = variant.at;
+    moved.parameters[variant.moved[m]] *= std::exp(kSmallStep);
+    BalanceSeries change = Beyond(With(maker->setup->given, moved), motion, base);
+    for (size_t b = 0; b < kBalanceKinds; ++b) change[b] -= whole[b];
+    maker->Put(columns[m + 1], run, change, 1 / kSmallStep);
+  }
+}
+
+// What does not depend on the sensors is as it was without more noise.
+void CopySeries(ColumnMaker* maker, const std::vector<int>& columns, size_t run) {
+  for (size_t b = 0; b < kBalanceKinds; ++b) {
+    for (const int column : columns) {
+      const auto& clean = maker->again->series[run][b];
+      const auto found = clean.find(column);
+      if (found != clean.end()) maker->table.series[run][b][column] = found->second;
+    }
+  }
+}
+
+// Adds a column for each amount of a variant.
+std::vector<int> AddAmounts(ColumnMaker* maker, size_t v, Way way) {
+  const EffectVariant& variant = maker->setup->variants[v];
+  std::vector<int> columns;
+  const bool first = maker->setup->units.empty();
+  for (const std::string& amount : variant.amounts) {
+    const bool positive = ParameterOf(variant.at.id, amount).min >= 0;
+    ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kEffect, .variant = v, .parameter = amount, .unit = 0};
+    if (way == Way::kReading && first) meaning.unit = ReadingUnit(*maker, variant, amount);
+    columns.push_back(maker->Add({variant.set + ":" + amount, variant.set, 1, positive}, meaning));
+  }
+  return columns;
+}
+
+}  // namespace
+
+void AddEffectColumns(ColumnMaker* maker) {
+  std::vector<Together> groups;
+  const std::vector<EffectVariant>& variants = maker->setup->variants;
+  for (size_t v = 0; v < variants.size(); ++v) {
+    const EffectVariant& variant = variants[v];
+    if (variant.kind == Kind::kWave) continue;
+    if (variant.kind == Kind::kWhole) {
+      ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kWhole, .variant = v};
+      std::vector<int> columns = {maker->Add({variant.set + ":whole", variant.set, 1, true}, meaning)};
+      meaning.kind = ColumnMeaning::Kind::kMoved;
+      for (const std::string& moved : variant.moved) {
+        meaning.parameter = moved;
+        columns.push_back(maker->Add({variant.set + ":" + moved, variant.set, kMovedBy, false}, meaning));
+      }
+      if (maker->again != nullptr &&
+          DependsOnCommandAlone(With(maker->setup->given, variant.at), maker->Motion(0), (*maker->base)[0])) {
+        maker->works.back().push_back([maker, columns](size_t run) { CopySeries(maker, columns, run); });
+        continue;
+      }
+      maker->works.back().push_back([maker, v, columns](size_t run) { PutWhole(maker, v, columns, run); });
+      continue;
+    }
+    const Way way = WayOf(*maker, variant);
+    const std::vector<int> columns = AddAmounts(maker, v, way);
+    if (way != Way::kPlain) {
+      for (size_t a = 0; a < columns.size(); ++a) {
+        maker->works.back().push_back([maker, v, way, a, columns](size_t run) {
+          const std::string& amount = maker->setup->variants[v].amounts[a];
+          if (way == Way::kReading) return PutReading(maker, v, amount, columns[a], run);
+          PutWithMemory(maker, v, amount, columns[a], run);
+        });
+      }
+      continue;
+    }
+    const int switches = model::Equations(With(maker->setup->given, variant.at), {}).switches();
+    const size_t most = model::kJetWidth;
+    if (groups.empty() || groups.back().columns.size() + columns.size() > most ||
+        groups.back().switches + switches > model::kMaxEffectSwitches) {
+      groups.emplace_back();
+    }
+    groups.back().variants.push_back(v);
+    groups.back().columns.insert(groups.back().columns.end(), columns.begin(), columns.end());
+    groups.back().switches += switches;
+  }
+  for (const Together& together : groups) {
+    maker->works.back().push_back([maker, together](size_t run) { PutTogether(maker, together, run); });
+  }
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,163 @@
+#include "diagnose/balances/effect_variants.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "model/effects/catalogue.h"
+#include "model/effects/effect.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using model::ParameterInfo;
+using model::Role;
+
+// s: from what a sample hides to what nobody calls a lag any more, in half octaves: neighbours differ by less than such balances tell.
+constexpr double kShortestTime = 5e-4, kTimeRatio = 1.4142135623730951;
+constexpr int kTimes = 13;
+// Of a sample: a shorter time does not show.
+constexpr double kLeastTime = 0.2;
+// Neighbours on a grid of one shape differ by no more than this factor: a term between two is met by one of them to a few per cent.
+constexpr double kGridRatio = 2;
+
+bool IsWave(const ParameterInfo& parameter) {
+  return parameter.role == Role::kTorqueWave || parameter.role == Role::kDisplacementWave;
+}
+
+// Whether the effect is gone where this number is 0, and grows with it in proportion.
+bool IsAmount(const ParameterInfo& parameter) {
+  return parameter.is_number() && parameter.role == Role::kSize && parameter.min <= 0 &&
+         parameter.min_allowed &&
+         std::find(parameter.starts.begin(), parameter.starts.end(), 0.0) != parameter.starts.end();
+}
+
+std::vector<double> Denser(std::vector<double> grid) {
+  std::sort(grid.begin(), grid.end());
+  std::vector<double> dense;
+  for (const double value : grid) {
+    if (!dense.empty() && dense.back() > 0) {
+      const int parts =
+          static_cast<int>(std::ceil(std::log(value / dense.back()) / std::log(kGridRatio) - 1e-9));
+      const double ratio = std::pow(value / dense.back(), 1.0 / std::max(1, parts));
+      for (int part = 1; part < parts; ++part) dense.push_back(dense.back() * ratio);
+    }
+    dense.push_back(value);
+  }
+  return dense;
+}
+
+std::vector<double> GridOf(const ParameterInfo& parameter, const Sizes& sizes, bool dense) {
+  std::vector<double> grid;
+  if (parameter.role == Role::kTime) {
+    for (int k = 0; k < kTimes; ++k) {
+      const double time = kShortestTime * std::pow(kTimeRatio, k);
+      if (time >= kLeastTime * sizes.sample) grid.push_back(time);
+    }
+    return grid;
+  }
+  for (const double start : parameter.starts) {
+    const double value = start * sizes.Of(parameter.scale);
+    if (std::isfinite(value) && value > 0 && value >= parameter.min && value <= parameter.max)
+      grid.push_back(value);
+  }
+  if (grid.empty() && parameter.min <= 0) grid.push_back(0);
+  return dense ? Denser(std::move(grid)) : grid;
+}
+
+const model::EffectInfo* InfoOf(const std::string& id) {
+  const model::CatalogueEntry* entry = model::FindCatalogueEntry(id);
+  return entry == nullptr ? nullptr : &entry->info;
+}
+
+// All combinations of the parameters' grids, as descriptions.
+std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::EffectInfo& info,
+                                  const Sizes& sizes) {
+  size_t shapes = 0;
+  for (const ParameterInfo& parameter : info.parameters) {
+    const bool amount =
+        std::find(from.amounts.begin(), from.amounts.end(), parameter.name) != from.amounts.end();
+    shapes += parameter.is_number() && !amount ? 1 : 0;
+  }
+  std::vector<EffectVariant> variants = {from};
+  for (const ParameterInfo& parameter : info.parameters) {
+    if (!parameter.is_number() || from.at.parameters.contains(parameter.name)) continue;
+    const std::vector<double> grid = GridOf(parameter, sizes, shapes == 1);
+    std::vector<EffectVariant> next;
+    for (const EffectVariant& variant : variants) {
+      for (const double value : grid) {
+        next.push_back(variant);
+        EffectVariant& one = next.back();
+        one.at.parameters[parameter.name] = value;
+        if (grid.size() > 1) {
+          one.set += (one.shapes.empty() ? "|" : ",") + ShortNumber(value, 3);
+          one.shapes.push_back(parameter.name);
+        } else if (one.kind == EffectVariant::Kind::kWhole) {
+          one.moved.push_back(parameter.name);
+        }
+      }
+    }
+    variants = std::move(next);
+  }
+  return variants;
+}
+
+// The effect with its amounts at 0, and what kind of variant it makes.
+EffectVariant Open(const Change& change, const model::EffectInfo& info) {
+  EffectVariant variant;
+  variant.change = change;
+  variant.at.id = change.effect;
+  variant.at.names = change.names;
+  variant.set = change.effect;
+  for (const auto& [parameter, name] : change.names) variant.set += "(" + name + ")";
+  const bool channel = std::any_of(info.parameters.begin(), info.parameters.end(),
+                                   [](const ParameterInfo& one) { return one.role == Role::kChannel; });
+  for (const ParameterInfo& parameter : info.parameters) {
+    if (IsWave(parameter)) variant.kind = EffectVariant::Kind::kWave;
+    // What one channel reads late, or what its sensor does over time, grows with the time.
+    const bool time = parameter.role == Role::kTime && (channel || change.effect.starts_with("sensor."));
+    if (!IsAmount(parameter) && !time) continue;
+    variant.amounts.push_back(parameter.name);
+    variant.at.parameters[parameter.name] = 0;
+    variant.is_time = time;
+  }
+  if (variant.kind != EffectVariant::Kind::kWave && variant.amounts.empty())
+    variant.kind = EffectVariant::Kind::kWhole;
+  return variant;
+}
+
+}  // namespace
+
+const ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter) {
+  const model::EffectInfo* info = InfoOf(effect);
+  static const ParameterInfo kNone;
+  if (info == nullptr) return kNone;
+  for (const ParameterInfo& one : info->parameters) {
+    if (one.name == parameter) return one;
+  }
+  return kNone;
+}
+
+std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const Sizes& sizes) {
+  std::vector<EffectVariant> variants;
+  for (const Change& change : changes) {
+    const model::EffectInfo* info = change.effect.empty() ? nullptr : InfoOf(change.effect);
+    if (info == nullptr) continue;
+    const bool lists = std::any_of(info->parameters.begin(), info->parameters.end(),
+                                   [](const ParameterInfo& one) { return one.list != model::List::kNone; });
+    const bool numbers = std::any_of(info->parameters.begin(), info->parameters.end(),
+                                     [](const ParameterInfo& one) { return one.is_number(); });
+    if (lists || !numbers) continue;
+    const EffectVariant open = Open(change, *info);
+    if (open.kind == EffectVariant::Kind::kWave) {
+      variants.push_back(open);
+      continue;
+    }
+    const std::vector<EffectVariant> grid = OnGrid(open, *info, sizes);
+    variants.insert(variants.end(), grid.begin(), grid.end());
+  }
+  return variants;
+}
+
+}  // namespace hydro::diagnose

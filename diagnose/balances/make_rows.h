@@ -1,0 +1,53 @@
+// From runs to rows: motions, balances, masks, columns, test functions.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/balances/columns.h"
+#include "diagnose/balances/masks.h"
+#include "diagnose/balances/rows.h"
+
+namespace hydro::diagnose {
+
+struct ScanOptions {
+  int jobs = 1;
+  std::vector<size_t> allowed;  // base parameters that may differ, as in BaseParameters()
+  std::vector<Change> changes;  // effects that may be named
+};
+
+// The measured runs as the scan sees them, made once.
+class ScanRuns {
+ public:
+  // Throws ModelError where the given model's equations cannot be set up for a run.
+  ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
+           const ScanOptions& options);
+
+  // All rows, with waves at these periods per turn.
+  Rows MakeRows(const std::vector<int>& periods);
+
+  const ColumnSetup& setup() const { return setup_; }
+  const std::vector<RunMotion>& motions() const { return motions_; }
+  const std::vector<ColumnMeaning>& meaning() const { return meaning_; }
+  const std::vector<BaseSeries>& base() const { return base_; }
+  // By run and balance.
+  const std::vector<std::array<std::vector<uint8_t>, kBalanceKinds>>& masks() const { return masks_; }
+  double tile() const { return tile_; }
+
+  // The same rows with the columns of waves at these periods alone.
+  Rows MakeWaveRows(const std::vector<int>& periods) const;
+
+ private:
+  static void Append(const ColumnTable& more, ColumnTable* table);
+  void Project(const ColumnTable& clean, const ColumnTable& noisy, Rows* rows) const;
+
+  int jobs_ = 1;
+  ColumnSetup setup_;
+  std::vector<RunMotion> motions_, noisy_;
+  std::vector<BaseSeries> base_, noisy_base_;
+  std::vector<std::array<std::vector<uint8_t>, kBalanceKinds>> masks_;
+  ColumnTable clean_, noisy_table_;  // without waves
+  std::vector<ColumnMeaning> meaning_;
+  double tile_ = 0.25;  // s
+};
+
+}  // namespace hydro::diagnose

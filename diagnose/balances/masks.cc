@@ -1,0 +1,186 @@
+#include "diagnose/balances/masks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydro::diagnose {
+
+namespace {
+
+// The pump is at rest where its speed stays within so many of its standard deviations for so long, s. What is shorter is a reversal.
+constexpr double kStill = 3;
+constexpr double kStillTime = 0.008;
+// s: what smoothing carries over from rest.
+constexpr double kStillSpread = 0.003;
+// s: a valve closes later than its side's pressure has left the level.
+constexpr double kValveSpread = 0.004;
+// Values below this part of the range of pressures may be of a held side.
+constexpr double kLowPart = 0.15;
+constexpr size_t kEnoughLow = 200;
+
+// Widens marked stretches by `by` on either side.
+void Widen(size_t by, std::vector<uint8_t>* mask) {
+  std::vector<uint8_t> wide(*mask);
+  const size_t n = mask->size();
+  for (size_t i = 0; i < n; ++i) {
+    if ((*mask)[i] == 0) continue;
+    const size_t from = i < by ? 0 : i - by, to = std::min(n, i + by + 1);
+    std::fill(wide.begin() + static_cast<std::ptrdiff_t>(from),
+              wide.begin() + static_cast<std::ptrdiff_t>(to), uint8_t{1});
+  }
+  *mask = std::move(wide);
+}
+
+size_t Samples(double seconds, const RunMotion& run) {
+  return std::max<size_t>(1, static_cast<size_t>(std::lround(seconds / run.step)));
+}
+
+std::vector<uint8_t> AtRest(const RunMotion& run) {
+  std::vector<uint8_t> rest(run.size(), 0);
+  const double limit = kStill * run.speed_noise;
+  const size_t shortest = std::max<size_t>(2, Samples(kStillTime, run));
+  for (size_t i = 0; i < run.size();) {
+    size_t end = i;
+    while (end < run.size() && std::abs(run.at[end].motor_speed) < limit) ++end;
+    if (end - i >= shortest)
+      std::fill(rest.begin() + static_cast<std::ptrdiff_t>(i),
+                rest.begin() + static_cast<std::ptrdiff_t>(end), uint8_t{1});
+    i = std::max(end, i + 1);
+  }
+  Widen(Samples(kStillSpread, run), &rest);
+  return rest;
+}
+
+std::vector<uint8_t> Gaps(const RunMotion& run, const std::vector<Measured>& signals) {
+  std::vector<uint8_t> mask(run.size(), 0);
+  for (const Measured signal : signals) {
+    const std::vector<uint8_t>& gap = run.Of(signal).gap;
+    for (size_t k = 0; k < gap.size(); ++k) mask[k] |= gap[k];
+  }
+  Widen(Samples(kValveSpread, run), &mask);
+  return mask;
+}
+
+std::vector<uint8_t> Either(std::vector<uint8_t> a, const std::vector<uint8_t>& b) {
+  for (size_t k = 0; k < a.size(); ++k) a[k] |= b[k];
+  return a;
+}
+
+std::vector<uint8_t> EachStride(const std::vector<uint8_t>& mask, size_t stride) {
+  std::vector<uint8_t> thin;
+  for (size_t k = 0; k < mask.size(); k += stride) {
+    const auto from = mask.begin() + static_cast<std::ptrdiff_t>(k < stride / 2 ? 0 : k - stride / 2);
+    const auto to = mask.begin() + static_cast<std::ptrdiff_t>(std::min(mask.size(), k + stride / 2 + 1));
+    thin.push_back(std::any_of(from, to, [](uint8_t one) { return one != 0; }) ? 1 : 0);
+  }
+  return thin;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Where the side's valve passes oil: more flows in than noise and other terms explain.
+std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low, const Eigen::VectorXd& flow,
+                          double D) {
+  const auto n = static_cast<size_t>(flow.size());
+  std::vector<double> lacking(n);
+  double speed = 0;
+  for (size_t i = 0; i < n; ++i) {
+    lacking[i] = -flow[static_cast<Eigen::Index>(i)];
+    speed += std::pow(run.at[i * run.stride].motor_speed, 2);
+  }
+  const double step = run.step * static_cast<double>(run.stride);
+  lacking = Smoothed(lacking, std::max(0.5, 0.003 / step));
+  const double flow_size = D * std::sqrt(speed / static_cast<double>(n));
+  std::vector<double> far;
+  for (size_t i = 0; i < n; ++i) {
+    if (low[i] == 0) far.push_back(lacking[i]);
+  }
+  // Five robust standard deviations, and two per cent of the pump's flow, which leakage alone may be wrong by.
+  double limit = 0.15 * flow_size;
+  if (far.size() > 50) {
+    const double middle = Median(far);
+    for (double& one : far) one = std::abs(one - middle);
+    limit = 5 * 1.48 * Median(far);
+  }
+  limit += 0.02 * flow_size;
+  std::vector<uint8_t> mask(n, 1);
+  for (size_t i = 0; i < n; ++i) mask[i] = low[i] != 0 && lacking[i] > limit ? 0 : 1;
+  return mask;
+}
+
+}  // namespace
+
+HeldPressure FindHeldPressure(const std::vector<RunMotion>& runs, const model::Parameters& given) {
+  HeldPressure held{given.p_3, 0};
+  double highest = given.p_3, noise = 0;
+  for (const RunMotion& run : runs) {
+    if (!run.pressures) continue;
+    noise = std::max({noise, run.Of(Measured::kP1).noise, run.Of(Measured::kP2).noise});
+    for (const model::KnownMotion& at : run.at) highest = std::max({highest, at.p1, at.p2});
+  }
+  std::vector<double> low;
+  for (const RunMotion& run : runs) {
+    if (!run.pressures) continue;
+    for (const model::KnownMotion& at : run.at) {
+      const double lower = std::min(at.p1, at.p2);
+      if (lower < given.p_3 + kLowPart * (highest - given.p_3)) low.push_back(lower);
+    }
+  }
+  double spread = 0;
+  if (low.size() > kEnoughLow) {
+    held.at = Median(low);
+    double sum = 0, count = 0, mean = 0;
+    for (const double value : low) {
+      if (std::abs(value - held.at) < 30 * noise) mean += value, ++count;
+    }
+    mean /= std::max(count, 1.0);
+    for (const double value : low) {
+      if (std::abs(value - held.at) < 30 * noise) sum += std::pow(value - mean, 2);
+    }
+    spread = 1.5 * std::sqrt(sum / std::max(count, 1.0));
+  }
+  held.margin = std::max({6 * noise, 0.01 * (highest - given.p_3), spread});
+  return held;
+}
+
+std::array<std::vector<uint8_t>, kBalanceKinds> MasksOf(const RunMotion& run, const BalanceSeries& left,
+                                                        const HeldPressure& held,
+                                                        const model::Parameters& given) {
+  std::array<std::vector<uint8_t>, kBalanceKinds> masks;
+  const auto place = [](BalanceKind balance) { return static_cast<size_t>(balance); };
+  std::vector<Measured> speed = {run.from_angle ? Measured::kAngle : Measured::kSpeed};
+  if (CanForm(run, BalanceKind::kTorque)) {
+    std::vector<Measured> signals = speed;
+    if (run.pressures) signals.insert(signals.end(), {Measured::kP1, Measured::kP2});
+    masks[place(BalanceKind::kTorque)] = EachStride(Either(AtRest(run), Gaps(run, signals)), run.stride);
+  }
+  if (CanForm(run, BalanceKind::kArm)) {
+    masks[place(BalanceKind::kArm)] =
+        EachStride(Gaps(run, {Measured::kArm, Measured::kP1, Measured::kP2}), run.stride);
+  }
+  if (!CanForm(run, BalanceKind::kFlow1)) return masks;
+  std::vector<Measured> signals = speed;
+  signals.insert(signals.end(), {Measured::kP1, Measured::kP2});
+  if (run.arm_moves) signals.push_back(Measured::kArm);
+  const std::vector<uint8_t> gaps = Gaps(run, signals);
+  const std::pair<BalanceKind, BalanceKind> sides[] = {{BalanceKind::kFlow1, BalanceKind::kLevel1},
+                                                       {BalanceKind::kFlow2, BalanceKind::kLevel2}};
+  for (const auto& [flow, level] : sides) {
+    double model::KnownMotion::*pressure =
+        flow == BalanceKind::kFlow1 ? &model::KnownMotion::p1 : &model::KnownMotion::p2;
+    std::vector<uint8_t> low(run.size());
+    for (size_t k = 0; k < run.size(); ++k) low[k] = run.at[k].*pressure < held.at + held.margin ? 1 : 0;
+    const std::vector<uint8_t> only_low = EachStride(low, run.stride);
+    Widen(Samples(kValveSpread, run), &low);
+    masks[place(flow)] = EachStride(Either(low, gaps), run.stride);
+    masks[place(level)] =
+        Either(Held(run, only_low, left[place(flow)], given.D), EachStride(gaps, run.stride));
+  }
+  return masks;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,218 @@
+// Columns that are part of every hypothesis, also of "nothing is missing": what no rig is free of and no model states. Without
+// them a clock that is a fraction of a sample off, or a hose that creeps, is taken for an effect.
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/balances/column_maker.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// s: by which channels are late beside half a sample, of anti-alias filters and of conversion.
+constexpr double kLate = 2.5e-4;
+// s, and part of the compliance: hoses and seals creep over such times.
+constexpr double kCreepTimes[] = {0.03, 0.15};
+constexpr double kCreep = 0.04;
+constexpr double kMuchCreep = 0.3;
+// Part of the arm's torque: the centre of mass lies off the line through the zero of the angle.
+constexpr double kOffCentre = 0.03;
+// Friction differs by run, and over a turn, by this part.
+constexpr double kFrictionByRun = 0.02;
+constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump that is said to have none
+// Of the largest pressure: zero and charge pressure of a run.
+constexpr double kPressureByRun = 3e-3;
+// Of the arm's torque: another load of the run.
+constexpr double kLoadByRun = 0.03;
+
+std::string OfRun(const std::string& name, size_t run) { return name + "[" + std::to_string(run) + "]"; }
+
+// A first-order lag.
+Eigen::VectorXd Lagged(const Eigen::VectorXd& x, double step, double time) {
+  const double keep = std::exp(-step / time);
+  Eigen::VectorXd y(x.size());
+  double state = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    state = keep * state + (1 - keep) * x[i];
+    y[i] = state;
+  }
+  return y;
+}
+
+// What a signal reads too much where it is late by a second, to first order.
+SignalErrors LateBySecond(const RunMotion& run, Measured signal) {
+  double model::KnownMotion::*const rates[kMeasured] = {
+      &model::KnownMotion::motor_acceleration, &model::KnownMotion::motor_speed,
+      &model::KnownMotion::arm_speed, &model::KnownMotion::p1_rate, &model::KnownMotion::p2_rate};
+  const auto place = static_cast<size_t>(signal);
+  SignalErrors errors;
+  errors.of[place].resize(run.size());
+  for (size_t k = 0; k < run.size(); ++k) errors.of[place][k] = -(run.at[k].*rates[place]);
+  return errors;
+}
+
+SignalErrors Constant(const RunMotion& run, Measured signal) {
+  SignalErrors errors;
+  errors.of[static_cast<size_t>(signal)].assign(run.size(), 1.0);
+  return errors;
+}
+
+void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
+  double step = 0;
+  for (const RunMotion& run : *maker->runs) step = std::max(step, run.step);
+  const double sd = std::hypot(0.5 * step, kLate);
+  const int voltage = maker->Add({"late.voltage", "", sd, false});
+  maker->works.back().push_back([maker, voltage](size_t run) {
+    const RunMotion& motion = maker->Motion(run);
+    if (!CanForm(motion, BalanceKind::kTorque)) return;
+    const std::vector<double> rate = Derivative((*maker->base)[run].drive.smooth, motion.step);
+    Eigen::VectorXd series((*maker->base)[run].left[0].size());
+    for (Eigen::Index i = 0; i < series.size(); ++i)
+      series[i] = -rate[static_cast<size_t>(i) * motion.stride];
+    maker->Put(voltage, run, BalanceKind::kTorque, std::move(series));
+  });
+  const auto add = [&](const char* name, const std::vector<Measured>& signals) {
+    const int column = maker->Add({name, "", sd, false});
+    maker->works.back().push_back([maker, column, signals](size_t run) {
+      const RunMotion& motion = maker->Motion(run);
+      SignalErrors errors;
+      for (const Measured signal : signals) {
+        const bool speed = signal == Measured::kSpeed && motion.from_angle;
+        const Measured actual = speed ? Measured::kAngle : signal;
+        const SignalErrors one = LateBySecond(motion, actual);
+        errors.of[static_cast<size_t>(actual)] = one.of[static_cast<size_t>(actual)];
+      }
+      maker->Put(column, run, ReadingColumn(*maker, run, errors));
+    });
+  };
+  add("late.motor_speed", {Measured::kSpeed});
+  if (oil) add("late.p2", {Measured::kP2});
+  if (oil) add("late.p", {Measured::kP1, Measured::kP2});
+  if (moves) add("late.arm_angle", {Measured::kArm});
+}
+
+// Oil and hoses give more the longer a pressure stands.
+void AddCreep(ColumnMaker* maker) {
+  const std::optional<int> beta = maker->Named("beta");
+  if (!beta) return;
+  for (const double time : kCreepTimes) {
+    const std::string name = std::to_string(static_cast<int>(1000 * time)) + "ms";
+    const int column = maker->Add({"creep." + name, "", kCreep, false});
+    const int wide = maker->Add({"closure.creep:" + name, "closure.creep", kMuchCreep, false});
+    maker->works.back().push_back([=](size_t run) {
+      const RunMotion& motion = maker->Motion(run);
+      for (const BalanceKind flow : {BalanceKind::kFlow1, BalanceKind::kFlow2}) {
+        const Eigen::VectorXd* compressed = maker->Find(*beta, run, flow);
+        if (compressed == nullptr) continue;
+        const Eigen::VectorXd late =
+            -Lagged(*compressed, motion.step * static_cast<double>(motion.stride), time);
+        maker->Put(column, run, flow, late);
+        maker->Put(wide, run, flow, late);
+      }
+    });
+  }
+}
+
+// Friction of a run, and once a turn.
+void AddFriction(ColumnMaker* maker) {
+  const std::optional<int> friction = maker->Named("T_s");
+  if (!friction) return;
+  const double torque = maker->Size(BalanceKind::kTorque), given = maker->given().T_s;
+  const double usual = std::max(given, kLeastFriction * torque);
+  const double unit = given != 0 ? given : 1;
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*friction)];
+    meaning.run = static_cast<int>(r);
+    meaning.unit = 1;
+    maker->AddAlias({OfRun("T_s", r), "", kFrictionByRun * usual / unit, false}, meaning, *friction,
+                    static_cast<int>(r));
+    for (const bool sine : {true, false}) {
+      const int column =
+          maker->Add({OfRun(sine ? "turn.sin" : "turn.cos", r), "", kFrictionByRun * usual / unit, false});
+      maker->works.back().push_back([=](size_t run) {
+        const Eigen::VectorXd* series = maker->Find(*friction, run, BalanceKind::kTorque);
+        if (run != r || series == nullptr) return;
+        const RunMotion& motion = maker->Motion(run);
+        Eigen::VectorXd turning = *series;
+        for (Eigen::Index i = 0; i < turning.size(); ++i) {
+          const double angle = motion.at[static_cast<size_t>(i) * motion.stride].motor_angle;
+          turning[i] *= sine ? std::sin(angle) : std::cos(angle);
+        }
+        maker->Put(column, run, BalanceKind::kTorque, std::move(turning));
+      });
+    }
+  }
+  if (const std::optional<int> viscous = maker->Named("b")) {
+    for (size_t r = 0; r < maker->runs->size(); ++r) {
+      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*viscous)];
+      meaning.run = static_cast<int>(r);
+      meaning.unit = 1;
+      maker->AddAlias({OfRun("b", r), "", kFrictionByRun, false}, meaning, *viscous, static_cast<int>(r));
+    }
+  }
+}
+
+void AddPressures(ColumnMaker* maker) {
+  const double sd = kPressureByRun * maker->setup->sizes.pressure;
+  const std::optional<int> charge = maker->Named("p_3");
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    if (!maker->Motion(r).pressures) continue;
+    if (charge && maker->given().p_3 != 0) {
+      ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*charge)];
+      meaning.run = static_cast<int>(r);
+      maker->AddAlias({OfRun("p_3", r), "", sd / std::abs(maker->given().p_3), false}, meaning, *charge,
+                      static_cast<int>(r));
+    }
+    for (const Measured side : {Measured::kP1, Measured::kP2}) {
+      const std::string name = side == Measured::kP1 ? "p1_offset" : "p2_offset";
+      const int column =
+          maker->Add({OfRun(name, r), "", sd, false},
+                     {.kind = ColumnMeaning::Kind::kReading, .parameter = name, .run = static_cast<int>(r)});
+      maker->works.back().push_back([=](size_t run) {
+        if (run == r) maker->Put(column, run, ReadingColumn(*maker, run, Constant(maker->Motion(run), side)));
+      });
+    }
+  }
+}
+
+void AddLoads(ColumnMaker* maker) {
+  const double torque = maker->Size(BalanceKind::kArm);
+  const int off = maker->Add({"gravity.sin", "", kOffCentre * torque, false});
+  maker->works.back().push_back([maker, off](size_t run) {
+    const RunMotion& motion = maker->Motion(run);
+    if (!CanForm(motion, BalanceKind::kArm)) return;
+    Eigen::VectorXd series((*maker->base)[run].left[static_cast<size_t>(BalanceKind::kArm)].size());
+    for (Eigen::Index i = 0; i < series.size(); ++i)
+      series[i] = -std::sin(motion.at[static_cast<size_t>(i) * motion.stride].arm_angle);
+    maker->Put(off, run, BalanceKind::kArm, std::move(series));
+  });
+  const std::optional<int> load = maker->Named("mgl");
+  if (!load) return;
+  const double unit = maker->given().mgl != 0 ? std::abs(maker->given().mgl) : 1;
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    if (!CanForm(maker->Motion(r), BalanceKind::kArm)) continue;
+    ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*load)];
+    meaning.run = static_cast<int>(r);
+    meaning.unit = 1;
+    maker->AddAlias({OfRun("mgl", r), "", kLoadByRun * torque / unit, false}, meaning, *load,
+                    static_cast<int>(r));
+  }
+}
+
+}  // namespace
+
+void AddNuisanceColumns(ColumnMaker* maker) {
+  bool oil = false, arm = false, moves = false;
+  for (const RunMotion& run : *maker->runs) {
+    oil |= run.pressures;
+    arm |= CanForm(run, BalanceKind::kArm);
+    moves |= run.arm_moves && run.pressures;
+  }
+  AddLateness(maker, oil, moves);
+  AddFriction(maker);
+  if (oil) AddCreep(maker);
+  if (oil) AddPressures(maker);
+  if (arm) AddLoads(maker);
+}
+
+}  // namespace hydro::diagnose

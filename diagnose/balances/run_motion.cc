@@ -1,0 +1,313 @@
+#include "diagnose/balances/run_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "diagnose/data/sample_interval.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using std::numbers::sqrt2;
+
+// Times are as good as even where they differ by less than this part of a sample.
+constexpr double kUneven = 0.02;
+// The Gaussian's reach, in standard deviations.
+constexpr double kReach = 4;
+// s: balances are needed this often, four times the highest frequency of their test functions.
+constexpr double kBalanceStep = 2e-3;
+// The arm's direction is sure when it has moved by this part of its range since it turned, or by what noise hides.
+constexpr double kTurnPart = 1e-3;
+constexpr double kTurnNoise = 3;
+
+constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kMeasured] = {
+    &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
+    &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
+constexpr model::Channel kChannelOf[kMeasured] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
+                                                  model::Channel::kArmAngle, model::Channel::kP1,
+                                                  model::Channel::kP2};
+
+std::vector<double> KernelOf(double sigma) {
+  const int reach = std::max(1, static_cast<int>(std::ceil(kReach * sigma)));
+  std::vector<double> kernel;
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    kernel.push_back(std::exp(-0.5 * std::pow(i / sigma, 2)));
+    sum += kernel.back();
+  }
+  for (double& weight : kernel) weight /= sum;
+  return kernel;
+}
+
+double RootSum(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum);
+}
+
+// The signal's values at the grid's times: straight lines between its samples.
+GridSignal OnGrid(const RunData& run, size_t which, double step, size_t count) {
+  GridSignal grid;
+  const runs::MeasuredSignal& measured = run.measured.*kSignalOf[which];
+  if (!measured.measured()) return grid;
+  const SignalData* prepared = run.Find(kChannelOf[which]);
+  const std::vector<double>& values = prepared != nullptr ? prepared->values : measured.values;
+  const std::vector<double>& time = run.stimulus.time;
+  std::vector<double> own_time, own;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    own_time.push_back(time[i]);
+    own.push_back(values[i]);
+  }
+  if (own.size() < 4) return grid;
+  grid.interval = std::max(step, MedianInterval({&own_time}));
+  grid.noise = measured.noise.value_or(EstimateNoise(own));
+  const ValueRange range = RangeOfValues(own);
+  grid.noise = std::max(grid.noise, 1e-9 * range.size() + 1e-300);
+  grid.values.resize(count);
+  grid.gap.assign(count, 0);
+  size_t next = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double t = time.front() + static_cast<double>(k) * step;
+    while (next < own.size() && own_time[next] < t - 1e-6 * step) ++next;
+    if (next == 0 || next == own.size()) {
+      grid.values[k] = next == 0 ? own.front() : own.back();
+      grid.gap[k] = std::abs(t - (next == 0 ? own_time.front() : own_time.back())) > grid.interval ? 1 : 0;
+      continue;
+    }
+    const double width = own_time[next] - own_time[next - 1];
+    const double part = std::min(1.0, (t - own_time[next - 1]) / width);
+    grid.values[k] = own[next - 1] + part * (own[next] - own[next - 1]);
+    grid.gap[k] = width > 2.5 * grid.interval ? 1 : 0;
+  }
+  return grid;
+}
+
+std::vector<double> HeldOnGrid(const RunData& run, double step, size_t count) {
+  std::vector<double> held(count);
+  const std::vector<double>& time = run.stimulus.time;
+  size_t at = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double t = time.front() + static_cast<double>(k) * step;
+    while (at + 1 < time.size() && time[at + 1] <= t + 1e-6 * step) ++at;
+    held[k] = run.stimulus.voltage[at];
+  }
+  return held;
+}
+
+// The arm's direction, remembered where it stands.
+std::vector<double> Directions(const std::vector<double>& angle, double noise) {
+  const ValueRange range = RangeOfValues(angle);
+  const double reach = std::max({kTurnPart * range.size(), kTurnNoise * noise, 1e-300});
+  std::vector<double> direction(angle.size());
+  double bent = 0;
+  for (size_t i = 0; i < angle.size(); ++i) {
+    const double moved = i == 0 ? 0 : (angle[i] - angle[i - 1]) / reach;
+    bent += moved * (1 - bent * (moved > 0 ? 1 : moved < 0 ? -1 : 0));
+    bent = std::clamp(bent, -1.0, 1.0);
+    direction[i] = bent;
+  }
+  return direction;
+}
+
+const std::vector<double>& SmoothedOf(const GridSignal& signal, double sigma, std::vector<double>* store) {
+  *store = Smoothed(signal.values, sigma);
+  return *store;
+}
+
+// The pressures of a run whose two sides are connected, or whose pressures nobody measured.
+double OnePressure(const RunMotion& run, const model::Parameters& given, size_t k) {
+  double sum = 0;
+  int count = 0;
+  for (const Measured side : {Measured::kP1, Measured::kP2}) {
+    if (!run.Of(side).measured()) continue;
+    sum += run.Of(side).values[k];
+    ++count;
+  }
+  return count > 0 ? sum / count : given.p_3;
+}
+
+// Fills `at` from the signals.
+void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
+  const size_t n = run->voltage.size();
+  const double sigma = SmoothingOf(run->step) / run->step;
+  run->at.assign(n, {});
+  for (size_t k = 0; k < n; ++k) {
+    run->at[k].time = begin + static_cast<double>(k) * run->step;
+    run->at[k].voltage = run->voltage[k];
+  }
+  const auto set = [&](double model::KnownMotion::*place, const std::vector<double>& values) {
+    for (size_t k = 0; k < n; ++k) run->at[k].*place = values[k];
+  };
+  const GridSignal& speed = run->Of(Measured::kSpeed);
+  const GridSignal& angle = run->Of(Measured::kAngle);
+  std::vector<double> smooth, w;
+  const std::vector<double> kernel = KernelOf(sigma);
+  if (run->from_angle) {
+    w = Derivative(SmoothedOf(angle, sigma, &smooth), run->step);
+    run->speed_noise = angle.noise * RootSum(Derivative(kernel, run->step));
+  } else if (speed.measured()) {
+    w = SmoothedOf(speed, sigma, &smooth);
+    run->speed_noise = speed.noise * RootSum(kernel);
+  }
+  if (!w.empty()) {
+    set(&model::KnownMotion::motor_speed, w);
+    set(&model::KnownMotion::motor_acceleration, Derivative(w, run->step));
+    for (model::KnownMotion& at : run->at)
+      at.pump_direction = std::erf(at.motor_speed / (sqrt2 * std::max(run->speed_noise, 1e-300)));
+    if (angle.measured()) {
+      set(&model::KnownMotion::motor_angle, SmoothedOf(angle, sigma, &smooth));
+    } else {
+      for (size_t k = 1; k < n; ++k)
+        run->at[k].motor_angle = run->at[k - 1].motor_angle + 0.5 * (w[k] + w[k - 1]) * run->step;
+    }
+  }
+  const GridSignal& arm = run->Of(Measured::kArm);
+  for (model::KnownMotion& at : run->at) at.arm_angle = run->options.arm_angle;
+  if (run->arm_moves) {
+    set(&model::KnownMotion::arm_angle, SmoothedOf(arm, sigma, &smooth));
+    set(&model::KnownMotion::arm_speed, Derivative(smooth, run->step));
+    set(&model::KnownMotion::arm_acceleration, Derivative(Derivative(smooth, run->step), run->step));
+    set(&model::KnownMotion::arm_direction, Directions(smooth, arm.noise * RootSum(kernel)));
+  }
+  if (run->pressures) {
+    set(&model::KnownMotion::p1, SmoothedOf(run->Of(Measured::kP1), sigma, &smooth));
+    set(&model::KnownMotion::p1_rate, Derivative(smooth, run->step));
+    set(&model::KnownMotion::p2, SmoothedOf(run->Of(Measured::kP2), sigma, &smooth));
+    set(&model::KnownMotion::p2_rate, Derivative(smooth, run->step));
+  } else {
+    for (size_t k = 0; k < n; ++k) run->at[k].p1 = run->at[k].p2 = OnePressure(*run, given, k);
+  }
+}
+
+}  // namespace
+
+double SmoothingOf(double step) { return std::max(kSmoothing, 0.7 * step); }
+
+std::vector<double> Derivative(const std::vector<double>& values, double step) {
+  constexpr double kWeight[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
+  const auto n = static_cast<std::ptrdiff_t>(values.size());
+  // Beyond the ends the series goes on as it would through the end points.
+  const auto value = [&](std::ptrdiff_t i) {
+    if (i < 0) return 2 * values.front() - values[static_cast<size_t>(std::min(n - 1, -i))];
+    if (i >= n)
+      return 2 * values.back() - values[static_cast<size_t>(std::max<std::ptrdiff_t>(0, 2 * (n - 1) - i))];
+    return values[static_cast<size_t>(i)];
+  };
+  std::vector<double> rate(values.size());
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    double sum = 0;
+    for (std::ptrdiff_t lag = 1; lag <= 3; ++lag) sum += kWeight[lag - 1] * (value(i + lag) - value(i - lag));
+    rate[static_cast<size_t>(i)] = sum / step;
+  }
+  return rate;
+}
+
+std::vector<double> Smoothed(const std::vector<double>& values, double sigma) {
+  const std::vector<double> kernel = KernelOf(sigma);
+  const auto n = static_cast<std::ptrdiff_t>(values.size());
+  const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2);
+  std::vector<double> padded(static_cast<size_t>(n + 2 * reach));
+  for (std::ptrdiff_t i = -reach; i < n + reach; ++i) {
+    const std::ptrdiff_t mirrored = i < 0 ? -i : i >= n ? 2 * (n - 1) - i : i;
+    padded[static_cast<size_t>(i + reach)] =
+        values[static_cast<size_t>(std::clamp<std::ptrdiff_t>(mirrored, 0, n - 1))];
+  }
+  std::vector<double> smooth(values.size(), 0.0);
+  for (size_t k = 0; k < kernel.size(); ++k) {
+    const double weight = kernel[k];
+    const double* from = padded.data() + k;
+    for (size_t i = 0; i < smooth.size(); ++i) smooth[i] += weight * from[i];
+  }
+  return smooth;
+}
+
+RunMotion MotionOf(const RunData& run, const model::Parameters& given) {
+  RunMotion motion;
+  motion.name = run.name;
+  motion.options.shaft = run.stimulus.shaft;
+  motion.options.bypass = run.stimulus.bypass;
+  motion.options.arm_angle = run.stimulus.arm_angle;
+  motion.options.begin = run.stimulus.begin;
+  motion.options.motion = run.stimulus.motion;
+  const std::vector<double>& time = run.stimulus.time;
+  motion.step = MedianInterval({&time});
+  const auto count =
+      static_cast<size_t>(std::floor((time.back() - time.front()) / motion.step * (1 + 1e-9))) + 1;
+  motion.stride =
+      std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
+  motion.voltage = HeldOnGrid(run, motion.step, count);
+  for (size_t s = 0; s < kMeasured; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
+  motion.pressures =
+      !run.stimulus.bypass && motion.Of(Measured::kP1).measured() && motion.Of(Measured::kP2).measured();
+  motion.arm_moves = run.stimulus.shaft != model::Shaft::kClamped && motion.Of(Measured::kArm).measured();
+  motion.from_angle = !motion.Of(Measured::kSpeed).measured();
+  motion.speed_known = motion.Of(Measured::kSpeed).measured() || motion.Of(Measured::kAngle).measured();
+  motion.from_angle = motion.from_angle && motion.speed_known;
+  SetMotion(given, time.front(), &motion);
+  return motion;
+}
+
+RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, uint64_t seed) {
+  RunMotion noisy = run;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  for (GridSignal& signal : noisy.signals) {
+    if (!signal.measured()) continue;
+    const auto every = std::max<size_t>(1, static_cast<size_t>(std::lround(signal.interval / run.step)));
+    double before = signal.noise * normal(random);
+    // Noise of a signal that is slower than the grid goes in straight lines too.
+    for (size_t k = 0; k < signal.values.size(); k += every) {
+      const double after = signal.noise * normal(random);
+      for (size_t i = k; i < std::min(k + every, signal.values.size()); ++i) {
+        const double part = static_cast<double>(i - k) / static_cast<double>(every);
+        signal.values[i] += before + part * (after - before);
+      }
+      before = after;
+    }
+  }
+  SetMotion(given, run.at.front().time, &noisy);
+  // What decides where a term acts stays as it was: only the terms themselves are compared.
+  for (size_t k = 0; k < run.size(); ++k) {
+    noisy.at[k].motor_angle = run.at[k].motor_angle;
+    noisy.at[k].pump_direction =
+        std::erf(noisy.at[k].motor_speed / (sqrt2 * std::max(run.speed_noise, 1e-300)));
+  }
+  return noisy;
+}
+
+RunMotion Without(const RunMotion& run, const SignalErrors& errors, double part) {
+  RunMotion moved = run;
+  const auto take = [&](const std::vector<double>& of, double model::KnownMotion::*place) {
+    for (size_t k = 0; k < moved.size(); ++k) moved.at[k].*place -= part * of[k];
+  };
+  const auto& [speed, angle, arm, p1, p2] = errors.of;
+  const std::vector<double> w = run.from_angle && !angle.empty() ? Derivative(angle, run.step)
+                                : run.from_angle                 ? std::vector<double>{}
+                                                                 : speed;
+  if (!w.empty()) {
+    take(w, &model::KnownMotion::motor_speed);
+    take(Derivative(w, run.step), &model::KnownMotion::motor_acceleration);
+  }
+  if (!angle.empty()) take(angle, &model::KnownMotion::motor_angle);
+  if (run.arm_moves && !arm.empty()) {
+    const std::vector<double> rate = Derivative(arm, run.step);
+    take(arm, &model::KnownMotion::arm_angle);
+    take(rate, &model::KnownMotion::arm_speed);
+    take(Derivative(rate, run.step), &model::KnownMotion::arm_acceleration);
+  }
+  if (run.pressures && !p1.empty()) {
+    take(p1, &model::KnownMotion::p1);
+    take(Derivative(p1, run.step), &model::KnownMotion::p1_rate);
+  }
+  if (run.pressures && !p2.empty()) {
+    take(p2, &model::KnownMotion::p2);
+    take(Derivative(p2, run.step), &model::KnownMotion::p2_rate);
+  }
+  return moved;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,67 @@
+// A measured run as the balances need it: every signal smoothed alike on one even grid, with its derivatives. A filter that is
+// the same for all signals leaves every linear balance as it was.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "model/balances.h"
+
+namespace hydro::diagnose {
+
+// The signals that balances are made of.
+enum class Measured { kSpeed, kAngle, kArm, kP1, kP2 };
+inline constexpr size_t kMeasured = 5;
+
+// One signal on the grid, as measured: gaps bridged.
+struct GridSignal {
+  std::vector<double> values;  // empty: not measured
+  double noise = 0;            // standard deviation, white, at its own samples
+  double interval = 0;         // s, between its own samples
+  std::vector<uint8_t> gap;    // 1: further from a sample than its own interval
+
+  bool measured() const { return !values.empty(); }
+};
+
+struct RunMotion {
+  std::string name;
+  model::ActuatorOptions options;  // how the shaft was held
+  double step = 0;                 // s, of the grid
+  size_t stride = 1;               // every stride-th instant is enough for the balances
+  std::vector<double> voltage;     // held from each instant to the next
+  std::array<GridSignal, kMeasured> signals;
+  bool pressures = false;              // both were measured, and the two sides are not connected
+  bool arm_moves = false;              // and was measured
+  bool speed_known = false;            // measured, or from the angle
+  bool from_angle = false;             // the speed is the angle's derivative
+  double speed_noise = 0;              // rad/s, of the smoothed speed
+  std::vector<model::KnownMotion> at;  // an instant each
+
+  size_t size() const { return at.size(); }
+  const GridSignal& Of(Measured signal) const { return signals[static_cast<size_t>(signal)]; }
+};
+
+// s, of the Gaussian that smooths all signals: it passes 120 Hz, beyond which derivatives of noisy signals say little.
+inline constexpr double kSmoothing = 1.5e-3;
+double SmoothingOf(double step);
+
+RunMotion MotionOf(const RunData& run, const model::Parameters& given);
+// The same with the sensors' noise added once more, by a generator of its own: the difference shows what noise does.
+RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, uint64_t seed);
+// The same with `errors`, one series of values a signal (empty: none), taken off what was measured, times `part`. The series are of
+// smoothed signals.
+struct SignalErrors {
+  std::array<std::vector<double>, kMeasured> of;
+};
+RunMotion Without(const RunMotion& run, const SignalErrors& errors, double part);
+
+// Centred derivative of sixth order, 1/s.
+std::vector<double> Derivative(const std::vector<double>& values, double step);
+// Gaussian, `sigma` in samples; mirrored at the ends.
+std::vector<double> Smoothed(const std::vector<double>& values, double sigma);
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,15 @@
+// At how many periods a turn something repeats with the shaft: a score test for each, of what every hypothesis leaves.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/balances/make_rows.h"
+#include "diagnose/evidence/set_evidence.h"
+
+namespace hydro::diagnose {
+
+// The likeliest few periods of each effect that repeats with the shaft, all together, increasing. `rows` and `evidence` are those of the
+// same runs without such effects.
+std::vector<int> LikelyPeriods(const ScanRuns& runs, const Rows& rows, const SetEvidence& evidence, int jobs);
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,73 @@
+// What eqs. (4), (13), (14), (15) leave where the motion is known: nothing is integrated but the states that effects
+// add, along the given motion. The gap finder compares measured motion with the model by these.
+#pragma once
+
+#include <vector>
+
+#include "model/equations/equations.h"
+#include "model/response.h"
+
+namespace hydro::model {
+
+// The motion at one instant, in the model's units.
+struct KnownMotion {
+  double time = 0;     // s
+  double voltage = 0;  // V
+  double motor_angle = 0, motor_speed = 0, motor_acceleration = 0;
+  double p1 = 0, p2 = 0, p1_rate = 0, p2_rate = 0;
+  double arm_angle = 0, arm_speed = 0, arm_acceleration = 0;
+  // The expected sign of the pump's and of the arm's motion, -1 to 1: between, where noise hides it.
+  double pump_direction = 0, arm_direction = 0;
+};
+
+// What is left, as a torque or flow that the model lacks: 0 where it is right.
+template <class T>
+struct BalancesOf {
+  T torque{};  // on the pump, eq. (4), in-lbf
+  T flow_1{};  // into each side with its one-way valve closed, eqs. (13), (14), in^3/s
+  T flow_2{};
+  T arm{};      // on the arm, eq. (15), in-lbf
+  T level_1{};  // psi: what a side reads above the level at which its open one-way valve holds it
+  T level_2{};
+  T drive{};  // the motor's torque, eq. (1): part of `torque`
+};
+
+// What the sensors would read beyond the motion, because of effects of the recorder.
+using ReadingErrors = Measurement;
+
+class BalanceEquations {
+ public:
+  // `unknowns`: those by which At differentiates, at most kJetWidth; of kinds kBase and kEffect. Throws ModelError as
+  // Equations does.
+  BalanceEquations(const ModelDescription& model, ActuatorOptions options,
+                   const std::vector<Unknown>& unknowns = {});
+
+  bool has_states() const { return equations_.states() > first_state_; }
+  // Whether an effect remembers commands, reads late, or has states: then the instants have to be passed in turn.
+  bool remembers() const;
+
+  // Puts the states of effects where they are in steady motion at this instant.
+  void Start(const KnownMotion& motion);
+  // Moves the states of effects on to the next sample. The voltage of `from` is held until then.
+  void Advance(const KnownMotion& from, const KnownMotion& to);
+
+  BalancesOf<double> Values(const KnownMotion& motion) const;
+  BalancesOf<Jet> At(const KnownMotion& motion) const;
+  // To first order in how late a late channel is.
+  ReadingErrors Errors(const KnownMotion& motion) const;
+
+ private:
+  void CopyStates(const KnownMotion& motion, double* state) const;
+  void OwnRates(const KnownMotion& motion, double* state, double* rate) const;
+  void FindJacobian(const KnownMotion& motion);
+
+  Equations equations_;
+  NumbersOf<Jet> numbers_;        // with derivatives by the unknowns
+  int first_state_ = 0;           // of effects
+  bool commands_ = false;         // some effect may remember commands
+  std::vector<double> own_;       // the effects' states
+  std::vector<double> jacobian_, step_matrix_;  // of their rates by themselves, by rows; of a sample
+  int since_jacobian_ = 0;
+};
+
+}  // namespace hydro::model
