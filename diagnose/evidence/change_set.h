@@ -8,17 +8,19 @@
 
 namespace hydro::diagnose {
 
-// The names of what is switched on together with the columns of every hypothesis (ScanColumn::set), sorted. Empty: nothing
-// is missing.
+// The names of what is switched on together with the columns of every hypothesis (ScanColumn::set), sorted.
+// Empty: nothing is missing.
 using ChangeSet = std::vector<std::string>;
 
-// "pump.stribeck" of "pump.stribeck|0.03": the change without its variant. Variants of one change exclude each other.
+// "pump.stribeck" of "pump.stribeck|0.03": the change without its variant. Variants of one change exclude
+// each other.
 std::string_view ChangeOf(std::string_view name);
 
 // The changes of a set, sorted, without their variants.
 ChangeSet ChangesOf(const ChangeSet& set);
 
-// Is it an effect, with or without a form of its own (a closure), and not merely another value of what the model has?
+// Is it an effect, with or without a form of its own (a closure), and not merely another value of what the
+// model has?
 bool IsMissingTerm(std::string_view name);
 
 // `set` with `name`, sorted.

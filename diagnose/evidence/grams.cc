@@ -14,15 +14,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A group whose signal has less than ten times the variance of the sensors' noise shrinks what is fitted to it by
-// more than a tenth.
+// A group whose signal has less than ten times the variance of the sensors' noise shrinks what is fitted to
+// it by more than a tenth.
 constexpr double kLeastSignalToNoise = 10;
 // Two rows cannot tell a variance from an amount.
 constexpr size_t kLeastRows = 3;
 // The equations themselves are true to one part in a hundred: geometry, temperature, play.
 constexpr double kPartNotModelled = 0.01;
-// Test functions overlap, so that two rows are one independent number. Of all constants here the answers depend on
-// this one most, and more than a half is never right.
+// Test functions overlap, so that two rows are one independent number. Of all constants here the answers
+// depend on this one most, and more than a half is never right.
 constexpr double kIndependentShare = 0.5;
 
 using RowsOfGroups = std::map<int, std::vector<Index>>;  // by band
@@ -37,6 +37,9 @@ void Check(const RowBlock& block, size_t columns) {
        (block.noise_y.size() != rows || block.noise_X.rows() != rows || block.noise_X.cols() != width)) ||
       (width > 0 && static_cast<size_t>(block.columns.back()) >= columns))
     throw std::invalid_argument("rows of a balance: sizes do not match");
+  if (!block.X.allFinite() || !block.y.allFinite() || !block.noise_X.allFinite() ||
+      !block.noise_y.allFinite())
+    throw std::invalid_argument("rows of a balance: a number is not finite");
 }
 
 // The mean square of a column in a group.
@@ -89,7 +92,8 @@ class BlockOfGrams {
     return group.size() >= kLeastRows && signal > kLeastSignalToNoise * block_.sensor_variance(group).mean();
   }
 
-  // The variance of each row of a group: that of the sensors, and what the model and the clocks leave of the largest term.
+  // The variance of each row of a group: that of the sensors, and what the model and the clocks leave of the
+  // largest term.
   VectorXd FloorOf(const std::vector<Index>& group) const {
     VectorXd floor = block_.sensor_variance(group);
     if (IsLevel()) return floor;

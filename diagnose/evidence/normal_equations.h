@@ -18,7 +18,8 @@ struct PriorOfAmounts {
 // The prior of the columns of every hypothesis, from which that of any set is made without inverting it again.
 class Priors {
  public:
-  // `always`: the columns of every hypothesis. Throws std::invalid_argument unless `covariance` is positive definite.
+  // `always`: the columns of every hypothesis. Throws std::invalid_argument unless `covariance` is positive
+  // definite.
   Priors(const Eigen::MatrixXd& covariance, std::vector<int> always);
 
   // Of the columns `always`, then `changes`.
@@ -40,7 +41,8 @@ struct PlacedBlock {
 // A set of changes: amounts are those of the columns of every hypothesis, then those of the changes' columns.
 class NormalEquations {
  public:
-  // `always`: how many columns are in every hypothesis. `changes`: columns, increasing. The blocks must outlive this.
+  // `always`: how many columns are in every hypothesis. `changes`: columns, increasing. The blocks must
+  // outlive this.
   NormalEquations(const std::vector<PlacedBlock>& blocks, Eigen::Index always,
                   const std::vector<int>& changes);
 

@@ -1,10 +1,10 @@
 // The log evidence of any set of changes, from the balances' rows: nothing is simulated.
 //
-// Each group g of rows (balance, run, band of frequencies) has a variance of its own, integrated over an inverse-gamma
-// prior (a, b_g = a times the variance that is known beforehand, f_g):
+// Each group g of rows (balance, run, band of frequencies) has a variance of its own, integrated over an
+// inverse-gamma prior (a, b_g = a times the variance that is known beforehand, f_g):
 //   log E = -sum_g (a + n_g / 2) ln((b_g + RSS_g / 2) / f_g) - amounts' P^-1 amounts / 2 - ln|P A| / 2
-// at the amounts and the variances that agree with each other, with corrections: noise in the columns, a Jacobian
-// where a disturbance moves the shaft, and amounts that cannot be negative.
+// at the amounts and the variances that agree with each other, with corrections: noise in the columns, a
+// Jacobian where a disturbance moves the shaft, and amounts that cannot be negative.
 #pragma once
 
 #include <Eigen/Core>

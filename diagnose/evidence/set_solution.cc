@@ -12,13 +12,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Variances have settled when none moves by more than a hundredth: amounts then move by a hundredth of their
-// deviations at most.
+// Variances have settled when none moves by more than a hundredth: what the log evidence still moves by is common to
+// sets, which all start from the same variances.
 constexpr double kSettled = 0.01;
 // Inertia is positive: where the linear form would make it less than this share, the Jacobian stops there.
 constexpr double kLeastInertia = 0.05;
-// Limits of what the noise in the columns does to a sum of squares. A set that passes on a thirtieth of the noise explains by
-// cancelling signals, one that passes on ten times more is out of the running.
+// Limits of what the noise in the columns does to a sum of squares. A set that passes on a thirtieth of the
+// noise explains by cancelling signals, one that passes on ten times more is out of the running.
 constexpr double kLeastNoiseFactor = 0.03, kMostNoiseFactor = 10;
 
 // ln of the normal distribution.
@@ -58,7 +58,8 @@ SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, Vector
     found.squares = equations.Squares(found.amounts);
     found.next = (kVarianceShape + numbers_.array() / 2) /
                  (kVarianceShape * floor_.array() + found.squares.array() / 2);
-    if ((found.next.array() / weights.array()).log().abs().maxCoeff() < kSettled) break;
+    if (numbers_.size() == 0 || (found.next.array() / weights.array()).log().abs().maxCoeff() < kSettled)
+      break;
   }
   found.weights = std::move(weights);
   found.counted_squares = found.squares;
@@ -70,10 +71,10 @@ SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, Vector
   return found;
 }
 
-// Where the residual of the torque balance is a disturbance and not noise of the sensors, w' answers to it, and the density of
-// the measured w' has a factor J for each number: n ln(1 + delta_J), here its second-order form about the amounts so far.
-// Without it every disturbance shrinks J, by 77 to 100 % on three real machines. (In the flows and in the arm's balance it
-// makes things worse: their residuals are the sensors'.)
+// Where the residual of the torque balance is a disturbance and not noise of the sensors, w' answers to it,
+// and the density of the measured w' has a factor J for each number: n ln(1 + delta_J), here its second-order
+// form about the amounts so far. Without it every disturbance shrinks J, by 77 to 100 % on three real
+// machines. (In the flows and in the arm's balance it makes things worse: their residuals are the sensors'.)
 void SetEvidence::AddJacobian(const std::vector<Index>& inertia, const VectorXd& amounts, MatrixXd* normal,
                               VectorXd* right) const {
   if (inertia.empty()) return;
@@ -85,9 +86,10 @@ void SetEvidence::AddJacobian(const std::vector<Index>& inertia, const VectorXd&
   }
 }
 
-// Errors in variables: what the residuals' squares are to be divided by. `passed`: the squares of the noise that the set's
-// columns pass on. Amounts that cancel noise also cancel what the sensors had to say, and amounts that pass on more noise than
-// the model without changes explain that much of the residuals by themselves.
+// Errors in variables: what the residuals' squares are to be divided by. `passed`: the squares of the noise
+// that the set's columns pass on. Amounts that cancel noise also cancel what the sensors had to say, and
+// amounts that pass on more noise than the model without changes explain that much of the residuals by
+// themselves.
 VectorXd SetEvidence::NoiseFactors(const VectorXd& passed) const {
   VectorXd factors(passed.size());
   for (Index g = 0; g < passed.size(); ++g) {

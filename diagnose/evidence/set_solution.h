@@ -8,7 +8,8 @@
 
 namespace hydro::diagnose {
 
-// a: what is known beforehand of a group's variance is worth two numbers. It changes nothing where groups have tens.
+// a: what is known beforehand of a group's variance is worth two numbers. It changes nothing where groups
+// have tens.
 inline constexpr double kVarianceShape = 1;
 
 struct SetEvidence::Solution {

@@ -1,0 +1,30 @@
+// How probable each explanation is: tempered scores, drawn over runs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "diagnose/evidence/set_scan.h"
+
+namespace hydro::diagnose {
+
+struct WeighedExplanation {
+  ChangeSet changes;  // without their variants
+  ChangeSet set;      // the variants that have most of the weight
+  double score = 0;   // of `set`
+  double weight = 0;
+};
+
+struct ExplanationWeights {
+  std::vector<WeighedExplanation> explanations;  // those with a weight, largest first; they add to 1
+  size_t in_90 = 0;                              // how many of the first hold 90 % together
+};
+
+// The weights of the sets in `scores`; tries those that it lacks. In each of 400 draws each run counts by a
+// random factor, so that what a single run says weighs less than what all say; the finalists share the draw
+// by their tempered scores. What a set adds to another for hardly any gain is no explanation of its own: its
+// weight is the other's. The same for any number of jobs.
+ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1);
+
+}  // namespace hydro::diagnose
