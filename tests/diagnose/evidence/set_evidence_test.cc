@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <numbers>
 
 #include "base/random.h"
 #include "made_rows.h"
@@ -33,7 +34,17 @@ double AmountOf(const Rows& rows, const SetFit& fit, const std::string& name) {
   return at == fit.columns.end() ? NAN : fit.amounts[at - fit.columns.begin()];
 }
 
-// Rows below each other, columns of the fit; each row scaled by `scale`.
+// The variances of the rows of a group that are known beforehand: the sensors', and what a model that is true
+// to 1 % and a clock leave of the largest base column.
+VectorXd FloorOf(const Rows& rows, const RowBlock& block, const std::vector<Index>& group) {
+  double largest = 0;
+  for (const int base : rows.base)  // the first columns of all made-up blocks
+    largest = std::max(largest, block.X(group, base).squaredNorm() / static_cast<double>(group.size()));
+  const VectorXd angle = 2 * std::numbers::pi * rows.clock * block.frequency(group);
+  return block.sensor_variance(group).array() + (1e-4 + angle.array().square()) * largest;
+}
+
+// All rows below each other, with the fit's columns.
 struct Dense {
   MatrixXd X;
   VectorXd y;
@@ -41,39 +52,26 @@ struct Dense {
 };
 
 Dense DenseOf(const Rows& rows, const SetFit& fit) {
-  Dense dense;
-  Index count = 0;
-  for (const RowBlock& block : rows.blocks) count += block.y.size();
-  dense.X = MatrixXd::Zero(count, static_cast<Index>(fit.columns.size()));
-  dense.y = dense.variance = VectorXd::Zero(count);
-  Index at = 0;
-  for (const RowBlock& block : rows.blocks)
-    for (Index i = 0; i < block.y.size(); ++i, ++at) {
-      dense.y[at] = block.y[i];
-      for (size_t k = 0; k < fit.columns.size(); ++k)
-        for (size_t c = 0; c < block.columns.size(); ++c)
-          if (block.columns[c] == fit.columns[k])
-            dense.X(at, static_cast<Index>(k)) = block.X(i, static_cast<Index>(c));
-      for (const diagnose::GroupFit& group : fit.groups)
-        if (group.run == block.run && group.balance == block.balance &&
-            group.band == block.band[static_cast<size_t>(i)]) {
-          // Two rows are one number. A row whose own floor is above its group's counts less.
-          double largest = 0, members = 0, mean = 0;
-          for (const int base : rows.base) {
-            double sum = 0;
-            members = 0;
-            for (Index j = 0; j < block.y.size(); ++j)
-              if (block.band[static_cast<size_t>(j)] == group.band)
-                sum += std::pow(block.X(j, base), 2), ++members;
-            largest = std::max(largest, sum / members);
-          }
-          for (Index j = 0; j < block.y.size(); ++j)
-            if (block.band[static_cast<size_t>(j)] == group.band)
-              mean += (block.sensor_variance[j] + 1e-4 * largest) / members;
-          EXPECT_NEAR(group.floor, mean, 1e-12);
-          dense.variance[at] = 2 / group.weight * (block.sensor_variance[i] + 1e-4 * largest) / mean;
-        }
-    }
+  Dense dense{MatrixXd(0, static_cast<Index>(fit.columns.size())), {}, {}};
+  for (const diagnose::GroupFit& of_fit : fit.groups) {
+    const RowBlock& block = rows.blocks[of_fit.run];
+    std::vector<Index> group;
+    for (Index i = 0; i < block.y.size(); ++i)
+      if (block.band[static_cast<size_t>(i)] == of_fit.band) group.push_back(i);
+    MatrixXd X = MatrixXd::Zero(static_cast<Index>(group.size()), dense.X.cols());
+    for (Index k = 0; k < X.cols(); ++k)
+      for (size_t c = 0; c < block.columns.size(); ++c)
+        if (block.columns[c] == fit.columns[static_cast<size_t>(k)])
+          X.col(k) = block.X.col(static_cast<Index>(c))(group);
+    const VectorXd floor = FloorOf(rows, block, group);
+    EXPECT_NEAR(of_fit.floor, floor.mean(), 1e-12);
+    // Two rows are one number. A row whose own floor is above its group's counts less.
+    const VectorXd variance = 2 / of_fit.weight / floor.mean() * floor;
+    const MatrixXd all_X = (MatrixXd(dense.X.rows() + X.rows(), X.cols()) << dense.X, X).finished();
+    const VectorXd all_y = (VectorXd(all_X.rows()) << dense.y, block.y(group)).finished();
+    const VectorXd all_variances = (VectorXd(all_X.rows()) << dense.variance, variance).finished();
+    dense = {all_X, all_y, all_variances};
+  }
   return dense;
 }
 
@@ -84,8 +82,12 @@ TEST(SetEvidenceTest, IsTheMarginalLikelihoodOfAllRows) {
   rows.prior(0, 1) = rows.prior(1, 0) = 0.5 * rows.columns[0].sd * rows.columns[1].sd;  // J and b, correlated
   const int drag = ColumnOf(rows, "pump.drag:k");
   rows.prior(0, drag) = rows.prior(drag, 0) = 0.3 * rows.columns[0].sd;
+  rows.clock = 2e-4;
   for (RowBlock& block : rows.blocks)
-    for (Index i = 0; i < block.y.size(); ++i) block.sensor_variance[i] *= 1 + static_cast<double>(i % 3);
+    for (Index i = 0; i < block.y.size(); ++i) {
+      block.sensor_variance[i] *= 1 + static_cast<double>(i % 3);
+      block.frequency[i] += static_cast<double>(i);
+    }
   const SetEvidence evidence(rows);
   for (const ChangeSet& set :
        {ChangeSet{}, ChangeSet{"pump.drag"}, ChangeSet{"motor.cogging|7", "pump.drag", "value.J"}}) {
