@@ -75,7 +75,7 @@ void SetEvidence::FindNames() {
 void SetEvidence::SolveNull() {
   const NormalEquations none(blocks_, static_cast<Index>(always_.size()), {});
   const VectorXd whole = none.Squares(VectorXd::Zero(none.size()));
-  const VectorXd start = (floor_.array() + whole.array() / numbers_.array()).inverse();
+  const VectorXd start = (floor_.array() + whole.array() / numbers_.array().max(1.0)).inverse();
   // First without the Jacobian: only then is it known which part of the residuals is not the sensors' noise.
   Solution null = Solve({}, start, kMostFromNothing);
   VectorXd noise = none.NoiseSquares(null.amounts);
