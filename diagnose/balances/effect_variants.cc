@@ -28,8 +28,8 @@ bool IsWave(const ParameterInfo& parameter) {
 
 // Whether the effect is gone where this number is 0, and grows with it in proportion.
 bool IsAmount(const ParameterInfo& parameter) {
-  return parameter.is_number() && parameter.role == Role::kSize && parameter.min <= 0 &&
-         parameter.min_allowed &&
+  const bool allows_0 = parameter.min < 0 || (parameter.min == 0 && parameter.min_allowed);
+  return parameter.is_number() && parameter.role == Role::kSize && allows_0 &&
          std::find(parameter.starts.begin(), parameter.starts.end(), 0.0) != parameter.starts.end();
 }
 
