@@ -22,7 +22,8 @@ namespace hydro::diagnose {
 // The result is as of a search: `search.best` and the explanations in `windows.tried`, all of windows, which decide. The work is
 // bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a model cannot
 // follow a whole run, its whole-run gap is infinite and its windows still count.
-WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
-                          const std::vector<Proposal>& proposals, const std::vector<Change>& blind = {});
+WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+                          const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
+                          const std::vector<Change>& blind = {});
 
 }  // namespace hydro::diagnose
