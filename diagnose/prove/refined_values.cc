@@ -14,9 +14,10 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Estimates are near where a fit ends; one that needs more steps is wandering off. Measured on small rigs: the first three take
-// more than nine tenths of the fall.
-constexpr int kStepsOfBase = 3, kStepsOfAll = 5;
+// Base values alone, then all, then all again: what is known of the base values weighs by the gap, which falls on the way.
+constexpr int kStages = 3;
+// Estimates are near where a fit ends; one that needs more steps is wandering off.
+constexpr int kSteps = 4;
 constexpr double kTolerance = 1e-3;
 // Of the median window's rms: what is left of a window counts up to here.
 constexpr double kMostOfTheMedian = 3;
@@ -49,6 +50,22 @@ std::shared_ptr<const Knowledge> KnownOf(const SearchContext& context, const Hyp
   return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
 }
 
+// A few steps from here; where they end no lower, nothing has moved. What is known of the values weighs by the gap that is left
+// where the steps begin.
+Fitted Stepped(const SearchContext& on_windows, Hypothesis from,
+               const std::vector<model::StartState>& starts) {
+  FitOptions options;
+  options.tolerance = kTolerance;
+  options.jobs = on_windows.jobs;
+  options.most_iterations = 0;
+  Fitted before = Fit(from, on_windows.runs, starts, options);
+  if (!before.ok()) return before;
+  from.known = KnownOf(on_windows, from, before.sum);
+  options.most_iterations = kSteps;
+  Fitted after = Fit(from, on_windows.runs, starts, options);
+  return after.ok() && after.sum <= before.sum ? after : before;
+}
+
 }  // namespace
 
 std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
@@ -79,27 +96,19 @@ std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& mo
 
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, ProvedSet* set) {
-  if (fitted.empty() || set->hypothesis.Free().empty() || TimeIsUp(context)) return;
+  if (fitted.empty() || set->hypothesis.Free().empty()) return;
   const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
   const std::vector<std::string> effects = set->hypothesis.effects;
+  Fitted at;
+  at.hypothesis = set->hypothesis;
   std::vector<model::StartState> starts = CorrectedStarts(set->hypothesis.model, fitted, context.jobs);
-  Hypothesis from = set->hypothesis;
-  FitOptions options;
-  options.tolerance = kTolerance;
-  options.jobs = context.jobs;
-  for (const bool all : {false, true}) {
-    if (all ? effects.empty() : from.base.empty()) continue;
-    from.effects = all ? effects : std::vector<std::string>{};
-    options.most_iterations = 0;
-    const Fitted before = Fit(from, fitted, starts, options);
-    if (!before.ok()) return;
-    from.known = KnownOf(on_windows, from, before.sum);
-    options.most_iterations = all ? kStepsOfAll : kStepsOfBase;
-    const Fitted after = Fit(from, fitted, starts, options);
-    if (!after.ok() || !(after.sum <= before.sum)) continue;
-    from = after.hypothesis;
-    starts = StartsOf(after);
-    ProvedSet refined{from, {}, {}, {}, set->weight};
+  for (int stage = 0; stage < kStages && !TimeIsUp(context); ++stage) {
+    const bool base_alone = stage == 0 && !at.hypothesis.base.empty();
+    at.hypothesis.effects = base_alone ? std::vector<std::string>{} : effects;
+    at = Stepped(on_windows, at.hypothesis, starts);
+    if (!at.ok()) return;
+    starts = StartsOf(at);
+    ProvedSet refined{at.hypothesis, {}, {}, {}, set->weight};
     refined.hypothesis.effects = effects;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(refined, *set)) *set = std::move(refined);
