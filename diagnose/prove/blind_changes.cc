@@ -1,6 +1,7 @@
 #include "diagnose/prove/blind_changes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,8 @@ namespace {
 constexpr char kFlexure[] = "arm.flexure";
 const char* const kBlind[] = {kFlexure, "valve.relief", "pump.stribeck", "accumulator.stiffness"};
 
+// Of what an effect has to take: with less, other values beside it do not make it.
+constexpr double kWorthRefining = 0.5;
 // From the catalogue's starts, which are factors of 2 to 6 apart.
 constexpr int kStepsOfARace = 4;
 
@@ -57,7 +60,9 @@ ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunDat
   if (best == nullptr) return raced;
   raced.hypothesis.model = best->hypothesis.model;
   JudgeSet(windows, context.jobs, &raced);
-  RefineValues(context, fitted, windows, &raced);
+  const GapFall fall = FallOf(set.near, raced.near);
+  if (fall.logarithm >= kWorthRefining * -std::log1p(-kPartOfAnEffect))
+    RefineValues(context, fitted, windows, &raced);
   return raced;
 }
 

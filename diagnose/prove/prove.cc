@@ -15,6 +15,9 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kGiven = 0;  // the place of the model as given
+// Proposals whose values are refined. The truth was among the first five of a prototype's in all but 1 of 20 pairs, and in the
+// first three of 19 in 20 singles.
+constexpr size_t kMostRefined = 5;
 
 class Prover {
  public:
@@ -29,7 +32,8 @@ class Prover {
     for (ProvedSet& set : sets_) JudgeSet(windows_, context_.jobs, &set);
     SetFitted();
     Report("refining their values", 0.88);
-    for (size_t i = 1; i < sets_.size(); ++i) RefineValues(context_, fitted_, windows_, &sets_[i]);
+    for (const size_t i : WorthRefining(sets_, kMostRefined))
+      RefineValues(context_, fitted_, windows_, &sets_[i]);
     size_t best = Choice();
     if (LeavesAGap(best)) {
       Report("what balances cannot show", 0.91);

@@ -94,6 +94,23 @@ size_t LeadingSet(const std::vector<ProvedSet>& sets) {
   return BestSet(sets, [](const ProvedSet&) { return true; });
 }
 
+std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t most) {
+  const size_t leading = LeadingSet(sets);
+  if (leading >= sets.size()) return {};
+  std::vector<size_t> values, others;
+  for (size_t i = 0; i < sets.size(); ++i) {
+    if (!sets[i].tested() || sets[i].hypothesis.Free().empty()) continue;
+    (sets[i].Effects().empty() ? values : others).push_back(i);
+  }
+  std::stable_sort(others.begin(), others.end(), [&](size_t a, size_t b) {
+    return WorthFrom(sets[leading], sets[a]) > WorthFrom(sets[leading], sets[b]);
+  });
+  others.resize(std::min(others.size(), most));
+  values.insert(values.end(), others.begin(), others.end());
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
 size_t BestWithEffects(const std::vector<ProvedSet>& sets, const std::vector<Change>& effects) {
   return BestSet(sets, [&](const ProvedSet& set) {
     const std::vector<Change> own = set.Effects();

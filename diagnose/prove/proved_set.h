@@ -46,6 +46,10 @@ bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given);
 // proposal, then the first. The number of sets where none can be tested.
 size_t LeadingSet(const std::vector<ProvedSet>& sets);
 
+// The places of sets with free values that are worth a refinement: those of values alone, and the `most` that predict best with
+// effects, as LeadingSet() compares them; in their order.
+std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t most);
+
 // The best of those with exactly these effects, in any order; the number of sets where none can be tested.
 size_t BestWithEffects(const std::vector<ProvedSet>& sets, const std::vector<Change>& effects);
 

@@ -14,10 +14,12 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Base values alone, then all, then all again: what is known of the base values weighs by the gap, which falls on the way.
-constexpr int kStages = 3;
+// Twice: what is known of the base values weighs by the gap, which falls on the way.
+constexpr int kRounds = 2;
 // Estimates are near where a fit ends; one that needs more steps is wandering off.
-constexpr int kSteps = 4;
+constexpr int kSteps = 3;
+// A round that takes less of the sum of squares leaves nothing for another.
+constexpr double kWorthARound = 0.02;
 constexpr double kTolerance = 1e-3;
 // Of the median window's rms: what is left of a window counts up to here.
 constexpr double kMostOfTheMedian = 3;
@@ -50,20 +52,17 @@ std::shared_ptr<const Knowledge> KnownOf(const SearchContext& context, const Hyp
   return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
 }
 
-// A few steps from here; where they end no lower, nothing has moved. What is known of the values weighs by the gap that is left
-// where the steps begin.
-Fitted Stepped(const SearchContext& on_windows, Hypothesis from,
-               const std::vector<model::StartState>& starts) {
-  FitOptions options;
-  options.tolerance = kTolerance;
-  options.jobs = on_windows.jobs;
-  options.most_iterations = 0;
-  Fitted before = Fit(from, on_windows.runs, starts, options);
-  if (!before.ok()) return before;
-  from.known = KnownOf(on_windows, from, before.sum);
-  options.most_iterations = kSteps;
-  Fitted after = Fit(from, on_windows.runs, starts, options);
-  return after.ok() && after.sum <= before.sum ? after : before;
+// The windows as the model leaves them, without derivatives.
+Fitted AsItIs(const Hypothesis& hypothesis, const std::vector<const RunData*>& windows, int jobs) {
+  Fitted fitted;
+  fitted.hypothesis = hypothesis;
+  for (const WindowGap& gap : GapsOfEach(hypothesis.model, windows, jobs)) {
+    if (!gap.tested) fitted.failure = "its simulation fails";
+    fitted.runs.push_back({gap.start, gap.sum, gap.count, {}, {}});
+    fitted.sum += gap.sum;
+    fitted.count += gap.count;
+  }
+  return fitted;
 }
 
 }  // namespace
@@ -98,20 +97,21 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
                   const ProofWindows& windows, ProvedSet* set) {
   if (fitted.empty() || set->hypothesis.Free().empty()) return;
   const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
-  const std::vector<std::string> effects = set->hypothesis.effects;
-  Fitted at;
-  at.hypothesis = set->hypothesis;
-  std::vector<model::StartState> starts = CorrectedStarts(set->hypothesis.model, fitted, context.jobs);
-  for (int stage = 0; stage < kStages && !TimeIsUp(context); ++stage) {
-    const bool base_alone = stage == 0 && !at.hypothesis.base.empty();
-    at.hypothesis.effects = base_alone ? std::vector<std::string>{} : effects;
-    at = Stepped(on_windows, at.hypothesis, starts);
-    if (!at.ok()) return;
-    starts = StartsOf(at);
+  FitOptions options;
+  options.tolerance = kTolerance;
+  options.jobs = context.jobs;
+  options.most_iterations = kSteps;
+  Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
+  for (int round = 0; round < kRounds && at.ok() && !TimeIsUp(context); ++round) {
+    Hypothesis from = at.hypothesis;
+    from.known = KnownOf(on_windows, from, at.sum);
+    const double before = at.sum;
+    at = Fit(from, fitted, StartsOf(at), options);
+    if (!at.ok() || !(at.sum < before)) return;
     ProvedSet refined{at.hypothesis, {}, {}, {}, set->weight};
-    refined.hypothesis.effects = effects;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(refined, *set)) *set = std::move(refined);
+    if (at.sum > (1 - kWorthARound) * before) return;
   }
 }
 

@@ -16,8 +16,8 @@ namespace hydro::diagnose {
 std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
                                      const model::ModelDescription& model, int jobs);
 
-// The set with its base values fitted, then with the effects' too, each a few steps from where the one before ended; of these, those that
-// predict the judging windows better are taken. `fitted`: as WithDiscrepancy() makes them. A fit that fails changes nothing.
+// The set with its values fitted, a few steps from where they are; the fit is taken where it predicts the judging windows better.
+// `fitted`: as WithDiscrepancy() makes them. A fit that fails, or ends no lower than it began, changes nothing.
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, ProvedSet* set);
 
