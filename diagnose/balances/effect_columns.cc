@@ -108,6 +108,24 @@ void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, i
   }
 }
 
+// What only scales k_2 dp, by which all of the arm's balance is measured, is written as the rest of it growing: a yardstick that
+// shrinks makes every residual small.
+void KeepTheArmsYardstick(const ColumnMaker& maker, size_t run, BalanceSeries* change) {
+  constexpr double kOnlyScales = 0.99;
+  constexpr auto kArm = static_cast<size_t>(BalanceKind::kArm);
+  Eigen::VectorXd& arm = (*change)[kArm];
+  if (arm.size() == 0) return;
+  const RunMotion& motion = maker.Motion(run);
+  Eigen::VectorXd push(arm.size());
+  for (Eigen::Index i = 0; i < push.size(); ++i) {
+    const model::KnownMotion& at = motion.at[static_cast<size_t>(i) * motion.stride];
+    push[i] = maker.given().k_2 * (at.p2 - at.p1);
+  }
+  const double along = arm.dot(push), size = push.squaredNorm();
+  if (!(along * along > kOnlyScales * kOnlyScales * size * arm.squaredNorm())) return;
+  arm -= along / size * (*maker.base)[run].left[kArm];
+}
+
 // The series of an amount of an effect of a sensor, and how much its signal then errs.
 void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
   const EffectVariant& variant = maker->setup->variants[v];
@@ -119,7 +137,9 @@ void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int 
   for (std::vector<double>& of : errors.of) {
     for (double& error : of) error /= amount;
   }
-  maker->Put(column, run, ReadingColumn(*maker, run, errors));
+  BalanceSeries change = ReadingColumn(*maker, run, errors);
+  KeepTheArmsYardstick(*maker, run, &change);
+  maker->Put(column, run, change);
 }
 
 // What an amount of 1 of a sensor's effect is: the usual part of the signals' range.
