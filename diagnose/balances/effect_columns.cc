@@ -43,18 +43,25 @@ model::EffectDescription AtAmount(const EffectVariant& variant, const std::strin
 enum class Way { kPlain, kWithMemory, kReading };
 
 Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
+  Way way = Way::kPlain;
   for (const RunMotion& run : *maker.runs) {
     model::EffectDescription effect = variant.at;
     for (const std::string& one : variant.amounts) effect.parameters[one] = Probe(variant, run);
+    const model::ModelDescription with = With(maker.setup->given, effect);
+    // A run in which the signal is not measured, or stands still, does not tell.
     RunMotion begin = run;
     begin.at.resize(std::min<size_t>(begin.at.size(), 64));
-    const model::ModelDescription with = With(maker.setup->given, effect);
+    for (size_t k = 0; k < begin.at.size(); ++k) {
+      model::KnownMotion& at = begin.at[k];
+      at.p1_rate = at.p2_rate = at.motor_acceleration = at.motor_speed = at.arm_speed = 1;
+      at.p1 = at.p2 = at.motor_angle = 1 + static_cast<double>(k) * run.step;
+    }
     for (const std::vector<double>& of : ErrorsOf(with, begin).of) {
       if (!of.empty()) return Way::kReading;
     }
-    if (model::BalanceEquations(with, run.options).remembers()) return Way::kWithMemory;
+    if (model::BalanceEquations(with, run.options).remembers()) way = Way::kWithMemory;
   }
-  return Way::kPlain;
+  return way;
 }
 
 // Columns that one evaluation with derivatives makes together.
