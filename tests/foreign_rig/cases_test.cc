@@ -12,8 +12,6 @@
 
 #include "model/effects/catalogue.h"
 #include "runs/measured_run.h"
-#include "tests/foreign_rig/gap.h"
-#include "tests/foreign_rig/size.h"
 #include "tests/foreign_rig/write.h"
 
 namespace foreign_rig {
@@ -141,26 +139,6 @@ TEST_F(ForeignCases, EveryValueIsWrong) {
       EXPECT_LE(off, 2.001 * form.uncertainty) << form.name;
     }
   }
-}
-
-// Tests that the size for a gap is found, and that what other values explain is not counted.
-TEST_F(ForeignCases, SizeLeavesTheGap) {
-  const Rig plain;
-  std::array<double, kChannels> noise = {0.3, 1e-3, 1e-4, 1.5, 1.5};
-  const std::vector<Plan> plans = DrawPlans(5, 1, 0.3);
-  const GapMeter meter({plans[0], plans[1]}, noise, 1);
-  EXPECT_EQ(meter.Between(plain, plain), 0);
-  Rig stiffer = plain;
-  stiffer.values.bulk_modulus *= 1.002;
-  const GapMeter::Parts parts = meter.BeyondValues(stiffer, plain);
-  EXPECT_LT(parts.beyond, 0.05 * parts.gap);
-  const Sized sized = FindSize(meter, plain, 1e-4, 0.4, 5, [&](double size) {
-    Rig rig = plain;
-    rig.effects.gain = size;
-    return rig;
-  });
-  EXPECT_TRUE(sized.reached);
-  EXPECT_NEAR(sized.parts.beyond, 5, 0.75);
 }
 
 // Tests that a newcomer's table is the right one but for the mistake.
