@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "model/effects/catalogue.h"
+#include "model/terms/parameter_info.h"
 #include "runs/measured_run.h"
+#include "settings/model_file.h"
 #include "tests/foreign_rig/write.h"
 
 namespace foreign_rig {
@@ -66,6 +68,26 @@ TEST_F(ForeignCases, RunsAreReadable) {
   EXPECT_EQ(runs, 8);
   EXPECT_GE(free_runs, 2);
   EXPECT_GE(bypassed, 1);
+}
+
+// Tests that the model file has every value as given, and how well each is known, as it was drawn.
+TEST_F(ForeignCases, ModelFileStatesWhatIsKnown) {
+  const Solved solved = Write(CaseNamed("values-1"), "a");
+  const hydro::model::ModelDescription model = hydro::settings::LoadModelFile(Folder("a") + "/model.toml");
+  std::map<std::string, double> known;
+  for (const ValueForm& form : ValueForms()) {
+    if (form.name != "f") known[form.name] = form.uncertainty;  // these models have no such friction
+  }
+  EXPECT_EQ(model.uncertainty, known);
+  for (const hydro::model::BaseParameter& base : hydro::model::BaseParameters()) {
+    for (const ValueForm& form : ValueForms()) {
+      if (form.name != base.info.name) continue;
+      EXPECT_NEAR(model.parameters.*base.member, solved.given.*form.value,
+                  1e-9 * std::abs(solved.given.*form.value))
+          << form.name;
+    }
+  }
+  EXPECT_EQ(hydro::settings::ParseModel(hydro::settings::FormatModel(model), "again").uncertainty, known);
 }
 
 // Tests that a seed gives the same files and answers to the bit, and that another seed gives other runs and
