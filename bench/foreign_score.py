@@ -1,10 +1,13 @@
 """How bench/gap_score --generation 2 judges: rules, goals and tables for the rigs of tests/foreign_rig.
 
-A report may lack what contract files of later dates have (`partly`, `weight`, `share`, `gap.horizons`, `per_run`, `closure`): it is then
-judged by what it has.
+A report may lack what contract files of later dates have (`partly`, `weight`, `share`, `gap.horizons`, `per_run`, `closure`, `explanations`,
+`set_90`): it is then judged by what it has.
 """
 
 import math
+
+import foreign_explanations
+import foreign_oracle
 
 # A stand-in for the whole: every class, sizes mixed.
 QUICK = [
@@ -17,6 +20,7 @@ QUICK = [
 
 CLAIMS = ("named", "tied", "partly")  # verdicts whose effects are said to be there
 SIZES = (("under 3", 0, 3), ("3 to 6", 3, 6), ("6 to 15", 6, 15), ("15 and more", 15, math.inf))
+SEALED_FROM = 20000  # seeds' offsets below are for development; tests/foreign_rig/cases.h says what that means
 WEIGHTS = ((0, 0.1), (0.1, 0.3), (0.3, 0.5), (0.5, 0.7), (0.7, 0.9), (0.9, 1.0))
 
 
@@ -64,12 +68,13 @@ def weights(key, report):
     return judged
 
 
-def score(key, report, failure, seconds):
-    """What came of a case, in the terms of the goals."""
+def score(key, report, failure, seconds, told=None, sought=None):
+    """What came of a case, in the terms of the goals. `told`, `sought`: reports of the oracle (foreign_oracle)."""
     outcome = {"class": key["class"], "what": key.get("what", ""), "truth": truth_text(key), "gap": key["gap"], "gap_reached": key["gap_reached"],
                "seconds": seconds, "verdict": None, "said": failure, "right": False, "ended": report is not None, "any_effect": False,
                "instead": False, "confident_wrong": False, "extra": 0, "weights": [], "held_out": None, "horizons": [], "closure": None,
-               "function_of": (key["outside"] or {}).get("function_of", ""), "remarked": False, "per_run": []}
+               "function_of": (key["outside"] or {}).get("function_of", ""), "remarked": False, "per_run": [], "explanations": [], "set_90": None,
+               "oracle": foreign_oracle.compare(key, report, told, sought)}
     if report is None:
         return outcome
     verdict, gap = report["verdict"], report.get("gap") or {}
@@ -78,7 +83,8 @@ def score(key, report, failure, seconds):
     extra = [effect for effect in found if not any(is_it(true, effect) for true in key["effects"])]
     outcome.update(verdict=verdict, said=said_text(report), any_effect=bool(found), extra=len(extra), weights=weights(key, report),
                    held_out=gap.get("held_out"), horizons=gap.get("horizons") or [], closure=closure_share(report),
-                   per_run=[entry.get("name") for entry in report.get("per_run") or []])
+                   per_run=[entry.get("name") for entry in report.get("per_run") or []], explanations=foreign_explanations.weights(key, report),
+                   set_90=foreign_explanations.likeliest_set(key, report))
     kind = key["class"]
     if kind in ("single", "pair", "bias", "drift"):
         outcome["right"] = all(matched)
@@ -173,6 +179,12 @@ def judge(outcomes):
     goal("outside the catalogue: a confident wrong name", ended("outside"), lambda o: o["confident_wrong"], 0.05, upper=True)
     visible = [o for o in of("outside") if o["gap"] >= 3 and o["function_of"]]
     goal("outside, a function of measured signals, 3 and more: a closure takes 70 %", visible, lambda o: (o["closure"] or 0) >= 0.7, 0.90)
+    sets = [o for o in outcomes if o["set_90"]]
+    goal("sets of 90 % that hold the truth", sets, lambda o: o["set_90"]["holds"], 0.90)
+    for what, limit, value in (("explanations in such a set, median", 2.5, median([o["set_90"]["size"] for o in sets])),):
+        criteria.append({"what": what, "must": f"<= {limit:g}", "was": "-" if value is None else f"{value:g}", "bound": None, "upper": True,
+                         "met": None if value is None else value <= limit})
+    criteria += foreign_oracle.criteria(outcomes)
     for what, limit, value in (("seconds, median", 10, median([o["seconds"] for o in outcomes])),
                                ("seconds, worst", 30, max([o["seconds"] for o in outcomes], default=None))):
         criteria.append({"what": what, "must": f"<= {limit}", "was": "-" if value is None else f"{value:.1f}", "bound": None, "upper": True,
@@ -180,9 +192,9 @@ def judge(outcomes):
     return criteria
 
 
-def reliability(outcomes):
-    """Rows of stated weight against how often candidates of that weight were right."""
-    judged = [pair for o in outcomes for pair in o["weights"]]
+def reliability(outcomes, of="weights"):
+    """Rows of stated weight against how often candidates, or `of` "explanations", of that weight were right."""
+    judged = [pair for o in outcomes for pair in o.get(of) or []]
     rows = []
     for low, high in WEIGHTS:
         inside = [(w, good) for w, good in judged if low <= w < high or high == 1.0 and w >= 1.0]
@@ -216,7 +228,14 @@ def table(outcomes, criteria, elapsed):
         limit = "" if c["bound"] is None else ("<= " if c["upper"] else ">= ") + percent(c["bound"])
         lines.append(f"{c['what']:82} {c['must']:>8} {c['was']:>10} {share:>6} {limit:>12}  "
                      f"{'not run' if c['met'] is None else 'met' if c['met'] else 'MISSED'}")
-    lines += class_lines(outcomes) + reliability_lines(outcomes) + horizon_lines(outcomes) + miss_lines(outcomes)
+    lines += class_lines(outcomes) + foreign_oracle.lines(outcomes, groups_of(outcomes)) + reliability_lines(outcomes)
+    if any(o["explanations"] for o in outcomes):
+        lines += reliability_lines(outcomes, "explanations")
+    sets = [o["set_90"] for o in outcomes if o["set_90"]]
+    if sets:
+        held = sum(1 for s in sets if s["holds"])
+        lines += ["", f"sets of 90 %: {held} of {len(sets)} hold the truth, {percent(held / len(sets))}; {median([s['size'] for s in sets]):g} explanations (median)"]
+    lines += horizon_lines(outcomes) + miss_lines(outcomes)
     times = sorted(o["seconds"] for o in outcomes)
     ended = sum(1 for o in outcomes if o["ended"])
     if times:
@@ -227,15 +246,20 @@ def table(outcomes, criteria, elapsed):
     return "\n".join(lines) + "\n"
 
 
-def class_lines(outcomes):
-    lines = ["", f"{'cases':34} {'right':>10} {'95 % bound':>11}   verdicts"]
+def groups_of(outcomes):
+    """(title, outcomes) by class and size."""
     groups = [(f"single, {title}", [o for o in outcomes if o["class"] == "single" and low <= o["gap"] < high]) for title, low, high in SIZES]
     groups += [("pair (both)", [o for o in outcomes if o["class"] == "pair"]), ("bias", [o for o in outcomes if o["class"] == "bias"]),
                ("drift", [o for o in outcomes if o["class"] == "drift"])]
     for kind in ("nothing", "newcomer"):
         for what in sorted({o["what"] for o in outcomes if o["class"] == kind}):
             groups.append((f"{kind}, {what}", [o for o in outcomes if o["class"] == kind and o["what"] == what]))
-    groups += [(f"outside, {title}", [o for o in outcomes if o["class"] == "outside" and low <= o["gap"] < high]) for title, low, high in SIZES]
+    return groups + [(f"outside, {title}", [o for o in outcomes if o["class"] == "outside" and low <= o["gap"] < high]) for title, low, high in SIZES]
+
+
+def class_lines(outcomes):
+    lines = ["", f"{'cases':34} {'right':>10} {'95 % bound':>11}   verdicts"]
+    groups = groups_of(outcomes)
     for title, group in groups:
         if not group:
             continue
@@ -258,11 +282,12 @@ def class_lines(outcomes):
     return lines
 
 
-def reliability_lines(outcomes):
-    rows = reliability(outcomes)
+def reliability_lines(outcomes, of="weights"):
+    rows = reliability(outcomes, of)
     if not rows:
         return ["", "No candidate has a weight."]
-    lines = ["", "weight          mean weight    right        share   >= (95 %)"]
+    head = "weight" if of == "weights" else of
+    lines = ["", f"{head:15} mean weight    right        share   >= (95 %)"]
     return lines + [f"{low:.1f} to {high:.1f}      {mean:>11.2f}    {good:>4} of {n:<5} {percent(good / n):>6}   {percent(limit):>6}"
                     for low, high, mean, good, n, limit in rows]
 

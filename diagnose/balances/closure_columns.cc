@@ -3,11 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnose/balances/closure_elements.h"
 #include "diagnose/balances/column_maker.h"
 
 namespace hydro::diagnose {
 
 namespace {
+
+using Part = ClosureElement::Part;
 
 // Sines of a curve, and how fast their amplitudes may fall: a curve is as smooth as a Gaussian of a seventh of its range.
 constexpr int kSpeedSines = 10, kOtherSines = 8;
@@ -16,132 +19,128 @@ constexpr double kSmooth = 0.15;
 constexpr double kFirst = 1.5;
 constexpr double kUsual = 0.15;
 // Curves reach beyond what was seen by so much.
-constexpr double kBeyond = 1.15;
+constexpr double kBeyond = 1.15, kBeyondArm = 0.1, kBelowCharge = 0.1, kFastArm = 4;
 
 double SpreadOf(int sine) { return kFirst * std::exp(-0.5 * std::pow(kSmooth * std::numbers::pi * sine, 2)); }
 
-// A curve on one element: a factor for each balance it acts in, and its variable in -1 to 1 (odd) or 0 to 1.
-struct Element {
-  std::string set;
-  int sines = kOtherSines;
-  // The balance's term where the curve is 1, and where on the curve the instant lies, in units of half a range.
-  std::function<double(const model::KnownMotion&, BalanceKind)> term, at;
-  std::vector<BalanceKind> balances;
-  bool free_arm = false, moving = false;
-};
+double VariableOf(const std::string& name, const model::KnownMotion& at) {
+  if (name == "motor_speed") return at.motor_speed;
+  if (name == "p1") return at.p1;
+  if (name == "p2") return at.p2;
+  if (name == "p2 - p1") return at.p2 - at.p1;
+  return name == "arm_angle" ? at.arm_angle : at.arm_speed;
+}
 
-void AddElement(ColumnMaker* maker, const Element& element) {
+void AddElement(ColumnMaker* maker, const ClosureElement& element) {
   std::vector<int> columns;
   for (int sine = 1; sine <= element.sines; ++sine)
     columns.push_back(
         maker->Add({element.set + ":" + std::to_string(sine), element.set, SpreadOf(sine), false}));
   maker->works.back().push_back([maker, element, columns](size_t run) {
     const RunMotion& motion = maker->Motion(run);
-    if (element.free_arm && !CanForm(motion, BalanceKind::kArm)) return;
-    if (element.moving && !motion.arm_moves) return;
-    for (const BalanceKind balance : element.balances) {
-      if (!CanForm(motion, balance)) continue;
-      const Eigen::Index count = (*maker->base)[run].left[static_cast<size_t>(balance)].size();
+    for (const Part& part : element.parts) {
+      if (!CanForm(motion, part.balance)) continue;
+      const bool arm = part.variable == "arm_angle" || part.variable == "arm_speed";
+      if (arm && !motion.arm_moves) continue;
+      const Eigen::Index count = (*maker->base)[run].left[static_cast<size_t>(part.balance)].size();
       for (size_t s = 0; s < columns.size(); ++s) {
         Eigen::VectorXd series(count);
         for (Eigen::Index i = 0; i < count; ++i) {
           const model::KnownMotion& at = motion.at[static_cast<size_t>(i) * motion.stride];
-          series[i] = element.term(at, balance) *
-                      std::sin(std::numbers::pi * static_cast<double>(s + 1) * element.at(at, balance));
+          const double value = std::clamp(VariableOf(part.variable, at), element.low, element.high);
+          const double load = element.times_difference > 0 ? (at.p2 - at.p1) / element.times_difference : 1;
+          series[i] = part.factor * element.unit * load *
+                      std::sin(std::numbers::pi * static_cast<double>(s + 1) * element.PlaceOf(value));
         }
-        maker->Put(columns[s], run, balance, std::move(series));
+        maker->Put(columns[s], run, part.balance, std::move(series));
       }
     }
   });
 }
 
-double Side(BalanceKind balance) { return balance == BalanceKind::kFlow1 ? -1 : 1; }
-double OwnPressure(const model::KnownMotion& at, BalanceKind balance) {
-  return balance == BalanceKind::kFlow1 ? at.p1 : at.p2;
+double UsualOf(const BalanceSizes& sizes, BalanceKind balance) {
+  return kUsual * sizes.of[static_cast<size_t>(balance)];
 }
 
-void AddOilElements(ColumnMaker* maker, bool moves) {
-  const BalanceSizes& sizes = maker->setup->sizes;
-  const double torque = kUsual * maker->Size(BalanceKind::kTorque),
-               flow = kUsual * maker->Size(BalanceKind::kFlow1);
-  const double p_3 = maker->given().p_3;
+ClosureElement Odd(const std::string& set, int sines, double unit, double reach, std::vector<Part> parts) {
+  return {.set = set,
+          .sines = sines,
+          .parts = std::move(parts),
+          .unit = unit,
+          .low = -reach,
+          .high = reach,
+          .odd = true};
+}
+
+void AddOilElements(const ColumnSetup& setup, bool moves, std::vector<ClosureElement>* elements) {
+  const BalanceSizes& sizes = setup.sizes;
+  const double torque = UsualOf(sizes, BalanceKind::kTorque), flow = UsualOf(sizes, BalanceKind::kFlow1);
+  const double p_3 = setup.given.parameters.p_3;
   const double reach = kBeyond * std::max(sizes.pressure - p_3, 1e-3 * std::abs(sizes.pressure) + 1e-300);
-  const std::vector<BalanceKind> flows = {BalanceKind::kFlow1, BalanceKind::kFlow2};
-  const auto difference = [reach](const model::KnownMotion& at, BalanceKind) {
-    return (at.p2 - at.p1) / reach;
-  };
-  AddElement(maker, {.set = "closure.pump_torque(p2 - p1)",
-                     .term = [torque](const auto&, BalanceKind) { return torque; },
-                     .at = difference,
-                     .balances = {BalanceKind::kTorque}});
-  AddElement(maker, {.set = "closure.cross_flow(p2 - p1)",
-                     .term = [flow](const auto&, BalanceKind balance) { return Side(balance) * flow; },
-                     .at = difference,
-                     .balances = flows});
-  AddElement(maker, {.set = "closure.outer_flow(p)",
-                     .term = [flow](const auto&, BalanceKind) { return flow; },
-                     .at =
-                         [reach, p_3](const model::KnownMotion& at, BalanceKind balance) {
-                           return (OwnPressure(at, balance) - p_3 + 0.1 * reach) / (1.2 * reach);
-                         },
-                     .balances = flows});
+  elements->push_back(Odd("closure.pump_torque(p2 - p1)", kOtherSines, torque, reach,
+                          {{BalanceKind::kTorque, 1, "closure.pump_torque", "p2 - p1"}}));
+  elements->push_back(Odd("closure.cross_flow(p2 - p1)", kOtherSines, flow, reach,
+                          {{BalanceKind::kFlow1, -1, "closure.flow_1", "p2 - p1"},
+                           {BalanceKind::kFlow2, 1, "closure.flow_2", "p2 - p1"}}));
+  elements->push_back({.set = "closure.outer_flow(p)",
+                       .sines = kOtherSines,
+                       .parts = {{BalanceKind::kFlow1, 1, "closure.flow_1", "p1"},
+                                 {BalanceKind::kFlow2, 1, "closure.flow_2", "p2"}},
+                       .unit = flow,
+                       .low = p_3 - kBelowCharge * reach,
+                       .high = p_3 + (1 + kBelowCharge) * reach});
   if (!moves) return;
-  const double dp = std::max(sizes.difference, 1e-300);
-  const double middle = 0.5 * (sizes.arm_low + sizes.arm_high);
-  const double half = std::max(0.6 * (sizes.arm_high - sizes.arm_low), 1e-300);
-  AddElement(maker,
-             {.set = "closure.cross_flow(arm_angle)",
-              .term = [flow, dp](const model::KnownMotion& at,
-                                 BalanceKind balance) { return Side(balance) * flow * (at.p2 - at.p1) / dp; },
-              .at = [middle, half](const model::KnownMotion& at,
-                                   BalanceKind) { return (at.arm_angle - middle + half) / (2 * half); },
-              .balances = flows,
-              .moving = true});
+  const double beyond = kBeyondArm * (sizes.arm_high - sizes.arm_low);
+  elements->push_back({.set = "closure.cross_flow(arm_angle)",
+                       .sines = kOtherSines,
+                       .parts = {{BalanceKind::kFlow1, -1, "closure.flow_1", "arm_angle"},
+                                 {BalanceKind::kFlow2, 1, "closure.flow_2", "arm_angle"}},
+                       .unit = flow,
+                       .low = sizes.arm_low - beyond,
+                       .high = sizes.arm_high + beyond,
+                       .times_difference = std::max(sizes.difference, 1e-300)});
 }
 
-void AddArmElements(ColumnMaker* maker) {
-  const BalanceSizes& sizes = maker->setup->sizes;
-  const double torque = kUsual * maker->Size(BalanceKind::kArm);
-  const double middle = 0.5 * (sizes.arm_low + sizes.arm_high);
-  const double half = std::max(0.6 * (sizes.arm_high - sizes.arm_low), 1e-300);
-  const double fast = 4 * std::max(sizes.arm_speed, 1e-300);
-  const auto term = [torque](const auto&, BalanceKind) { return torque; };
-  AddElement(maker,
-             {.set = "closure.arm_torque(arm_angle)",
-              .term = term,
-              .at = [middle, half](const model::KnownMotion& at,
-                                   BalanceKind) { return (at.arm_angle - middle + half) / (2 * half); },
-              .balances = {BalanceKind::kArm},
-              .free_arm = true});
-  AddElement(maker, {.set = "closure.arm_torque(arm_speed)",
-                     .term = term,
-                     .at =
-                         [fast](const model::KnownMotion& at, BalanceKind) {
-                           return (std::clamp(at.arm_speed, -fast, fast) + fast) / (2 * fast);
-                         },
-                     .balances = {BalanceKind::kArm},
-                     .free_arm = true});
+void AddArmElements(const ColumnSetup& setup, std::vector<ClosureElement>* elements) {
+  const BalanceSizes& sizes = setup.sizes;
+  const double torque = UsualOf(sizes, BalanceKind::kArm),
+               fast = kFastArm * std::max(sizes.arm_speed, 1e-300);
+  const double beyond = kBeyondArm * (sizes.arm_high - sizes.arm_low);
+  elements->push_back({.set = "closure.arm_torque(arm_angle)",
+                       .sines = kOtherSines,
+                       .parts = {{BalanceKind::kArm, 1, "closure.arm_torque", "arm_angle"}},
+                       .unit = torque,
+                       .low = sizes.arm_low - beyond,
+                       .high = sizes.arm_high + beyond});
+  elements->push_back({.set = "closure.arm_torque(arm_speed)",
+                       .sines = kOtherSines,
+                       .parts = {{BalanceKind::kArm, 1, "closure.arm_torque", "arm_speed"}},
+                       .unit = torque,
+                       .low = -fast,
+                       .high = fast});
 }
 
 }  // namespace
 
-void AddClosureColumns(ColumnMaker* maker) {
+std::vector<ClosureElement> ClosureElements(const ColumnSetup& setup, const std::vector<RunMotion>& runs) {
   bool oil = false, arm = false, moves = false;
-  for (const RunMotion& run : *maker->runs) {
+  for (const RunMotion& run : runs) {
     oil |= run.pressures;
     arm |= CanForm(run, BalanceKind::kArm);
     moves |= run.arm_moves && run.pressures;
   }
-  const double torque = kUsual * maker->Size(BalanceKind::kTorque);
-  const double fast = kBeyond * std::max(maker->setup->sizes.largest_speed, 1e-300);
-  AddElement(maker,
-             {.set = "closure.pump_torque(motor_speed)",
-              .sines = kSpeedSines,
-              .term = [torque](const auto&, BalanceKind) { return torque; },
-              .at = [fast](const model::KnownMotion& at, BalanceKind) { return at.motor_speed / fast; },
-              .balances = {BalanceKind::kTorque}});
-  if (oil) AddOilElements(maker, moves);
-  if (arm) AddArmElements(maker);
+  const double fast = kBeyond * std::max(setup.sizes.largest_speed, 1e-300);
+  std::vector<ClosureElement> elements = {
+      Odd("closure.pump_torque(motor_speed)", kSpeedSines, UsualOf(setup.sizes, BalanceKind::kTorque), fast,
+          {{BalanceKind::kTorque, 1, "closure.pump_torque", "motor_speed"}})};
+  if (oil) AddOilElements(setup, moves, &elements);
+  if (arm) AddArmElements(setup, &elements);
+  return elements;
+}
+
+void AddClosureColumns(ColumnMaker* maker) {
+  for (const ClosureElement& element : ClosureElements(*maker->setup, *maker->runs))
+    AddElement(maker, element);
 }
 
 }  // namespace hydro::diagnose

@@ -43,18 +43,25 @@ model::EffectDescription AtAmount(const EffectVariant& variant, const std::strin
 enum class Way { kPlain, kWithMemory, kReading };
 
 Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
+  Way way = Way::kPlain;
   for (const RunMotion& run : *maker.runs) {
     model::EffectDescription effect = variant.at;
     for (const std::string& one : variant.amounts) effect.parameters[one] = Probe(variant, run);
+    const model::ModelDescription with = With(maker.setup->given, effect);
+    // A run in which the signal is not measured, or stands still, does not tell.
     RunMotion begin = run;
     begin.at.resize(std::min<size_t>(begin.at.size(), 64));
-    const model::ModelDescription with = With(maker.setup->given, effect);
+    for (size_t k = 0; k < begin.at.size(); ++k) {
+      model::KnownMotion& at = begin.at[k];
+      at.p1_rate = at.p2_rate = at.motor_acceleration = at.motor_speed = at.arm_speed = 1;
+      at.p1 = at.p2 = at.motor_angle = 1 + static_cast<double>(k) * run.step;
+    }
     for (const std::vector<double>& of : ErrorsOf(with, begin).of) {
       if (!of.empty()) return Way::kReading;
     }
-    if (model::BalanceEquations(with, run.options).remembers()) return Way::kWithMemory;
+    if (model::BalanceEquations(with, run.options).remembers()) way = Way::kWithMemory;
   }
-  return Way::kPlain;
+  return way;
 }
 
 // Columns that one evaluation with derivatives makes together.
@@ -108,6 +115,24 @@ void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, i
   }
 }
 
+// What only scales k_2 dp, by which all of the arm's balance is measured, is written as the rest of it growing: a yardstick that
+// shrinks makes every residual small.
+void KeepTheArmsYardstick(const ColumnMaker& maker, size_t run, BalanceSeries* change) {
+  constexpr double kOnlyScales = 0.99;
+  constexpr auto kArm = static_cast<size_t>(BalanceKind::kArm);
+  Eigen::VectorXd& arm = (*change)[kArm];
+  if (arm.size() == 0) return;
+  const RunMotion& motion = maker.Motion(run);
+  Eigen::VectorXd push(arm.size());
+  for (Eigen::Index i = 0; i < push.size(); ++i) {
+    const model::KnownMotion& at = motion.at[static_cast<size_t>(i) * motion.stride];
+    push[i] = maker.given().k_2 * (at.p2 - at.p1);
+  }
+  const double along = arm.dot(push), size = push.squaredNorm();
+  if (!(along * along > kOnlyScales * kOnlyScales * size * arm.squaredNorm())) return;
+  arm -= along / size * (*maker.base)[run].left[kArm];
+}
+
 // The series of an amount of an effect of a sensor, and how much its signal then errs.
 void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
   const EffectVariant& variant = maker->setup->variants[v];
@@ -119,7 +144,9 @@ void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int 
   for (std::vector<double>& of : errors.of) {
     for (double& error : of) error /= amount;
   }
-  maker->Put(column, run, ReadingColumn(*maker, run, errors));
+  BalanceSeries change = ReadingColumn(*maker, run, errors);
+  KeepTheArmsYardstick(*maker, run, &change);
+  maker->Put(column, run, change);
 }
 
 // What an amount of 1 of a sensor's effect is: the usual part of the signals' range.

@@ -20,7 +20,7 @@ constexpr double kArmPart = 0.5;
 // Levels are constants: a few test functions a tile tell all.
 constexpr double kLevelTiles = 2;
 // Of the largest pressure: a held side's pressure is not quite still.
-constexpr double kLevelNoise = 1.4e-3;
+constexpr double kLevelNoise = 5e-4;
 // s, how well samples of different signals belong together; of a slow recorder a tenth of a sample.
 constexpr double kClock = 2e-4, kClockPart = 0.1;
 constexpr uint64_t kNoiseSeed = 5;

@@ -20,8 +20,8 @@ constexpr double kOffCentre = 0.03;
 // Friction differs by run, and over a turn, by this part.
 constexpr double kFrictionByRun = 0.02;
 constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump that is said to have none
-// Of the largest pressure: zero and charge pressure of a run.
-constexpr double kPressureByRun = 3e-3;
+// Of the largest pressure: zeros of transducers wander by a thousandth of their range, and the charge pressure with the temperature.
+constexpr double kPressureByRun = 1e-3;
 // Of the arm's torque: another load of the run.
 constexpr double kLoadByRun = 0.03;
 

@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "model/effects/catalogue.h"
+#include "model/terms/parameter_info.h"
 #include "runs/measured_run.h"
-#include "tests/foreign_rig/gap.h"
-#include "tests/foreign_rig/size.h"
+#include "settings/model_file.h"
 #include "tests/foreign_rig/write.h"
 
 namespace foreign_rig {
@@ -68,6 +68,26 @@ TEST_F(ForeignCases, RunsAreReadable) {
   EXPECT_EQ(runs, 8);
   EXPECT_GE(free_runs, 2);
   EXPECT_GE(bypassed, 1);
+}
+
+// Tests that the model file has every value as given, and how well each is known, as it was drawn.
+TEST_F(ForeignCases, ModelFileStatesWhatIsKnown) {
+  const Solved solved = Write(CaseNamed("values-1"), "a");
+  const hydro::model::ModelDescription model = hydro::settings::LoadModelFile(Folder("a") + "/model.toml");
+  std::map<std::string, double> known;
+  for (const ValueForm& form : ValueForms()) {
+    if (form.name != "f") known[form.name] = form.uncertainty;  // these models have no such friction
+  }
+  EXPECT_EQ(model.uncertainty, known);
+  for (const hydro::model::BaseParameter& base : hydro::model::BaseParameters()) {
+    for (const ValueForm& form : ValueForms()) {
+      if (form.name != base.info.name) continue;
+      EXPECT_NEAR(model.parameters.*base.member, solved.given.*form.value,
+                  1e-9 * std::abs(solved.given.*form.value))
+          << form.name;
+    }
+  }
+  EXPECT_EQ(hydro::settings::ParseModel(hydro::settings::FormatModel(model), "again").uncertainty, known);
 }
 
 // Tests that a seed gives the same files and answers to the bit, and that another seed gives other runs and
@@ -141,26 +161,6 @@ TEST_F(ForeignCases, EveryValueIsWrong) {
       EXPECT_LE(off, 2.001 * form.uncertainty) << form.name;
     }
   }
-}
-
-// Tests that the size for a gap is found, and that what other values explain is not counted.
-TEST_F(ForeignCases, SizeLeavesTheGap) {
-  const Rig plain;
-  std::array<double, kChannels> noise = {0.3, 1e-3, 1e-4, 1.5, 1.5};
-  const std::vector<Plan> plans = DrawPlans(5, 1, 0.3);
-  const GapMeter meter({plans[0], plans[1]}, noise, 1);
-  EXPECT_EQ(meter.Between(plain, plain), 0);
-  Rig stiffer = plain;
-  stiffer.values.bulk_modulus *= 1.002;
-  const GapMeter::Parts parts = meter.BeyondValues(stiffer, plain);
-  EXPECT_LT(parts.beyond, 0.05 * parts.gap);
-  const Sized sized = FindSize(meter, plain, 1e-4, 0.4, 5, [&](double size) {
-    Rig rig = plain;
-    rig.effects.gain = size;
-    return rig;
-  });
-  EXPECT_TRUE(sized.reached);
-  EXPECT_NEAR(sized.parts.beyond, 5, 0.75);
 }
 
 // Tests that a newcomer's table is the right one but for the mistake.

@@ -18,6 +18,10 @@ struct Truth {
   std::string signal;  // of effects that have one
 };
 
+// All parameters of the catalogue's effect that comes nearest to this one: of those that mean something else
+// here, what does most nearly the same.
+Named NearestParameters(const Rig& rig, const Truth& truth);
+
 struct EffectForm {
   std::string id;
   std::string form;          // how it differs from the catalogue's

@@ -9,6 +9,9 @@ import tempfile
 import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+sys.path.insert(0, str(BENCH))  # it has modules of its own beside it
+import foreign_explanations  # noqa: E402
+
 _spec = importlib.util.spec_from_file_location("foreign_score", BENCH / "foreign_score.py")
 foreign_score = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(foreign_score)
@@ -142,6 +145,40 @@ class Rules(unittest.TestCase):
         rows = foreign_score.by_horizon([scored(key("single", ["amp.lag"]), r), scored(key("single", ["amp.lag"]), report("unexplained"))])
         self.assertEqual(rows, [("right", 0.1, 1, [9, 4, 1.2])])
 
+    # Tests which explanations are right: the true effects and no others, whatever values differ; a closure on the right element.
+    def test_explanations(self):
+        k = key("single", ["sensor.skew"])
+        k["effects"][0]["signal"] = "p2"
+        for changes, right in ((["sensor.skew(p2)"], True), (["sensor.skew", "value.T_s", "run.mgl"], True), (["sensor.skew (p1)"], False),
+                               (["sensor.skew(p2)", "amp.lag"], False), (["sensor.skew", "closure.flow_1(dp)"], False), (["T_s"], False), ([], False)):
+            self.assertEqual(foreign_explanations.explains(k, changes), right, changes)
+        self.assertTrue(foreign_explanations.explains(key("nothing"), ["T_s"]))
+        self.assertFalse(foreign_explanations.explains(key("nothing"), ["amp.lag"]))
+        outside = key("outside", outside={"what": "a worn place", "balance": "flow_1", "function_of": "arm_angle, dp"})
+        self.assertTrue(foreign_explanations.explains(outside, ["closure.flow_2(dp)"]))
+        self.assertFalse(foreign_explanations.explains(outside, ["closure.arm_torque(arm_angle)"]))
+        self.assertFalse(foreign_explanations.explains(outside, ["closure.flow_1(dp)", "amp.lag"]))
+        self.assertIsNone(foreign_explanations.explains(key("outside", outside={"what": "play", "balance": "arm_torque", "function_of": ""}), []))
+        self.assertIsNone(foreign_explanations.explains(key("newcomer", what="bar"), []))
+
+    # Tests weights of explanations, those that differ in values as one, and whether the set of 90 % holds the truth.
+    def test_sets(self):
+        said = [{"changes": ["amp.delay"], "weight": 0.5}, {"changes": ["amp.lag"], "weight": 0.3}, {"changes": ["amp.lag", "T_s"], "weight": 0.15},
+                {"changes": ["nothing"], "weight": 0.05}]
+        wide = scored(key("single", ["amp.lag"]), report("tied", [("amp.lag", [])], explanations=said, set_90=2))
+        self.assertEqual([(round(w, 6), right) for w, right in wide["explanations"]], [(0.5, False), (0.45, True), (0.05, False)])
+        self.assertEqual(wide["set_90"], {"size": 2, "holds": True})
+        narrow = scored(key("single", ["amp.lag"]), report("tied", explanations=said, set_90=1))
+        self.assertEqual(narrow["set_90"], {"size": 1, "holds": False})
+        old = scored(key("single", ["amp.lag"]), report("tied"))
+        self.assertEqual((old["explanations"], old["set_90"]), ([], None))
+        rows = foreign_score.reliability([wide, old], "explanations")
+        self.assertEqual([(low, good, n) for low, _, _, good, n, _ in rows], [(0, 0, 1), (0.3, 1, 1), (0.5, 0, 1)])
+        criteria = {c["what"]: c for c in foreign_score.judge([wide, narrow, old])}
+        self.assertEqual(criteria["sets of 90 % that hold the truth"]["was"], "1 of 2")
+        self.assertIn("sets of 90 %: 1 of 2", foreign_score.table([{**o, "name": "case"} for o in (wide, narrow, old)], list(criteria.values()), 1.0))
+        self.assertIsNone({c["what"]: c for c in foreign_score.judge([old])}["sets of 90 % that hold the truth"]["met"])
+
 
 RIG = """#!{python}
 import json, pathlib, sys
@@ -164,7 +201,13 @@ import json, pathlib, sys
 held_out = [sys.argv[i + 1] for i, word in enumerate(sys.argv) if word == "--hold-out"]
 assert [pathlib.Path(h).name for h in held_out] == ["held1.csv"], sys.argv
 assert sum("run1.csv" in word for word in sys.argv) == 1
-pathlib.Path(sys.argv[sys.argv.index("--out") + 1], "report.json").write_text(json.dumps({report}))
+model = pathlib.Path(sys.argv[sys.argv.index("--model") + 1])
+result = {report}
+if "--effects" in sys.argv:
+    assert pathlib.Path(sys.argv[sys.argv.index("--effects") + 1]).read_text() == 'effects = ["amp.lag"]\\n'
+    assert ("amp.lag" in model.read_text()) == (model.name == "true_form.toml")
+    result["gap"]["horizons"][0]["held_out"] = {{"refit_only": 0.5, "after": 0.6}}
+pathlib.Path(sys.argv[sys.argv.index("--out") + 1], "report.json").write_text(json.dumps(result))
 """
 
 
@@ -173,7 +216,9 @@ class Program(unittest.TestCase):
     def test_generation_2(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            finder = FINDER.format(python=sys.executable, report=report("named", [("amp.lag", [])]))
+            ends = [{"seconds": 0.4, "held_out": {"refit_only": 2.0, "after": 1.0}}]
+            with_ends = {"gap": {"held_out": {"before": 9, "refit_only": 5, "after": 1.0}, "horizons": ends}}
+            finder = FINDER.format(python=sys.executable, report=report("named", [("amp.lag", [])]) | with_ends)
             for program, text in (("hydro-foreign-rig", RIG.format(python=sys.executable)), ("finder", finder)):
                 (folder / program).write_text(text)
                 (folder / program).chmod(0o755)
@@ -183,7 +228,9 @@ class Program(unittest.TestCase):
             self.assertIn("case (gap as made)", ended.stdout)
             self.assertIn("daily-1 (8) | nothing missing", ended.stdout)
             self.assertIn("2 ended with a report", ended.stdout)
-            self.assertEqual(len(json.loads((folder / "out/score.json").read_text())["cases"]), 2)
+            self.assertIn("seeds + 0, for development", ended.stdout)
+            cases = json.loads((folder / "out/score.json").read_text())["cases"]
+            self.assertEqual([case["oracle"]["ratio"] for case in cases], [2.0, 0.5])
 
 
 if __name__ == "__main__":

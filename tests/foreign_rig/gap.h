@@ -1,12 +1,15 @@
 // How far a rig is from one that lacks what is hidden in it, in noise units.
 //
 // Predictions start from the true state every kWindow, so that small differences do not grow without end.
-// What other values of the plain model's parameters could explain is taken off (to first order), since no one
-// would miss an effect that they explain.
+// What other values of the plain model's parameters, or another start of each window, could explain is taken
+// off (to first order), since no one would miss an effect that they explain: an offset of both pressures is
+// another supply pressure and other starts. Values are as far off as a model file may have them: with any
+// values at all a gain of the pressures would be nothing, since the equations are the same for scaled pressures.
 #pragma once
 
 #include <vector>
 
+#include "directions.h"
 #include "plan.h"
 #include "recorder.h"
 
@@ -25,17 +28,24 @@ class GapMeter {
   // Infinite where the machine breaks.
   double Between(const Rig& with, const Rig& without) const;
 
-  // The same, and what is left of it beyond what other values of `without` explain. Takes some ten times as
-  // long.
+  // The same, and what is left of it beyond what other values of `without`, within twice their uncertainty, and
+  // other starts of its windows explain. Takes some ten times as long.
   struct Parts {
     double gap, beyond;
   };
-  Parts BeyondValues(const Rig& with, const Rig& without) const;
+  Parts Beyond(const Rig& with, const Rig& without) const;
 
  private:
-  // Differences of each of `others`, noise units, of all windows.
-  std::vector<std::vector<double>> AllDifferences(const Rig& with, const std::vector<Rig>& others) const;
-  void Append(const Reading& a, const Reading& b, const Plan& plan, std::vector<double>* to) const;
+  // Differences to a rig in one window, noise units, from the true start of the window and from others.
+  struct Window {
+    std::vector<Series> rigs;    // of each rig
+    std::vector<Series> starts;  // of the first rig, from each other start
+  };
+  std::vector<Window> Windows(const Rig& with, const std::vector<Rig>& others, bool other_starts) const;
+  void AddWindows(const Rig& with, const std::vector<Rig>& others, bool other_starts, const Plan& plan,
+                  std::vector<Window>* windows) const;
+  double ShiftOf(Machine::Start start) const;
+  void Append(const Reading& a, const Reading& b, const Plan& plan, Series* to) const;
 
   std::vector<Plan> plans_;
   std::array<double, kChannels> noise_;

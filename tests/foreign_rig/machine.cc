@@ -108,6 +108,8 @@ void Machine::ContinueFrom(const Machine& other) {
   x_ = other.x_;
   steps_ = other.steps_;
   volts_ = other.volts_;
+  // A temperature handed over would tell this machine how far the other's oil has warmed.
+  if (rig_.effects.warming == 0) x_[kCelsius] = day_.celsius;
   pump_bend_ = other.pump_bend_ * other.pump_bristles_.stiffness / pump_bristles_.stiffness;
   if (rig_.effects.seal_dry > 0 && other.rig_.effects.seal_dry > 0)
     seal_bend_ = other.seal_bend_ * other.seal_bristles_.stiffness / seal_bristles_.stiffness;

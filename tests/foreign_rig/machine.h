@@ -54,8 +54,17 @@ class Machine {
   // What ideal transducers give, with the faults of Effects and Day.
   Reading Read() const;
 
-  // Goes on from where another machine is; parts that only one of the two has start at rest there.
+  // Goes on from where another machine is; parts that only one of the two has start at rest there. Oil that
+  // does not warm in this machine keeps the day's temperature.
   void ContinueFrom(const Machine& other);
+
+  // What of a start no recording tells exactly: the states of the plain equations that are free on this day.
+  enum class Start { kSpeed, kPressure1, kPressure2, kArm, kArmRate, kShaft };
+  // With the bypass open both sides have the first pressure. The shaft's angle counts where something of this
+  // rig depends on it.
+  std::vector<Start> FreeStarts() const;
+  // Adds to one of them: rad/s, psi, rad, rad/s, rad.
+  void Shift(Start start, double by);
 
   double time() const { return static_cast<double>(steps_) * kStep; }
   // For tests: kinetic and elastic energy, in-lbf, of rotor, arm, oil and shaft.

@@ -1,4 +1,5 @@
-// How a run begins: the day's values, bristles, pipes, and a state in which nothing moves.
+// How a run begins: the day's values, bristles, pipes, and a state in which nothing moves; and what of a start
+// is free.
 #include <algorithm>
 #include <cmath>
 
@@ -84,6 +85,42 @@ void Machine::Place() {
   const double full = v.dry_torque / pump_bristles_.stiffness;
   pump_bend_ = std::clamp(-v.displacement * (x_[kP2] - x_[kP1]) / pump_bristles_.stiffness, -full, full);
   if (!late_.empty()) std::fill(late_.begin(), late_.end(), SkewedNow());
+}
+
+std::vector<Machine::Start> Machine::FreeStarts() const {
+  std::vector<Start> free = {Start::kSpeed, Start::kPressure1};
+  if (!day_.bypass) free.push_back(Start::kPressure2);
+  if (!day_.clamped) free.insert(free.end(), {Start::kArm, Start::kArmRate});
+  const Effects& e = rig_.effects;
+  if (e.cogging != 0 || e.piston_ripple != 0 || rig_.rich.size * rig_.rich.once_a_turn != 0)
+    free.push_back(Start::kShaft);
+  return free;
+}
+
+void Machine::Shift(Start start, double by) {
+  switch (start) {
+    case Start::kSpeed:
+      x_[kOmega] += by;
+      break;
+    case Start::kPressure1:
+      x_[kP1] += by;
+      if (day_.bypass) x_[kP2] += by;
+      break;
+    case Start::kPressure2:
+      x_[kP2] += by;
+      break;
+    case Start::kArm:
+      x_[kVane] += by;
+      x_[kArm] += by;
+      break;
+    case Start::kArmRate:
+      x_[kVaneRate] += by;
+      x_[kArmRate] += by;
+      break;
+    case Start::kShaft:
+      x_[kTheta] += by;
+      break;
+  }
 }
 
 }  // namespace foreign_rig

@@ -14,12 +14,14 @@ namespace {
 
 constexpr char kHelp[] =
     "hydro-foreign-rig --list\n"
-    "hydro-foreign-rig --case NAME|N [--out DIR] [--key FILE] [--seed S] [--rate HZ] [--seconds T]\n"
+    "hydro-foreign-rig --case NAME|N [--out DIR] [--key FILE] [--seed S | --seed-offset N] [--rate HZ] "
+    "[--seconds T]\n"
     "Writes five runs to fit and three to hold out, and the model as given (DIR/runN.csv, heldN.csv, their "
     "sidecars,\n"
     "model.toml); FILE gets the answers. Another seed is another rig: values, sizes, runs, sensors.\n"
     "  --list       number, name, class, seed of every case\n"
     "  --seed S     instead of the case's own\n"
+    "  --seed-offset N  added to it: below 20000 for development, multiples of 1000 from there on sealed\n"
     "  --rate HZ    samples a second, a divisor of 50000 (drawn: 200 to 2000)\n"
     "  --seconds T  of each run (5)\n";
 
@@ -34,7 +36,7 @@ Arguments Parse(int argc, char** argv) {
       continue;
     }
     bool known = false;
-    for (const char* name : {"--case", "--out", "--key", "--seed", "--rate", "--seconds"})
+    for (const char* name : {"--case", "--out", "--key", "--seed", "--seed-offset", "--rate", "--seconds"})
       known = known || option == name;
     if (!known || i + 1 >= argc) throw std::invalid_argument(option + ": see --help");
     given[option] = argv[++i];
@@ -53,7 +55,10 @@ double Number(const Arguments& given, const std::string& option, double otherwis
 }
 
 void Make(const Arguments& given, foreign_rig::Case c) {
+  if (given.contains("--seed") && given.contains("--seed-offset"))
+    throw std::invalid_argument("--seed and --seed-offset: one of them");
   if (given.contains("--seed")) c.seed = static_cast<uint64_t>(Number(given, "--seed", 1));
+  if (given.contains("--seed-offset")) c.seed += static_cast<uint64_t>(Number(given, "--seed-offset", 1));
   foreign_rig::Options options;
   options.rate = Number(given, "--rate", 0);
   options.seconds = Number(given, "--seconds", options.seconds);

@@ -132,20 +132,12 @@ TEST(PlainMachine, IsTheModel) {
   EXPECT_LT(Error(model, RunWindows(rig, plans, kSeconds, 0.1)), 0.5);
 }
 
-// The catalogue's effect for one of the rig's: its own numbers, and what comes nearest for the rest.
+// The catalogue's effect for one of the rig's.
 hydro::model::EffectDescription Nearest(const Rig& rig, const Truth& truth) {
   hydro::model::EffectDescription effect;
   effect.id = truth.id;
-  for (const auto& [name, value] : truth.parameters) effect.parameters[name] = value;
+  for (const auto& [name, value] : NearestParameters(rig, truth)) effect.parameters[name] = value;
   if (!truth.signal.empty()) effect.names["signal"] = truth.signal;
-  const Effects& e = rig.effects;
-  // Poppets: the flow a fifth of the way open, at a usual difference of pressure.
-  if (truth.id == "motor.cogging") effect.parameters["phase"] = e.cogging_phase;
-  if (truth.id == "valve.check")
-    effect.parameters["conductance"] = e.check_flow * std::sqrt(e.check_cracking + 8) / 40;
-  if (truth.id == "valve.relief")
-    effect.parameters["conductance"] = e.relief_flow * std::sqrt(e.relief_set) / 250;
-  if (truth.id == "line.wave") effect.parameters["damping"] = 0.04;
   return effect;
 }
 

@@ -41,15 +41,22 @@ Sized FindSize(const GapMeter& meter, const Rig& plain, double smallest, double 
   const auto gap_at = [&](double size) { return meter.Between(put(size), plain); };
   Sized found;
   found.size = std::sqrt(smallest * largest);
-  // What other values take of the gap changes slowly with the size: guessed, then corrected.
-  double left = 0.6;
-  for (int round = 0; round < 4; ++round) {
-    found.size = SizeOfGap(gap_at, smallest, largest, asked / left, found.size);
-    found.parts = meter.BeyondValues(put(found.size), plain);
-    found.reached = std::abs(found.parts.beyond / asked - 1) < kReached;
-    if (found.reached || !std::isfinite(found.parts.gap) || !(found.parts.beyond > 0)) break;
-    if (found.parts.beyond < asked && found.size > 0.99 * largest) break;  // as large as it gets
-    left = std::max(0.02, found.parts.beyond / found.parts.gap);
+  // What values and starts take of the gap is guessed, then corrected by how the rest grew with the whole: faster,
+  // where values explain all up to their limits.
+  double goal = asked / 0.6;
+  GapMeter::Parts last{0, 0};
+  for (int round = 0; round < 6; ++round) {
+    found.size = SizeOfGap(gap_at, smallest, largest, goal, found.size);
+    found.parts = meter.Beyond(put(found.size), plain);
+    const auto& [gap, beyond] = found.parts;
+    found.reached = std::abs(beyond / asked - 1) < kReached;
+    if (found.reached || !std::isfinite(gap) || !(beyond > 0)) break;
+    if (beyond < asked && found.size > 0.99 * largest) break;  // as large as it gets
+    double power = 1;
+    if (last.gap > 0 && std::abs(gap / last.gap - 1) > 0.01)
+      power = std::clamp(std::log(beyond / last.beyond) / std::log(gap / last.gap), 0.7, 4.0);
+    last = found.parts;
+    goal = gap * std::pow(std::clamp(asked / beyond, 0.05, 20.0), 1 / power);
   }
   return found;
 }

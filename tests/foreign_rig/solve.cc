@@ -193,7 +193,7 @@ Solved Solve(const Case& c, const Options& options) {
   if (c.outside >= 0) HideOutside(c, meter, plain, &s);
   HideEffects(c, ids, meter, plain, &s);
   if (!ids.empty() || c.outside >= 0) {
-    const auto parts = meter.BeyondValues(s.rig, plain);
+    const auto parts = meter.Beyond(s.rig, plain);
     s.gap = parts.beyond;
     s.gap_at_truth = parts.gap;
   }

@@ -19,6 +19,11 @@ void WriteModel(const Values& given, const std::string& file) {
   out << "# The rig as its makers describe it. Units: in, lbf, s, psi, rad, V.\nname = \"test "
          "rig\"\n\n[parameters]\n";
   for (const ValueForm& form : ValueForms()) out << form.name << " = " << Float(given.*form.value) << "\n";
+  // As DrawGiven() draws them. Of a value that is 0 no part can be known.
+  out << "\n[uncertainty]\n";
+  for (const ValueForm& form : ValueForms()) {
+    if (given.*form.value != 0) out << form.name << " = " << Float(form.uncertainty) << "\n";
+  }
 }
 
 // What a newcomer's table has instead of our units.

@@ -9,17 +9,24 @@ namespace foreign_rig {
 
 namespace {
 
-void WriteEffects(const std::vector<Truth>& effects, std::ofstream& out) {
+void WriteNamed(const Named& all, std::ofstream& out) {
+  out << "{";
+  for (size_t i = 0; i < all.size(); ++i)
+    out << (i > 0 ? ", " : "") << Quoted(all[i].first) << ": " << Number(all[i].second);
+  out << "}";
+}
+
+// `nearest`: the catalogue's effect with which the rig's makers would describe it.
+void WriteEffects(const Rig& rig, const std::vector<Truth>& effects, std::ofstream& out) {
   out << ",\n \"effects\": [";
   for (size_t i = 0; i < effects.size(); ++i) {
     const Truth& effect = effects[i];
     out << (i > 0 ? ",\n  " : "") << "{\"id\": " << Quoted(effect.id)
-        << ", \"form\": " << Quoted(FindEffect(effect.id).form) << ", \"parameters\": {";
-    for (size_t k = 0; k < effect.parameters.size(); ++k) {
-      out << (k > 0 ? ", " : "") << Quoted(effect.parameters[k].first) << ": "
-          << Number(effect.parameters[k].second);
-    }
-    out << "}" << (effect.signal.empty() ? "" : ", \"signal\": " + Quoted(effect.signal)) << "}";
+        << ", \"form\": " << Quoted(FindEffect(effect.id).form) << ", \"parameters\": ";
+    WriteNamed(effect.parameters, out);
+    out << ", \"nearest\": ";
+    WriteNamed(NearestParameters(rig, effect), out);
+    out << (effect.signal.empty() ? "" : ", \"signal\": " + Quoted(effect.signal)) << "}";
   }
   out << "]";
 }
@@ -74,7 +81,7 @@ void WriteKey(const Case& c, const Solved& s, const std::string& file) {
       << ", \"gap_at_true_values\": " << Number(s.gap_at_truth)
       << ", \"gap_of_model\": " << Number(s.gap_of_model) << ", \"richness\": " << Number(s.richness)
       << ", \"window_s\": " << Number(kWindow);
-  WriteEffects(s.effects, out);
+  WriteEffects(s.rig, s.effects, out);
   WriteValues(s, out);
   WriteRecorder(s.recorder, out);
   out << ",\n \"remark\": [";

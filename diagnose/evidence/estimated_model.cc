@@ -1,0 +1,174 @@
+#include "diagnose/evidence/estimated_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "diagnose/evidence/estimated_closure.h"
+#include "model/effects/catalogue.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using model::Parameters;
+using Kind = ColumnMeaning::Kind;
+
+// No value is estimated to be less than this part of what was given: then it is another machine.
+constexpr double kLeastPart = 0.05;
+// A whole effect is moved along its shape by no more than neighbours on the grid are apart.
+constexpr double kMostMove = 2;
+constexpr double kMoveStep = 0.1;
+
+// The sum of the amounts of all columns of a base parameter that hold for all runs.
+std::map<size_t, double> Deviations(const ScanRuns& runs, const SetFit& fit) {
+  std::map<size_t, double> sums;
+  for (size_t i = 0; i < fit.columns.size(); ++i) {
+    const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
+    if (meaning.kind == Kind::kBase && meaning.run < 0)
+      sums[meaning.base] += fit.amounts[static_cast<Eigen::Index>(i)] * meaning.unit;
+  }
+  return sums;
+}
+
+// In the flows all is measured by D w: a displacement that the torques show scales the other flows.
+void ScaleFlows(double by, Parameters* p) {
+  p->beta /= by;
+  for (double Parameters::*member : {&Parameters::c, &Parameters::c_E, &Parameters::c_I}) p->*member *= by;
+}
+
+void SetBase(const ScanRuns& runs, const SetFit& fit, EstimatedModel* estimated) {
+  Parameters& p = estimated->model.parameters;
+  const Parameters given = p;
+  for (const auto& [base, amount] : Deviations(runs, fit)) {
+    const model::BaseParameter& parameter = model::BaseParameters()[base];
+    const double before = given.*parameter.member;
+    double value = before != 0 ? before * std::max(kLeastPart, 1 + amount) : amount;
+    value = std::clamp(value, parameter.info.min, parameter.info.max);
+    p.*parameter.member = value;
+    estimated->base.push_back(base);
+  }
+  const double displacement = given.D != 0 ? p.D / given.D : 1;
+  if (displacement != 1) ScaleFlows(displacement, &p);
+}
+
+double Bounded(const model::ParameterInfo& info, double value) {
+  const double least = info.min_allowed ? info.min : std::max(info.min, std::numeric_limits<double>::min());
+  return std::clamp(value, least, info.max);
+}
+
+// How much of the variant's series at another shape there is, relative to that at its grid point.
+double SizeAt(const ScanRuns& runs, const EffectVariant& variant, const std::string& parameter,
+              double value) {
+  model::ModelDescription with = runs.setup().given;
+  model::EffectDescription effect = variant.at;
+  effect.parameters[parameter] = value;
+  with.effects.push_back(effect);
+  double sum = 0;
+  for (size_t r = 0; r < runs.motions().size(); ++r) {
+    const BalanceSeries change = Beyond(with, runs.motions()[r], runs.base()[r]);
+    for (size_t b = 0; b < kBalanceKinds; ++b) {
+      const double size = runs.setup().sizes.of[b];
+      if (change[b].size() > 0 && size > 0) sum += change[b].squaredNorm() / (size * size);
+    }
+  }
+  return std::sqrt(sum);
+}
+
+// The shape at which the whole effect is as large as estimated.
+void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount,
+               model::EffectDescription* effect) {
+  if (variant.shapes.empty()) return;
+  const std::string& shape = variant.shapes.front();
+  const double at = variant.at.parameters.at(shape);
+  const double here = SizeAt(runs, variant, shape, at),
+               there = SizeAt(runs, variant, shape, at * (1 + kMoveStep));
+  if (!(here > 0) || !(there > 0) || !(amount > 0)) return;
+  const double slope = std::log(there / here) / std::log(1 + kMoveStep);
+  if (std::abs(slope) < kMoveStep) return;
+  const double move = std::clamp(std::pow(amount, 1 / slope), 1 / kMostMove, kMostMove);
+  effect->parameters[shape] = Bounded(ParameterOf(effect->id, shape), at * move);
+}
+
+// Amplitude from all runs, phase from the first: there the shaft's angle counts.
+void SetWave(const EffectVariant& variant, const std::string& set,
+             const std::map<int, std::pair<double, double>>& parts, model::EffectDescription* effect) {
+  double sum = 0;
+  for (const auto& [run, part] : parts) sum += std::hypot(part.first, part.second);
+  const double amplitude = parts.empty() ? 0 : sum / static_cast<double>(parts.size());
+  const double periods = std::stod(set.substr(set.find('|') + 1));
+  const std::pair<double, double> first = parts.empty() ? std::pair{0.0, 0.0} : parts.begin()->second;
+  const model::CatalogueEntry* entry = model::FindCatalogueEntry(variant.at.id);
+  for (const model::ParameterInfo& info : entry->info.parameters) {
+    const bool wave = info.role == model::Role::kTorqueWave || info.role == model::Role::kDisplacementWave;
+    if (wave) effect->parameters[info.name] = Bounded(info, amplitude);
+    if (info.role == model::Role::kPeriods) effect->parameters[info.name] = periods;
+    if (info.role == model::Role::kPhase)
+      effect->parameters[info.name] = std::atan2(first.second, first.first);
+  }
+}
+
+// The effect of that name in the set, with its amounts.
+void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, const SetFit& fit,
+               EstimatedModel* estimated) {
+  std::optional<size_t> v;
+  std::map<int, std::pair<double, double>> wave;
+  std::map<std::string, double> amounts, moved;
+  double whole = 1;
+  for (size_t i = 0; i < fit.columns.size(); ++i) {
+    const auto column = static_cast<size_t>(fit.columns[i]);
+    if (rows.columns[column].set != name) continue;
+    const ColumnMeaning& meaning = runs.meaning()[column];
+    const double amount = fit.amounts[static_cast<Eigen::Index>(i)] * meaning.unit;
+    v = meaning.variant;
+    if (meaning.kind == Kind::kEffect) amounts[meaning.parameter] = amount;
+    if (meaning.kind == Kind::kWhole) whole = amount;
+    if (meaning.kind == Kind::kMoved) moved[meaning.parameter] = amount;
+    if (meaning.kind == Kind::kWave)
+      (meaning.parameter == "sin" ? wave[meaning.run].first : wave[meaning.run].second) = amount;
+  }
+  if (!v) return;
+  const EffectVariant& variant = runs.setup().variants[*v];
+  model::EffectDescription effect = variant.at;
+  for (const auto& [parameter, amount] : amounts)
+    effect.parameters[parameter] = Bounded(ParameterOf(effect.id, parameter), amount);
+  // What was moved is a part of the whole: of less of it, it is the more.
+  for (const auto& [parameter, amount] : moved) {
+    const double by = std::exp(
+        std::clamp(amount / std::max(whole, 1 / kMostMove), -std::log(kMostMove), std::log(kMostMove)));
+    effect.parameters[parameter] =
+        Bounded(ParameterOf(effect.id, parameter), effect.parameters[parameter] * by);
+  }
+  if (variant.kind == EffectVariant::Kind::kWhole) MoveWhole(runs, variant, whole, &effect);
+  if (variant.kind == EffectVariant::Kind::kWave) SetWave(variant, name, wave, &effect);
+  estimated->model.effects.push_back(std::move(effect));
+  estimated->changes.push_back(variant.change);
+}
+
+}  // namespace
+
+std::optional<EstimatedModel> ModelOf(const ScanRuns& runs, const Rows& rows, const ChangeSet& set,
+                                      const SetFit& fit) {
+  EstimatedModel estimated;
+  estimated.model = runs.setup().given;
+  SetBase(runs, fit, &estimated);
+  for (const std::string& name : set) {
+    if (name.starts_with("run.")) continue;
+    if (name.starts_with("value.")) {
+      estimated.changes.push_back({"", {}, name.substr(name.find('.') + 1)});
+    } else if (name.starts_with("closure.")) {
+      const std::vector<model::EffectDescription> closures = ClosuresOf(runs, rows, name, fit);
+      if (closures.empty()) return std::nullopt;
+      for (const model::EffectDescription& closure : closures) {
+        estimated.model.effects.push_back(closure);
+        estimated.changes.push_back({closure.id, {}, ""});
+      }
+    } else {
+      AddEffect(runs, rows, name, fit, &estimated);
+    }
+  }
+  return estimated;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,69 @@
+#include "diagnose/prove/blind_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/parallel.h"
+#include "diagnose/fit/fit.h"
+#include "diagnose/prove/refined_values.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+constexpr char kFlexure[] = "arm.flexure";
+const char* const kBlind[] = {kFlexure, "valve.relief", "pump.stribeck", "accumulator.stiffness"};
+
+// Of what an effect has to take: with less, other values beside it do not make it.
+constexpr double kWorthRefining = 0.5;
+// From the catalogue's starts, which are factors of 2 to 6 apart.
+constexpr int kStepsOfARace = 4;
+
+}  // namespace
+
+std::vector<Change> BlindChanges(const SearchContext& context) {
+  const bool free = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
+    return run->stimulus.shaft == model::Shaft::kFree;
+  });
+  std::vector<Change> blind;
+  for (const Change& change : context.changes) {
+    const bool is_blind = std::any_of(std::begin(kBlind), std::end(kBlind),
+                                      [&](const char* id) { return change.effect == id; });
+    if (is_blind && (free || change.effect != kFlexure)) blind.push_back(change);
+  }
+  return blind;
+}
+
+ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunData*>& fitted,
+                    const ProofWindows& windows, const ProvedSet& set, const Change& change) {
+  const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes, false);
+  const std::vector<model::StartState> from = CorrectedStarts(set.hypothesis.model, fitted, context.jobs);
+  FitOptions options;
+  options.most_iterations = kStepsOfARace;
+  options.tolerance = kToCompare;
+  std::vector<Fitted> fits(starts.size());
+  ParallelFor(starts.size(), context.jobs, [&](size_t i) {
+    Hypothesis alone = starts[i];
+    alone.base.clear();
+    alone.known = nullptr;
+    alone.effects = {change.effect};
+    fits[i] = Fit(alone, fitted, from, options);
+  });
+  const Fitted* best = nullptr;
+  for (const Fitted& fit : fits) {
+    if (fit.ok() && (best == nullptr || fit.sum < best->sum)) best = &fit;
+  }
+  ProvedSet raced;
+  raced.hypothesis = starts.front();
+  if (best == nullptr) return raced;
+  raced.hypothesis.model = best->hypothesis.model;
+  JudgeSet(windows, context.jobs, &raced);
+  const GapFall fall = FallOf(set.near, raced.near);
+  if (fall.logarithm >= kWorthRefining * -std::log1p(-kPartOfAnEffect))
+    RefineValues(context, fitted, windows, &raced);
+  return raced;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,108 @@
+#include "diagnose/prove/proof_windows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnose/data/windows.h"
+#include "diagnose/search/window_search.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// What the work of a proof is bounded by. With 20 windows that judge, a difference of 10 % is seen where single windows scatter by
+// 40 %.
+constexpr size_t kMostFitted = 9, kMostNear = 20, kMostFar = 6;
+// And those of each extreme.
+constexpr size_t kMostOfAnExtreme = 1;
+constexpr double kFarTimes = 4;
+
+using Pool = std::vector<const RunData*>;
+
+// The windows where the channel, times the sign, is largest; without those in which it is not measured.
+Pool ByHeight(const Pool& pool, model::Channel channel, double sign) {
+  std::vector<std::pair<double, const RunData*>> heights;
+  for (const RunData* window : pool) {
+    const SignalData* signal = window->Find(channel);
+    if (signal == nullptr) continue;
+    const ValueRange range = RangeOfValues(signal->values);
+    heights.emplace_back(sign > 0 ? -range.high : range.low, window);
+  }
+  std::stable_sort(heights.begin(), heights.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  Pool sorted;
+  for (const auto& [height, window] : heights) sorted.push_back(window);
+  return sorted;
+}
+
+// At most `most` of the pool, evenly spread, and the extremes.
+Pool Chosen(const Pool& pool, size_t most) {
+  std::vector<bool> taken(pool.size());
+  const size_t spread = std::min(most, pool.size());
+  for (size_t k = 0; k < spread; ++k) taken[k * pool.size() / spread] = true;
+  for (const model::Channel channel :
+       {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
+    for (const double sign : {1.0, -1.0}) {
+      // A side's lowest pressure is that of its valve, most of the time.
+      if (sign < 0 && channel != model::Channel::kMotorSpeed) continue;
+      const Pool highest = ByHeight(pool, channel, sign);
+      for (size_t k = 0; k < std::min(highest.size(), kMostOfAnExtreme); ++k) {
+        taken[static_cast<size_t>(std::find(pool.begin(), pool.end(), highest[k]) - pool.begin())] = true;
+      }
+    }
+  }
+  Pool chosen;
+  for (size_t i = 0; i < pool.size(); ++i) {
+    if (taken[i]) chosen.push_back(pool[i]);
+  }
+  return chosen;
+}
+
+// Every `stride`-th window of `all` from `first` to `last`, beginning with the one at `offset`.
+Pool PoolOf(const std::vector<RunData>& all, size_t first, size_t last, size_t offset, size_t stride) {
+  Pool pool;
+  for (size_t i = first + offset; i < last; i += stride) pool.push_back(&all[i]);
+  return pool;
+}
+
+void SetJudging(const std::vector<const RunData*>& predicted, const Pool& windows, JudgingWindows* judging) {
+  judging->windows = windows;
+  for (const RunData* window : windows) {
+    const auto run = std::find_if(predicted.begin(), predicted.end(),
+                                  [&](const RunData* one) { return one->name == window->name; });
+    judging->runs.push_back(static_cast<size_t>(run - predicted.begin()));
+  }
+}
+
+}  // namespace
+
+ProofWindows ProofWindowsOf(const SearchContext& context) {
+  const std::vector<const RunData*>& predicted = context.predicted();
+  const model::Parameters& given = context.given.parameters;
+  std::vector<const RunData*> runs = context.runs;
+  runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
+  ProofWindows proof;
+  proof.near.seconds = SearchHorizon(runs);
+  proof.far.seconds = kFarTimes * proof.near.seconds;
+
+  std::vector<RunData> all = WindowsOf(context.runs, proof.near.seconds, given);
+  const size_t of_fitted = all.size();
+  const auto add = [&](std::vector<RunData> windows) {
+    for (RunData& window : windows) all.push_back(std::move(window));
+    return all.size();
+  };
+  const size_t near_end = add(WindowsOf(context.held_out, proof.near.seconds, given));
+  const size_t far_end = add(WindowsOf(predicted, proof.far.seconds, given));
+  proof.all = std::make_shared<const std::vector<RunData>>(std::move(all));
+
+  const bool in_turn = context.held_out.empty();
+  const std::vector<RunData>& kept = *proof.all;
+  proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted);
+  const Pool near = in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
+  SetJudging(predicted, Chosen(near, kMostNear), &proof.near);
+  SetJudging(predicted, Chosen(PoolOf(kept, near_end, far_end, 0, 1), kMostFar), &proof.far);
+  return proof;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,26 @@
+// What a scan of the balances proposes: a set of changes with all numbers estimated, to be proved by exact simulation.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/fit/hypothesis.h"
+#include "model/terms/description.h"
+
+namespace hydro::diagnose {
+
+struct Proposal {
+  // Effects added or values freed, relative to the model as given. Empty: other values of `base`, or nothing.
+  std::vector<Change> changes;
+  // The model as given with those effects and all base values as estimated from all fitted runs.
+  model::ModelDescription model;
+  // Base parameters (BaseParameters()) whose values the estimate has moved. A refinement may move them too.
+  std::vector<size_t> base;
+  // Of runs that are held out in turn: the same, estimated without each of the context's runs, in their order. Empty: `model`
+  // predicts all of them, although it has seen them.
+  std::vector<model::ModelDescription> without;
+  double score = 0;   // log evidence + log prior
+  double weight = 0;  // among all that were estimated, 0 to 1
+};
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,23 @@
+// What the balances of the runs propose: the likeliest sets of changes, as models that simulation can prove.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/evidence/set_weights.h"
+#include "diagnose/prove/proposal.h"
+#include "diagnose/search/explanation.h"
+
+namespace hydro::diagnose {
+
+struct Proposed {
+  std::vector<Proposal> proposals;  // the likeliest first
+  ExplanationWeights weights;       // of all sets that the balances tell apart
+  // What the balances alone say of every set that was tried: score beyond that of nothing, best first.
+  std::vector<ScoredSet> scores;
+};
+
+// `allowed`: base parameters that may differ, as in BaseParameters(). Nothing is simulated. Without a balance that can be formed there
+// are no proposals.
+Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed);
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,121 @@
+#include "diagnose/prove/proved_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "diagnose/fit/held_out.h"
+#include "maths/median.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// Sets whose gaps differ by less predict equally well: a tenth of what an effect has to take.
+constexpr double kEqual = 0.01;
+
+double MedianLogarithm(const std::vector<WindowGap>& gaps) {
+  std::vector<double> logarithms;
+  for (const WindowGap& gap : gaps) {
+    if (gap.tested) logarithms.push_back(LogarithmOf(gap.Typical()));
+  }
+  return maths::Median(std::move(logarithms));
+}
+
+// The fall of the gap from `reference`, less what the effects have to take.
+double WorthFrom(const ProvedSet& reference, const ProvedSet& set) {
+  const double taken = FallOf(reference.near, set.near).logarithm;
+  return taken + std::log1p(-kPartOfAnEffect) * static_cast<double>(set.Effects().size());
+}
+
+// Of those admitted: first by the median, which needs nothing to compare with, then compared with the best so far, because
+// differences count only up to a limit. `none`: when none is.
+size_t BestSet(const std::vector<ProvedSet>& sets, const std::function<bool(const ProvedSet&)>& admitted) {
+  const size_t none = sets.size();
+  size_t best = none;
+  for (size_t i = 0; i < sets.size(); ++i) {
+    if (!sets[i].tested() || !admitted(sets[i])) continue;
+    if (best == none || MedianLogarithm(sets[i].near) < MedianLogarithm(sets[best].near)) best = i;
+  }
+  std::vector<bool> was_best(sets.size());
+  while (best != none && !was_best[best]) {
+    was_best[best] = true;
+    const ProvedSet& reference = sets[best];
+    double most = WorthFrom(reference, reference);
+    for (size_t i = 0; i < sets.size(); ++i) {
+      if (!sets[i].tested() || !admitted(sets[i])) continue;
+      const double worth = WorthFrom(reference, sets[i]);
+      const bool likelier = std::abs(worth - most) <= kEqual && sets[i].weight > sets[best].weight;
+      if (worth <= most + kEqual && !likelier) continue;
+      most = std::max(most, worth);
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Change> ProvedSet::Effects() const {
+  std::vector<Change> effects;
+  for (const Change& change : hypothesis.changes) {
+    if (!change.effect.empty()) effects.push_back(change);
+  }
+  return effects;
+}
+
+void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {
+  const auto model = [set](size_t run) -> const model::ModelDescription& { return set->ModelOf(run); };
+  set->near = GapsOfWindows(model, windows.near, jobs);
+  set->far = GapsOfWindows(model, windows.far, jobs);
+}
+
+bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
+  if (!other.tested()) return false;
+  if (!set.tested()) return true;
+  const GapFall far = FallOf(set.far, other.far);
+  return FallOf(set.near, other.near).logarithm > 0 && far.logarithm >= -far.error;
+}
+
+bool IsEffectKept(const ProvedSet& with, const ProvedSet& without) {
+  if (!with.tested() || !without.tested()) return true;
+  const GapFall near = FallOf(without.near, with.near);
+  if (near.windows == 0) return true;
+  return near.Exceeds(kPartOfAnEffect) && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
+}
+
+bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {
+  if (!with.tested() || !as_given.tested()) return true;
+  const GapFall near = FallOf(as_given.near, with.near);
+  return near.windows == 0 || near.Exceeds(kPartOfValues);
+}
+
+size_t LeadingSet(const std::vector<ProvedSet>& sets) {
+  return BestSet(sets, [](const ProvedSet&) { return true; });
+}
+
+std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t most) {
+  const size_t leading = LeadingSet(sets);
+  if (leading >= sets.size()) return {};
+  std::vector<size_t> values, others;
+  for (size_t i = 0; i < sets.size(); ++i) {
+    if (!sets[i].tested() || sets[i].hypothesis.Free().empty()) continue;
+    (sets[i].Effects().empty() ? values : others).push_back(i);
+  }
+  std::stable_sort(others.begin(), others.end(), [&](size_t a, size_t b) {
+    return WorthFrom(sets[leading], sets[a]) > WorthFrom(sets[leading], sets[b]);
+  });
+  others.resize(std::min(others.size(), most));
+  values.insert(values.end(), others.begin(), others.end());
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+size_t BestWithEffects(const std::vector<ProvedSet>& sets, const std::vector<Change>& effects) {
+  return BestSet(sets, [&](const ProvedSet& set) {
+    const std::vector<Change> own = set.Effects();
+    return std::is_permutation(own.begin(), own.end(), effects.begin(), effects.end());
+  });
+}
+
+}  // namespace hydro::diagnose

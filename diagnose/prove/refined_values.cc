@@ -1,0 +1,118 @@
+#include "diagnose/prove/refined_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "diagnose/data/thinned.h"
+#include "diagnose/fit/fit.h"
+#include "diagnose/search/window_search.h"
+#include "maths/median.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// Twice: what is known of the base values weighs by the gap, which falls on the way.
+constexpr int kRounds = 2;
+// Estimates are near where a fit ends; one that needs more steps is wandering off.
+constexpr int kSteps = 3;
+// A round that takes less of the sum of squares leaves nothing for another.
+constexpr double kWorthARound = 0.02;
+constexpr double kTolerance = 1e-3;
+// Of the median window's rms: what is left of a window counts up to here.
+constexpr double kMostOfTheMedian = 3;
+
+std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
+                                  const std::vector<const RunData*>& windows, int jobs) {
+  std::vector<WindowGap> gaps(windows.size());
+  ParallelFor(windows.size(), jobs, [&](size_t w) { gaps[w] = GapOf(model, *windows[w]); });
+  return gaps;
+}
+
+// What the model leaves of each channel in the median window, at least the noise.
+std::array<double, model::kChannels> MedianSquares(const std::vector<WindowGap>& gaps) {
+  std::array<double, model::kChannels> medians;
+  for (size_t c = 0; c < model::kChannels; ++c) {
+    std::vector<double> squares;
+    for (const WindowGap& gap : gaps) {
+      if (gap.tested && !std::isnan(gap.squared[c])) squares.push_back(gap.squared[c]);
+    }
+    medians[c] = squares.empty() ? 1 : std::max(1.0, maths::Median(std::move(squares)));
+  }
+  return medians;
+}
+
+// What is known of base values, unless only those are free that the set itself names.
+std::shared_ptr<const Knowledge> KnownOf(const SearchContext& context, const Hypothesis& hypothesis,
+                                         double sum) {
+  const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
+                                   [](const Change& change) { return change.effect.empty(); });
+  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
+}
+
+// The windows as the model leaves them, without derivatives.
+Fitted AsItIs(const Hypothesis& hypothesis, const std::vector<const RunData*>& windows, int jobs) {
+  Fitted fitted;
+  fitted.hypothesis = hypothesis;
+  for (const WindowGap& gap : GapsOfEach(hypothesis.model, windows, jobs)) {
+    if (!gap.tested) fitted.failure = "its simulation fails";
+    fitted.runs.push_back({gap.start, gap.sum, gap.count, {}, {}});
+    fitted.sum += gap.sum;
+    fitted.count += gap.count;
+  }
+  return fitted;
+}
+
+}  // namespace
+
+std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
+                                     const model::ModelDescription& model, int jobs) {
+  const std::vector<WindowGap> gaps = GapsOfEach(model, windows, jobs);
+  const std::array<double, model::kChannels> medians = MedianSquares(gaps);
+  std::vector<RunData> scaled;
+  for (size_t w = 0; w < windows.size(); ++w) {
+    if (!gaps[w].tested) continue;
+    scaled.push_back(ThinnedCopy(*windows[w]));
+    for (SignalData& signal : scaled.back().signals) {
+      const auto c = static_cast<size_t>(signal.channel);
+      const double own = gaps[w].squared[c] / (kMostOfTheMedian * kMostOfTheMedian);
+      signal.noise *= std::sqrt(std::max(medians[c], own));
+    }
+  }
+  return scaled;
+}
+
+std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
+                                               const std::vector<const RunData*>& windows, int jobs) {
+  const std::vector<WindowGap> gaps = GapsOfEach(model, windows, jobs);
+  std::vector<model::StartState> starts;
+  for (size_t w = 0; w < windows.size(); ++w)
+    starts.push_back(gaps[w].tested ? gaps[w].start : windows[w]->start);
+  return starts;
+}
+
+void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
+                  const ProofWindows& windows, ProvedSet* set) {
+  if (fitted.empty() || set->hypothesis.Free().empty()) return;
+  const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
+  FitOptions options;
+  options.tolerance = kTolerance;
+  options.jobs = context.jobs;
+  options.most_iterations = kSteps;
+  Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
+  for (int round = 0; round < kRounds && at.ok() && !TimeIsUp(context); ++round) {
+    Hypothesis from = at.hypothesis;
+    from.known = KnownOf(on_windows, from, at.sum);
+    const double before = at.sum;
+    at = Fit(from, fitted, StartsOf(at), options);
+    if (!at.ok() || !(at.sum < before)) return;
+    ProvedSet refined{at.hypothesis, {}, {}, {}, set->weight};
+    JudgeSet(windows, context.jobs, &refined);
+    if (PredictsBetter(refined, *set)) *set = std::move(refined);
+    if (at.sum > (1 - kWorthARound) * before) return;
+  }
+}
+
+}  // namespace hydro::diagnose

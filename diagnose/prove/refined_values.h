@@ -1,0 +1,28 @@
+// Values refined by simulation: a few steps of a fit to windows of the fitted runs.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/prove/proved_set.h"
+#include "diagnose/search/explanation.h"
+
+namespace hydro::diagnose {
+
+// Copies of the windows, with the noise of each signal raised to what the model leaves of it in the median window, and in windows
+// that it leaves much more of, to a third of that. What a model lacks grows with the time from the window's start and is no white noise:
+// weighted by the sensors alone, a fit would move all values to mend the signal with the finest sensor. Without windows that the
+// model cannot be simulated over.
+std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
+                                     const model::ModelDescription& model, int jobs);
+
+// The set with its values fitted, a few steps from where they are; the fit is taken where it predicts the judging windows better.
+// `fitted`: as WithDiscrepancy() makes them. A fit that fails, or ends no lower than it began, changes nothing.
+void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
+                  const ProofWindows& windows, ProvedSet* set);
+
+// The starts that the model's windows have: measured, corrected by a step.
+std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
+                                               const std::vector<const RunData*>& windows, int jobs);
+
+}  // namespace hydro::diagnose
