@@ -4,8 +4,11 @@
 
 #include <vector>
 
-#include "model/equations/equations.h"
+// GCC takes the names of channels for shadows of the states' places where those come first.
+// clang-format off
 #include "model/response.h"
+#include "model/equations/equations.h"
+// clang-format on
 
 namespace hydro::model {
 
@@ -62,10 +65,10 @@ class BalanceEquations {
   void FindJacobian(const KnownMotion& motion);
 
   Equations equations_;
-  NumbersOf<Jet> numbers_;        // with derivatives by the unknowns
-  int first_state_ = 0;           // of effects
-  bool commands_ = false;         // some effect may remember commands
-  std::vector<double> own_;       // the effects' states
+  NumbersOf<Jet> numbers_;                      // with derivatives by the unknowns
+  int first_state_ = 0;                         // of effects
+  bool commands_ = false;                       // some effect may remember commands
+  std::vector<double> own_;                     // the effects' states
   std::vector<double> jacobian_, step_matrix_;  // of their rates by themselves, by rows; of a sample
   int since_jacobian_ = 0;
 };

@@ -37,9 +37,9 @@ struct ColumnTable {
   // series[run][balance]: column -> values at every stride-th instant, for an amount of 1.
   std::vector<std::array<std::map<int, Eigen::VectorXd>, kBalanceKinds>> series;
 
-  int Add(ScanColumn column, ColumnMeaning meaning) {
+  int Add(ScanColumn column, ColumnMeaning means) {
     columns.push_back(std::move(column));
-    this->meaning.push_back(std::move(meaning));
+    meaning.push_back(std::move(means));
     return static_cast<int>(columns.size()) - 1;
   }
 };
