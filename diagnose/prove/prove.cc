@@ -30,10 +30,10 @@ class Prover {
     Report("simulating the proposals", 0.85);
     AddProposals(proposals);
     for (ProvedSet& set : sets_) JudgeSet(windows_, context_.jobs, &set);
-    SetFitted();
+    SetFitted(LeadingSet(sets_));
     Report("refining their values", 0.88);
     for (const size_t i : WorthRefining(sets_, kMostRefined))
-      RefineValues(context_, fitted_, windows_, &sets_[i]);
+      RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[i]);
     size_t best = Choice();
     if (LeavesAGap(best)) {
       Report("what balances cannot show", 0.91);
@@ -41,6 +41,8 @@ class Prover {
       best = Choice();
     }
     best = TakeGivenValues(best);
+    SetFitted(best);
+    RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
     Report("fitting the whole runs", 0.93);
     return OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best});
   }
@@ -57,6 +59,13 @@ class Prover {
       hypothesis.model = proposal.model;
       hypothesis.changes = proposal.changes;
       hypothesis.base = proposal.base;
+      // Estimates hold one number of each balance, which scales all others: a fit moves it instead of them.
+      for (const size_t place : allowed_) {
+        const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
+        const bool there =
+            std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
+        if (all && !there) hypothesis.base.push_back(place);
+      }
       for (const Change& change : proposal.changes) {
         if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
       }
@@ -70,35 +79,26 @@ class Prover {
     sets_.push_back({std::move(refit), {}, {}, {}, 0});
   }
 
-  // The discrepancy is that of the best estimates: what no proposal explains.
-  void SetFitted() {
-    const size_t leading = LeadingSet(sets_);
+  // The discrepancy is that of the best set so far: what nothing explains.
+  void SetFitted(size_t leading) {
     const size_t by = leading < sets_.size() ? leading : kGiven;
     scaled_ = WithDiscrepancy(windows_.fitted, sets_[by].hypothesis.model, context_.jobs);
     fitted_ = PointersTo(scaled_);
   }
 
-  // The best set without the effect; made of the set where there is none. With values of its own, as every proposal has.
+  // The best set without the effect, among them the set itself without it, refined: values that were estimated beside an effect, or
+  // without one, may not suit what is left.
   size_t PlaceWithout(size_t with, const Change& change) {
     std::vector<Change> fewer = sets_[with].Effects();
     std::erase(fewer, change);
-    // Values that were estimated beside the effect may not suit the set without it: they are refined from there.
-    const Hypothesis less = Without(sets_[with].hypothesis, change, context_.given);
-    const bool made = std::any_of(sets_.begin(), sets_.end(), [&](const ProvedSet& set) {
-      return set.hypothesis.FreesTheSame(less) && set.hypothesis.changes.size() == less.changes.size() &&
-             std::all_of(less.changes.begin(), less.changes.end(),
-                         [&](const Change& one) { return set.hypothesis.Has(one); });
-    });
-    if (!made) {
-      ProvedSet set{less, {}, {}, {}, 0};
-      for (model::ModelDescription without : sets_[with].without) {
-        std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
-        set.without.push_back(std::move(without));
-      }
-      JudgeSet(windows_, context_.jobs, &set);
-      RefineValues(context_, fitted_, windows_, &set);
-      sets_.push_back(std::move(set));
+    ProvedSet less{Without(sets_[with].hypothesis, change, context_.given), {}, {}, {}, 0};
+    for (model::ModelDescription without : sets_[with].without) {
+      std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
+      less.without.push_back(std::move(without));
     }
+    JudgeSet(windows_, context_.jobs, &less);
+    RefineValues(context_, fitted_, windows_, kComparedValues, &less);
+    sets_.push_back(std::move(less));
     return BestWithEffects(sets_, fewer);
   }
 
@@ -147,7 +147,8 @@ class Prover {
   }
 
   bool LeavesAGap(size_t place) const {
-    return !TimeIsUp(context_) && TypicalGap(sets_[place].near) > kCloseEnough;
+    return !TimeIsUp(context_) && sets_[place].Effects().size() < static_cast<size_t>(kMostChanges) &&
+           TypicalGap(sets_[place].near) > kCloseEnough;
   }
 
   void Race(size_t from, const std::vector<Change>& blind) {
@@ -171,7 +172,7 @@ class Prover {
     sparse.hypothesis.known = nullptr;
     sparse.hypothesis.changes = sparse.Effects();
     JudgeSet(windows_, context_.jobs, &sparse);
-    RefineValues(context_, fitted_, windows_, &sparse);
+    RefineValues(context_, fitted_, windows_, kComparedValues, &sparse);
     sets_.push_back(std::move(sparse));
     const bool values = AreValuesKept(sets_[place], sets_.back());
     return values || !sets_.back().tested() ? place : sets_.size() - 1;
