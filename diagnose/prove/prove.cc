@@ -18,22 +18,24 @@ constexpr size_t kGiven = 0;  // the place of the model as given
 // Proposals whose values are refined. The truth was among the first five of a prototype's in all but 1 of 20 pairs, and in the
 // first three of 19 in 20 singles.
 constexpr size_t kMostRefined = 5;
+// Sets without one of their effects that are made: those of two that lead with three effects, and what is left of them.
+constexpr size_t kMostMade = 10;
 
 class Prover {
  public:
   Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed)
       : context_(context), as_given_(as_given), allowed_(allowed), windows_(ProofWindowsOf(context)) {
-    sets_.push_back({as_given, {}, {}, {}, 0});
+    sets_.emplace_back().hypothesis = as_given;
   }
 
   WideSearch Run(const std::vector<Proposal>& proposals, const std::vector<Change>& blind) {
     Report("simulating the proposals", 0.85);
     AddProposals(proposals);
     for (ProvedSet& set : sets_) JudgeSet(windows_, context_.jobs, &set);
+    for (ProvedSet& set : sets_) BeginAtGivenValues(&set);
     SetFitted(LeadingSet(sets_));
     Report("refining their values", 0.88);
-    for (const size_t i : WorthRefining(sets_, kMostRefined))
-      RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[i]);
+    for (const size_t i : WorthRefining(sets_, kMostRefined)) Refine(i);
     size_t best = Choice();
     if (LeavesAGap(best)) {
       Report("what balances cannot show", 0.91);
@@ -69,14 +71,17 @@ class Prover {
       for (const Change& change : proposal.changes) {
         if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
       }
-      sets_.push_back({std::move(hypothesis), proposal.without, {}, {}, proposal.weight});
+      ProvedSet& set = sets_.emplace_back();
+      set.hypothesis = std::move(hypothesis);
+      set.without = proposal.without;
+      set.weight = proposal.weight;
       values = values || (proposal.changes.empty() && !proposal.base.empty());
     }
     if (values || allowed_.empty()) return;
     Hypothesis refit = as_given_;
     refit.base = allowed_;
     for (const model::EffectDescription& effect : context_.given.effects) refit.effects.push_back(effect.id);
-    sets_.push_back({std::move(refit), {}, {}, {}, 0});
+    sets_.emplace_back().hypothesis = std::move(refit);
   }
 
   // The discrepancy is that of the best set so far: what nothing explains.
@@ -86,19 +91,35 @@ class Prover {
     fitted_ = PointersTo(scaled_);
   }
 
+  // Where estimated values cannot be simulated, those of the model as given may be.
+  void BeginAtGivenValues(ProvedSet* set) const {
+    if (set->tested()) return;
+    set->hypothesis.model.parameters = context_.given.parameters;
+    set->without.clear();
+    JudgeSet(windows_, context_.jobs, set);
+  }
+
+  void Refine(size_t place) {
+    if (place == kGiven || sets_[place].refined) return;
+    RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
+    sets_[place].refined = true;
+  }
+
   // The best set without the effect, among them the set itself without it, refined: values that were estimated beside an effect, or
   // without one, may not suit what is left.
   size_t PlaceWithout(size_t with, const Change& change) {
     std::vector<Change> fewer = sets_[with].Effects();
     std::erase(fewer, change);
-    ProvedSet less{Without(sets_[with].hypothesis, change, context_.given), {}, {}, {}, 0};
+    if (++made_ > kMostMade) return BestWithEffects(sets_, fewer);
+    ProvedSet less;
+    less.hypothesis = Without(sets_[with].hypothesis, change, context_.given);
     for (model::ModelDescription without : sets_[with].without) {
       std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
       less.without.push_back(std::move(without));
     }
     JudgeSet(windows_, context_.jobs, &less);
-    RefineValues(context_, fitted_, windows_, kComparedValues, &less);
     sets_.push_back(std::move(less));
+    Refine(sets_.size() - 1);
     return BestWithEffects(sets_, fewer);
   }
 
@@ -124,6 +145,7 @@ class Prover {
     for (size_t next = best; std::find(led.begin(), led.end(), next) == led.end();) {
       best = next;
       led.push_back(best);
+      Refine(best);
       next = Reduced(best);
       if (next == best) next = BetterOfTheSameSize(best);
     }
@@ -167,6 +189,7 @@ class Prover {
     if (sets_[place].Effects().empty() || sets_[place].hypothesis.base.empty()) return place;
     ProvedSet sparse = sets_[place];
     sparse.without.clear();
+    sparse.refined = false;
     sparse.hypothesis.model.parameters = context_.given.parameters;
     sparse.hypothesis.base.clear();
     sparse.hypothesis.known = nullptr;
@@ -195,6 +218,7 @@ class Prover {
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted
   std::vector<const RunData*> fitted_;
+  size_t made_ = 0;  // sets without an effect
 };
 
 }  // namespace

@@ -103,7 +103,9 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;
-    ProvedSet refined{at.hypothesis, {}, {}, {}, set->weight};
+    ProvedSet refined;
+    refined.hypothesis = at.hypothesis;
+    refined.weight = set->weight;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(refined, *set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

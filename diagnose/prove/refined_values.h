@@ -23,7 +23,7 @@ struct Refinement {
   int rounds = 0;
   int steps = 0;  // of a round
 };
-// To compare sets: estimates are near where a fit ends, and one that needs more steps is wandering off.
+// To compare a set with that without an effect: estimates are near where a fit ends, and one that needs more steps is wandering off.
 inline constexpr Refinement kComparedValues = {2, 3};
 // Of what is reported.
 inline constexpr Refinement kReportedValues = {3, 8};
