@@ -15,11 +15,12 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kGiven = 0;  // the place of the model as given
-// Proposals whose values are refined. The truth was among the first five of a prototype's in all but 1 of 20 pairs, and in the
-// first three of 19 in 20 singles.
+// Proposals whose values are refined: a scan has to have what is true among its first five to be of use.
 constexpr size_t kMostRefined = 5;
 // Sets without one of their effects that are made: those of two that lead with three effects, and what is left of them.
 constexpr size_t kMostMade = 10;
+// Of the gap: sets that differ by less predict equally well.
+constexpr double kNoBetter = 0.01;
 
 class Prover {
  public:
@@ -110,7 +111,10 @@ class Prover {
   size_t PlaceWithout(size_t with, const Change& change) {
     std::vector<Change> fewer = sets_[with].Effects();
     std::erase(fewer, change);
-    if (++made_ > kMostMade) return BestWithEffects(sets_, fewer);
+    const std::pair<size_t, Change> made{with, change};
+    if (made_.size() >= kMostMade || std::find(made_.begin(), made_.end(), made) != made_.end())
+      return BestWithEffects(sets_, fewer);
+    made_.push_back(made);
     ProvedSet less;
     less.hypothesis = Without(sets_[with].hypothesis, change, context_.given);
     for (model::ModelDescription without : sets_[with].without) {
@@ -157,7 +161,7 @@ class Prover {
   // What is chosen is not worse than another set with as few effects.
   size_t BetterOfTheSameSize(size_t place) const {
     size_t better = place;
-    double most = 0;
+    double most = kNoBetter;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() > sets_[place].Effects().size()) continue;
       const double fall = FallOf(sets_[place].near, sets_[i].near).logarithm;
@@ -218,7 +222,7 @@ class Prover {
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted
   std::vector<const RunData*> fitted_;
-  size_t made_ = 0;  // sets without an effect
+  std::vector<std::pair<size_t, Change>> made_;  // sets without an effect: of which set, which effect
 };
 
 }  // namespace
