@@ -189,6 +189,9 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const WideSearch found =
       ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
+  for (const WeighedExplanation& one : proposed.weights.explanations)
+    diagnosis.explanations.push_back({one.changes, one.weight});
+  diagnosis.set_90 = proposed.weights.in_90;
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
     for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));

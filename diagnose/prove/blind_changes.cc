@@ -62,7 +62,7 @@ ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunDat
   JudgeSet(windows, context.jobs, &raced);
   const GapFall fall = FallOf(set.near, raced.near);
   if (fall.logarithm >= kWorthRefining * -std::log1p(-kPartOfAnEffect))
-    RefineValues(context, fitted, windows, &raced);
+    RefineValues(context, fitted, windows, kComparedValues, &raced);
   return raced;
 }
 
