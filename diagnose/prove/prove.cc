@@ -72,6 +72,10 @@ class Prover {
       for (const Change& change : proposal.changes) {
         if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
       }
+      // The estimate moves the numbers of effects that the model has as it moves base values.
+      for (const model::EffectDescription& effect : context_.given.effects) {
+        if (!proposal.base.empty()) hypothesis.effects.push_back(effect.id);
+      }
       ProvedSet& set = sets_.emplace_back();
       set.hypothesis = std::move(hypothesis);
       set.without = proposal.without;
