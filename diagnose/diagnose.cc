@@ -10,10 +10,10 @@
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
-#include "diagnose/recording_first.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
+#include "diagnose/recording_first.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
@@ -187,7 +187,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
   const WideSearch found =
-      ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
+      ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
+                     proposed.proposals, BlindChanges(context));
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
   for (const WeighedExplanation& one : proposed.weights.explanations)
     diagnosis.explanations.push_back({one.changes, one.weight});
