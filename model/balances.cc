@@ -274,10 +274,36 @@ void BalanceEquations::FindJacobian(const KnownMotion& motion) {
 }
 
 void BalanceEquations::Advance(const KnownMotion& from, const KnownMotion& to) {
-  if (commands_) {
-    equations_.Command(from.time, from.voltage);
-    while (equations_.NextStop(from.time) <= to.time) equations_.PassStop(equations_.NextStop(from.time));
+  if (commands_) equations_.Command(from.time, from.voltage);
+  AdvanceStates(from, to);
+  if (commands_) PassStops(from, to);
+}
+
+void BalanceEquations::PassStops(const KnownMotion& from, const KnownMotion& to) {
+  // Rounding must not make a delay of whole samples one sample longer.
+  const double step = to.time - from.time, end = to.time + 1e-6 * step;
+  early_ = 0;
+  drive_before_.reset();
+  double stop = equations_.NextStop(from.time);
+  if (stop <= end) drive_before_ = Drive(to, from.voltage);
+  for (; stop <= end; stop = equations_.NextStop(from.time)) {
+    early_ = std::max(0.0, (to.time - stop) / step);
+    equations_.PassStop(stop);
   }
+}
+
+double BalanceEquations::Drive(KnownMotion motion, double voltage) const {
+  motion.voltage = voltage;
+  double state[kMaxStates];
+  CopyStates(motion, state);
+  return Blended<double>(equations_.data(), equations_.data(), motion, state).drive;
+}
+
+double BalanceEquations::DriveBefore(const KnownMotion& motion, double voltage) const {
+  return drive_before_ ? *drive_before_ : Drive(motion, voltage);
+}
+
+void BalanceEquations::AdvanceStates(const KnownMotion& from, const KnownMotion& to) {
   if (own_.empty()) return;
   if (++since_jacobian_ > kSamplesOfAJacobian) {
     FindJacobian(from);
