@@ -188,6 +188,15 @@ double AboveHeldLevel(const EquationData& m, const KnownMotion& at, const double
   return at.*pressure - (first - flow_1 / slope);
 }
 
+// Whether an ideal one-way valve is open: a low pressure that falls less than it would with the valve closed. How far above p_3
+// low may be: what an accumulator's pressure moves by, and far below what a pump makes.
+bool PassesOil(const EquationData& m, double pressure, double closed_rate, double rate) {
+  constexpr double kLow = 0.1, kLess = 0.2;
+  if (!m.ideal_valves || pressure > m.parameters.p_3 + kLow * m.parameters.T_pmax / m.parameters.D)
+    return false;
+  return closed_rate < 0 && rate - closed_rate > -kLess * closed_rate;
+}
+
 bool RemembersCommands(const Effect& effect) {
   // An effect that remembers commands waits for the time at which it passes one on.
   return effect.NextStop(-kUnbounded) < kUnbounded;
@@ -248,8 +257,8 @@ void BalanceEquations::OwnRates(const KnownMotion& motion, double* state, double
   EvaluateMotion<double>(data, data, motion, state, pump, arm, rates, x);
   Mode mode;
   mode.pump = static_cast<int8_t>(pump);
-  // An open ideal valve holds its side: what the accumulator then gives shows in its own balance.
-  mode.valve_1 = motion.p1_rate == 0 && motion.p1 <= data.parameters.p_3 ? 1 : 0;
+  mode.valve_1 = PassesOil(data, x.p1, x.free_rate_1, motion.p1_rate) ? 1 : 0;
+  mode.valve_2 = PassesOil(data, x.p2, x.free_rate_2, motion.p2_rate) ? 1 : 0;
   x.mode = &mode;
   x.p_3_rate = 0;
   ForEachEffect(data, data, x, [&](const Effect& effect) { effect.AddBalances(x, rates); });
