@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "model/equations/evaluate.h"
@@ -214,6 +215,8 @@ BalanceEquations::BalanceEquations(const ModelDescription& model, ActuatorOption
                                                            : numbers_.own.at(unknowns[u].index);
     seeded.SetDerivative(static_cast<int>(u), 1);
   }
+  // The equations skip the weight of an arm that has none, and with it the derivative.
+  if (numbers_.parameters.mgl.a == 0) numbers_.parameters.mgl.a = std::numeric_limits<double>::min();
   CompleteNumbers<Jet>(data, &numbers_);
   first_state_ = data.shaft == Shaft::kFree ? 6 : 4;
   own_.assign(static_cast<size_t>(data.states - first_state_), 0.0);
