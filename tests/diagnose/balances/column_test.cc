@@ -232,6 +232,28 @@ TEST(Columns, OfWholeEffectsMeetTheSimulation) {
   ExpectOneOfEach(EffectVariant::Kind::kWhole, seen);
 }
 
+// Tests that effects whose columns are made together have the same as each would alone.
+TEST(Columns, DoNotDependOnWhatElseIsTried) {
+  const std::vector<diagnose::RunData> runs = RunsOf(PlainMachine());
+  for (const EffectVariant& variant : PlainScan().setup.variants) {
+    if (variant.kind != EffectVariant::Kind::kAmounts) continue;
+    const CleanScan alone = ScanClean(PlainMachine(), runs, {variant});
+    for (const std::string& amount : variant.amounts) {
+      const int here = alone.Column(variant.set + ":" + amount);
+      const int there = PlainScan().Column(variant.set + ":" + amount);
+      for (size_t r = 0; r < runs.size(); ++r) {
+        for (size_t b = 0; b < diagnose::kBalanceKinds; ++b) {
+          const auto &one = alone.table.series[r][b], &all = PlainScan().table.series[r][b];
+          ASSERT_EQ(one.contains(here), all.contains(there)) << variant.set << ":" << amount;
+          if (!one.contains(here)) continue;
+          EXPECT_LE((one.at(here) - all.at(there)).norm(), 1e-9 * one.at(here).norm())
+              << variant.set << ":" << amount;
+        }
+      }
+    }
+  }
+}
+
 // Tests what repeats with the shaft: sine and cosine parts of each run's wave.
 TEST(Columns, OfWavesMeetTheSimulation) {
   constexpr int kPeriods = 9;
