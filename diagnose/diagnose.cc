@@ -11,7 +11,9 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
 #include "diagnose/recording_first.h"
-#include "diagnose/search/proof.h"
+#include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/propose.h"
+#include "diagnose/prove/prove.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
@@ -182,10 +184,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   Hypothesis as_given;
   as_given.model = model;
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
-  const WideSearch found = SearchAndProve(context, as_given, allowed);
-  if (!found.search.given.fitted.ok()) {
-    throw model::ModelError(found.search.given.fitted.failure);
-  }
+  if (report_progress) report_progress({"what the balances of the runs show", 0.2});
+  const Proposed proposed = Propose(context, allowed);
+  const WideSearch found =
+      ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
@@ -202,9 +204,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);
-  const std::string doubt =
-      diagnosis.choices.empty() ? ProofRemark(context) : ChoiceRemark(diagnosis.choices);
-  if (!doubt.empty()) diagnosis.remarks.push_back(doubt);
+  if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis.choices));
   if (limit.struck()) diagnosis.remarks.push_back(limit.Remark());
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;

@@ -7,7 +7,7 @@
 
 // GCC takes the names of channels for shadows of the states' places where those come first.
 // clang-format off
-#include "model/response.h"
+#include "model/unknown.h"
 #include "model/equations/equations.h"
 // clang-format on
 

@@ -11,21 +11,9 @@
 
 #include "model/actuator.h"
 #include "model/terms/description.h"
+#include "model/unknown.h"
 
 namespace hydro::model {
-
-// What a response is differentiated with respect to.
-struct Unknown {
-  enum class Kind {
-    kBase,    // a base parameter: `index` as in BaseParameters()
-    kEffect,  // a parameter of an effect: `index` as in EffectParameters()
-    kStart,   // a number of the start: `index` in StartState
-  };
-  Kind kind = Kind::kBase;
-  size_t index = 0;
-
-  bool operator==(const Unknown&) const = default;
-};
 
 // A number of one of the model's effects: a parameter, or one of a list.
 struct EffectParameter {

@@ -15,7 +15,7 @@ using model::Parameters;
 // A value given as 0 may well make a tenth of its balance.
 constexpr double kFromNothing = 0.1;
 // "One value is far off": by half as much again.
-constexpr double kFarOff = 0.5;
+constexpr double kValueFarOff = 0.5;
 // "One value differs by run": by so many times what each run may differ by in every hypothesis.
 constexpr double kDiffersByRun = 6;
 
@@ -93,7 +93,7 @@ void AddValueColumns(ColumnMaker* maker) {
     const ScanColumn column = maker->table.columns[i];
     if (meaning.kind == ColumnMeaning::Kind::kBase && meaning.run < 0) {
       const bool zero = maker->given().*BaseParameters()[meaning.base].member == 0;
-      const double wide = std::max(kFarOff, 3 * column.sd) * (zero ? 3 : 1);
+      const double wide = std::max(kValueFarOff, 3 * column.sd) * (zero ? 3 : 1);
       maker->AddAlias({"wide." + column.name, "value." + column.name, wide, false}, meaning,
                       static_cast<int>(i), -1);
     }

@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-using Part = ClosureElement::Part;
+using ElementPart = ClosureElement::Part;
 
 // Sines of a curve, and how fast their amplitudes may fall: a curve is as smooth as a Gaussian of a seventh of its range.
 constexpr int kSpeedSines = 10, kOtherSines = 8;
@@ -38,7 +38,7 @@ void AddElement(ColumnMaker* maker, const ClosureElement& element) {
         maker->Add({element.set + ":" + std::to_string(sine), element.set, SpreadOf(sine), false}));
   maker->works.back().push_back([maker, element, columns](size_t run) {
     const RunMotion& motion = maker->Motion(run);
-    for (const Part& part : element.parts) {
+    for (const ElementPart& part : element.parts) {
       if (!CanForm(motion, part.balance)) continue;
       const bool arm = part.variable == "arm_angle" || part.variable == "arm_speed";
       if (arm && !motion.arm_moves) continue;
@@ -62,7 +62,8 @@ double UsualOf(const BalanceSizes& sizes, BalanceKind balance) {
   return kUsual * sizes.of[static_cast<size_t>(balance)];
 }
 
-ClosureElement Odd(const std::string& set, int sines, double unit, double reach, std::vector<Part> parts) {
+ClosureElement Odd(const std::string& set, int sines, double unit, double reach,
+                   std::vector<ElementPart> parts) {
   return {.set = set,
           .sines = sines,
           .parts = std::move(parts),

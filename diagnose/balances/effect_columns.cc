@@ -8,7 +8,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-using Kind = EffectVariant::Kind;
+using VariantKind = EffectVariant::Kind;
 
 // Transducers err by about this part of what they read.
 constexpr double kReadingPart = 0.02;
@@ -17,7 +17,7 @@ constexpr double kReadingTime = 3e-3;
 // A parameter without a grid may well be off by half.
 constexpr double kMovedBy = 0.5;
 // What derivatives by such parameters are taken over.
-constexpr double kSmallStep = 0.05;
+constexpr double kMovedStep = 0.05;
 // Of a balance's size: an amount that makes a change so small is as good as a derivative.
 constexpr double kSmallChange = 1e-4;
 
@@ -192,10 +192,10 @@ void PutWhole(ColumnMaker* maker, size_t v, const std::vector<int>& columns, siz
   maker->Put(columns[0], run, whole);
   for (size_t m = 0; m < variant.moved.size(); ++m) {
     model::EffectDescription moved = variant.at;
-    moved.parameters[variant.moved[m]] *= std::exp(kSmallStep);
+    moved.parameters[variant.moved[m]] *= std::exp(kMovedStep);
     BalanceSeries change = Beyond(With(maker->setup->given, moved), motion, base);
     for (size_t b = 0; b < kBalanceKinds; ++b) change[b] -= whole[b];
-    maker->Put(columns[m + 1], run, change, 1 / kSmallStep);
+    maker->Put(columns[m + 1], run, change, 1 / kMovedStep);
   }
 }
 
@@ -231,8 +231,8 @@ void AddEffectColumns(ColumnMaker* maker) {
   const std::vector<EffectVariant>& variants = maker->setup->variants;
   for (size_t v = 0; v < variants.size(); ++v) {
     const EffectVariant& variant = variants[v];
-    if (variant.kind == Kind::kWave) continue;
-    if (variant.kind == Kind::kWhole) {
+    if (variant.kind == VariantKind::kWave) continue;
+    if (variant.kind == VariantKind::kWhole) {
       ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kWhole, .variant = v};
       std::vector<int> columns = {maker->Add({variant.set + ":whole", variant.set, 1, true}, meaning)};
       meaning.kind = ColumnMeaning::Kind::kMoved;

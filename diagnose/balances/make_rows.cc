@@ -40,10 +40,10 @@ double HighestOf(const RunMotion& run, BalanceKind balance, double tile) {
 double SensorVariance(const RunMotion& run, const model::Parameters& p, BalanceKind balance, double frequency,
                       double largest_pressure) {
   const double omega = 2 * std::numbers::pi * frequency;
-  const auto noise = [&](Measured signal) { return run.Of(signal).measured() ? run.Of(signal).noise : 0; };
-  const double speed = run.from_angle ? noise(Measured::kAngle) * omega : noise(Measured::kSpeed);
-  const double p1 = noise(Measured::kP1), p2 = noise(Measured::kP2),
-               arm = run.arm_moves ? noise(Measured::kArm) : 0;
+  const auto noise = [&](GridChannel signal) { return run.Of(signal).measured() ? run.Of(signal).noise : 0; };
+  const double speed = run.from_angle ? noise(GridChannel::kAngle) * omega : noise(GridChannel::kSpeed);
+  const double p1 = noise(GridChannel::kP1), p2 = noise(GridChannel::kP2),
+               arm = run.arm_moves ? noise(GridChannel::kArm) : 0;
   const double passed = std::exp(-std::pow(omega * SmoothingOf(run.step), 2));
   switch (balance) {
     case BalanceKind::kTorque:

@@ -51,9 +51,9 @@ std::vector<uint8_t> AtRest(const RunMotion& run) {
   return rest;
 }
 
-std::vector<uint8_t> Gaps(const RunMotion& run, const std::vector<Measured>& signals) {
+std::vector<uint8_t> Gaps(const RunMotion& run, const std::vector<GridChannel>& signals) {
   std::vector<uint8_t> mask(run.size(), 0);
-  for (const Measured signal : signals) {
+  for (const GridChannel signal : signals) {
     const std::vector<uint8_t>& gap = run.Of(signal).gap;
     for (size_t k = 0; k < gap.size(); ++k) mask[k] |= gap[k];
   }
@@ -119,7 +119,7 @@ HeldPressure FindHeldPressure(const std::vector<RunMotion>& runs, const model::P
   double highest = given.p_3, noise = 0;
   for (const RunMotion& run : runs) {
     if (!run.pressures) continue;
-    noise = std::max({noise, run.Of(Measured::kP1).noise, run.Of(Measured::kP2).noise});
+    noise = std::max({noise, run.Of(GridChannel::kP1).noise, run.Of(GridChannel::kP2).noise});
     for (const model::KnownMotion& at : run.at) highest = std::max({highest, at.p1, at.p2});
   }
   std::vector<double> low;
@@ -152,20 +152,20 @@ std::array<std::vector<uint8_t>, kBalanceKinds> MasksOf(const RunMotion& run, co
                                                         const model::Parameters& given) {
   std::array<std::vector<uint8_t>, kBalanceKinds> masks;
   const auto place = [](BalanceKind balance) { return static_cast<size_t>(balance); };
-  std::vector<Measured> speed = {run.from_angle ? Measured::kAngle : Measured::kSpeed};
+  std::vector<GridChannel> speed = {run.from_angle ? GridChannel::kAngle : GridChannel::kSpeed};
   if (CanForm(run, BalanceKind::kTorque)) {
-    std::vector<Measured> signals = speed;
-    if (run.pressures) signals.insert(signals.end(), {Measured::kP1, Measured::kP2});
+    std::vector<GridChannel> signals = speed;
+    if (run.pressures) signals.insert(signals.end(), {GridChannel::kP1, GridChannel::kP2});
     masks[place(BalanceKind::kTorque)] = EachStride(Either(AtRest(run), Gaps(run, signals)), run.stride);
   }
   if (CanForm(run, BalanceKind::kArm)) {
     masks[place(BalanceKind::kArm)] =
-        EachStride(Gaps(run, {Measured::kArm, Measured::kP1, Measured::kP2}), run.stride);
+        EachStride(Gaps(run, {GridChannel::kArm, GridChannel::kP1, GridChannel::kP2}), run.stride);
   }
   if (!CanForm(run, BalanceKind::kFlow1)) return masks;
-  std::vector<Measured> signals = speed;
-  signals.insert(signals.end(), {Measured::kP1, Measured::kP2});
-  if (run.arm_moves) signals.push_back(Measured::kArm);
+  std::vector<GridChannel> signals = speed;
+  signals.insert(signals.end(), {GridChannel::kP1, GridChannel::kP2});
+  if (run.arm_moves) signals.push_back(GridChannel::kArm);
   const std::vector<uint8_t> gaps = Gaps(run, signals);
   const std::pair<BalanceKind, BalanceKind> sides[] = {{BalanceKind::kFlow1, BalanceKind::kLevel1},
                                                        {BalanceKind::kFlow2, BalanceKind::kLevel2}};

@@ -40,7 +40,7 @@ Eigen::VectorXd Lagged(const Eigen::VectorXd& x, double step, double time) {
 }
 
 // What a signal reads too much where it is late by a second, to first order.
-SignalErrors LateBySecond(const RunMotion& run, Measured signal) {
+SignalErrors LateBySecond(const RunMotion& run, GridChannel signal) {
   double model::KnownMotion::*const rates[kMeasured] = {
       &model::KnownMotion::motor_acceleration, &model::KnownMotion::motor_speed,
       &model::KnownMotion::arm_speed, &model::KnownMotion::p1_rate, &model::KnownMotion::p2_rate};
@@ -51,7 +51,7 @@ SignalErrors LateBySecond(const RunMotion& run, Measured signal) {
   return errors;
 }
 
-SignalErrors Constant(const RunMotion& run, Measured signal) {
+SignalErrors Constant(const RunMotion& run, GridChannel signal) {
   SignalErrors errors;
   errors.of[static_cast<size_t>(signal)].assign(run.size(), 1.0);
   return errors;
@@ -71,24 +71,24 @@ void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
       series[i] = -rate[static_cast<size_t>(i) * motion.stride];
     maker->Put(voltage, run, BalanceKind::kTorque, std::move(series));
   });
-  const auto add = [&](const char* name, const std::vector<Measured>& signals) {
+  const auto add = [&](const char* name, const std::vector<GridChannel>& signals) {
     const int column = maker->Add({name, "", sd, false});
     maker->works.back().push_back([maker, column, signals](size_t run) {
       const RunMotion& motion = maker->Motion(run);
       SignalErrors errors;
-      for (const Measured signal : signals) {
-        const bool speed = signal == Measured::kSpeed && motion.from_angle;
-        const Measured actual = speed ? Measured::kAngle : signal;
+      for (const GridChannel signal : signals) {
+        const bool speed = signal == GridChannel::kSpeed && motion.from_angle;
+        const GridChannel actual = speed ? GridChannel::kAngle : signal;
         const SignalErrors one = LateBySecond(motion, actual);
         errors.of[static_cast<size_t>(actual)] = one.of[static_cast<size_t>(actual)];
       }
       maker->Put(column, run, ReadingColumn(*maker, run, errors));
     });
   };
-  add("late.motor_speed", {Measured::kSpeed});
-  if (oil) add("late.p2", {Measured::kP2});
-  if (oil) add("late.p", {Measured::kP1, Measured::kP2});
-  if (moves) add("late.arm_angle", {Measured::kArm});
+  add("late.motor_speed", {GridChannel::kSpeed});
+  if (oil) add("late.p2", {GridChannel::kP2});
+  if (oil) add("late.p", {GridChannel::kP1, GridChannel::kP2});
+  if (moves) add("late.arm_angle", {GridChannel::kArm});
 }
 
 // Oil and hoses give more the longer a pressure stands.
@@ -163,8 +163,8 @@ void AddPressures(ColumnMaker* maker) {
       maker->AddAlias({OfRun("p_3", r), "", sd / std::abs(maker->given().p_3), false}, meaning, *charge,
                       static_cast<int>(r));
     }
-    for (const Measured side : {Measured::kP1, Measured::kP2}) {
-      const std::string name = side == Measured::kP1 ? "p1_offset" : "p2_offset";
+    for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
+      const std::string name = side == GridChannel::kP1 ? "p1_offset" : "p2_offset";
       const int column =
           maker->Add({OfRun(name, r), "", sd, false},
                      {.kind = ColumnMeaning::Kind::kReading, .parameter = name, .run = static_cast<int>(r)});

@@ -122,7 +122,7 @@ const std::vector<double>& SmoothedOf(const GridSignal& signal, double sigma, st
 double OnePressure(const RunMotion& run, const model::Parameters& given, size_t k) {
   double sum = 0;
   int count = 0;
-  for (const Measured side : {Measured::kP1, Measured::kP2}) {
+  for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
     if (!run.Of(side).measured()) continue;
     sum += run.Of(side).values[k];
     ++count;
@@ -142,8 +142,8 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   const auto set = [&](double model::KnownMotion::*place, const std::vector<double>& values) {
     for (size_t k = 0; k < n; ++k) run->at[k].*place = values[k];
   };
-  const GridSignal& speed = run->Of(Measured::kSpeed);
-  const GridSignal& angle = run->Of(Measured::kAngle);
+  const GridSignal& speed = run->Of(GridChannel::kSpeed);
+  const GridSignal& angle = run->Of(GridChannel::kAngle);
   std::vector<double> smooth, w;
   const std::vector<double> kernel = KernelOf(sigma);
   if (run->from_angle) {
@@ -165,7 +165,7 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
         run->at[k].motor_angle = run->at[k - 1].motor_angle + 0.5 * (w[k] + w[k - 1]) * run->step;
     }
   }
-  const GridSignal& arm = run->Of(Measured::kArm);
+  const GridSignal& arm = run->Of(GridChannel::kArm);
   for (model::KnownMotion& at : run->at) at.arm_angle = run->options.arm_angle;
   if (run->arm_moves) {
     set(&model::KnownMotion::arm_angle, SmoothedOf(arm, sigma, &smooth));
@@ -174,9 +174,9 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
     set(&model::KnownMotion::arm_direction, Directions(smooth, arm.noise * RootSum(kernel)));
   }
   if (run->pressures) {
-    set(&model::KnownMotion::p1, SmoothedOf(run->Of(Measured::kP1), sigma, &smooth));
+    set(&model::KnownMotion::p1, SmoothedOf(run->Of(GridChannel::kP1), sigma, &smooth));
     set(&model::KnownMotion::p1_rate, Derivative(smooth, run->step));
-    set(&model::KnownMotion::p2, SmoothedOf(run->Of(Measured::kP2), sigma, &smooth));
+    set(&model::KnownMotion::p2, SmoothedOf(run->Of(GridChannel::kP2), sigma, &smooth));
     set(&model::KnownMotion::p2_rate, Derivative(smooth, run->step));
   } else {
     for (size_t k = 0; k < n; ++k) run->at[k].p1 = run->at[k].p2 = OnePressure(*run, given, k);
@@ -241,11 +241,11 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given) {
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
   motion.voltage = HeldOnGrid(run, motion.step, count);
   for (size_t s = 0; s < kMeasured; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
-  motion.pressures =
-      !run.stimulus.bypass && motion.Of(Measured::kP1).measured() && motion.Of(Measured::kP2).measured();
-  motion.arm_moves = run.stimulus.shaft != model::Shaft::kClamped && motion.Of(Measured::kArm).measured();
-  motion.from_angle = !motion.Of(Measured::kSpeed).measured();
-  motion.speed_known = motion.Of(Measured::kSpeed).measured() || motion.Of(Measured::kAngle).measured();
+  motion.pressures = !run.stimulus.bypass && motion.Of(GridChannel::kP1).measured() &&
+                     motion.Of(GridChannel::kP2).measured();
+  motion.arm_moves = run.stimulus.shaft != model::Shaft::kClamped && motion.Of(GridChannel::kArm).measured();
+  motion.from_angle = !motion.Of(GridChannel::kSpeed).measured();
+  motion.speed_known = motion.Of(GridChannel::kSpeed).measured() || motion.Of(GridChannel::kAngle).measured();
   motion.from_angle = motion.from_angle && motion.speed_known;
   SetMotion(given, time.front(), &motion);
   return motion;

@@ -14,7 +14,7 @@
 namespace hydro::diagnose {
 
 // The signals that balances are made of.
-enum class Measured { kSpeed, kAngle, kArm, kP1, kP2 };
+enum class GridChannel { kSpeed, kAngle, kArm, kP1, kP2 };
 inline constexpr size_t kMeasured = 5;
 
 // One signal on the grid, as measured: gaps bridged.
@@ -42,7 +42,7 @@ struct RunMotion {
   std::vector<model::KnownMotion> at;  // an instant each
 
   size_t size() const { return at.size(); }
-  const GridSignal& Of(Measured signal) const { return signals[static_cast<size_t>(signal)]; }
+  const GridSignal& Of(GridChannel signal) const { return signals[static_cast<size_t>(signal)]; }
 };
 
 // s, of the Gaussian that smooths all signals: it passes 120 Hz, beyond which derivatives of noisy signals say little.

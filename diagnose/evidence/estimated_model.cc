@@ -13,7 +13,7 @@ namespace hydro::diagnose {
 namespace {
 
 using model::Parameters;
-using Kind = ColumnMeaning::Kind;
+using MeaningKind = ColumnMeaning::Kind;
 
 // No value is estimated to be less than this part of what was given: then it is another machine.
 constexpr double kLeastPart = 0.05;
@@ -26,7 +26,7 @@ std::map<size_t, double> Deviations(const ScanRuns& runs, const SetFit& fit) {
   std::map<size_t, double> sums;
   for (size_t i = 0; i < fit.columns.size(); ++i) {
     const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
-    if (meaning.kind == Kind::kBase && meaning.run < 0)
+    if (meaning.kind == MeaningKind::kBase && meaning.run < 0)
       sums[meaning.base] += fit.amounts[static_cast<Eigen::Index>(i)] * meaning.unit;
   }
   return sums;
@@ -122,10 +122,10 @@ void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, 
     const ColumnMeaning& meaning = runs.meaning()[column];
     const double amount = fit.amounts[static_cast<Eigen::Index>(i)] * meaning.unit;
     v = meaning.variant;
-    if (meaning.kind == Kind::kEffect) amounts[meaning.parameter] = amount;
-    if (meaning.kind == Kind::kWhole) whole = amount;
-    if (meaning.kind == Kind::kMoved) moved[meaning.parameter] = amount;
-    if (meaning.kind == Kind::kWave)
+    if (meaning.kind == MeaningKind::kEffect) amounts[meaning.parameter] = amount;
+    if (meaning.kind == MeaningKind::kWhole) whole = amount;
+    if (meaning.kind == MeaningKind::kMoved) moved[meaning.parameter] = amount;
+    if (meaning.kind == MeaningKind::kWave)
       (meaning.parameter == "sin" ? wave[meaning.run].first : wave[meaning.run].second) = amount;
   }
   if (!v) return;
