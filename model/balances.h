@@ -5,11 +5,8 @@
 #include <optional>
 #include <vector>
 
-// GCC takes the names of channels for shadows of the states' places where those come first.
-// clang-format off
-#include "model/unknown.h"
 #include "model/equations/equations.h"
-// clang-format on
+#include "model/unknown.h"
 
 namespace hydro::model {
 
