@@ -53,7 +53,8 @@ class BalanceEquations {
   void Advance(const KnownMotion& from, const KnownMotion& to);
   // The motor's torque at an instant before its command acts: `voltage` is the one held until then.
   double DriveBefore(const KnownMotion& motion, double voltage) const;
-  // By which part of the last sample a command that acts late did so before the sample's end, 0 to 1.
+  // Whether a late command acted during the last sample, and by which part of it before its end, 0 to 1.
+  bool acted_late() const { return drive_before_.has_value(); }
   double early() const { return early_; }
 
   BalancesOf<double> Values(const KnownMotion& motion) const;

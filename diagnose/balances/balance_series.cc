@@ -50,7 +50,7 @@ void SetMiddle(const model::BalanceEquations& equations, const RunMotion& run, s
                std::vector<double>* middle) {
   (*middle)[k] = drive;
   if (k == 0) return;
-  if (equations.early() == 0 && !equations.remembers() && run.at[k].voltage == run.at[k - 1].voltage) return;
+  if (!equations.acted_late() && run.at[k].voltage == run.at[k - 1].voltage) return;
   const double jump = drive - equations.DriveBefore(run.at[k], run.at[k - 1].voltage);
   (*middle)[k] -= 0.5 * (1 - equations.early()) * jump;
   (*middle)[k - 1] += 0.5 * equations.early() * jump;
