@@ -185,10 +185,14 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.model = model;
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
-  const Proposed proposed = Propose(context, allowed);
+  const Proposed proposed = Propose(context, allowed, checked.inverted);
   const WideSearch found =
       ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
+  for (const WeighedExplanation& one : proposed.weights.explanations)
+    diagnosis.explanations.push_back({one.changes, one.weight});
+  diagnosis.set_90 = proposed.weights.in_90;
+  diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
     for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));

@@ -167,6 +167,13 @@ struct ChoiceWithout {
   bool same = false;   // it is what was found with all runs
 };
 
+// A set of changes that may explain the runs: effects, closures ("closure.pump_torque(motor_speed)"), values that are far off ("value.b") and
+// values that differ by run ("run.T_s"); empty: nothing is missing.
+struct WeightedSet {
+  std::vector<std::string> changes;
+  double weight = 0;  // how probable it is among all that were compared; they add to 1
+};
+
 struct NextExperiment {
   std::string why;
   std::string config;              // TOML of a stack that runs it, "" when none is needed
@@ -192,6 +199,8 @@ struct Diagnosis {
   std::vector<Closure> closures;     // usually none; then the largest first, of different balances
   NextExperiment next;
   std::vector<Candidate> candidates;
+  std::vector<WeightedSet> explanations;  // the likeliest first
+  size_t set_90 = 0;                      // so many of the first hold the truth nine times in ten
   std::vector<RunCurves> curves;
   model::ModelDescription model;  // with the changes found
   // When held_out_runs is empty, the runs were held out in turn.

@@ -58,6 +58,24 @@ double Bounded(const model::ParameterInfo& info, double value) {
   return std::clamp(value, least, info.max);
 }
 
+// Numbers of effects that the model has.
+void SetGivenEffects(const ScanRuns& runs, const SetFit& fit, EstimatedModel* estimated) {
+  std::map<size_t, double> amounts;
+  for (size_t i = 0; i < fit.columns.size(); ++i) {
+    const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
+    if (meaning.kind == MeaningKind::kGiven)
+      amounts[meaning.base] += fit.amounts[static_cast<Eigen::Index>(i)];
+  }
+  const std::vector<model::EffectParameter> all = model::EffectParameters(runs.setup().given);
+  for (const auto& [place, amount] : amounts) {
+    double& value = all[place].In(&estimated->model);
+    const model::ParameterInfo& info =
+        ParameterOf(estimated->model.effects[all[place].effect].id, all[place].name);
+    const bool phase = info.role == model::Role::kPhase;
+    value = Bounded(info, phase ? value + amount : value * std::max(kLeastPart, 1 + amount));
+  }
+}
+
 // How much of the variant's series at another shape there is, relative to that at its grid point.
 double SizeAt(const ScanRuns& runs, const EffectVariant& variant, const std::string& parameter,
               double value) {
@@ -153,6 +171,7 @@ std::optional<EstimatedModel> ModelOf(const ScanRuns& runs, const Rows& rows, co
   EstimatedModel estimated;
   estimated.model = runs.setup().given;
   SetBase(runs, fit, &estimated);
+  SetGivenEffects(runs, fit, &estimated);
   for (const std::string& name : set) {
     if (name.starts_with("run.")) continue;
     if (name.starts_with("value.")) {

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/refined_values.h"
+#include "diagnose/search/window_search.h"
 
 namespace hydro::diagnose {
 
@@ -107,12 +108,16 @@ Explanation OnWholeRuns(const SearchContext& context, const ProvedSet& set, cons
   return one;
 }
 
-// The windows' fit at the best set's values, with derivatives: how well the numbers are known.
-Fitted WithDerivatives(const ProvedSet& best, const std::vector<const RunData*>& fitted, int jobs) {
+// The windows' fit at the best set's values, with derivatives and what is known: how well the numbers are known.
+Fitted WithDerivatives(const SearchContext& context, const ProvedSet& best,
+                       const std::vector<const RunData*>& fitted) {
   FitOptions held;
   held.most_iterations = 0;
-  held.jobs = jobs;
-  return Fit(best.hypothesis, fitted, CorrectedStarts(best.hypothesis.model, fitted, jobs), held);
+  held.jobs = context.jobs;
+  Hypothesis hypothesis = best.hypothesis;
+  hypothesis.known = KnownOfValues(OnWindows(context, fitted, {}), hypothesis,
+                                   FittedTo(hypothesis, fitted, context.jobs).sum);
+  return Fit(hypothesis, fitted, CorrectedStarts(hypothesis.model, fitted, context.jobs), held);
 }
 
 std::vector<Rated> RatedBy(const SearchContext& context, const std::vector<ProvedSet>& sets, size_t given) {
@@ -143,7 +148,7 @@ WideSearch OutcomeOf(const SearchContext& context, const ProofWindows& windows, 
   for (const RunData& window : owned->fitted) {
     if (GapOf(sets[roles.best].hypothesis.model, window).tested) trials.fitted.push_back(&window);
   }
-  if (!trials.fitted.empty()) trials.best = WithDerivatives(sets[roles.best], trials.fitted, context.jobs);
+  if (!trials.fitted.empty()) trials.best = WithDerivatives(context, sets[roles.best], trials.fitted);
   trials.decide = trials.best.ok() && !trials.fitted.empty();
   for (const ProvedSet& set : sets) {
     if (!trials.decide || !set.tested()) continue;
@@ -153,6 +158,7 @@ WideSearch OutcomeOf(const SearchContext& context, const ProofWindows& windows, 
   outcome.refit = OnWholeRuns(context, sets[roles.values], trials);
   outcome.search.best = OnWholeRuns(context, sets[roles.best], trials);
   if (!sets[roles.best].tested()) outcome.search.given.fitted.failure = kNotTested;
+  if (trials.decide) outcome.search.best.fitted.hypothesis.known = trials.best.hypothesis.known;
   outcome.search.tried = {outcome.refit, outcome.search.best};
   outcome.search.rated = RatedBy(context, sets, roles.given);
   return outcome;

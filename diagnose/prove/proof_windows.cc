@@ -17,6 +17,8 @@ constexpr size_t kMostFitted = 9, kMostNear = 20, kMostFar = 6;
 // And those of each extreme.
 constexpr size_t kMostOfAnExtreme = 1;
 constexpr double kFarTimes = 4;
+constexpr double kFewestSamplesOfAWindow = 60;
+constexpr double kWindowsOfARun = 3;
 
 using Pool = std::vector<const RunData*>;
 
@@ -77,13 +79,26 @@ void SetJudging(const std::vector<const RunData*>& predicted, const Pool& window
 
 }  // namespace
 
+namespace {
+
+// s. Runs that are shorter judge nothing, unless most are.
+double NearHorizon(const std::vector<const RunData*>& runs) {
+  const double seconds = std::max(kHorizon, kFewestSamplesOfAWindow * SampleInterval(runs));
+  const auto longer = std::count_if(runs.begin(), runs.end(), [&](const RunData* run) {
+    return run->duration() > kWindowsOfARun * seconds;
+  });
+  return 2 * static_cast<size_t>(longer) >= runs.size() ? seconds : SearchHorizon(runs);
+}
+
+}  // namespace
+
 ProofWindows ProofWindowsOf(const SearchContext& context) {
   const std::vector<const RunData*>& predicted = context.predicted();
   const model::Parameters& given = context.given.parameters;
   std::vector<const RunData*> runs = context.runs;
   runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
   ProofWindows proof;
-  proof.near.seconds = SearchHorizon(runs);
+  proof.near.seconds = NearHorizon(runs);
   proof.far.seconds = kFarTimes * proof.near.seconds;
 
   std::vector<RunData> all = WindowsOf(context.runs, proof.near.seconds, given);

@@ -15,25 +15,28 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kGiven = 0;  // the place of the model as given
-// Proposals whose values are refined. The truth was among the first five of a prototype's in all but 1 of 20 pairs, and in the
-// first three of 19 in 20 singles.
+// Proposals whose values are refined: a scan has to have what is true among its first five to be of use.
 constexpr size_t kMostRefined = 5;
+// Sets without one of their effects that are made: those of two that lead with three effects, and what is left of them.
+constexpr size_t kMostMade = 10;
+// Of the gap: sets that differ by less predict equally well.
+constexpr double kNoBetter = 0.01;
 
 class Prover {
  public:
   Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed)
       : context_(context), as_given_(as_given), allowed_(allowed), windows_(ProofWindowsOf(context)) {
-    sets_.push_back({as_given, {}, {}, {}, 0});
+    sets_.emplace_back().hypothesis = as_given;
   }
 
   WideSearch Run(const std::vector<Proposal>& proposals, const std::vector<Change>& blind) {
     Report("simulating the proposals", 0.85);
     AddProposals(proposals);
     for (ProvedSet& set : sets_) JudgeSet(windows_, context_.jobs, &set);
-    SetFitted();
+    for (ProvedSet& set : sets_) BeginAtGivenValues(&set);
+    SetFitted(LeadingSet(sets_));
     Report("refining their values", 0.88);
-    for (const size_t i : WorthRefining(sets_, kMostRefined))
-      RefineValues(context_, fitted_, windows_, &sets_[i]);
+    for (const size_t i : WorthRefining(sets_, kMostRefined)) Refine(i);
     size_t best = Choice();
     if (LeavesAGap(best)) {
       Report("what balances cannot show", 0.91);
@@ -41,6 +44,8 @@ class Prover {
       best = Choice();
     }
     best = TakeGivenValues(best);
+    SetFitted(best);
+    RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
     Report("fitting the whole runs", 0.93);
     return OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best});
   }
@@ -57,48 +62,72 @@ class Prover {
       hypothesis.model = proposal.model;
       hypothesis.changes = proposal.changes;
       hypothesis.base = proposal.base;
+      // Estimates hold one number of each balance, which scales all others: a fit moves it instead of them.
+      for (const size_t place : allowed_) {
+        const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
+        const bool there =
+            std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
+        if (all && !there) hypothesis.base.push_back(place);
+      }
       for (const Change& change : proposal.changes) {
         if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
       }
-      sets_.push_back({std::move(hypothesis), proposal.without, {}, {}, proposal.weight});
+      // The estimate moves the numbers of effects that the model has as it moves base values.
+      for (const model::EffectDescription& effect : context_.given.effects) {
+        if (!proposal.base.empty()) hypothesis.effects.push_back(effect.id);
+      }
+      ProvedSet& set = sets_.emplace_back();
+      set.hypothesis = std::move(hypothesis);
+      set.without = proposal.without;
+      set.weight = proposal.weight;
       values = values || (proposal.changes.empty() && !proposal.base.empty());
     }
     if (values || allowed_.empty()) return;
     Hypothesis refit = as_given_;
     refit.base = allowed_;
     for (const model::EffectDescription& effect : context_.given.effects) refit.effects.push_back(effect.id);
-    sets_.push_back({std::move(refit), {}, {}, {}, 0});
+    sets_.emplace_back().hypothesis = std::move(refit);
   }
 
-  // The discrepancy is that of the best estimates: what no proposal explains.
-  void SetFitted() {
-    const size_t leading = LeadingSet(sets_);
+  // The discrepancy is that of the best set so far: what nothing explains.
+  void SetFitted(size_t leading) {
     const size_t by = leading < sets_.size() ? leading : kGiven;
     scaled_ = WithDiscrepancy(windows_.fitted, sets_[by].hypothesis.model, context_.jobs);
     fitted_ = PointersTo(scaled_);
   }
 
-  // The best set without the effect; made of the set where there is none. With values of its own, as every proposal has.
+  // Where estimated values cannot be simulated, those of the model as given may be.
+  void BeginAtGivenValues(ProvedSet* set) const {
+    if (set->tested()) return;
+    set->hypothesis.model.parameters = context_.given.parameters;
+    set->without.clear();
+    JudgeSet(windows_, context_.jobs, set);
+  }
+
+  void Refine(size_t place) {
+    if (place == kGiven || sets_[place].refined) return;
+    RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
+    sets_[place].refined = true;
+  }
+
+  // The best set without the effect, among them the set itself without it, refined: values that were estimated beside an effect, or
+  // without one, may not suit what is left.
   size_t PlaceWithout(size_t with, const Change& change) {
     std::vector<Change> fewer = sets_[with].Effects();
     std::erase(fewer, change);
-    // Values that were estimated beside the effect may not suit the set without it: they are refined from there.
-    const Hypothesis less = Without(sets_[with].hypothesis, change, context_.given);
-    const bool made = std::any_of(sets_.begin(), sets_.end(), [&](const ProvedSet& set) {
-      return set.hypothesis.FreesTheSame(less) && set.hypothesis.changes.size() == less.changes.size() &&
-             std::all_of(less.changes.begin(), less.changes.end(),
-                         [&](const Change& one) { return set.hypothesis.Has(one); });
-    });
-    if (!made) {
-      ProvedSet set{less, {}, {}, {}, 0};
-      for (model::ModelDescription without : sets_[with].without) {
-        std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
-        set.without.push_back(std::move(without));
-      }
-      JudgeSet(windows_, context_.jobs, &set);
-      RefineValues(context_, fitted_, windows_, &set);
-      sets_.push_back(std::move(set));
+    const std::pair<size_t, Change> made{with, change};
+    if (made_.size() >= kMostMade || std::find(made_.begin(), made_.end(), made) != made_.end())
+      return BestWithEffects(sets_, fewer);
+    made_.push_back(made);
+    ProvedSet less;
+    less.hypothesis = Without(sets_[with].hypothesis, change, context_.given);
+    for (model::ModelDescription without : sets_[with].without) {
+      std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
+      less.without.push_back(std::move(without));
     }
+    JudgeSet(windows_, context_.jobs, &less);
+    sets_.push_back(std::move(less));
+    Refine(sets_.size() - 1);
     return BestWithEffects(sets_, fewer);
   }
 
@@ -124,6 +153,7 @@ class Prover {
     for (size_t next = best; std::find(led.begin(), led.end(), next) == led.end();) {
       best = next;
       led.push_back(best);
+      Refine(best);
       next = Reduced(best);
       if (next == best) next = BetterOfTheSameSize(best);
     }
@@ -135,7 +165,7 @@ class Prover {
   // What is chosen is not worse than another set with as few effects.
   size_t BetterOfTheSameSize(size_t place) const {
     size_t better = place;
-    double most = 0;
+    double most = kNoBetter;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() > sets_[place].Effects().size()) continue;
       const double fall = FallOf(sets_[place].near, sets_[i].near).logarithm;
@@ -147,7 +177,8 @@ class Prover {
   }
 
   bool LeavesAGap(size_t place) const {
-    return !TimeIsUp(context_) && TypicalGap(sets_[place].near) > kCloseEnough;
+    return !TimeIsUp(context_) && sets_[place].Effects().size() < static_cast<size_t>(kMostChanges) &&
+           TypicalGap(sets_[place].near) > kCloseEnough;
   }
 
   void Race(size_t from, const std::vector<Change>& blind) {
@@ -166,12 +197,13 @@ class Prover {
     if (sets_[place].Effects().empty() || sets_[place].hypothesis.base.empty()) return place;
     ProvedSet sparse = sets_[place];
     sparse.without.clear();
+    sparse.refined = false;
     sparse.hypothesis.model.parameters = context_.given.parameters;
     sparse.hypothesis.base.clear();
     sparse.hypothesis.known = nullptr;
     sparse.hypothesis.changes = sparse.Effects();
     JudgeSet(windows_, context_.jobs, &sparse);
-    RefineValues(context_, fitted_, windows_, &sparse);
+    RefineValues(context_, fitted_, windows_, kComparedValues, &sparse);
     sets_.push_back(std::move(sparse));
     const bool values = AreValuesKept(sets_[place], sets_.back());
     return values || !sets_.back().tested() ? place : sets_.size() - 1;
@@ -194,6 +226,7 @@ class Prover {
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted
   std::vector<const RunData*> fitted_;
+  std::vector<std::pair<size_t, Change>> made_;  // sets without an effect: of which set, which effect
 };
 
 }  // namespace

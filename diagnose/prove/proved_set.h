@@ -14,7 +14,8 @@ struct ProvedSet {
   // Of runs that are held out in turn, the same without each run; empty: the hypothesis' model predicts all.
   std::vector<model::ModelDescription> without;
   std::vector<WindowGap> near, far;
-  double weight = 0;  // of the proposal, 0 of what was not proposed
+  double weight = 0;     // of the proposal, 0 of what was not proposed
+  bool refined = false;  // as far as sets are to be compared
 
   bool tested() const { return IsTested(near); }
   std::vector<Change> Effects() const;  // the changes that are not values

@@ -14,10 +14,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Twice: what is known of the base values weighs by the gap, which falls on the way.
-constexpr int kRounds = 2;
-// Estimates are near where a fit ends; one that needs more steps is wandering off.
-constexpr int kSteps = 3;
 // A round that takes less of the sum of squares leaves nothing for another.
 constexpr double kWorthARound = 0.02;
 constexpr double kTolerance = 1e-3;
@@ -42,14 +38,6 @@ std::array<double, model::kChannels> MedianSquares(const std::vector<WindowGap>&
     medians[c] = squares.empty() ? 1 : std::max(1.0, maths::Median(std::move(squares)));
   }
   return medians;
-}
-
-// What is known of base values, unless only those are free that the set itself names.
-std::shared_ptr<const Knowledge> KnownOf(const SearchContext& context, const Hypothesis& hypothesis,
-                                         double sum) {
-  const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
-                                   [](const Change& change) { return change.effect.empty(); });
-  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
 }
 
 // The windows as the model leaves them, without derivatives.
@@ -84,6 +72,13 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
   return scaled;
 }
 
+std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context, const Hypothesis& hypothesis,
+                                               double sum) {
+  const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
+                                   [](const Change& change) { return change.effect.empty(); });
+  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
+}
+
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
                                                const std::vector<const RunData*>& windows, int jobs) {
   const std::vector<WindowGap> gaps = GapsOfEach(model, windows, jobs);
@@ -94,21 +89,23 @@ std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& mo
 }
 
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
-                  const ProofWindows& windows, ProvedSet* set) {
+                  const ProofWindows& windows, const Refinement& limits, ProvedSet* set) {
   if (fitted.empty() || set->hypothesis.Free().empty()) return;
   const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
   FitOptions options;
   options.tolerance = kTolerance;
   options.jobs = context.jobs;
-  options.most_iterations = kSteps;
+  options.most_iterations = limits.steps;
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
-  for (int round = 0; round < kRounds && at.ok() && !TimeIsUp(context); ++round) {
+  for (int round = 0; round < limits.rounds && at.ok() && !TimeIsUp(context); ++round) {
     Hypothesis from = at.hypothesis;
-    from.known = KnownOf(on_windows, from, at.sum);
+    from.known = KnownOfValues(on_windows, from, at.sum);
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;
-    ProvedSet refined{at.hypothesis, {}, {}, {}, set->weight};
+    ProvedSet refined;
+    refined.hypothesis = at.hypothesis;
+    refined.weight = set->weight;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(refined, *set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

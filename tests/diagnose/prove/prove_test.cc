@@ -176,6 +176,20 @@ TEST_F(ProveTest, BlindEffectIsRaced) {
   EXPECT_NEAR(ValueOf(proved.search.best, "valve.relief", "set"), 700, 20);
 }
 
+// Tests that a model that cannot follow a run at all does not end the diagnosis: windows judge the values that can.
+TEST_F(ProveTest, GivenModelThatCannotBeSimulated) {
+  Record(Table1With());
+  const Proposal values = Proposed({}, {});
+  context_.given.parameters.J *= 1e-9;
+  as_given_.model = context_.given;
+  const WideSearch proved = Prove({values});
+  EXPECT_TRUE(proved.search.given.fitted.ok());
+  EXPECT_TRUE(proved.windows.decide);
+  EXPECT_THAT(proved.search.best.fitted.hypothesis.base, ::testing::Not(IsEmpty()));
+  EXPECT_NEAR(proved.search.best.held_out_gap(), 1, 0.2);
+  EXPECT_NO_THROW(diagnose::Conclude(context_, proved.search, proved.refit, proved.windows));
+}
+
 // Tests that runs are held out in turn where none is named: every other window judges.
 TEST_F(ProveTest, InTurn) {
   Record(Table1With({Drag(2e-4)}));
