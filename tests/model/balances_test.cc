@@ -229,14 +229,15 @@ TEST(Balances, DerivativesByEffectsAreDifferenceQuotients) {
     for (const model::ActuatorOptions& options : AllWays()) {
       if (model::BalanceEquations(machine, options).has_states()) continue;
       const std::vector<Sample> samples = Simulated(machine, options);
-      const std::vector<model::EffectParameter> all = model::EffectParameters(machine);
-      for (size_t i = 0; i < all.size(); ++i) {
+      size_t place = 0;  // among the parameters that are numbers
+      for (const model::ParameterInfo& parameter : info.parameters) {
+        if (!parameter.is_number()) continue;
         model::ModelDescription up = machine, down = machine;
-        const double value = all[i].In(&up), step = 1e-4 * value;
-        all[i].In(&up) = value + step;
-        all[i].In(&down) = value - step;
-        ExpectDerivative(machine, up, down, 2 * step, options, {model::Unknown::Kind::kEffect, i}, samples,
-                         info.id + "." + all[i].name);
+        const double value = machine.effects[0].parameters.at(parameter.name), step = 1e-4 * value;
+        up.effects[0].parameters[parameter.name] = value + step;
+        down.effects[0].parameters[parameter.name] = value - step;
+        ExpectDerivative(machine, up, down, 2 * step, options, {model::Unknown::Kind::kEffect, place++},
+                         samples, info.id + "." + parameter.name);
       }
     }
   }
