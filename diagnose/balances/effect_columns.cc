@@ -171,7 +171,7 @@ double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const
     const double amount = Probe(variant, run);
     const SignalErrors errors =
         ErrorsOf(With(maker.setup->given, AtAmount(variant, parameter, amount, 0)), run);
-    for (size_t s = 0; s < kMeasured; ++s) {
+    for (size_t s = 0; s < kGridChannels; ++s) {
       if (errors.of[s].empty() || !run.signals[s].measured()) continue;
       double sum = 0;
       for (const double error : errors.of[s]) sum += error * error;

@@ -21,6 +21,15 @@ constexpr double kLeastPart = 0.05;
 constexpr double kMostMove = 2;
 constexpr double kMoveStep = 0.1;
 
+// Whether any balance of the runs has the column. One that none has may still seem to move, with what it shares a yardstick with.
+bool Acts(const Rows& rows, int column) {
+  return std::any_of(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& block) {
+    const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+    if (found == block.columns.end() || *found != column) return false;
+    return block.X.col(found - block.columns.begin()).squaredNorm() > 0;
+  });
+}
+
 // A value is shown by runs that make its interval smaller than it was by this part at least.
 constexpr double kShown = 0.9;
 
@@ -31,6 +40,7 @@ std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, cons
     const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
     if (meaning.kind != MeaningKind::kBase || meaning.run >= 0) continue;
     const auto place = static_cast<Eigen::Index>(i);
+    if (!Acts(rows, fit.columns[i])) continue;
     const double before = rows.prior(fit.columns[i], fit.columns[i]);
     if (fit.covariance(place, place) < kShown * kShown * before ||
         !rows.columns[static_cast<size_t>(fit.columns[i])].set.empty())
