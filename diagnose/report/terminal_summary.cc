@@ -11,6 +11,7 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_json.h"
+#include "diagnose/verdict/sentence.h"
 #include "model/terms/parameter_info.h"
 #include "settings/command_line.h"
 #include "settings/model_file.h"
@@ -43,7 +44,7 @@ std::string EffectText(const FoundEffect& effect) {
   if (!parts.empty()) text += ": " + Joined(parts);
   if (effect.weight > 0) text += "; weight " + Percent(effect.weight) + " of what was simulated";
   if (std::isfinite(effect.share)) text += ", without it " + Percent(effect.share) + " of the gap comes back";
-  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
+  if (!effect.tied_with.empty()) text += "; tied with " + Joined(InWords(effect.tied_with));
   return text;
 }
 
@@ -124,7 +125,8 @@ void CommentOnEffects(const Diagnosis& diagnosis, Comments* comments) {
   for (const FoundEffect& effect : diagnosis.effects) {
     std::string& comment = (*comments)["effects." + effect.id];
     comment = "found in the runs: " + effect.summary;
-    if (!effect.tied_with.empty()) comment += "; these runs cannot tell it from " + Joined(effect.tied_with);
+    if (!effect.tied_with.empty())
+      comment += "; these runs cannot tell it from " + Joined(InWords(effect.tied_with));
     for (const Estimated& parameter : effect.parameters) {
       (*comments)["effects." + effect.id + "." + parameter.name] =
           IntervalText(parameter) + ", found in the runs";
