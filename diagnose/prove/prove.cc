@@ -51,7 +51,6 @@ class Prover {
     best = TakeGivenValues(best);
     SetFitted(best);
     RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
-    if (getenv("DBG"))
       for (const ProvedSet& set : sets_) {
         fprintf(stderr, "SET w %.3f tested %d near %.4g far %.4g:", set.weight, set.tested(),
                 std::sqrt(TypicalGap(set.near)), std::sqrt(TypicalGap(set.far)));
