@@ -1,4 +1,4 @@
-#include "diagnose/locate/locate.h"
+#include "diagnose/say/locate.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnose/locate/disturbance_smoother.h"
+#include "diagnose/say/lacking.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -84,8 +84,8 @@ TEST_P(HiddenTerm, ShowsInItsOwnBalance) {
 INSTANTIATE_TEST_SUITE_P(
     Locate, HiddenTerm,
     ::testing::Values(
-        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.3}, {"speed", 3}}), "pump_torque",
-             "|motor_speed| < ", "motor_speed"},
+        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.9}, {"speed", 3}}), "pump_torque",
+             "|motor_speed| from ", "motor_speed"},
         Case{"PressureFriction", With("pump.pressure_friction", {{"f", 2e-4}}), "pump_torque", "p1 + p2",
              "(p1 + p2) sgn(motor_speed)"},
         Case{"QuadraticDrag", With("pump.quadratic_drag", {{"k", 2e-5}}), "pump_torque", "|motor_speed| > ",
@@ -121,7 +121,7 @@ TEST(Locate, NothingMissing) {
 // delays.
 TEST(Locate, NothingMissingWithEffects) {
   for (const model::ModelDescription& model :
-       {With("amp.lag", {{"tau", 0.004}}), With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
+       {With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
         With("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
         With("amp.delay", {{"delay", 0.003}}), With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
     NoisyRig rig;
@@ -174,11 +174,9 @@ TEST(Locate, WhatIsNotMeasured) {
   for (RunData& run : runs) {
     std::erase_if(run.signals,
                   [](const SignalData& signal) { return signal.channel == model::Channel::kP1; });
+    run.measured.p1.values.clear();
   }
-  const SmoothedRun smoothed = SmoothDisturbances(Given(), runs[0], {});
-  EXPECT_TRUE(smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)]);
-  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kFlow1)]);
-  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kArmTorque)]);
+  // Without one of the pressures, only the bypassed run has a balance.
   const Localisation found = LocateIn(runs);
   ASSERT_FALSE(found.location.empty());
   EXPECT_EQ(found.location.front().balance, "pump_torque");
@@ -206,16 +204,37 @@ TEST(Locate, SlowRecordings) {
     }
     for (size_t k = 40; k < 50; ++k) measured.p2.values[k] = std::nan("");
     slow.push_back(PrepareRun(std::move(measured), Given().parameters));
-    const SmoothedRun smoothed = SmoothDisturbances(Given(), slow.back(), {});
-    for (size_t b = 0; b < kBalances; ++b) {
-      for (const double value : smoothed.disturbance[b].value) ASSERT_TRUE(std::isfinite(value)) << b;
-    }
+    const std::vector<LackingRun> lacking = LackingIn(Given(), {&slow.back()}, 1);
+    for (const Eigen::VectorXd& values : lacking[0].lacking) ASSERT_TRUE(values.allFinite());
   }
   const Localisation found = LocateIn(slow);
   ASSERT_FALSE(found.location.empty());
   const auto pump = std::find_if(found.location.begin(), found.location.end(),
                                  [](const Location& location) { return location.balance == "pump_torque"; });
   EXPECT_NE(pump, found.location.end());
+}
+
+// Tests that where no balance can be formed, no place is named and that is said, and that the signal that is predicted worst
+// stands in.
+TEST(Locate, NoBalance) {
+  NoisyRig rig;
+  rig.model = Changed(&model::Parameters::T_s, 0.5);
+  std::vector<RunData> runs = rig.RecordAll();
+  runs.pop_back();  // the bypassed one
+  for (RunData& run : runs) {
+    std::erase_if(run.signals,
+                  [](const SignalData& signal) { return signal.channel == model::Channel::kP1; });
+    run.measured.p1.values.clear();
+  }
+  const Localisation found = LocateIn(runs);
+  EXPECT_FALSE(found.judged);
+  EXPECT_THAT(found.location, IsEmpty());
+  const std::vector<Location> instead = LargestResidual(
+      {{model::Channel::kMotorSpeed, 0.3, {.before = 3}, {}}, {model::Channel::kP2, 1.5, {.before = 3}, {}}});
+  ASSERT_EQ(instead.size(), 1u);
+  EXPECT_EQ(instead[0].balance, "motor_speed");
+  EXPECT_NEAR(instead[0].share, 99.0 / 102, 1e-9);
+  EXPECT_THAT(LargestResidual({{model::Channel::kP2, 1.5, {.before = 1.5}, {}}}), IsEmpty());
 }
 
 // Tests that the same runs give the same localisation to the bit.
