@@ -10,10 +10,10 @@
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
-#include "diagnose/recording_first.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
+#include "diagnose/recording_first.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
@@ -185,13 +185,17 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.model = model;
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
-  const Proposed proposed = Propose(context, allowed);
+  const Proposed proposed = Propose(context, allowed, checked.inverted);
+  if (getenv("DBG")) for (const size_t i : proposed.shown) fprintf(stderr, "shown %s\n", model::BaseParameters()[i].info.name.c_str());
+  if (getenv("DBG")) for (const auto& p : proposed.proposals) { fprintf(stderr, "proposal w %.3f s %.1f:", p.weight, p.score); for (auto& c : p.changes) fprintf(stderr, " %s", c.Label().c_str()); fprintf(stderr, " base:"); for (auto i : p.base) fprintf(stderr, " %s=%.4g", model::BaseParameters()[i].info.name.c_str(), p.model.parameters.*model::BaseParameters()[i].member); fprintf(stderr, "\n"); }
   const WideSearch found =
-      ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
+      ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
+                     proposed.proposals, BlindChanges(context));
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
   for (const WeighedExplanation& one : proposed.weights.explanations)
     diagnosis.explanations.push_back({one.changes, one.weight});
   diagnosis.set_90 = proposed.weights.in_90;
+  diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
     for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));

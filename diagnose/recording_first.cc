@@ -131,6 +131,13 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool contradicts = AddContradictions(model, all, findings, &checked.mistakes);
   checked.mend_first = !twins.empty() || contradicts ||
                        (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
+  if (!checked.mend_first && most && OnlySigns(findings)) {
+    for (const RecordingFinding& finding : findings) {
+      const std::string sensor = finding.mistakes[0].InvertedSensor();
+      if (std::find(checked.inverted.begin(), checked.inverted.end(), sensor) == checked.inverted.end())
+        checked.inverted.push_back(sensor);
+    }
+  }
   return checked;
 }
 

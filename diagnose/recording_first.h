@@ -19,6 +19,8 @@ struct CheckedRecordings {
   std::string unjudged;               // runs that the model as given does not predict at all; empty: none
   // The mistakes make a search useless: it would name physics for them.
   bool mend_first = false;
+  // Sensors of which only the sign is wrong, which is left to the search ("p1").
+  std::vector<std::string> inverted = {};
 };
 
 // Checks the fitted and the held-out runs and sets damaged samples aside. Where `sensor.sign` is among the

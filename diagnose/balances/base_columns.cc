@@ -19,6 +19,9 @@ constexpr double kValueFarOff = 0.5;
 // "One value differs by run": by so many times what each run may differ by in every hypothesis.
 constexpr double kDiffersByRun = 6;
 
+// Relative, of numbers of effects that the model states, and in rad of their phases.
+constexpr double kEffectKnown = 0.3, kPhaseKnown = 0.1;
+
 // One term of each balance keeps its value, and all others are measured by it: with every scale free, the smallest balance is the best.
 bool IsFixed(double Parameters::*member) { return member == &Parameters::k_1 || member == &Parameters::k_2; }
 
@@ -46,9 +49,31 @@ void AddLimit(ColumnMaker* maker, int column, double Parameters::*member) {
   });
 }
 
+// Numbers of effects that the model has: estimates, as friction and leakage are.
+void AddGivenEffects(ColumnMaker* maker) {
+  const model::ModelDescription& given = maker->setup->given;
+  const std::vector<model::EffectParameter> all = model::EffectParameters(given);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const std::string& id = given.effects[all[i].effect].id;
+    const model::Role role = ParameterOf(id, all[i].name).role;
+    model::ModelDescription copy = given;
+    const double value = all[i].In(&copy);
+    const bool phase = role == model::Role::kPhase;
+    if (role == model::Role::kPeriods || (value == 0 && !phase)) continue;
+    const int column = maker->Add({id + "." + all[i].Label(), "", phase ? kPhaseKnown : kEffectKnown, false},
+                                  {.kind = ColumnMeaning::Kind::kGiven, .base = i});
+    maker->works.back().push_back([maker, column, i, value, phase](size_t run) {
+      const std::vector<BalanceSeries> found =
+          DerivativesOf(maker->setup->given, maker->Motion(run), {{model::Unknown::Kind::kEffect, i}});
+      if (!found.empty()) maker->Put(column, run, found.front(), phase ? 1 : value);
+    });
+  }
+}
+
 }  // namespace
 
 void AddBaseColumns(ColumnMaker* maker) {
+  AddGivenEffects(maker);
   struct Free {
     size_t base;
     int column;
@@ -91,6 +116,10 @@ void AddValueColumns(ColumnMaker* maker) {
   for (size_t i = 0; i < columns; ++i) {
     const ColumnMeaning meaning = maker->table.meaning[i];
     const ScanColumn column = maker->table.columns[i];
+    if (meaning.kind == ColumnMeaning::Kind::kGiven)
+      maker->AddAlias(
+          {"wide." + column.name, "value." + column.name, std::max(kValueFarOff, 3 * column.sd), false},
+          meaning, static_cast<int>(i), -1);
     if (meaning.kind == ColumnMeaning::Kind::kBase && meaning.run < 0) {
       const bool zero = maker->given().*BaseParameters()[meaning.base].member == 0;
       const double wide = std::max(kValueFarOff, 3 * column.sd) * (zero ? 3 : 1);

@@ -16,6 +16,8 @@ constexpr double kTopQuantile = 0.995;
 constexpr double kTopPressureQuantile = 0.998;
 // Of the balance's main term: an effect of this size is nothing unusual, and a tenth of it, or ten times as much, costs little.
 constexpr double kUsualPart = 0.15;
+// So many times a whole effect would have to be there to make the usual part.
+constexpr double kNextToNothing = 1e3;
 // A column that acts seldom is measured where it acts: by the root of sum x^4 over sum x^2.
 double SizeWhereItActs(const std::vector<const Eigen::VectorXd*>& series) {
   double second = 0, fourth = 0;
@@ -88,7 +90,7 @@ BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalEr
   const RunMotion& motion = maker.Motion(run);
   // A thousandth of the signals' own ranges: the balances are all but linear there, and rounding is far.
   double largest = 0;
-  for (size_t s = 0; s < kMeasured; ++s) {
+  for (size_t s = 0; s < kGridChannels; ++s) {
     if (errors.of[s].empty() || !motion.signals[s].measured()) continue;
     const double range = RangeOfValues(motion.signals[s].values).size();
     for (const double error : errors.of[s])
@@ -176,6 +178,10 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
     ColumnMeaning& meaning = maker.table.meaning[i];
     if (first) setup->units[i] = meaning.unit != 0 ? meaning.unit : UnitOf(maker, static_cast<int>(i));
     meaning.unit = setup->units[i];
+    // A whole effect that does next to nothing at its grid point cannot be judged there.
+    const bool whole =
+        meaning.kind == ColumnMeaning::Kind::kWhole || meaning.kind == ColumnMeaning::Kind::kMoved;
+    if (first && whole && UnitOf(maker, static_cast<int>(i)) > kNextToNothing) setup->units[i] = 0;
     const double unit = setup->units[i];
     if (unit == 1) continue;
     for (auto& run : maker.table.series) {

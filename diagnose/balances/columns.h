@@ -15,6 +15,7 @@ namespace hydro::diagnose {
 struct ColumnMeaning {
   enum class Kind {
     kBase,     // a base parameter: amount = relative deviation (of a value given as 0: in units of `unit`)
+    kGiven,    // a number of an effect that the model has: relative deviation, of a phase in rad
     kEffect,   // a number of an effect: value = amount * unit
     kWhole,    // the effect as a whole: 1 is the variant as it stands
     kMoved,    // logarithm of a parameter of such an effect
@@ -23,7 +24,7 @@ struct ColumnMeaning {
     kOther,    // a nuisance or a closure
   };
   Kind kind = Kind::kOther;
-  size_t base = 0;             // kBase: index in BaseParameters()
+  size_t base = 0;             // kBase: index in BaseParameters(); kGiven: in EffectParameters()
   size_t variant = 0;          // of an effect
   std::string parameter = "";  // kEffect, kMoved
   double unit = 1;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 
 #include "base/parallel.h"
@@ -123,6 +125,57 @@ int MainColumn(const Rows& rows, BalanceKind balance) {
   return -1;
 }
 
+// Where two columns are in a block; null: the column is 0 there.
+const double* ColumnIn(const RowBlock& block, int column) {
+  const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+  if (found == block.columns.end() || *found != column) return nullptr;
+  return block.X.col(found - block.columns.begin()).data();
+}
+
+// Whether a column is another one times a number, in all rows.
+bool IsDouble(const Rows& rows, int column, int other) {
+  constexpr double kSame = 1e-6;  // of the squared size, what rounding and smoothing leave of a difference
+  double aa = 0, ab = 0, bb = 0;
+  for (const RowBlock& block : rows.blocks) {
+    const double* a = ColumnIn(block, column);
+    const double* b = ColumnIn(block, other);
+    const double size = std::max(block.y.squaredNorm(), std::numeric_limits<double>::min());
+    for (Eigen::Index i = 0; i < block.y.size(); ++i) {
+      const double x = a == nullptr ? 0 : a[i], y = b == nullptr ? 0 : b[i];
+      aa += x * x / size;
+      ab += x * y / size;
+      bb += y * y / size;
+    }
+  }
+  return aa > 0 && bb > 0 && ab * ab > (1 - kSame) * aa * bb;
+}
+
+// Takes out effects of one number that do to all balances what a base parameter does: a value is the likelier cause.
+std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
+  std::vector<std::pair<std::string, std::string>> doubles;
+  std::map<std::string, std::vector<int>> sets;
+  for (size_t i = 0; i < rows->columns.size(); ++i) {
+    const std::string& set = rows->columns[i].set;
+    if (!set.empty() && !set.starts_with("value.") && !set.starts_with("run."))
+      sets[set].push_back(static_cast<int>(i));
+  }
+  for (const auto& [set, columns] : sets) {
+    if (columns.size() != 1) continue;
+    for (const int base : rows->base) {
+      if (!IsDouble(*rows, columns[0], base)) continue;
+      doubles.emplace_back(set, rows->columns[static_cast<size_t>(base)].name);
+      for (RowBlock& block : rows->blocks) {
+        const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), columns[0]);
+        if (found == block.columns.end() || *found != columns[0]) continue;
+        block.X.col(found - block.columns.begin()).setZero();
+        block.noise_X.col(found - block.columns.begin()).setZero();
+      }
+      break;
+    }
+  }
+  return doubles;
+}
+
 }  // namespace
 
 ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
@@ -136,7 +189,7 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   base_.resize(runs.size());
   noisy_base_.resize(runs.size());
   ParallelFor(runs.size(), jobs_, [&](size_t r) {
-    motions_[r] = MotionOf(*runs[r], given.parameters);
+    motions_[r] = MotionOf(*runs[r], given.parameters, options.inverted);
     noisy_[r] = WithNoiseAgain(motions_[r], given.parameters, kNoiseSeed + r);
     base_[r] = SeriesOf(given, motions_[r]);
     noisy_base_[r] = SeriesOf(given, noisy_[r]);
@@ -252,6 +305,7 @@ Rows ScanRuns::MakeRows(const std::vector<int>& periods) {
   for (const RunMotion& run : motions_) step = std::max(step, run.step);
   rows.clock = std::max(kClock, kClockPart * step);
   Project(clean, noisy, &rows);
+  doubles_ = TakeOutDoubles(&rows);
   return rows;
 }
 

@@ -11,8 +11,9 @@ namespace hydro::diagnose {
 
 struct ScanOptions {
   int jobs = 1;
-  std::vector<size_t> allowed;  // base parameters that may differ, as in BaseParameters()
-  std::vector<Change> changes;  // effects that may be named
+  std::vector<size_t> allowed;             // base parameters that may differ, as in BaseParameters()
+  std::vector<Change> changes;             // effects that may be named
+  std::vector<std::string> inverted = {};  // sensors whose readings have the wrong sign
 };
 
 // The measured runs as the scan sees them, made once.
@@ -32,6 +33,8 @@ class ScanRuns {
   // By run and balance.
   const std::vector<std::array<std::vector<uint8_t>, kBalanceKinds>>& masks() const { return masks_; }
   double tile() const { return tile_; }
+  // Effects that these runs cannot tell from another value of the base parameter beside them: the value stands for both.
+  const std::vector<std::pair<std::string, std::string>>& doubles() const { return doubles_; }
 
   // The same rows with the columns of waves at these periods alone.
   Rows MakeWaveRows(const std::vector<int>& periods) const;
@@ -46,6 +49,7 @@ class ScanRuns {
   std::vector<BaseSeries> base_, noisy_base_;
   std::vector<std::array<std::vector<uint8_t>, kBalanceKinds>> masks_;
   ColumnTable clean_, noisy_table_;  // without waves
+  std::vector<std::pair<std::string, std::string>> doubles_;
   std::vector<ColumnMeaning> meaning_;
   double tile_ = 0.25;  // s
 };

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/number_text.h"
 #include "diagnose/data/sample_interval.h"
 
 namespace hydro::diagnose {
@@ -23,10 +24,10 @@ constexpr double kBalanceStep = 2e-3;
 constexpr double kTurnPart = 1e-3;
 constexpr double kTurnNoise = 3;
 
-constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kMeasured] = {
+constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kGridChannels] = {
     &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
     &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
-constexpr model::Channel kChannelOf[kMeasured] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
+constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
                                                   model::Channel::kArmAngle, model::Channel::kP1,
                                                   model::Channel::kP2};
 
@@ -183,6 +184,39 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   }
 }
 
+// Why the angle is believed where the speed was measured too; "": they agree. An angle is counted, a speed is somebody's filter.
+std::string WhyTheAngle(const RunMotion& run) {
+  constexpr double kFactor = 0.02, kLateSamples = 2, kLateSeconds = 2e-3, kSurely = 5;
+  const double sigma = SmoothingOf(run.step) / run.step;
+  const std::vector<double> speed = Smoothed(run.Of(GridChannel::kSpeed).values, sigma);
+  const std::vector<double> turned =
+      Derivative(Smoothed(run.Of(GridChannel::kAngle).values, sigma), run.step);
+  const std::vector<double> rate = Derivative(turned, run.step);
+  // speed = factor turned - late rate
+  double tt = 0, tr = 0, rr = 0, ts = 0, rs = 0, ss = 0;
+  for (size_t k = 0; k < speed.size(); ++k) {
+    tt += turned[k] * turned[k];
+    tr += turned[k] * rate[k];
+    rr += rate[k] * rate[k];
+    ts += turned[k] * speed[k];
+    rs += rate[k] * speed[k];
+    ss += speed[k] * speed[k];
+  }
+  const double determinant = tt * rr - tr * tr;
+  if (!(determinant > 1e-6 * tt * rr)) return "";
+  const double factor = (ts * rr - rs * tr) / determinant, late = -(rs * tt - ts * tr) / determinant;
+  // Noise must not decide.
+  const double left = std::max(0.0, ss - factor * ts + late * rs);
+  const double error = std::sqrt(left / static_cast<double>(speed.size()));
+  if (std::abs(factor - 1) > kFactor + kSurely * error / std::sqrt(tt))
+    return "motor_speed is " + ShortNumber(factor, 3) +
+           " times as fast as motor_angle turns: the angle is believed";
+  if (std::abs(late) > std::max(kLateSamples * run.step, kLateSeconds) + kSurely * error / std::sqrt(rr))
+    return "motor_speed is " + ShortNumber(late, 2) +
+           " s later than motor_angle turns: the angle is believed";
+  return "";
+}
+
 }  // namespace
 
 double SmoothingOf(double step) { return std::max(kSmoothing, 0.7 * step); }
@@ -225,7 +259,8 @@ std::vector<double> Smoothed(const std::vector<double>& values, double sigma) {
   return smooth;
 }
 
-RunMotion MotionOf(const RunData& run, const model::Parameters& given) {
+RunMotion MotionOf(const RunData& run, const model::Parameters& given,
+                   const std::vector<std::string>& inverted) {
   RunMotion motion;
   motion.name = run.name;
   motion.options.shaft = run.stimulus.shaft;
@@ -240,13 +275,21 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given) {
   motion.stride =
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
   motion.voltage = HeldOnGrid(run, motion.step, count);
-  for (size_t s = 0; s < kMeasured; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
+  for (size_t s = 0; s < kGridChannels; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
+  for (size_t s = 0; s < kGridChannels; ++s) {
+    if (std::find(inverted.begin(), inverted.end(), ChannelName(kChannelOf[s])) == inverted.end()) continue;
+    for (double& value : motion.signals[s].values) value = -value;
+  }
   motion.pressures = !run.stimulus.bypass && motion.Of(GridChannel::kP1).measured() &&
                      motion.Of(GridChannel::kP2).measured();
   motion.arm_moves = run.stimulus.shaft != model::Shaft::kClamped && motion.Of(GridChannel::kArm).measured();
   motion.from_angle = !motion.Of(GridChannel::kSpeed).measured();
   motion.speed_known = motion.Of(GridChannel::kSpeed).measured() || motion.Of(GridChannel::kAngle).measured();
   motion.from_angle = motion.from_angle && motion.speed_known;
+  if (!motion.from_angle && motion.Of(GridChannel::kAngle).measured()) {
+    motion.doubt = WhyTheAngle(motion);
+    motion.from_angle = !motion.doubt.empty();
+  }
   SetMotion(given, time.front(), &motion);
   return motion;
 }

@@ -15,7 +15,7 @@ namespace hydro::diagnose {
 
 // The signals that balances are made of.
 enum class GridChannel { kSpeed, kAngle, kArm, kP1, kP2 };
-inline constexpr size_t kMeasured = 5;
+inline constexpr size_t kGridChannels = 5;
 
 // One signal on the grid, as measured: gaps bridged.
 struct GridSignal {
@@ -32,8 +32,9 @@ struct RunMotion {
   model::ActuatorOptions options;  // how the shaft was held
   double step = 0;                 // s, of the grid
   size_t stride = 1;               // every stride-th instant is enough for the balances
-  std::vector<double> voltage;     // held from each instant to the next
-  std::array<GridSignal, kMeasured> signals;
+  std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
+  std::vector<double> voltage;  // held from each instant to the next
+  std::array<GridSignal, kGridChannels> signals;
   bool pressures = false;              // both were measured, and the two sides are not connected
   bool arm_moves = false;              // and was measured
   bool speed_known = false;            // measured, or from the angle
@@ -49,13 +50,15 @@ struct RunMotion {
 inline constexpr double kSmoothing = 1.5e-3;
 double SmoothingOf(double step);
 
-RunMotion MotionOf(const RunData& run, const model::Parameters& given);
+// `inverted`: sensors ("p1") whose readings have the wrong sign; they are turned round.
+RunMotion MotionOf(const RunData& run, const model::Parameters& given,
+                   const std::vector<std::string>& inverted = {});
 // The same with the sensors' noise added once more, by a generator of its own: the difference shows what noise does.
 RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, uint64_t seed);
 // The same with `errors`, one series of values a signal (empty: none), taken off what was measured, times `part`. The series are of
 // smoothed signals.
 struct SignalErrors {
-  std::array<std::vector<double>, kMeasured> of;
+  std::array<std::vector<double>, kGridChannels> of;
 };
 RunMotion Without(const RunMotion& run, const SignalErrors& errors, double part);
 

@@ -27,11 +27,16 @@ std::vector<Change> BlindChanges(const SearchContext& context) {
   const bool free = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
     return run->stimulus.shaft == model::Shaft::kFree;
   });
+  // Where no pressure was measured, nothing of the oil shows.
+  const bool oil = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
+    return !run->stimulus.bypass && run->measured.p1.measured() && run->measured.p2.measured();
+  });
   std::vector<Change> blind;
   for (const Change& change : context.changes) {
     const bool is_blind = std::any_of(std::begin(kBlind), std::end(kBlind),
                                       [&](const char* id) { return change.effect == id; });
-    if (is_blind && (free || change.effect != kFlexure)) blind.push_back(change);
+    const bool shows = (oil || change.effect.starts_with("pump.")) && (free || change.effect != kFlexure);
+    if (is_blind && shows) blind.push_back(change);
   }
   return blind;
 }

@@ -41,6 +41,59 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
   return sets;
 }
 
+// Whether the likeliest amount of an effect that only adds is below nothing: less of it, in the company of others.
+bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
+  for (size_t i = 0; i < fit.columns.size(); ++i) {
+    const ScanColumn& column = rows.columns[static_cast<size_t>(fit.columns[i])];
+    if (column.positive && fit.amounts[static_cast<Eigen::Index>(i)] < 0 &&
+        std::find(set.begin(), set.end(), column.set) != set.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// States that the sensor reads with the wrong sign.
+void Invert(const std::string& sensor, Proposal* proposal) {
+  const Change change{"sensor.sign", {{"signal", sensor}}, ""};
+  const model::EffectDescription effect{.id = change.effect, .parameters = {}, .names = change.names};
+  proposal->changes.push_back(change);
+  proposal->model.effects.push_back(effect);
+  for (model::ModelDescription& model : proposal->without) model.effects.push_back(effect);
+}
+
+// What a fit may move: values that the runs show, and the yardsticks of the balances that could be formed.
+std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
+                          const std::vector<size_t>& allowed) {
+  bool torque = false, arm = false;
+  for (const RowBlock& block : rows.blocks) {
+    torque |= block.balance == BalanceKind::kTorque;
+    arm |= block.balance == BalanceKind::kArm;
+  }
+  std::vector<size_t> shown;
+  for (const size_t place : allowed) {
+    double model::Parameters::*member = model::BaseParameters()[place].member;
+    const bool yardstick =
+        (torque && member == &model::Parameters::k_1) || (arm && member == &model::Parameters::k_2);
+    if (yardstick || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
+      shown.push_back(place);
+  }
+  return shown;
+}
+
+std::vector<std::string> RemarksOn(const ScanRuns& runs) {
+  std::vector<std::string> remarks;
+  for (const RunMotion& motion : runs.motions()) {
+    if (motion.doubt.empty()) continue;
+    remarks.push_back("run " + motion.name + ": " + motion.doubt);
+    break;  // the recorder is the same for all
+  }
+  for (const auto& [effect, value] : runs.doubles())
+    remarks.push_back(effect + " does in these runs what another value of " + value +
+                      " does: it is said as the value");
+  return remarks;
+}
+
 double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   for (const WeighedExplanation& one : weights.explanations) {
     if (one.set == set) return one.weight;
@@ -50,17 +103,20 @@ double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
 
 }  // namespace
 
-Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed) {
+Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed,
+                 const std::vector<std::string>& inverted) {
   ScanOptions options;
   options.jobs = context.jobs;
   options.allowed = allowed;
   options.changes = context.changes;
+  options.inverted = inverted;
   ScanRuns runs(context.given, context.runs, options);
   Rows rows = runs.MakeRows({});
   Proposed proposed;
   if (rows.blocks.empty()) return proposed;
   const std::vector<int> periods = LikelyPeriods(runs, rows, SetEvidence(rows), context.jobs);
   if (!periods.empty()) rows = runs.MakeRows(periods);
+  proposed.remarks = RemarksOn(runs);
   const SetEvidence evidence(rows);
   SetScores scores = ScanSets(evidence, {}, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);
@@ -68,8 +124,10 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
   for (const ChangeSet& set : SetsToPropose(proposed.weights, proposed.scores)) {
-    const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, evidence.Fit(set));
-    if (!estimated) continue;
+    const SetFit fit = evidence.Fit(set);
+    const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
+    if (!estimated || IsImpossible(rows, set, fit)) continue;
+    if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,
@@ -88,6 +146,7 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }
+    for (const std::string& sensor : inverted) Invert(sensor, &proposal);
     proposed.proposals.push_back(std::move(proposal));
   }
   return proposed;

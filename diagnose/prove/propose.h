@@ -14,10 +14,16 @@ struct Proposed {
   ExplanationWeights weights;       // of all sets that the balances tell apart
   // What the balances alone say of every set that was tried: score beyond that of nothing, best first.
   std::vector<ScoredSet> scores;
+  // Of the base parameters that may differ, those that the runs show, and those by which their balances are measured.
+  std::vector<size_t> shown;
+  std::vector<std::string>
+      remarks;  // on signals that contradict each other, and effects that are doubles of values
 };
 
 // `allowed`: base parameters that may differ, as in BaseParameters(). Nothing is simulated. Without a balance that can be formed there
 // are no proposals.
-Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed);
+// `inverted`: sensors whose readings have the wrong sign; every proposal then has the effect sensor.sign.
+Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed,
+                 const std::vector<std::string>& inverted = {});
 
 }  // namespace hydro::diagnose

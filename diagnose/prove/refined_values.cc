@@ -16,7 +16,7 @@ namespace {
 
 // A round that takes less of the sum of squares leaves nothing for another.
 constexpr double kWorthARound = 0.02;
-constexpr double kTolerance = 1e-3;
+constexpr double kStepTolerance = 1e-3;
 // Of the median window's rms: what is left of a window counts up to here.
 constexpr double kMostOfTheMedian = 3;
 
@@ -93,7 +93,7 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
   if (fitted.empty() || set->hypothesis.Free().empty()) return;
   const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
   FitOptions options;
-  options.tolerance = kTolerance;
+  options.tolerance = kStepTolerance;
   options.jobs = context.jobs;
   options.most_iterations = limits.steps;
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
