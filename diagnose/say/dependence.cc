@@ -12,13 +12,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kBins = 12;
-constexpr size_t kMostBins = 48;    // what shows at low speeds alone needs narrow ones
+constexpr size_t kTableBins = 12;
+constexpr size_t kFineBins = 48;    // what shows at low speeds alone needs narrow ones
 constexpr double kMostOfIt = 0.85;  // share of the energy in the range that is named
-constexpr double kSpread = 0.6;     // share of the blocks: a range with more is no place
+constexpr double kNoPlace = 0.6;    // share of the blocks: a range with more is no place
 constexpr size_t kBlocksOfAPart = 8, kMostParts = 48;
-constexpr size_t kMostWindows = 5;  // in each run
-constexpr double kByChance = 8;     // energy of a block that chance alone may have
+constexpr size_t kMostStretches = 5;  // in each run
+constexpr double kChanceEnergy = 8;   // energy of a block that chance alone may have
 
 std::vector<size_t> InOrderOf(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
@@ -29,7 +29,7 @@ std::vector<size_t> InOrderOf(const std::vector<double>& values) {
 
 // Where bins of equal count begin in a sorted list; equal values stay together.
 std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<size_t>& order,
-                           size_t bins = kBins) {
+                           size_t bins = kTableBins) {
   std::vector<size_t> first = {0};
   const size_t n = order.size();
   for (size_t bin = 1; bin < bins; ++bin) {
@@ -116,7 +116,7 @@ std::vector<double> Average(const Variable& variable, const Blocks& blocks,
 
 double Explained(const Blocks& blocks, const std::vector<double>& variable, bool linear_only) {
   const size_t n = variable.size();
-  if (n < 2 * kBins) return 0;
+  if (n < 2 * kTableBins) return 0;
   double weights = 0, mean = 0, center = 0;
   for (size_t i = 0; i < n; ++i) {
     const double weight = 1 / (blocks.blocks[i].noise * blocks.blocks[i].noise);
@@ -141,7 +141,7 @@ double Explained(const Blocks& blocks, const std::vector<double>& variable, bool
   const double by_line = 1 - (total - cross * cross / spread - (count - 2)) / beyond_noise;
   if (linear_only) return std::max(0.0, by_line);
   const std::vector<size_t> order = InOrderOf(variable);
-  const std::vector<size_t> bins = BinsOf(variable, order, std::clamp(n / kBins, kBins, kMostBins));
+  const std::vector<size_t> bins = BinsOf(variable, order, std::clamp(n / kTableBins, kTableBins, kFineBins));
   double left = 0;
   for (size_t bin = 0; bin + 1 < bins.size(); ++bin) {
     double sum = 0, squares = 0, weight_sum = 0;
@@ -158,13 +158,12 @@ double Explained(const Blocks& blocks, const std::vector<double>& variable, bool
   return std::max({0.0, by_line, by_bins});
 }
 
-MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages,
-                    size_t most) {
+MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages) {
   MissingTerm table;
   table.against = variable.name;
   table.against_unit = variable.unit;
   const std::vector<size_t> order = InOrderOf(averages);
-  const std::vector<size_t> bins = BinsOf(averages, order, most);
+  const std::vector<size_t> bins = BinsOf(averages, order);
   for (size_t bin = 0; bin + 1 < bins.size(); ++bin) {
     const double count = static_cast<double>(bins[bin + 1] - bins[bin]);
     double at = 0, mean = 0, squares = 0, noise = 0;
@@ -189,7 +188,7 @@ MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::v
 std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages) {
   if (!variable.where.empty()) return variable.where;
   const size_t n = averages.size();
-  if (n < kBins) return "everywhere";
+  if (n < kTableBins) return "everywhere";
   std::vector<double> sizes;
   sizes.reserve(averages.size());
   for (const double value : averages) sizes.push_back(std::abs(value));
@@ -199,7 +198,7 @@ std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::v
   const auto value = Densest(shares, by_value), size = Densest(shares, by_size);
   const bool use_size = both_signs && size.second - size.first <= value.second - value.first;
   const auto [first, end] = use_size ? size : value;
-  if (static_cast<double>(end - first) > kSpread * static_cast<double>(n)) {
+  if (static_cast<double>(end - first) > kNoPlace * static_cast<double>(n)) {
     return both_signs && ChangesSign(blocks, averages) ? "changes with the sign of " + variable.name
                                                        : "changes with " + variable.name;
   }
@@ -221,13 +220,13 @@ std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<LackingRun
     for (const Blocks::Block& block : blocks.blocks) {
       if (block.run == r) largest = std::max(largest, EnergyOfBlock(block));
     }
-    if (largest < kByChance) continue;
+    if (largest < kChanceEnergy) continue;
     struct Stretch {
       double from = 0, to = 0, energy = 0;
     };
     std::vector<Stretch> stretches;
     for (const Blocks::Block& block : blocks.blocks) {
-      if (block.run != r || EnergyOfBlock(block) < std::max(kByChance, 0.2 * largest)) continue;
+      if (block.run != r || EnergyOfBlock(block) < std::max(kChanceEnergy, 0.2 * largest)) continue;
       const double from = runs[r].At(block.first).time, to = runs[r].At(block.end - 1).time;
       // Stretches less than a few blocks or 20 ms apart count as one.
       const bool joins =
@@ -238,7 +237,7 @@ std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<LackingRun
     }
     std::stable_sort(stretches.begin(), stretches.end(),
                      [](const Stretch& a, const Stretch& b) { return a.energy > b.energy; });
-    if (stretches.size() > kMostWindows) stretches.resize(kMostWindows);
+    if (stretches.size() > kMostStretches) stretches.resize(kMostStretches);
     std::sort(stretches.begin(), stretches.end(),
               [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
     for (const Stretch& stretch : stretches)

@@ -17,9 +17,8 @@ std::vector<double> Average(const Variable& variable, const Blocks& blocks,
 // equal count), allowing for the number of coefficients; 0 when chance does as well.
 double Explained(const Blocks& blocks, const std::vector<double>& variable, bool linear_only);
 
-// Means over up to `bins` bins of the variable with equal counts, their errors by the scatter of the blocks.
-MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages,
-                    size_t bins = 12);
+// Means over about 12 bins of the variable with equal counts, their errors by the scatter of the blocks.
+MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages);
 
 // The part of the variable's range that holds most of the energy, as text: "|motor_speed| < 5.2 rad/s". If
 // the energy is spread over the whole range, how it changes there.

@@ -21,8 +21,8 @@ constexpr size_t kFewestBlocks = 3;
 // Of the direction, -1 to 1: three standard deviations of the speed's noise.
 constexpr double kSure = 0.997;
 // s: as smooth as the motion that a balance sees.
-constexpr double kRise = 0.008;
-constexpr size_t kNear = 16;  // blocks on either side whose noise is averaged
+constexpr double kMaskRise = 0.008;
+constexpr size_t kNearBlocks = 16;  // blocks on either side whose noise is averaged
 
 bool AnyError(const SignalErrors& errors) {
   return std::any_of(errors.of.begin(), errors.of.end(), [](const auto& of) { return !of.empty(); });
@@ -55,9 +55,9 @@ void MaskReversals(LackingRun* run) {
   }
 }
 
-// From 0 where masked to 1 at kRise from there.
+// From 0 where masked to 1 at kMaskRise from there.
 Eigen::VectorXd WeightsOf(const std::vector<uint8_t>& mask, double interval) {
-  const double rise = std::max(1.0, kRise / interval);
+  const double rise = std::max(1.0, kMaskRise / interval);
   Eigen::VectorXd weights(static_cast<Eigen::Index>(mask.size()));
   double away = 0;
   for (size_t i = 0; i < mask.size(); ++i) {
@@ -97,7 +97,7 @@ void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t 
   }
   const size_t count = blocks->size() - before;
   for (size_t i = 0; i < count; ++i) {
-    const size_t first = i < kNear ? 0 : i - kNear, end = std::min(count, i + kNear + 1);
+    const size_t first = i < kNearBlocks ? 0 : i - kNearBlocks, end = std::min(count, i + kNearBlocks + 1);
     double& noise = (*blocks)[before + i].noise;
     noise = std::sqrt((drawn[end] - drawn[first]) / static_cast<double>(end - first));
     if (!(noise > 0)) noise = std::numeric_limits<double>::infinity();

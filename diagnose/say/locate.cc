@@ -35,7 +35,7 @@ constexpr size_t kEnoughBlocks = 60;  // to see a dependence
 constexpr double kQuick = 0.005;
 // A command or a late sensor is said to be the cause where it explains so much, and leaves less than this part of what the
 // balance's own variables leave.
-constexpr double kMostOfIt = 0.5, kFarLess = 0.7;
+constexpr double kMostOfLack = 0.5, kFarLess = 0.7;
 constexpr double kMostlyOffsets = 0.5;
 // The least instants at which a valve passes oil that show what a transducer reads there.
 constexpr size_t kEnoughHeld = 25;
@@ -216,7 +216,7 @@ void CorrectOffsets(const model::ModelDescription& model, const std::vector<cons
 }
 
 // Places the disagreement of one balance: with the balance itself, with the command or with a sensor.
-void Place(BalanceKind balance, Placement* placement) {
+void PlaceBalance(BalanceKind balance, Placement* placement) {
   const std::vector<LackingRun>& runs = placement->runs;
   Seen& seen = placement->seen[static_cast<size_t>(balance)];
   const double share = seen.energy / placement->all;
@@ -229,7 +229,7 @@ void Place(BalanceKind balance, Placement* placement) {
     if (variables.empty() || own < share) return;
     const Dependence other = Ranked(seen.where, std::move(variables), runs, balance).front();
     const double left = 1 - seen.ranked.front().explained;
-    if (other.explained < kMostOfIt || 1 - other.explained > kFarLess * left) return;
+    if (other.explained < kMostOfLack || 1 - other.explained > kFarLess * left) return;
     const double part = share * std::min(1.0, other.explained);
     own -= part;
     AddShare(&location, {to, part, WhereOf(seen.where, other), windows});
@@ -262,7 +262,7 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   for (const Seen& seen : placement.seen) placement.result.judged |= !seen.when.blocks.empty();
   if (placement.all == 0) return std::move(placement.result);
   CorrectOffsets(model, runs, jobs, &placement);
-  for (const BalanceKind balance : kPlaces) Place(balance, &placement);
+  for (const BalanceKind balance : kPlaces) PlaceBalance(balance, &placement);
   std::vector<Location>& location = placement.result.location;
   std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });

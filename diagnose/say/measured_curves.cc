@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -17,7 +16,7 @@ using model::Parameters;
 
 // s: noise of a derivative averages out, and a pump hardly changes its speed.
 constexpr double kCurveBlock = 0.016;
-constexpr size_t kCurveBins = 24;
+constexpr double kCurveBins = 24;
 // Fewer blocks in a bin have no scatter to speak of.
 constexpr size_t kBlocksOfABin = 4;
 
@@ -83,22 +82,14 @@ std::vector<BalanceSeries> AlongRuns(const Element& element, const model::ModelD
   return all;
 }
 
-// The same blocks with other values.
-Blocks WithValues(const Blocks& blocks, std::vector<double> values) {
-  Blocks other = blocks;
-  for (size_t i = 0; i < values.size(); ++i) other.blocks[i].value = values[i];
-  return other;
-}
-
-// Blocks of one or two balances, and what the element does in them as measured and by each model.
-struct CurveBlocks {
-  Blocks blocks;
-  std::vector<double> at, measured, model, found;
+// A block of one of the balances, and what the element does in it as measured and by each model.
+struct CurvePoint {
+  double at = 0, measured = 0, noise = 0, model = 0, found = 0;
 };
 
 void AddBalance(BalanceKind balance, double sign, const Variable& variable,
                 const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& given,
-                const std::vector<BalanceSeries>& found, CurveBlocks* all) {
+                const std::vector<BalanceSeries>& found, std::vector<CurvePoint>* points) {
   const auto b = static_cast<size_t>(balance);
   const Blocks blocks = BlocksOf(runs, balance, kCurveBlock);
   const std::vector<double> at = Average(variable, blocks, runs, balance);
@@ -109,28 +100,57 @@ void AddBalance(BalanceKind balance, double sign, const Variable& variable,
                return series[block.run][b][static_cast<Eigen::Index>(instant)];
              });
     };
-    all->at.push_back(at[i]);
-    all->found.push_back(mean(found));
-    all->model.push_back(mean(given));
+    CurvePoint point{at[i], 0, block.noise, mean(given), mean(found)};
     // What is left with the element, and the element itself.
-    all->measured.push_back(-sign * block.value + all->found.back());
-    all->blocks.blocks.push_back(block);
+    point.measured = point.found - sign * block.value;
+    points->push_back(point);
   }
 }
 
-MeasuredCurve CurveOf(const Element& element, const CurveBlocks& all, const Variable& variable,
-                      const UnitSystem& units) {
-  const size_t bins = std::min(kCurveBins, all.at.size() / kBlocksOfABin);
-  const MissingTerm measured = TableOf(WithValues(all.blocks, all.measured), variable, all.at, bins);
-  return {.element = element.name,
-          .unit = UnitOf(element.balances.front(), units),
-          .against = variable.name,
-          .against_unit = variable.unit,
-          .at = measured.at,
-          .measured = measured.mean,
-          .error = measured.error,
-          .model = TableOf(WithValues(all.blocks, all.model), variable, all.at, bins).mean,
-          .found = TableOf(WithValues(all.blocks, all.found), variable, all.at, bins).mean};
+// Adds the mean of the points, and the error of those measured by their scatter, or by noise where that is larger.
+void AddMean(const CurvePoint* first, const CurvePoint* end, MeasuredCurve* curve) {
+  const double count = static_cast<double>(end - first);
+  CurvePoint mean;
+  double squares = 0;
+  for (const CurvePoint* point = first; point != end; ++point) {
+    mean.at += point->at / count;
+    mean.measured += point->measured / count;
+    mean.noise += point->noise * point->noise / count;
+    mean.model += point->model / count;
+    mean.found += point->found / count;
+  }
+  // About the model's curve: a bin may be wide.
+  for (const CurvePoint* point = first; point != end; ++point)
+    squares += std::pow(point->measured - mean.measured - (point->found - mean.found), 2);
+  curve->at.push_back(mean.at);
+  curve->measured.push_back(mean.measured);
+  curve->error.push_back(std::sqrt(std::max(mean.noise, squares / std::max(count - 1, 1.0)) / count));
+  curve->model.push_back(mean.model);
+  curve->found.push_back(mean.found);
+}
+
+// Bins are narrow where points are many, and nowhere wider than an eighth or so of the range. None has both signs of the
+// variable: friction has a step there.
+void AddBins(std::vector<CurvePoint> points, MeasuredCurve* curve) {
+  std::stable_sort(points.begin(), points.end(),
+                   [](const CurvePoint& a, const CurvePoint& b) { return a.at < b.at; });
+  const double count = static_cast<double>(points.size()), low = points.front().at,
+               range = points.back().at - low;
+  const auto place = [&](size_t i) {
+    return kCurveBins * (0.5 * static_cast<double>(i) / count + 0.5 * (points[i].at - low) / range);
+  };
+  size_t first = 0;
+  for (size_t i = 1; i <= points.size(); ++i) {
+    const bool last = i == points.size();
+    const bool turns = !last && points[i - 1].at < 0 && points[i].at >= 0;
+    if (!last && !turns && place(i) < std::floor(place(first)) + 1) continue;
+    if (i - first >= kBlocksOfABin) {
+      AddMean(&points[first], &points[first] + (i - first), curve);
+    } else if (!last && !turns) {
+      continue;
+    }
+    first = i;
+  }
 }
 
 }  // namespace
@@ -151,12 +171,17 @@ std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
                                        [&](const Variable& one) { return one.name == element.variable; });
     const std::vector<BalanceSeries> by_given = AlongRuns(element, given, lacking, base_given, jobs),
                                      by_found = AlongRuns(element, found, lacking, base_found, jobs);
-    CurveBlocks all;
+    std::vector<CurvePoint> points;
     for (size_t k = 0; k < element.balances.size(); ++k) {
-      AddBalance(element.balances[k], element.signs[k], *variable, lacking, by_given, by_found, &all);
+      AddBalance(element.balances[k], element.signs[k], *variable, lacking, by_given, by_found, &points);
     }
-    if (all.at.size() < 3 * kBlocksOfABin) continue;
-    MeasuredCurve curve = CurveOf(element, all, *variable, found.units);
+    if (points.size() < 3 * kBlocksOfABin) continue;
+    MeasuredCurve curve;
+    curve.element = element.name;
+    curve.unit = UnitOf(element.balances.front(), found.units);
+    curve.against = variable->name;
+    curve.against_unit = variable->unit;
+    AddBins(std::move(points), &curve);
     if (curve.at.size() > 2) curves.push_back(std::move(curve));
   }
   return curves;

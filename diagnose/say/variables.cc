@@ -15,7 +15,7 @@ namespace {
 using Known = model::KnownMotion;
 using std::numbers::pi;
 
-constexpr int kMostPeriods = 24;  // a turn
+constexpr int kMostTurnPeriods = 24;  // a turn
 
 // `unit` is the paper's, `arm` the power of the arm's coordinate in it.
 struct VariableOfMotion {
@@ -70,14 +70,14 @@ std::vector<VariableOfMotion> PlainVariables(BalanceKind balance) {
 // pressure difference.
 void AddTurns(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units,
               std::vector<Variable>* all) {
-  for (int n = 1; n <= kMostPeriods; ++n) {
+  for (int n = 1; n <= kMostTurnPeriods; ++n) {
     all->push_back(Along(runs, units, {"", "rad", [n](const Known& at) {
                                          return std::remainder(n * at.motor_angle, 2 * pi);
                                        }}));
     all->back().name = "motor_angle, " + std::to_string(n) + " periods a turn";
   }
   const bool torque = balance == BalanceKind::kTorque;
-  for (int n = 1; n <= kMostPeriods; ++n) {
+  for (int n = 1; n <= kMostTurnPeriods; ++n) {
     all->push_back(Along(runs, units, {"", torque ? "psi" : "rad/s", [torque, n](const Known& at) {
                                          const double carrier = torque ? at.p2 - at.p1 : at.motor_speed;
                                          return carrier * std::cos(n * at.motor_angle);
