@@ -11,7 +11,7 @@ namespace hydro::diagnose {
 struct Localisation {
   std::vector<Location> location;    // by share, largest first; empty when nothing is missing
   std::vector<MissingTerm> missing;  // of the largest, against what it depends on most
-  bool judged = false;  // some balance could be formed; otherwise nothing is said about any place
+  bool judged = false;  // some balance could be formed: an empty location says that nothing is missing
 };
 
 // `model` is the one that disagrees. Balances that the runs do not measure are left out: nothing is said about
@@ -19,8 +19,10 @@ struct Localisation {
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
                     int jobs = 1);
 
-// Where no balance can be formed: the signal with the largest part of the squared gap, in noise units, under its
-// own name. Empty where no signal is beyond its noise.
-std::vector<Location> LargestResidual(const std::vector<SignalGap>& signals);
+// Where no balance shows anything, or none can be formed: the signal with the largest part of the squared gap, in noise units,
+// under its own name, and the stretches where it is predicted worst. `after`: with what was found, instead of the model as
+// given. Empty where no signal is beyond its noise.
+std::vector<Location> WorstSignal(const std::vector<SignalGap>& signals, const std::vector<RunCurves>& curves,
+                                  bool after);
 
 }  // namespace hydro::diagnose

@@ -175,7 +175,8 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     const ClosureBase base =
         IsOpen(d.verdict) ? BaseOfClosure(context, best, refit, windows) : ClosureBase{&given};
     Localisation located = Locate(base.explanation->fitted.hypothesis.model, context.runs, context.jobs);
-    d.location = located.judged ? std::move(located.location) : LargestResidual(d.signals);
+    d.location = std::move(located.location);
+    if (d.location.empty()) d.location = WorstSignal(d.signals, d.curves, IsOpen(d.verdict));
     d.missing = std::move(located.missing);
   }
   d.measured = MeasuredCurves(given.fitted.hypothesis.model, d.model, context.runs, context.jobs);

@@ -214,8 +214,7 @@ TEST(Locate, SlowRecordings) {
   EXPECT_NE(pump, found.location.end());
 }
 
-// Tests that where no balance can be formed, no place is named and that is said, and that the signal that is predicted worst
-// stands in.
+// Tests that where no balance can be formed, no place is named, and that this is said.
 TEST(Locate, NoBalance) {
   NoisyRig rig;
   rig.model = Changed(&model::Parameters::T_s, 0.5);
@@ -229,12 +228,28 @@ TEST(Locate, NoBalance) {
   const Localisation found = LocateIn(runs);
   EXPECT_FALSE(found.judged);
   EXPECT_THAT(found.location, IsEmpty());
-  const std::vector<Location> instead = LargestResidual(
-      {{model::Channel::kMotorSpeed, 0.3, {.before = 3}, {}}, {model::Channel::kP2, 1.5, {.before = 3}, {}}});
-  ASSERT_EQ(instead.size(), 1u);
-  EXPECT_EQ(instead[0].balance, "motor_speed");
-  EXPECT_NEAR(instead[0].share, 99.0 / 102, 1e-9);
-  EXPECT_THAT(LargestResidual({{model::Channel::kP2, 1.5, {.before = 1.5}, {}}}), IsEmpty());
+}
+
+// Tests that the signal that is predicted worst is named with the stretch where it is, of the run where it is.
+TEST(WorstSignal, IsNamedWithItsStretch) {
+  const std::vector<SignalGap> signals = {{model::Channel::kMotorSpeed, 0.3, {.before = 3, .after = 0.3}, {}},
+                                          {model::Channel::kP2, 1.5, {.before = 3, .after = 3}, {}}};
+  RunCurves still, moving;
+  still.run = "still";
+  moving.run = "moving";
+  still.time = moving.time = {0, 1, 2, 3};
+  still.curves = {{model::Channel::kMotorSpeed, {0, 0, 0, 0}, {0, 0.1, 0, 0}, {}}};
+  moving.curves = {{model::Channel::kMotorSpeed, {0, 5, 6, 0}, {0, 0, 0, 0.1}, {}}};
+  const std::vector<Location> found = WorstSignal(signals, {still, moving}, false);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].balance, "motor_speed");
+  EXPECT_NEAR(found[0].share, 99.0 / 102, 1e-9);
+  ASSERT_EQ(found[0].windows.size(), 1u);
+  EXPECT_EQ(found[0].windows[0].run, "moving");
+  EXPECT_EQ(found[0].windows[0].from, 1);
+  EXPECT_EQ(found[0].windows[0].to, 2);
+  EXPECT_EQ(WorstSignal(signals, {}, true).at(0).balance, "p2");
+  EXPECT_THAT(WorstSignal({{model::Channel::kP2, 1.5, {.before = 1.5}, {}}}, {}, false), IsEmpty());
 }
 
 // Tests that the same runs give the same localisation to the bit.
