@@ -14,12 +14,12 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr char kFlexure[] = "arm.flexure";
-const char* const kBlind[] = {kFlexure, "valve.relief", "pump.stribeck", "accumulator.stiffness"};
+const char* const kBlind[] = {kFlexure, "valve.relief"};
 
 // Of what an effect has to take: with less, other values beside it do not make it.
 constexpr double kWorthRefining = 0.5;
 // From the catalogue's starts, which are factors of 2 to 6 apart.
-constexpr int kStepsOfARace = 4;
+constexpr int kStepsOfARace = 2;
 
 }  // namespace
 
