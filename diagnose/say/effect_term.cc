@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
+#include "diagnose/say/binned_curve.h"
 #include "diagnose/say/dependence.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-// The effect's term is averaged over so many steps of its variable.
-constexpr size_t kTermSteps = 60;
-
 // s: short against what the terms vary by, but for waves of a turn.
-constexpr double kTermBlock = 0.016, kWaveBlock = 0.002;
+constexpr double kTermBlock = 0.008, kWaveBlock = 0.002;
 
 struct OwnRow {
   const char* effect;
@@ -43,44 +40,29 @@ constexpr OwnRow kOwnRows[] = {
     {"valve.relief", BalanceKind::kFlow2, "p2"},
 };
 
-struct Point {
-  double at = 0, value = 0;
-};
-
-// What the effect adds along the runs.
-std::vector<Point> PointsAlong(const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& added,
-                               const OwnVariable& own, const Variable& variable) {
-  const auto b = static_cast<size_t>(own.balance);
-  std::vector<Point> points;
-  for (size_t r = 0; r < runs.size(); ++r) {
-    for (size_t i = 0; i < runs[r].size(); ++i) {
-      if (!runs[r].Says(own.balance, i)) continue;
-      const double value = added[r][b][static_cast<Eigen::Index>(i)];
-      if (std::isfinite(value)) points.push_back({variable.values[r][i], value});
-    }
+// What the runs lack in the balance, and what the effect adds there.
+FoundTerm TermOver(const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& added,
+                   BalanceKind balance, const Variable& variable, double duration) {
+  const auto b = static_cast<size_t>(balance);
+  const Blocks blocks = BlocksOf(runs, balance, duration);
+  const std::vector<double> at = Average(variable, blocks, runs, balance);
+  std::vector<CurvePoint> points;
+  for (size_t k = 0; k < at.size(); ++k) {
+    const Blocks::Block& block = blocks.blocks[k];
+    const double adds = MeanOver(block, runs[block.run], balance,
+                                 [&](size_t i) { return added[block.run][b][static_cast<Eigen::Index>(i)]; });
+    if (std::isfinite(adds)) points.push_back({at[k], block.value, block.noise, 0, adds});
   }
-  return points;
-}
-
-// Means over equal steps of the variable.
-void SetCurve(const std::vector<Point>& points, FoundTerm* term) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Point& point : points) {
-    low = std::min(low, point.at);
-    high = std::max(high, point.at);
-  }
-  if (!(high > low)) return;
-  std::vector<double> sum(kTermSteps, 0.0), count(kTermSteps, 0.0);
-  for (const Point& point : points) {
-    const auto step = static_cast<size_t>((point.at - low) / (high - low) * kTermSteps);
-    sum[std::min(step, kTermSteps - 1)] += point.value;
-    count[std::min(step, kTermSteps - 1)] += 1;
-  }
-  for (size_t s = 0; s < kTermSteps; ++s) {
-    if (count[s] == 0) continue;
-    term->at.push_back(low + (high - low) * (static_cast<double>(s) + 0.5) / kTermSteps);
-    term->value.push_back(sum[s] / count[s]);
-  }
+  BinnedCurve curve = Binned(std::move(points));
+  FoundTerm term;
+  term.at = curve.at;
+  term.value = std::move(curve.found);
+  term.missing.against = variable.name;
+  term.missing.against_unit = variable.unit;
+  term.missing.at = std::move(curve.at);
+  term.missing.mean = std::move(curve.measured);
+  term.missing.error = std::move(curve.error);
+  return term;
 }
 
 double LargestOf(const FoundTerm& term) {
@@ -122,18 +104,15 @@ std::optional<FoundTerm> TermOf(const model::ModelDescription& model, const std:
   std::vector<BalanceSeries> added(runs.size());
   ParallelFor(runs.size(), jobs,
               [&](size_t r) { added[r] = Beyond(model, lacking[r].motion, lacking[r].base); });
+  const double duration = description->parameters.contains("periods") ? kWaveBlock : kTermBlock;
   FoundTerm found;
   for (const OwnVariable& own : owns) {
     std::vector<Variable> variables = MotionVariables(lacking, own.balance, model.units, true);
     const auto variable = std::find_if(variables.begin(), variables.end(),
                                        [&](const Variable& one) { return one.name == own.variable; });
     if (variable == variables.end()) continue;
-    FoundTerm term;
-    SetCurve(PointsAlong(lacking, added, own, *variable), &term);
+    FoundTerm term = TermOver(lacking, added, own.balance, *variable, duration);
     if (!(LargestOf(term) > LargestOf(found))) continue;
-    const bool wave = description->parameters.contains("periods");
-    const Blocks blocks = BlocksOf(lacking, own.balance, wave ? kWaveBlock : kTermBlock);
-    term.missing = TableOf(blocks, *variable, Average(*variable, blocks, lacking, own.balance));
     term.missing.balance = NameOf(own.balance);
     term.missing.unit = UnitOf(own.balance, model.units);
     term.effect = effect;

@@ -46,7 +46,6 @@ struct Dependence {
   Variable variable;
   std::vector<double> averages;
   double explained = 0;
-  double energy = 0;      // of what is seen of it, in the units of EnergyOf
   size_t simplicity = 0;  // place in the list: simple variables come first
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "diagnose/say/binned_curve.h"
 #include "diagnose/say/dependence.h"
 
 namespace hydro::diagnose {
@@ -16,9 +17,7 @@ using model::Parameters;
 
 // s: noise of a derivative averages out, and a pump hardly changes its speed.
 constexpr double kCurveBlock = 0.016;
-constexpr double kCurveBins = 24;
-// Fewer blocks in a bin have no scatter to speak of.
-constexpr size_t kBlocksOfABin = 4;
+constexpr size_t kFewestBins = 3;
 
 // One element of the machine: its terms of eqs. (4), (13), (14), (15).
 struct Element {
@@ -82,11 +81,6 @@ std::vector<BalanceSeries> AlongRuns(const Element& element, const model::ModelD
   return all;
 }
 
-// A block of one of the balances, and what the element does in it as measured and by each model.
-struct CurvePoint {
-  double at = 0, measured = 0, noise = 0, model = 0, found = 0;
-};
-
 void AddBalance(BalanceKind balance, double sign, const Variable& variable,
                 const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& given,
                 const std::vector<BalanceSeries>& found, std::vector<CurvePoint>* points) {
@@ -104,52 +98,6 @@ void AddBalance(BalanceKind balance, double sign, const Variable& variable,
     // What is left with the element, and the element itself.
     point.measured = point.found - sign * block.value;
     points->push_back(point);
-  }
-}
-
-// Adds the mean of the points, and the error of those measured by their scatter, or by noise where that is larger.
-void AddMean(const CurvePoint* first, const CurvePoint* end, MeasuredCurve* curve) {
-  const double count = static_cast<double>(end - first);
-  CurvePoint mean;
-  double squares = 0;
-  for (const CurvePoint* point = first; point != end; ++point) {
-    mean.at += point->at / count;
-    mean.measured += point->measured / count;
-    mean.noise += point->noise * point->noise / count;
-    mean.model += point->model / count;
-    mean.found += point->found / count;
-  }
-  // About the model's curve: a bin may be wide.
-  for (const CurvePoint* point = first; point != end; ++point)
-    squares += std::pow(point->measured - mean.measured - (point->found - mean.found), 2);
-  curve->at.push_back(mean.at);
-  curve->measured.push_back(mean.measured);
-  curve->error.push_back(std::sqrt(std::max(mean.noise, squares / std::max(count - 1, 1.0)) / count));
-  curve->model.push_back(mean.model);
-  curve->found.push_back(mean.found);
-}
-
-// Bins are narrow where points are many, and nowhere wider than an eighth or so of the range. None has both signs of the
-// variable: friction has a step there.
-void AddBins(std::vector<CurvePoint> points, MeasuredCurve* curve) {
-  std::stable_sort(points.begin(), points.end(),
-                   [](const CurvePoint& a, const CurvePoint& b) { return a.at < b.at; });
-  const double count = static_cast<double>(points.size()), low = points.front().at,
-               range = points.back().at - low;
-  const auto place = [&](size_t i) {
-    return kCurveBins * (0.5 * static_cast<double>(i) / count + 0.5 * (points[i].at - low) / range);
-  };
-  size_t first = 0;
-  for (size_t i = 1; i <= points.size(); ++i) {
-    const bool last = i == points.size();
-    const bool turns = !last && points[i - 1].at < 0 && points[i].at >= 0;
-    if (!last && !turns && place(i) < std::floor(place(first)) + 1) continue;
-    if (i - first >= kBlocksOfABin) {
-      AddMean(&points[first], &points[first] + (i - first), curve);
-    } else if (!last && !turns) {
-      continue;
-    }
-    first = i;
   }
 }
 
@@ -175,14 +123,11 @@ std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
     for (size_t k = 0; k < element.balances.size(); ++k) {
       AddBalance(element.balances[k], element.signs[k], *variable, lacking, by_given, by_found, &points);
     }
-    if (points.size() < 3 * kBlocksOfABin) continue;
-    MeasuredCurve curve;
-    curve.element = element.name;
-    curve.unit = UnitOf(element.balances.front(), found.units);
-    curve.against = variable->name;
-    curve.against_unit = variable->unit;
-    AddBins(std::move(points), &curve);
-    if (curve.at.size() > 2) curves.push_back(std::move(curve));
+    BinnedCurve curve = Binned(std::move(points));
+    if (curve.at.size() < kFewestBins) continue;
+    curves.push_back({element.name, UnitOf(element.balances.front(), found.units), variable->name,
+                      variable->unit, std::move(curve.at), std::move(curve.measured), std::move(curve.error),
+                      std::move(curve.given), std::move(curve.found)});
   }
   return curves;
 }
