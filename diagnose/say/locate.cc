@@ -35,7 +35,7 @@ constexpr size_t kEnoughBlocks = 60;  // to see a dependence
 constexpr double kQuick = 0.005;
 // A command or a late sensor is said to be the cause where it explains so much, and leaves less than this part of what the
 // balance's own variables leave.
-constexpr double kMostOfLack = 0.5, kFarLess = 0.7;
+constexpr double kMostOfLack = 0.5, kFarLess = 0.4;
 constexpr double kMostlyOffsets = 0.5;
 // Of the largest error of a signal: runs with less are not named beside it.
 constexpr double kOtherRun = 0.5;
