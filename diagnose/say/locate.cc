@@ -8,6 +8,7 @@
 
 #include "base/number_text.h"
 #include "diagnose/say/dependence.h"
+#include "diagnose/say/seen.h"
 
 namespace hydro::diagnose {
 
@@ -18,115 +19,14 @@ constexpr std::array<BalanceKind, 4> kPlaces = {BalanceKind::kTorque, BalanceKin
 
 // Of the disagreement: less is not worth a line.
 constexpr double kSmallestShare = 0.02;
-// The extra share of the variance that a variable must explain to be preferred to a simpler one.
-constexpr double kPlainly = 0.06;
 // A dependence that explains less does not count.
 constexpr double kDependence = 0.05;
-// The least energy of a curve over a variable, of means over 12 bins: by chance it is 0 with a standard deviation of 5, and the
-// best of a dozen variables is taken.
-constexpr double kSignificant = 40;
-// The least energy, for each block, where no variable shows anything: sensors that count and differences of slow signals
-// make as much as this.
-constexpr double kPlain = 3;
-// s: in shorter blocks the derivatives of measured signals are mostly noise.
-constexpr double kSlow = 0.03;
-constexpr size_t kEnoughBlocks = 60;  // to see a dependence
-// s: longer blocks miss what repeats within a turn.
-constexpr double kQuick = 0.005;
 // A command or a late sensor is said to be the cause where it explains so much, and leaves less than this part of what the
 // balance's own variables leave.
 constexpr double kMostOfLack = 0.5, kFarLess = 0.4;
 constexpr double kMostlyOffsets = 0.5;
-// Of the largest error of a signal: runs with less are not named beside it.
-constexpr double kOtherRun = 0.5;
 // The least instants at which a valve passes oil that show what a transducer reads there.
 constexpr size_t kEnoughHeld = 25;
-
-struct Dependence {
-  Variable variable;
-  std::vector<double> averages;
-  double explained = 0;
-  size_t simplicity = 0;  // place in the list: simple variables come first
-};
-
-// By how much they explain; of those that explain nearly as much as the best, the simplest comes first.
-std::vector<Dependence> Ranked(const Blocks& blocks, std::vector<Variable> variables,
-                               const std::vector<LackingRun>& runs, BalanceKind balance) {
-  std::vector<Dependence> ranked;
-  for (Variable& variable : variables) {
-    if (variable.only_names && blocks.duration < kSlow) continue;
-    Dependence d;
-    d.averages = Average(variable, blocks, runs, balance);
-    d.explained = Explained(blocks, d.averages, variable.linear_only);
-    d.variable = std::move(variable);
-    d.simplicity = ranked.size();
-    ranked.push_back(std::move(d));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Dependence& a, const Dependence& b) { return a.explained > b.explained; });
-  const double best = ranked.front().explained;
-  auto simplest = ranked.begin();
-  for (auto d = ranked.begin(); d != ranked.end() && d->explained >= best - kPlainly; ++d) {
-    if (d->simplicity < simplest->simplicity) simplest = d;
-  }
-  std::rotate(ranked.begin(), simplest, simplest + 1);
-  return ranked;
-}
-
-// What means over bins show beyond their scatter; of a line, what it takes of the blocks' scatter.
-double EnergyOf(const Blocks& blocks, const Dependence& d) {
-  if (d.variable.linear_only) {
-    double squares = 0;
-    for (const Blocks::Block& block : blocks.blocks) squares += std::pow(block.value / block.noise, 2);
-    const double count = static_cast<double>(blocks.blocks.size());
-    return d.explained * (squares - count) * count / squares;
-  }
-  const MissingTerm table = TableOf(blocks, d.variable, d.averages);
-  double energy = 0;
-  for (size_t i = 0; i < table.at.size(); ++i) energy += std::pow(table.mean[i] / table.error[i], 2) - 1;
-  return energy;
-}
-
-// What is seen of one balance.
-struct Seen {
-  Blocks when;  // of the length at which most shows
-  Blocks
-      where;  // of the length at which a variable explains most, of those that leave enough blocks to see that
-  std::vector<Dependence> ranked;  // of `where`
-  double energy = 0;               // 0: nothing beyond noise
-};
-
-// The largest energy of a curve over any variable.
-double LargestCurve(const Blocks& blocks, const std::vector<Dependence>& ranked) {
-  double energy = 0;
-  for (const Dependence& d : ranked) {
-    if (!d.variable.only_names) energy = std::max(energy, EnergyOf(blocks, d));
-  }
-  return energy;
-}
-
-Seen LookAt(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units) {
-  Seen seen;
-  seen.when = LargestBlocks(runs, balance);
-  if (seen.when.blocks.empty()) return seen;
-  double curve = 0, explained = 0;
-  for (const double duration : kBlockLengths) {
-    Blocks blocks = BlocksOf(runs, balance, duration);
-    if (blocks.blocks.size() < kEnoughBlocks && !seen.ranked.empty()) break;
-    std::vector<Dependence> ranked =
-        Ranked(blocks, MotionVariables(runs, balance, units, duration < kQuick), runs, balance);
-    curve = std::max(curve, LargestCurve(blocks, ranked));
-    const double here = ranked.front().explained * std::max(0.0, EnergyOf(blocks));
-    if (!seen.ranked.empty() && here <= explained) continue;
-    explained = here;
-    seen.where = std::move(blocks);
-    seen.ranked = std::move(ranked);
-  }
-  const double all = EnergyOf(seen.when);
-  const bool plain = all > kPlain * static_cast<double>(seen.when.blocks.size());
-  if (plain || curve > kSignificant) seen.energy = std::max(all, curve);
-  return seen;
-}
 
 using AllSeen = std::array<Seen, kBalanceKinds>;
 
@@ -254,28 +154,6 @@ void Tabulate(BalanceKind balance, Placement* placement) {
   }
 }
 
-// From the first to the last instant at which the signal's error is more than half of its largest, and that.
-std::pair<Window, double> WorstStretch(const RunCurves& run, model::Channel channel, bool after) {
-  Window window{run.run, 0, 0};
-  double largest = 0;
-  for (const RunCurves::Curve& curve : run.curves) {
-    const std::vector<double>& simulated = after ? curve.after : curve.before;
-    if (curve.channel != channel || simulated.size() != curve.measured.size()) continue;
-    const auto error = [&](size_t k) { return std::abs(curve.measured[k] - simulated[k]); };
-    for (size_t k = 0; k < simulated.size(); ++k) {
-      if (std::isfinite(error(k))) largest = std::max(largest, error(k));
-    }
-    bool inside = false;
-    for (size_t k = 0; k < simulated.size(); ++k) {
-      if (!(error(k) > 0.5 * largest)) continue;
-      if (!inside) window.from = run.time[k];
-      window.to = run.time[k];
-      inside = true;
-    }
-  }
-  return {window, largest};
-}
-
 }  // namespace
 
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs, int jobs) {
@@ -293,32 +171,6 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
     Tabulate(static_cast<BalanceKind>(placement.Largest()), &placement);
   }
   return std::move(placement.result);
-}
-
-std::vector<Location> WorstSignal(const std::vector<SignalGap>& signals, const std::vector<RunCurves>& curves,
-                                  bool after) {
-  double all = 0, most = 0;
-  const SignalGap* worst = nullptr;
-  for (const SignalGap& signal : signals) {
-    const double gap = after ? signal.fit.after : signal.fit.before;
-    const double energy = signal.noise > 0 ? std::pow(gap / signal.noise, 2) - 1 : 0;
-    if (!(energy > 0)) continue;
-    all += energy;
-    if (energy > most) most = energy, worst = &signal;
-  }
-  if (worst == nullptr) return {};
-  Location location{ChannelName(worst->channel),
-                    most / all,
-                    "no balance shows where; of the signals, this is predicted worst",
-                    {}};
-  double largest = 0;
-  for (const RunCurves& run : curves)
-    largest = std::max(largest, WorstStretch(run, worst->channel, after).second);
-  for (const RunCurves& run : curves) {
-    const auto [window, error] = WorstStretch(run, worst->channel, after);
-    if (error > kOtherRun * largest) location.windows.push_back(window);
-  }
-  return {location};
 }
 
 }  // namespace hydro::diagnose

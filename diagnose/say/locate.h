@@ -19,10 +19,4 @@ struct Localisation {
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
                     int jobs = 1);
 
-// Where no balance shows anything, or none can be formed: the signal with the largest part of the squared gap, in noise units,
-// under its own name, and the stretches where it is predicted worst. `after`: with what was found, instead of the model as
-// given. Empty where no signal is beyond its noise.
-std::vector<Location> WorstSignal(const std::vector<SignalGap>& signals, const std::vector<RunCurves>& curves,
-                                  bool after);
-
 }  // namespace hydro::diagnose

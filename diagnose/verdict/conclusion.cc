@@ -11,6 +11,7 @@
 #include "diagnose/say/effect_term.h"
 #include "diagnose/say/locate.h"
 #include "diagnose/say/measured_curves.h"
+#include "diagnose/say/worst_signal.h"
 #include "diagnose/search/window_search.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/effect_stretch.h"

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "diagnose/say/seen.h"
 #include "diagnose/say/variables.h"
 
 namespace hydro::diagnose {
@@ -218,6 +219,17 @@ TEST(Variables, WhatIsOffered) {
   ASSERT_EQ(late.size(), 1u);
   EXPECT_NEAR(late[0].values[0][100], 200, 1e-6);
   EXPECT_TRUE(LateVariables(runs, BalanceKind::kArm, {}).empty());
+}
+
+// Tests that what is lacking is seen over what it depends on, and that nothing is seen in noise or where there is no balance.
+TEST(Seen, WhatIsLacking) {
+  const Seen seen = LookAt({Forward(3), Forward(3)}, BalanceKind::kTorque, {});
+  EXPECT_GT(seen.energy, 1000);
+  ASSERT_FALSE(seen.ranked.empty());
+  EXPECT_EQ(seen.ranked.front().variable.name, "motor_speed");
+  EXPECT_GT(seen.ranked.front().explained, 0.8);
+  EXPECT_EQ(LookAt({Forward(0), Forward(0)}, BalanceKind::kTorque, {}).energy, 0);
+  EXPECT_TRUE(LookAt({Forward(3)}, BalanceKind::kFlow1, {}).when.blocks.empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/say/lacking.h"
+#include "diagnose/say/worst_signal.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
