@@ -34,7 +34,8 @@ struct Window {
 
 // Where simulation and data disagree.
 struct Location {
-  std::string balance;  // pump_torque | flow_1 | flow_2 | arm_torque | command | sensor
+  // pump_torque | flow_1 | flow_2 | arm_torque | command | sensor; where no balance can be formed, a signal's name
+  std::string balance;
   double share = 0;     // of the disagreement
   std::string where;    // "|motor_speed| < 5 rad/s, at reversals"
   std::vector<Window> windows;
@@ -53,6 +54,15 @@ struct FoundTerm {
   std::string effect;
   MissingTerm missing;
   std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
+};
+
+// What one element of the machine does, as the balances measure it, over the variable where it acts: the pump's friction,
+// the leakage across its ports, the arm's load. Means over bins, and the standard errors of those measured.
+struct MeasuredCurve {
+  std::string element;  // pump_friction | cross_leakage | arm_load
+  std::string unit, against, against_unit;
+  std::vector<double> at, measured, error;
+  std::vector<double> model, found;  // the model's own as given, and with what was found
 };
 
 // A stretch of a run in which an effect that acts through time shows: one signal, in the model's unit, and what the
@@ -189,6 +199,7 @@ struct Diagnosis {
   std::vector<Location> location;
   std::vector<MissingTerm> missing;
   std::vector<FoundTerm> terms;
+  std::vector<MeasuredCurve> measured;  // of what balances could be formed for
   std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> parameters;

@@ -12,6 +12,7 @@
 #include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/html_parts.h"
+#include "diagnose/report/measured_section.h"
 #include "diagnose/report/per_run_section.h"
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/report_pictures.h"
@@ -169,6 +170,7 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
   return page::HtmlPage(
       "Gap report: " + diagnosis.model.name,
       Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
+          Section("Friction, leakage and load as the balances measure them", MeasuredSection(diagnosis, si)) +
           Section("How sure that is", HowSure(diagnosis)) +
           Section("What may explain the runs", WhatMayExplain(diagnosis)) +
           Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +

@@ -8,8 +8,10 @@
 
 #include "base/number_text.h"
 #include "diagnose/closure/closure.h"
-#include "diagnose/locate/effect_terms.h"
-#include "diagnose/locate/locate.h"
+#include "diagnose/say/effect_term.h"
+#include "diagnose/say/locate.h"
+#include "diagnose/say/measured_curves.h"
+#include "diagnose/say/worst_signal.h"
 #include "diagnose/search/window_search.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/effect_stretch.h"
@@ -173,11 +175,12 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     if (report_progress) report_progress({"where the gap is", 0.97});
     const ClosureBase base =
         IsOpen(d.verdict) ? BaseOfClosure(context, best, refit, windows) : ClosureBase{&given};
-    Localisation located = Locate(base.explanation->fitted.hypothesis.model, context.runs);
+    Localisation located = Locate(base.explanation->fitted.hypothesis.model, context.runs, context.jobs);
     d.location = std::move(located.location);
+    if (d.location.empty()) d.location = WorstSignal(d.signals, d.curves, IsOpen(d.verdict));
     d.missing = std::move(located.missing);
-    if (IsOpen(d.verdict) && !TimeIsUp(context)) closed = FindClosure(context, base, located.possible);
   }
+  d.measured = MeasuredCurves(given.fitted.hypothesis.model, d.model, context.runs, context.jobs);
   for (const FoundEffect& effect : d.effects) {
     if (std::optional<FoundTerm> term = TermOf(d.model, effect.id, context.runs, context.jobs)) {
       d.terms.push_back(std::move(*term));

@@ -1,11 +1,10 @@
-// The closure of a gap that no known effect explains: of a rig with friction that none of the catalogue's has the form of.
-#include "diagnose/closure/closure.h"
+// Where a closure begins, and what it resembles.
+#include "diagnose/closure/curve_start.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "diagnose/closure/curve_start.h"
 #include "diagnose/closure/resemblance.h"
 #include "model/actuator.h"
 #include "settings/model_file.h"
@@ -18,113 +17,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-constexpr double kFilm = 0.4;  // in-lbf at 10 rad/s
-
-// Friction as the root of speed, as a curve with many knots: the rig's own form, which the gap finder does not know.
-model::ModelDescription Filmed() {
-  model::EffectDescription film;
-  film.id = "closure.pump_torque";
-  film.name_lists["against"] = {"motor_speed"};
-  for (int k = -40; k <= 40; ++k) {
-    const double speed = k * std::abs(k) * 0.125;
-    film.lists["knots"].push_back(speed);
-    film.lists["values"].push_back(-std::copysign(kFilm * std::sqrt(std::abs(speed) / 10), speed));
-  }
-  return testing::Table1With({film});
-}
-
-struct Rigs {
-  std::vector<RunData> fitted, held_out;
-  SearchContext context;
-};
-
-// Clamped runs to fit, of a rig of this model, and one to hold out.
-Rigs RigsOf(const model::ModelDescription& truth, int fitted = 2) {
-  Rigs rigs;
-  for (int which = 0; which < fitted; ++which) {
-    rigs.fitted.push_back(testing::SmallRun(truth, model::Shaft::kClamped, false, 3, which, 7));
-  }
-  rigs.held_out.push_back(testing::SmallRun(truth, model::Shaft::kClamped, false, 3, 5, 7));
-  rigs.context.given = testing::Table1With();
-  rigs.context.runs = PointersTo(rigs.fitted);
-  rigs.context.held_out = PointersTo(rigs.held_out);
-  return rigs;
-}
-
-Explanation AsGiven(const model::ModelDescription& model) {
-  Explanation given;
-  given.fitted.hypothesis.model = model;
-  return given;
-}
-
-ClosedModel ClosedOf(const Rigs& rigs) {
-  const Explanation given = AsGiven(rigs.context.given);
-  const Localisation located = Locate(rigs.context.given, rigs.context.runs);
-  return FindClosure(rigs.context, {&given, false}, located.possible);
-}
-
-// Tests that a closure takes most of the held-out gap, says what it resembles, and that its model is written, read back bit
-// by bit and simulated.
-TEST(Closure, TakesMostOfTheGap) {
-  const ClosedModel closed = ClosedOf(RigsOf(Filmed()));
-  ASSERT_THAT(closed.closures, SizeIs(1));
-  const Closure& closure = closed.closures[0];
-  EXPECT_EQ(closure.id, "closure.pump_torque");
-  EXPECT_THAT(closure.against, ElementsAre("motor_speed"));
-  EXPECT_EQ(closure.unit, "in-lbf");
-  EXPECT_THAT(closure.against_units, ElementsAre("rad/s"));
-  EXPECT_GT(closure.before, 3);
-  EXPECT_LT(std::pow(closure.after / closure.before, 2), 0.3);
-  EXPECT_THAT(closure.resembles, HasSubstr("square root of |motor_speed|"))
-      << ::testing::PrintToString(closure.knots[0]) << ::testing::PrintToString(closure.value)
-      << ::testing::PrintToString(closure.low) << ::testing::PrintToString(closure.high);
-  EXPECT_THAT(closure.resembles, HasSubstr("against it"));
-  ASSERT_EQ(closure.low.size(), closure.value.size());
-  for (size_t i = 0; i < closure.value.size(); ++i) EXPECT_LT(closure.low[i], closure.high[i]);
-  EXPECT_THAT(ClosureSentence(closed.closures),
-              HasSubstr("a curve of motor_speed in the torque on the pump"));
-
-  const model::ModelDescription back =
-      settings::ParseModel(settings::FormatModel(closed.model), "model.toml");
-  EXPECT_EQ(back.effects.at(0).lists, closed.model.effects.at(0).lists);
-  model::Actuator actuator(back, {.shaft = model::Shaft::kClamped});
-  actuator.Advance(3, 0.1);
-  EXPECT_TRUE(std::isfinite(actuator.Measure().p2));
-}
-
-// Tests that the same inputs give the same bits, whatever the number of threads is.
-TEST(Closure, DoesNotDependOnJobs) {
-  Rigs rigs = RigsOf(Filmed());
-  const ClosedModel one = ClosedOf(rigs);
-  rigs.context.jobs = 2;
-  const ClosedModel two = ClosedOf(rigs);
-  ASSERT_THAT(one.closures, SizeIs(1));
-  ASSERT_THAT(two.closures, SizeIs(1));
-  EXPECT_EQ(one.closures[0].value, two.closures[0].value);
-  EXPECT_EQ(one.closures[0].after, two.closures[0].after);
-}
-
-// Tests that where runs are held out in turn, every other one is fitted and the rest judges.
-TEST(Closure, InTurn) {
-  Rigs rigs = RigsOf(Filmed(), 4);
-  rigs.context.held_out.clear();
-  const ClosedModel closed = ClosedOf(rigs);
-  ASSERT_THAT(closed.closures, SizeIs(1));
-  EXPECT_EQ(closed.closures[0].id, "closure.pump_torque");
-}
-
-// Tests that nothing is added where nothing is missing, nor a second time.
-TEST(Closure, NotWhereNothingIsMissing) {
-  EXPECT_THAT(ClosedOf(RigsOf(testing::Table1With())).closures, IsEmpty());
-  const Rigs rigs = RigsOf(Filmed());
-  Localisation located = Locate(rigs.context.given, rigs.context.runs);
-  std::erase_if(located.possible,
-                [](const PossibleTerm& term) { return term.table.balance != "pump_torque"; });
-  ASSERT_THAT(located.possible, ::testing::Not(IsEmpty()));
-  const Explanation has = AsGiven(Filmed());
-  EXPECT_THAT(FindClosure(rigs.context, {&has, false}, located.possible).closures, IsEmpty());
-}
 
 // Tests that knots reach from the lowest to the highest value, increase, and are as many as asked for at most.
 TEST(CurveStart, Knots) {

@@ -1,12 +1,11 @@
 // The terms of effects over their own variables.
-#include "diagnose/locate/effect_terms.h"
+#include "diagnose/say/effect_term.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "diagnose/locate/explanations.h"
-#include "diagnose/locate/own_variable.h"
+#include "diagnose/say/variables.h"
 #include "model/terms/parameter_info.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -72,17 +71,12 @@ TEST(TermOf, NoneWhereNothingIsAdded) {
 TEST(OwnVariables, AreThoseOfTheRuns) {
   const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.2, 3);
   const std::vector<const diagnose::RunData*> pointers = PointersTo(runs);
-  std::vector<diagnose::SmoothedRun> smoothed;
-  smoothed.reserve(pointers.size());
-  for (const diagnose::RunData* run : pointers) {
-    smoothed.push_back(diagnose::SmoothDisturbances(Table1With(), *run, {}));
-  }
-  const diagnose::Explanations explanations(smoothed, pointers, {});
+  const std::vector<diagnose::LackingRun> lacking = diagnose::LackingIn(Table1With(), pointers, 1);
   size_t rows = 0;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     for (const diagnose::OwnVariable& own : diagnose::OwnVariables({info.id, {{"periods", 9}}, {}})) {
       bool there = false;
-      for (const diagnose::Variable& variable : explanations.States(own.balance, true)) {
+      for (const diagnose::Variable& variable : MotionVariables(lacking, own.balance, {}, true)) {
         there = there || variable.name == own.variable;
       }
       EXPECT_TRUE(there) << info.id << ": " << own.variable;

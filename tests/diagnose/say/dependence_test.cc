@@ -1,4 +1,4 @@
-#include "diagnose/locate/dependence.h"
+#include "diagnose/say/dependence.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,9 @@
 #include <map>
 #include <random>
 #include <string>
-#include <utility>
 
-#include "diagnose/locate/disagreement.h"
-#include "diagnose/locate/explanations.h"
+#include "diagnose/say/seen.h"
+#include "diagnose/say/variables.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -95,15 +94,16 @@ TEST(Dependence, RangeInWords) {
 
 // Tests that the stretches with energy are found, at their times, and that noise has none.
 TEST(Dependence, Windows) {
-  RunData run;
-  run.name = "square";
-  for (size_t k = 0; k < kSamples; ++k) run.stimulus.time.push_back(0.0025 * static_cast<double>(k));
+  LackingRun run;
+  run.motion.name = "square";
+  run.motion.at.resize(kSamples);
+  for (size_t k = 0; k < kSamples; ++k) run.motion.at[k].time = 0.0025 * static_cast<double>(k);
   Case c = Of([](double) { return 0.0; });
   for (Blocks::Block& block : c.blocks.blocks) block.value = 0.5;
-  EXPECT_TRUE(WindowsOf(c.blocks, {&run}).empty());
+  EXPECT_TRUE(WindowsOf(c.blocks, {run}).empty());
   for (size_t k = 100; k < 140; ++k) c.blocks.blocks[k].value = 20;
   for (size_t k = 400; k < 410; ++k) c.blocks.blocks[k].value = -15;
-  const std::vector<Window> windows = WindowsOf(c.blocks, {&run});
+  const std::vector<Window> windows = WindowsOf(c.blocks, {run});
   ASSERT_EQ(windows.size(), 2u);
   EXPECT_EQ(windows[0].run, "square");
   EXPECT_NEAR(windows[0].from, 0.25, 1e-9);
@@ -112,61 +112,71 @@ TEST(Dependence, Windows) {
   EXPECT_NEAR(windows[1].to, 1.025, 1e-9);
 }
 
-// A smoothed run with a disturbance of 3 in-lbf on the pump's torque where the motor turns forward; noise of
-// 0.5.
-std::pair<RunData, SmoothedRun> Smoothed(double size) {
+// A run whose pump lacks so much torque where the motor turns forward; noise of 0.5.
+LackingRun Forward(double size) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  RunData run;
-  SmoothedRun smoothed;
-  smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)] = true;
-  Disturbance& d = smoothed.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
+  const auto b = static_cast<size_t>(BalanceKind::kTorque);
+  LackingRun run;
+  run.motion.step = 1e-3;
+  run.motion.at.resize(kSamples);
+  run.lacking[b].resize(kSamples);
+  for (Eigen::VectorXd* series : {&run.noise[0][b], &run.noise[1][b]}) series->resize(kSamples);
+  run.masks[b].assign(kSamples, 0);
+  run.weights[b].setOnes(kSamples);
   for (size_t k = 0; k < kSamples; ++k) {
     const double t = 1e-3 * static_cast<double>(k);
-    run.stimulus.time.push_back(t);
-    run.stimulus.voltage.push_back(k < kSamples / 2 ? 10 : 2);
-    smoothed.motor_speed.push_back(20 * std::sin(30 * t));
-    smoothed.motor_angle.push_back(-20 / 30.0 * std::cos(30 * t));
-    smoothed.p1.push_back(100);
-    smoothed.p2.push_back(100 + 200 * t);
-    smoothed.arm_angle.push_back(0);
-    smoothed.arm_speed.push_back(0);
-    d.value.push_back((smoothed.motor_speed.back() > 0 ? size : 0) + 0.5 * normal(random));
-    for (std::vector<double>& draw : d.noise) draw.push_back(0.5 * normal(random));
-    d.informative.push_back(1);
+    const double speed = 20 * std::sin(30 * t);
+    run.motion.voltage.push_back(k < kSamples / 2 ? 10 : 2);
+    model::KnownMotion& at = run.motion.at[k];
+    at = {.time = t, .voltage = run.motion.voltage.back(), .motor_angle = -20 / 30.0 * std::cos(30 * t)};
+    at.motor_speed = speed;
+    at.p1 = 100;
+    at.p2 = 100 + 200 * t;
+    at.p2_rate = 200;
+    const auto i = static_cast<Eigen::Index>(k);
+    run.lacking[b][i] = (speed > 0 ? size : 0) + 0.5 * normal(random);
+    for (auto& draw : run.noise) draw[b][i] = 0.5 * normal(random);
   }
-  return {std::move(run), std::move(smoothed)};
+  return run;
 }
 
-// Tests that a disturbance is told from noise, and that noise alone is no disturbance.
-TEST(Disagreement, BeyondNoise) {
-  const auto [run, smoothed] = Smoothed(3);
-  const Disagreement found = LargestDisagreement({smoothed}, {&run}, Balance::kPumpTorque);
-  EXPECT_TRUE(found.beyond_noise);
-  EXPECT_GT(found.significance, 25);
-  EXPECT_GE(found.blocks.blocks.size(), 100u);
-  const auto [quiet_run, quiet] = Smoothed(0);
-  const Disagreement none = LargestDisagreement({quiet}, {&quiet_run}, Balance::kPumpTorque);
-  EXPECT_FALSE(none.beyond_noise);
-  EXPECT_LT(none.significance, 8);
-  // A balance that was not measured has no blocks.
-  EXPECT_TRUE(LargestDisagreement({smoothed}, {&run}, Balance::kFlow1).blocks.blocks.empty());
+// Tests that what is lacking has energy, most of it in blocks no longer than it lasts, and that noise alone has none.
+TEST(Blocks, Energy) {
+  const Blocks found = LargestBlocks({Forward(3)}, BalanceKind::kTorque);
+  EXPECT_GT(EnergyOf(found), 1000);
+  EXPECT_LE(found.duration, 0.11);
+  const Blocks none = LargestBlocks({Forward(0)}, BalanceKind::kTorque);
+  EXPECT_LT(EnergyOf(none), 20);
+  // A balance that cannot be formed has no blocks.
+  EXPECT_TRUE(LargestBlocks({Forward(3)}, BalanceKind::kFlow1).blocks.empty());
 }
 
-// Tests that of all the candidates, the one that a balance really depends on explains most.
-TEST(Explanations, TheRightOneExplainsMost) {
-  const auto [run, smoothed] = Smoothed(3);
-  const std::vector<SmoothedRun> all = {smoothed};
-  const std::vector<const RunData*> runs = {&run};
-  const Explanations explanations(all, runs, {});
-  const Blocks blocks = LargestDisagreement(all, runs, Balance::kPumpTorque).blocks;
+// Tests that masked stretches count for nothing: blocks that are mostly masked are left out, and of others only the rest counts.
+TEST(Blocks, RespectMasks) {
+  LackingRun run = Forward(3);
+  const auto b = static_cast<size_t>(BalanceKind::kTorque);
+  for (size_t k = 100; k < 205; ++k) {
+    run.masks[b][k] = 1;
+    run.weights[b][static_cast<Eigen::Index>(k)] = 0;
+    run.lacking[b][static_cast<Eigen::Index>(k)] = 1e6;
+  }
+  const Blocks blocks = BlocksOf({run}, BalanceKind::kTorque, 0.02);
+  EXPECT_NEAR(static_cast<double>(blocks.blocks.size()), kSamples / 20 - 5, 1);
+  for (const Blocks::Block& block : blocks.blocks) EXPECT_LT(std::abs(block.value), 5) << block.first;
+}
+
+// Tests that of all the variables, the one that a balance really depends on explains most.
+TEST(Variables, TheRightOneExplainsMost) {
+  const std::vector<LackingRun> runs = {Forward(3)};
+  const Blocks blocks = BlocksOf(runs, BalanceKind::kTorque, 0.004);
   double most = 0;
   std::string name;
-  for (const Variable& variable : explanations.States(Balance::kPumpTorque, false)) {
+  for (const Variable& variable : MotionVariables(runs, BalanceKind::kTorque, {}, false)) {
     ASSERT_EQ(variable.values.size(), 1u) << variable.name;
     ASSERT_EQ(variable.values[0].size(), kSamples) << variable.name;
     const double share =
-        Explained(blocks, Average(variable, blocks, all, Balance::kPumpTorque), variable.linear_only);
+        Explained(blocks, Average(variable, blocks, runs, BalanceKind::kTorque), variable.linear_only);
     if (share > most) {
       most = share;
       name = variable.name;
@@ -176,17 +186,12 @@ TEST(Explanations, TheRightOneExplainsMost) {
   EXPECT_GT(most, 0.8);
 }
 
-// Tests that candidates carry the units of the model.
-TEST(Explanations, HaveTheModelsUnits) {
-  const auto [run, smoothed] = Smoothed(3);
-  const std::vector<SmoothedRun> all = {smoothed};
-  const std::vector<const RunData*> runs = {&run};
-  const auto units = [&](const UnitSystem& system) {
-    const Explanations explanations(all, runs, system);
+// Tests that variables carry the units of the model.
+TEST(Variables, HaveTheModelsUnits) {
+  const auto units = [](const UnitSystem& system) {
     std::map<std::string, std::string> found;
-    for (const Variable& variable : explanations.States(Balance::kFlow1, false)) {
+    for (const Variable& variable : MotionVariables({Forward(3)}, BalanceKind::kFlow1, system, false))
       found[variable.name] = variable.unit;
-    }
     return found;
   };
   EXPECT_EQ(units({}).at("p1 rate"), "psi/s");
@@ -196,27 +201,35 @@ TEST(Explanations, HaveTheModelsUnits) {
   EXPECT_EQ(units({"mm", "N", true}).at("motor_speed"), "rad/s");
 }
 
-// Tests the candidates: ripples per turn only on request, none for the arm; voltage limits with their places.
-TEST(Explanations, WhatIsOffered) {
-  const auto [run, smoothed] = Smoothed(3);
-  const std::vector<SmoothedRun> all = {smoothed};
-  const std::vector<const RunData*> runs = {&run};
-  const Explanations explanations(all, runs, {});
-  EXPECT_EQ(explanations.States(Balance::kFlow1, true).size(),
-            explanations.States(Balance::kFlow1, false).size() + 48);
-  EXPECT_EQ(explanations.States(Balance::kArmTorque, true).size(),
-            explanations.States(Balance::kArmTorque, false).size());
-  const std::vector<Variable> commands = explanations.Commands();
+// Tests what is offered: waves of a turn only on request, none for the arm; limits of the voltage with their places.
+TEST(Variables, WhatIsOffered) {
+  const std::vector<LackingRun> runs = {Forward(3)};
+  EXPECT_EQ(MotionVariables(runs, BalanceKind::kFlow1, {}, true).size(),
+            MotionVariables(runs, BalanceKind::kFlow1, {}, false).size() + 48);
+  EXPECT_EQ(MotionVariables(runs, BalanceKind::kArm, {}, true).size(),
+            MotionVariables(runs, BalanceKind::kArm, {}, false).size());
+  const std::vector<Variable> commands = CommandVariables(runs);
   ASSERT_EQ(commands.size(), 11u);
   EXPECT_EQ(commands[1].where, "|voltage| > 5 V");
   EXPECT_TRUE(commands[1].linear_only);
-  EXPECT_DOUBLE_EQ(commands[1].values[0].front(), 5);  // of 10 V
-  EXPECT_DOUBLE_EQ(commands[1].values[0].back(), 0);   // of 2 V
+  EXPECT_NEAR(commands[1].values[0].front(), 5, 1e-9);  // of 10 V
+  EXPECT_NEAR(commands[1].values[0].back(), 0, 1e-9);   // of 2 V
   // The rate of p2 - p1 is 200 psi/s.
-  const std::vector<Variable> late = explanations.Lateness(Balance::kPumpTorque);
+  const std::vector<Variable> late = LateVariables(runs, BalanceKind::kTorque, {});
   ASSERT_EQ(late.size(), 1u);
   EXPECT_NEAR(late[0].values[0][100], 200, 1e-6);
-  EXPECT_TRUE(explanations.Lateness(Balance::kArmTorque).empty());
+  EXPECT_TRUE(LateVariables(runs, BalanceKind::kArm, {}).empty());
+}
+
+// Tests that what is lacking is seen over what it depends on, and that nothing is seen in noise or where there is no balance.
+TEST(Seen, WhatIsLacking) {
+  const Seen seen = LookAt({Forward(3), Forward(3)}, BalanceKind::kTorque, {});
+  EXPECT_GT(seen.energy, 1000);
+  ASSERT_FALSE(seen.ranked.empty());
+  EXPECT_EQ(seen.ranked.front().variable.name, "motor_speed");
+  EXPECT_GT(seen.ranked.front().explained, 0.8);
+  EXPECT_EQ(LookAt({Forward(0), Forward(0)}, BalanceKind::kTorque, {}).energy, 0);
+  EXPECT_TRUE(LookAt({Forward(3)}, BalanceKind::kFlow1, {}).when.blocks.empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "diagnose/locate/dependence.h"
+#include "diagnose/say/dependence.h"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +12,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kBins = 12;
+constexpr size_t kTableBins = 12;
+constexpr size_t kFineBins = 48;    // what shows at low speeds alone needs narrow ones
 constexpr double kMostOfIt = 0.85;  // share of the energy in the range that is named
-constexpr double kSpread = 0.6;     // share of the blocks: a range with more is no place
-constexpr size_t kMostWindows = 5;  // in each run
+constexpr double kNoPlace = 0.6;    // share of the blocks: a range with more is no place
+constexpr size_t kBlocksOfAPart = 8, kMostParts = 48;
+constexpr size_t kMostStretches = 5;  // in each run
+constexpr double kChanceEnergy = 8;   // energy of a block that chance alone may have
 
 std::vector<size_t> InOrderOf(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
@@ -25,11 +28,12 @@ std::vector<size_t> InOrderOf(const std::vector<double>& values) {
 }
 
 // Where bins of equal count begin in a sorted list; equal values stay together.
-std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<size_t>& order) {
+std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<size_t>& order,
+                           size_t bins = kTableBins) {
   std::vector<size_t> first = {0};
   const size_t n = order.size();
-  for (size_t bin = 1; bin < kBins; ++bin) {
-    size_t at = bin * n / kBins;
+  for (size_t bin = 1; bin < bins; ++bin) {
+    size_t at = bin * n / bins;
     while (at > first.back() && at < n && values[order[at]] == values[order[at - 1]]) ++at;
     if (at > first.back() && at < n) first.push_back(at);
   }
@@ -39,18 +43,37 @@ std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<
 
 std::string Number(double value) { return ShortNumber(value, 3); }
 
-double EnergyOf(const Blocks::Block& block) {
+double EnergyOfBlock(const Blocks::Block& block) {
   const double ratio = block.value / block.noise;
   return ratio * ratio - 1;
 }
 
-// The shortest stretch of the sorted blocks with most of the energy: its first block and one past its last.
-std::pair<size_t, size_t> Densest(const Blocks& blocks, const std::vector<size_t>& order) {
+// What each block has of the lack's square: the mean of the blocks that are next to it in the order, squared, less what
+// their scatter makes of it. A single block is mostly noise.
+std::vector<double> SharesOf(const Blocks& blocks, const std::vector<size_t>& order) {
+  const size_t n = order.size(), parts = std::clamp<size_t>(n / kBlocksOfAPart, 1, kMostParts);
+  std::vector<double> shares(n);
+  for (size_t part = 0; part < parts; ++part) {
+    const size_t first = part * n / parts, end = (part + 1) * n / parts;
+    const double count = static_cast<double>(end - first);
+    double mean = 0, squares = 0;
+    for (size_t i = first; i < end; ++i) {
+      const double value = blocks.blocks[order[i]].value;
+      mean += value / count;
+      squares += value * value;
+    }
+    const double scatter = count > 1 ? (squares - count * mean * mean) / (count - 1) : 0;
+    for (size_t i = first; i < end; ++i) shares[order[i]] = std::max(0.0, mean * mean - scatter / count);
+  }
+  return shares;
+}
+
+// The shortest stretch of the sorted blocks with most of the shares: its first block and one past its last. By parts, so
+// that single blocks do not decide where it ends.
+std::pair<size_t, size_t> Densest(const std::vector<double>& shares, const std::vector<size_t>& order) {
   std::vector<double> sum = {0};
-  for (const size_t i : order) sum.push_back(sum.back() + EnergyOf(blocks.blocks[i]));
-  // Search by bins, so that single blocks do not decide where the stretch ends.
-  const size_t n = order.size();
-  const size_t parts = std::min<size_t>(n, 48);
+  for (const size_t i : order) sum.push_back(sum.back() + shares[i]);
+  const size_t n = order.size(), parts = std::min<size_t>(n, kMostParts);
   std::pair<size_t, size_t> best = {0, n};
   for (size_t from = 0; from < parts; ++from) {
     for (size_t to = from + 1; to <= parts; ++to) {
@@ -82,25 +105,18 @@ bool ChangesSign(const Blocks& blocks, const std::vector<double>& averages) {
 }  // namespace
 
 std::vector<double> Average(const Variable& variable, const Blocks& blocks,
-                            const std::vector<SmoothedRun>& smoothed, Balance balance) {
+                            const std::vector<LackingRun>& runs, BalanceKind balance) {
   std::vector<double> averages;
   for (const Blocks::Block& block : blocks.blocks) {
-    const Disturbance& d = smoothed[block.run].disturbance[static_cast<size_t>(balance)];
-    double sum = 0;
-    size_t count = 0;
-    for (size_t k = block.first; k < block.end; ++k) {
-      if (!d.informative[k]) continue;
-      sum += variable.values[block.run][k];
-      ++count;
-    }
-    averages.push_back(sum / static_cast<double>(count));
+    averages.push_back(
+        MeanOver(block, runs[block.run], balance, [&](size_t i) { return variable.values[block.run][i]; }));
   }
   return averages;
 }
 
 double Explained(const Blocks& blocks, const std::vector<double>& variable, bool linear_only) {
   const size_t n = variable.size();
-  if (n < 2 * kBins) return 0;
+  if (n < 2 * kTableBins) return 0;
   double weights = 0, mean = 0, center = 0;
   for (size_t i = 0; i < n; ++i) {
     const double weight = 1 / (blocks.blocks[i].noise * blocks.blocks[i].noise);
@@ -125,7 +141,7 @@ double Explained(const Blocks& blocks, const std::vector<double>& variable, bool
   const double by_line = 1 - (total - cross * cross / spread - (count - 2)) / beyond_noise;
   if (linear_only) return std::max(0.0, by_line);
   const std::vector<size_t> order = InOrderOf(variable);
-  const std::vector<size_t> bins = BinsOf(variable, order);
+  const std::vector<size_t> bins = BinsOf(variable, order, std::clamp(n / kTableBins, kTableBins, kFineBins));
   double left = 0;
   for (size_t bin = 0; bin + 1 < bins.size(); ++bin) {
     double sum = 0, squares = 0, weight_sum = 0;
@@ -172,16 +188,17 @@ MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::v
 std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages) {
   if (!variable.where.empty()) return variable.where;
   const size_t n = averages.size();
-  if (n < kBins) return "everywhere";
+  if (n < kTableBins) return "everywhere";
   std::vector<double> sizes;
   sizes.reserve(averages.size());
   for (const double value : averages) sizes.push_back(std::abs(value));
   const std::vector<size_t> by_value = InOrderOf(averages), by_size = InOrderOf(sizes);
   const bool both_signs = averages[by_value.front()] < 0 && averages[by_value.back()] > 0;
-  const auto value = Densest(blocks, by_value), size = Densest(blocks, by_size);
+  const std::vector<double> shares = SharesOf(blocks, by_value);
+  const auto value = Densest(shares, by_value), size = Densest(shares, by_size);
   const bool use_size = both_signs && size.second - size.first <= value.second - value.first;
   const auto [first, end] = use_size ? size : value;
-  if (static_cast<double>(end - first) > kSpread * static_cast<double>(n)) {
+  if (static_cast<double>(end - first) > kNoPlace * static_cast<double>(n)) {
     return both_signs && ChangesSign(blocks, averages) ? "changes with the sign of " + variable.name
                                                        : "changes with " + variable.name;
   }
@@ -196,37 +213,35 @@ std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::v
   return name + " from " + low + " to " + high + unit;
 }
 
-std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunData*>& runs) {
+std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<LackingRun>& runs) {
   std::vector<Window> windows;
   for (size_t r = 0; r < runs.size(); ++r) {
     double largest = 0;
     for (const Blocks::Block& block : blocks.blocks) {
-      if (block.run == r) largest = std::max(largest, EnergyOf(block));
+      if (block.run == r) largest = std::max(largest, EnergyOfBlock(block));
     }
-    if (largest < 8) continue;  // chance alone does that
+    if (largest < kChanceEnergy) continue;
     struct Stretch {
-      size_t first = 0, end = 0;
-      double energy = 0;
+      double from = 0, to = 0, energy = 0;
     };
     std::vector<Stretch> stretches;
-    const std::vector<double>& time = runs[r]->stimulus.time;
     for (const Blocks::Block& block : blocks.blocks) {
-      if (block.run != r || EnergyOf(block) < std::max(8.0, 0.2 * largest)) continue;
+      if (block.run != r || EnergyOfBlock(block) < std::max(kChanceEnergy, 0.2 * largest)) continue;
+      const double from = runs[r].At(block.first).time, to = runs[r].At(block.end - 1).time;
       // Stretches less than a few blocks or 20 ms apart count as one.
-      const bool joins = !stretches.empty() && time[block.first] - time[stretches.back().end - 1] <=
-                                                   std::max(0.02, 2 * blocks.duration);
-      if (!joins) stretches.push_back({block.first, block.end, 0});
-      stretches.back().end = block.end;
-      stretches.back().energy += EnergyOf(block);
+      const bool joins =
+          !stretches.empty() && from - stretches.back().to <= std::max(0.02, 2 * blocks.duration);
+      if (!joins) stretches.push_back({from, to, 0});
+      stretches.back().to = std::max(to, from + blocks.duration);
+      stretches.back().energy += EnergyOfBlock(block);
     }
     std::stable_sort(stretches.begin(), stretches.end(),
                      [](const Stretch& a, const Stretch& b) { return a.energy > b.energy; });
-    if (stretches.size() > kMostWindows) stretches.resize(kMostWindows);
+    if (stretches.size() > kMostStretches) stretches.resize(kMostStretches);
     std::sort(stretches.begin(), stretches.end(),
-              [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
-    for (const Stretch& stretch : stretches) {
-      windows.push_back({runs[r]->name, time[stretch.first], time[std::min(stretch.end, time.size() - 1)]});
-    }
+              [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
+    for (const Stretch& stretch : stretches)
+      windows.push_back({runs[r].motion.name, stretch.from, stretch.to});
   }
   return windows;
 }

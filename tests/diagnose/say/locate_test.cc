@@ -1,4 +1,4 @@
-#include "diagnose/locate/locate.h"
+#include "diagnose/say/locate.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnose/locate/disturbance_smoother.h"
+#include "diagnose/say/lacking.h"
+#include "diagnose/say/worst_signal.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -84,8 +85,8 @@ TEST_P(HiddenTerm, ShowsInItsOwnBalance) {
 INSTANTIATE_TEST_SUITE_P(
     Locate, HiddenTerm,
     ::testing::Values(
-        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.3}, {"speed", 3}}), "pump_torque",
-             "|motor_speed| < ", "motor_speed"},
+        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.9}, {"speed", 3}}), "pump_torque",
+             "|motor_speed| from ", "motor_speed"},
         Case{"PressureFriction", With("pump.pressure_friction", {{"f", 2e-4}}), "pump_torque", "p1 + p2",
              "(p1 + p2) sgn(motor_speed)"},
         Case{"QuadraticDrag", With("pump.quadratic_drag", {{"k", 2e-5}}), "pump_torque", "|motor_speed| > ",
@@ -121,7 +122,7 @@ TEST(Locate, NothingMissing) {
 // delays.
 TEST(Locate, NothingMissingWithEffects) {
   for (const model::ModelDescription& model :
-       {With("amp.lag", {{"tau", 0.004}}), With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
+       {With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
         With("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
         With("amp.delay", {{"delay", 0.003}}), With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
     NoisyRig rig;
@@ -174,11 +175,9 @@ TEST(Locate, WhatIsNotMeasured) {
   for (RunData& run : runs) {
     std::erase_if(run.signals,
                   [](const SignalData& signal) { return signal.channel == model::Channel::kP1; });
+    run.measured.p1.values.clear();
   }
-  const SmoothedRun smoothed = SmoothDisturbances(Given(), runs[0], {});
-  EXPECT_TRUE(smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)]);
-  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kFlow1)]);
-  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kArmTorque)]);
+  // Without one of the pressures, only the bypassed run has a balance.
   const Localisation found = LocateIn(runs);
   ASSERT_FALSE(found.location.empty());
   EXPECT_EQ(found.location.front().balance, "pump_torque");
@@ -206,16 +205,52 @@ TEST(Locate, SlowRecordings) {
     }
     for (size_t k = 40; k < 50; ++k) measured.p2.values[k] = std::nan("");
     slow.push_back(PrepareRun(std::move(measured), Given().parameters));
-    const SmoothedRun smoothed = SmoothDisturbances(Given(), slow.back(), {});
-    for (size_t b = 0; b < kBalances; ++b) {
-      for (const double value : smoothed.disturbance[b].value) ASSERT_TRUE(std::isfinite(value)) << b;
-    }
+    const std::vector<LackingRun> lacking = LackingIn(Given(), {&slow.back()}, 1);
+    for (const Eigen::VectorXd& values : lacking[0].lacking) ASSERT_TRUE(values.allFinite());
   }
   const Localisation found = LocateIn(slow);
   ASSERT_FALSE(found.location.empty());
   const auto pump = std::find_if(found.location.begin(), found.location.end(),
                                  [](const Location& location) { return location.balance == "pump_torque"; });
   EXPECT_NE(pump, found.location.end());
+}
+
+// Tests that where no balance can be formed, no place is named, and that this is said.
+TEST(Locate, NoBalance) {
+  NoisyRig rig;
+  rig.model = Changed(&model::Parameters::T_s, 0.5);
+  std::vector<RunData> runs = rig.RecordAll();
+  runs.pop_back();  // the bypassed one
+  for (RunData& run : runs) {
+    std::erase_if(run.signals,
+                  [](const SignalData& signal) { return signal.channel == model::Channel::kP1; });
+    run.measured.p1.values.clear();
+  }
+  const Localisation found = LocateIn(runs);
+  EXPECT_FALSE(found.judged);
+  EXPECT_THAT(found.location, IsEmpty());
+}
+
+// Tests that the signal that is predicted worst is named with the stretch where it is, of the run where it is.
+TEST(WorstSignal, IsNamedWithItsStretch) {
+  const std::vector<SignalGap> signals = {{model::Channel::kMotorSpeed, 0.3, {.before = 3, .after = 0.3}, {}},
+                                          {model::Channel::kP2, 1.5, {.before = 3, .after = 3}, {}}};
+  RunCurves still, moving;
+  still.run = "still";
+  moving.run = "moving";
+  still.time = moving.time = {0, 1, 2, 3};
+  still.curves = {{model::Channel::kMotorSpeed, {0, 0, 0, 0}, {0, 0.1, 0, 0}, {}}};
+  moving.curves = {{model::Channel::kMotorSpeed, {0, 5, 6, 0}, {0, 0, 0, 0.1}, {}}};
+  const std::vector<Location> found = WorstSignal(signals, {still, moving}, false);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].balance, "motor_speed");
+  EXPECT_NEAR(found[0].share, 99.0 / 102, 1e-9);
+  ASSERT_EQ(found[0].windows.size(), 1u);
+  EXPECT_EQ(found[0].windows[0].run, "moving");
+  EXPECT_EQ(found[0].windows[0].from, 1);
+  EXPECT_EQ(found[0].windows[0].to, 2);
+  EXPECT_EQ(WorstSignal(signals, {}, true).at(0).balance, "p2");
+  EXPECT_THAT(WorstSignal({{model::Channel::kP2, 1.5, {.before = 1.5}, {}}}, {}, false), IsEmpty());
 }
 
 // Tests that the same runs give the same localisation to the bit.

@@ -1,0 +1,183 @@
+#include "diagnose/say/lacking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "diagnose/balances/masks.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque", "flow_1",  "flow_2",
+                                                                  "arm_torque",  "level_1", "level_2"};
+constexpr uint64_t kDrawSeed = 11;
+// Of noise's variance, what it may be larger than the draws say: see EnergyOf.
+constexpr double kNoiseMargin = 1.5;
+constexpr size_t kFewestBlocks = 3;
+// Of the direction, -1 to 1: three standard deviations of the speed's noise.
+constexpr double kSure = 0.997;
+// s: as smooth as the motion that a balance sees.
+constexpr double kMaskRise = 0.008;
+constexpr size_t kNearBlocks = 16;  // blocks on either side whose noise is averaged
+
+bool AnyError(const SignalErrors& errors) {
+  return std::any_of(errors.of.begin(), errors.of.end(), [](const auto& of) { return !of.empty(); });
+}
+
+LackingRun LackingIn(const model::ModelDescription& model, const RunData& run, size_t which,
+                     const PressureOffsets& offsets) {
+  LackingRun lacking;
+  const RunMotion read = MotionOf(run, model.parameters);
+  const SignalErrors errors = ErrorsOf(model, read);
+  lacking.motion = AnyError(errors) ? Without(read, errors, 1) : read;
+  if (read.pressures) {
+    for (model::KnownMotion& at : lacking.motion.at) at.p1 -= offsets.p1, at.p2 -= offsets.p2;
+  }
+  lacking.base = SeriesOf(model, lacking.motion);
+  for (size_t b = 0; b < kBalanceKinds; ++b) lacking.lacking[b] = -lacking.base.left[b];
+  const BaseSeries plain = SeriesOf(model, read);
+  for (size_t draw = 0; draw < kNoiseDraws; ++draw) {
+    const uint64_t seed = kDrawSeed + kNoiseDraws * which + draw;
+    lacking.noise[draw] = Beyond(model, WithNoiseAgain(read, model.parameters, seed), plain);
+  }
+  return lacking;
+}
+
+// Where the pump's direction is not sure, dry friction may have any value: short stops are in no mask.
+void MaskReversals(LackingRun* run) {
+  std::vector<uint8_t>& mask = run->masks[static_cast<size_t>(BalanceKind::kTorque)];
+  for (size_t i = 0; i < mask.size(); ++i) {
+    if (std::abs(run->At(i).pump_direction) < kSure) mask[i] = 1;
+  }
+}
+
+// From 0 where masked to 1 at kMaskRise from there.
+Eigen::VectorXd WeightsOf(const std::vector<uint8_t>& mask, double interval) {
+  const double rise = std::max(1.0, kMaskRise / interval);
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(mask.size()));
+  double away = 0;
+  for (size_t i = 0; i < mask.size(); ++i) {
+    away = mask[i] != 0 ? 0 : away + 1;
+    weights[static_cast<Eigen::Index>(i)] = away;
+  }
+  away = 0;
+  for (size_t i = mask.size(); i-- > 0;) {
+    away = mask[i] != 0 ? 0 : away + 1;
+    double& weight = weights[static_cast<Eigen::Index>(i)];
+    weight = std::pow(std::sin(0.5 * std::numbers::pi * std::min(1.0, std::min(weight, away) / rise)), 2);
+  }
+  return weights;
+}
+
+// Appends the blocks of one run; their noise is that of their neighbours too.
+void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t length,
+               std::vector<Blocks::Block>* blocks) {
+  const size_t b = static_cast<size_t>(balance), before = blocks->size(), size = run.masks[b].size();
+  std::vector<double> drawn = {0};  // cumulative sums of the draws' squares
+  for (size_t first = 0; first + length <= size; first += length) {
+    Blocks::Block block{which, first, first + length, 0, 0};
+    double count = 0;
+    std::array<double, kNoiseDraws> noise{};
+    VisitBlock(block, run.weights[b], [&](size_t i, double weight) {
+      const auto at = static_cast<Eigen::Index>(i);
+      count += weight;
+      block.value += weight * run.lacking[b][at];
+      for (size_t draw = 0; draw < kNoiseDraws; ++draw) noise[draw] += weight * run.noise[draw][b][at];
+    });
+    if (2 * count < static_cast<double>(length)) continue;
+    block.value /= count;
+    double squares = 0;
+    for (const double value : noise) squares += value * value / (count * count);
+    drawn.push_back(drawn.back() + squares / kNoiseDraws);
+    blocks->push_back(block);
+  }
+  const size_t count = blocks->size() - before;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t first = i < kNearBlocks ? 0 : i - kNearBlocks, end = std::min(count, i + kNearBlocks + 1);
+    double& noise = (*blocks)[before + i].noise;
+    noise = std::sqrt((drawn[end] - drawn[first]) / static_cast<double>(end - first));
+    if (!(noise > 0)) noise = std::numeric_limits<double>::infinity();
+  }
+}
+
+// No run counts for more because its sensors happen to be quiet: a machine repeats itself less exactly than they read.
+void LevelNoise(Blocks* blocks) {
+  std::vector<double> noise;
+  for (const Blocks::Block& block : blocks->blocks) noise.push_back(block.noise);
+  if (noise.empty()) return;
+  const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
+  std::nth_element(noise.begin(), middle, noise.end());
+  for (Blocks::Block& block : blocks->blocks) block.noise = std::max(block.noise, *middle);
+}
+
+}  // namespace
+
+std::string NameOf(BalanceKind balance) { return kBalanceNames[static_cast<size_t>(balance)]; }
+
+std::string UnitOf(BalanceKind balance, const UnitSystem& units) {
+  switch (balance) {
+    case BalanceKind::kFlow1:
+    case BalanceKind::kFlow2:
+      return units.UnitFor("in^3/s");
+    case BalanceKind::kLevel1:
+    case BalanceKind::kLevel2:
+      return units.UnitFor("psi");
+    case BalanceKind::kArm:
+      return units.UnitFor("in-lbf", -1);
+    case BalanceKind::kTorque:
+      break;
+  }
+  return units.UnitFor("in-lbf");
+}
+
+std::vector<LackingRun> LackingIn(const model::ModelDescription& model,
+                                  const std::vector<const RunData*>& runs, int jobs,
+                                  const PressureOffsets& offsets) {
+  std::vector<LackingRun> all(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) { all[r] = LackingIn(model, *runs[r], r, offsets); });
+  std::vector<RunMotion> motions;
+  for (const LackingRun& run : all) motions.push_back(run.motion);
+  const HeldPressure held = FindHeldPressure(motions, model.parameters);
+  for (LackingRun& run : all) {
+    run.masks = MasksOf(run.motion, run.base.left, held, model.parameters);
+    const double interval = run.motion.step * static_cast<double>(run.motion.stride);
+    MaskReversals(&run);
+    for (size_t b = 0; b < kBalanceKinds; ++b) run.weights[b] = WeightsOf(run.masks[b], interval);
+  }
+  return all;
+}
+
+Blocks BlocksOf(const std::vector<LackingRun>& runs, BalanceKind balance, double duration) {
+  Blocks all;
+  all.duration = duration;
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const RunMotion& motion = runs[r].motion;
+    const double instants = duration / (motion.step * static_cast<double>(motion.stride));
+    AddBlocks(runs[r], r, balance, static_cast<size_t>(std::max(1.0, std::round(instants))), &all.blocks);
+  }
+  LevelNoise(&all);
+  return all;
+}
+
+double EnergyOf(const Blocks& blocks) {
+  double energy = 0;
+  for (const Blocks::Block& block : blocks.blocks)
+    energy += std::pow(block.value / block.noise, 2) - kNoiseMargin;
+  return energy;
+}
+
+Blocks LargestBlocks(const std::vector<LackingRun>& runs, BalanceKind balance) {
+  Blocks largest;
+  for (const double duration : kBlockLengths) {
+    Blocks blocks = BlocksOf(runs, balance, duration);
+    if (blocks.blocks.size() < kFewestBlocks) continue;
+    if (largest.blocks.empty() || EnergyOf(blocks) > EnergyOf(largest)) largest = std::move(blocks);
+  }
+  return largest;
+}
+
+}  // namespace hydro::diagnose
