@@ -186,19 +186,6 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
-  if (getenv("DBG"))
-    for (const size_t i : proposed.shown)
-      fprintf(stderr, "shown %s\n", model::BaseParameters()[i].info.name.c_str());
-  if (getenv("DBG"))
-    for (const auto& p : proposed.proposals) {
-      fprintf(stderr, "proposal w %.3f s %.1f:", p.weight, p.score);
-      for (auto& c : p.changes) fprintf(stderr, " %s", c.Label().c_str());
-      fprintf(stderr, " base:");
-      for (auto i : p.base)
-        fprintf(stderr, " %s=%.4g", model::BaseParameters()[i].info.name.c_str(),
-                p.model.parameters.*model::BaseParameters()[i].member);
-      fprintf(stderr, "\n");
-    }
   const WideSearch found =
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);

@@ -296,11 +296,17 @@ void BalanceEquations::PassStops(const KnownMotion& from, const KnownMotion& to)
   const double step = to.time - from.time, end = to.time + 1e-6 * step;
   early_ = 0;
   drive_before_.reset();
-  double stop = equations_.NextStop(from.time);
+  // Those of effects alone: the breaks of an imposed motion are in the motion that is known.
+  const auto next = [&] {
+    double stop = kUnbounded;
+    for (const auto& effect : equations_.data().effects) stop = std::min(stop, effect->NextStop(from.time));
+    return stop;
+  };
+  double stop = next();
   if (stop <= end) drive_before_ = Drive(to, from.voltage);
-  for (; stop <= end; stop = equations_.NextStop(from.time)) {
+  for (; stop <= end; stop = next()) {
     early_ = std::max(0.0, (to.time - stop) / step);
-    equations_.PassStop(stop);
+    for (const auto& effect : equations_.data().effects) effect->PassStop(stop);
   }
 }
 
