@@ -10,10 +10,10 @@
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
-#include "diagnose/recording_first.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
+#include "diagnose/recording_first.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
@@ -188,9 +188,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const Proposed proposed = Propose(context, allowed, checked.inverted);
   const WideSearch found =
       ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
-  Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
+  std::vector<WeightedSet> explanations;
   for (const WeighedExplanation& one : proposed.weights.explanations)
-    diagnosis.explanations.push_back({one.changes, one.weight});
+    explanations.push_back({one.changes, one.weight});
+  Diagnosis diagnosis = Conclude(context, found, explanations);
   diagnosis.set_90 = proposed.weights.in_90;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/word_list.h"
-#include "diagnose/search/proof.h"
 #include "diagnose/verdict/evidence.h"
 
 namespace hydro::diagnose {
@@ -75,20 +74,14 @@ void AddRivals(const Change& change, const std::vector<const Explanation*>& trie
 std::vector<Rival> RivalsOf(const Change& change, const SearchResult& search, const Explanation& refit,
                             const WindowTrials& windows, const std::map<std::string, double>& weights) {
   std::vector<Rival> rivals;
-  const Explanation* near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
-  if (near == nullptr || LeastGap(windows.tried) < kOutOfReach) {
-    std::vector<const Explanation*> proved = PointersToAll(search.tried);
-    proved.push_back(&refit);
-    AddRivals(change, proved, search.best, weights, &rivals);
+  const Explanation* near = windows.decide ? OnWindowsOf(windows, search.best.fitted.hypothesis) : nullptr;
+  if (near != nullptr) {
+    AddRivals(change, PointersToAll(windows.tried), *near, weights, &rivals);
+    return rivals;
   }
-  if (near == nullptr) return rivals;
-  std::vector<const Explanation*> only_there;
-  for (const Explanation& one : windows.tried) {
-    const bool proved = LeastGap(windows.tried) < kOutOfReach &&
-                        BestOf(search.tried, ClaimOf(one.fitted.hypothesis)) != nullptr;
-    if (!proved) only_there.push_back(&one);
-  }
-  AddRivals(change, only_there, *near, weights, &rivals);
+  std::vector<const Explanation*> whole = PointersToAll(search.tried);
+  whole.push_back(&refit);
+  AddRivals(change, whole, search.best, weights, &rivals);
   return rivals;
 }
 
