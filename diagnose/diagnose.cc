@@ -187,7 +187,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
   const WideSearch found =
-      ProveProposals(context, as_given, allowed, proposed.proposals, BlindChanges(context));
+      ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
+                     proposed.proposals, BlindChanges(context));
   std::vector<WeightedSet> explanations;
   for (const WeighedExplanation& one : proposed.weights.explanations)
     explanations.push_back({one.changes, one.weight});

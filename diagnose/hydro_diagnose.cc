@@ -18,6 +18,7 @@
 #include "base/text_file.h"
 #include "diagnose/data/checklist.h"
 #include "diagnose/recording_first.h"
+#include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/progress_bar.h"
 #include "diagnose/report/report_html.h"
 #include "diagnose/report/report_json.h"
@@ -142,8 +143,16 @@ void RequireInputsKept(const DiagnoseRequest& request) {
   for (const char* name : kReportFiles) CheckKeeps(request.folder + "/" + name, inputs);
 }
 
-Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagnose,
-                          const ProgressCallback& report_progress) {
+// Whether the runs are of a motor alone: the bypass is open in all, and none has pressures.
+bool IsMotorAlone(const std::vector<runs::MeasuredRun>& runs) {
+  return !runs.empty() && std::all_of(runs.begin(), runs.end(), [](const runs::MeasuredRun& run) {
+    return run.bypass && !run.p1.measured() && !run.p2.measured();
+  });
+}
+
+Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDescription& model,
+                          const Diagnoser& diagnose, const ProgressCallback& report_progress,
+                          bool* motor_alone) {
   DiagnoseOptions options;
   if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
   if (!request.free.empty()) options.free = SplitNames("--free", request.free);
@@ -151,17 +160,32 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
   options.jobs = request.jobs;
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
-  const model::ModelDescription model = settings::LoadModelFile(request.model);
   report_progress({"reading the runs", 0});
   std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
                                  held_out = ReadRuns(request.held_out, model.units);
   TellApart(request, &runs, &held_out);
+  *motor_alone = IsMotorAlone(runs) && (held_out.empty() || IsMotorAlone(held_out));
   try {
     return diagnose(model, std::move(runs), std::move(held_out), options, report_progress);
   } catch (const model::ModelError& error) {
     throw InputError(request.model + ": found a model that cannot follow the runs: " + error.what() +
                      ", allowed a model that can: check the shaft and the units that each run states");
   }
+}
+
+// The report's files, by name.
+std::vector<std::pair<std::string, std::string>> ReportFiles(const Diagnosis& diagnosis,
+                                                             const Diagnosis& shown,
+                                                             const model::ModelDescription& given, bool si,
+                                                             const std::function<double()>& elapsed) {
+  const bool next = !diagnosis.next.config.empty();
+  const std::string model = CommentedModel(diagnosis, given);
+  std::vector<std::pair<std::string, std::string>> files;
+  files.emplace_back("report.html", ReportHtml(shown, si, model));
+  files.emplace_back("model.toml", model);
+  if (next) files.emplace_back("next.toml", diagnosis.next.config);
+  files.emplace_back("report.json", ReportJson(diagnosis, next ? "next.toml" : "", elapsed()));
+  return files;
 }
 
 }  // namespace
@@ -282,23 +306,23 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   const auto elapsed = [begin] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
+  const model::ModelDescription given = settings::LoadModelFile(request.model);
   Diagnosis diagnosis;
+  bool motor_alone = false;
   {
     const bool terminal = isatty(fileno(err)) != 0;
     ProgressBar bar(err, terminal);
-    diagnosis =
-        ReadAndDiagnose(request, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); });
+    diagnosis = ReadAndDiagnose(
+        request, given, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); },
+        &motor_alone);
     bar.Show({"writing the report", 1}, elapsed());
   }
-  const bool next = !diagnosis.next.config.empty();
-  std::vector<std::pair<std::string, std::string>> files;
-  files.emplace_back("report.html", ReportHtml(diagnosis, request.si));
-  files.emplace_back("model.toml", settings::FormatModel(diagnosis.model));
-  if (next) files.emplace_back("next.toml", diagnosis.next.config);
-  files.emplace_back("report.json", ReportJson(diagnosis, next ? "next.toml" : "", elapsed()));
-  folder.Write(files);
-  if (!next) folder.Remove("next.toml");  // from an earlier report
-  std::fputs(TerminalSummary(diagnosis, request.folder, request.si).c_str(), out);
+  if (motor_alone) SpeakOfTheMotor(&diagnosis);
+  Diagnosis shown = diagnosis;
+  if (motor_alone) ShowTheMotorAlone(&shown);
+  folder.Write(ReportFiles(diagnosis, shown, given, request.si, elapsed));
+  if (diagnosis.next.config.empty()) folder.Remove("next.toml");  // from an earlier report
+  std::fputs(TerminalSummary(shown, request.folder, request.si).c_str(), out);
 }
 
 }  // namespace hydro::diagnose

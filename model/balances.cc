@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "model/equations/evaluate.h"
@@ -188,6 +189,15 @@ double AboveHeldLevel(const EquationData& m, const KnownMotion& at, const double
   return at.*pressure - (first - flow_1 / slope);
 }
 
+// Whether an ideal one-way valve is open: a low pressure that falls less than it would with the valve closed. How far above p_3
+// low may be: what an accumulator's pressure moves by, and far below what a pump makes.
+bool PassesOil(const EquationData& m, double pressure, double closed_rate, double rate) {
+  constexpr double kLow = 0.1, kLess = 0.2;
+  if (!m.ideal_valves || pressure > m.parameters.p_3 + kLow * m.parameters.T_pmax / m.parameters.D)
+    return false;
+  return closed_rate < 0 && rate - closed_rate > -kLess * closed_rate;
+}
+
 bool RemembersCommands(const Effect& effect) {
   // An effect that remembers commands waits for the time at which it passes one on.
   return effect.NextStop(-kUnbounded) < kUnbounded;
@@ -205,6 +215,8 @@ BalanceEquations::BalanceEquations(const ModelDescription& model, ActuatorOption
                                                            : numbers_.own.at(unknowns[u].index);
     seeded.SetDerivative(static_cast<int>(u), 1);
   }
+  // The equations skip the weight of an arm that has none, and with it the derivative.
+  if (numbers_.parameters.mgl.a == 0) numbers_.parameters.mgl.a = std::numeric_limits<double>::min();
   CompleteNumbers<Jet>(data, &numbers_);
   first_state_ = data.shaft == Shaft::kFree ? 6 : 4;
   own_.assign(static_cast<size_t>(data.states - first_state_), 0.0);
@@ -248,8 +260,8 @@ void BalanceEquations::OwnRates(const KnownMotion& motion, double* state, double
   EvaluateMotion<double>(data, data, motion, state, pump, arm, rates, x);
   Mode mode;
   mode.pump = static_cast<int8_t>(pump);
-  // An open ideal valve holds its side: what the accumulator then gives shows in its own balance.
-  mode.valve_1 = motion.p1_rate == 0 && motion.p1 <= data.parameters.p_3 ? 1 : 0;
+  mode.valve_1 = PassesOil(data, x.p1, x.free_rate_1, motion.p1_rate) ? 1 : 0;
+  mode.valve_2 = PassesOil(data, x.p2, x.free_rate_2, motion.p2_rate) ? 1 : 0;
   x.mode = &mode;
   x.p_3_rate = 0;
   ForEachEffect(data, data, x, [&](const Effect& effect) { effect.AddBalances(x, rates); });
@@ -274,10 +286,36 @@ void BalanceEquations::FindJacobian(const KnownMotion& motion) {
 }
 
 void BalanceEquations::Advance(const KnownMotion& from, const KnownMotion& to) {
-  if (commands_) {
-    equations_.Command(from.time, from.voltage);
-    while (equations_.NextStop(from.time) <= to.time) equations_.PassStop(equations_.NextStop(from.time));
+  if (commands_) equations_.Command(from.time, from.voltage);
+  AdvanceStates(from, to);
+  if (commands_) PassStops(from, to);
+}
+
+void BalanceEquations::PassStops(const KnownMotion& from, const KnownMotion& to) {
+  // Rounding must not make a delay of whole samples one sample longer.
+  const double step = to.time - from.time, end = to.time + 1e-6 * step;
+  early_ = 0;
+  drive_before_.reset();
+  double stop = equations_.NextStop(from.time);
+  if (stop <= end) drive_before_ = Drive(to, from.voltage);
+  for (; stop <= end; stop = equations_.NextStop(from.time)) {
+    early_ = std::max(0.0, (to.time - stop) / step);
+    equations_.PassStop(stop);
   }
+}
+
+double BalanceEquations::Drive(KnownMotion motion, double voltage) const {
+  motion.voltage = voltage;
+  double state[kMaxStates];
+  CopyStates(motion, state);
+  return Blended<double>(equations_.data(), equations_.data(), motion, state).drive;
+}
+
+double BalanceEquations::DriveBefore(const KnownMotion& motion, double voltage) const {
+  return drive_before_ ? *drive_before_ : Drive(motion, voltage);
+}
+
+void BalanceEquations::AdvanceStates(const KnownMotion& from, const KnownMotion& to) {
   if (own_.empty()) return;
   if (++since_jacobian_ > kSamplesOfAJacobian) {
     FindJacobian(from);

@@ -2,13 +2,11 @@
 // add, along the given motion. The gap finder compares measured motion with the model by these.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-// GCC takes the names of channels for shadows of the states' places where those come first.
-// clang-format off
-#include "model/unknown.h"
 #include "model/equations/equations.h"
-// clang-format on
+#include "model/unknown.h"
 
 namespace hydro::model {
 
@@ -53,6 +51,11 @@ class BalanceEquations {
   void Start(const KnownMotion& motion);
   // Moves the states of effects on to the next sample. The voltage of `from` is held until then.
   void Advance(const KnownMotion& from, const KnownMotion& to);
+  // The motor's torque at an instant before its command acts: `voltage` is the one held until then.
+  double DriveBefore(const KnownMotion& motion, double voltage) const;
+  // Whether a late command acted during the last sample, and by which part of it before its end, 0 to 1.
+  bool acted_late() const { return drive_before_.has_value(); }
+  double early() const { return early_; }
 
   BalancesOf<double> Values(const KnownMotion& motion) const;
   BalancesOf<Jet> At(const KnownMotion& motion) const;
@@ -63,6 +66,9 @@ class BalanceEquations {
   void CopyStates(const KnownMotion& motion, double* state) const;
   void OwnRates(const KnownMotion& motion, double* state, double* rate) const;
   void FindJacobian(const KnownMotion& motion);
+  void AdvanceStates(const KnownMotion& from, const KnownMotion& to);
+  void PassStops(const KnownMotion& from, const KnownMotion& to);
+  double Drive(KnownMotion motion, double voltage) const;
 
   Equations equations_;
   NumbersOf<Jet> numbers_;                      // with derivatives by the unknowns
@@ -71,6 +77,8 @@ class BalanceEquations {
   std::vector<double> own_;                     // the effects' states
   std::vector<double> jacobian_, step_matrix_;  // of their rates by themselves, by rows; of a sample
   int since_jacobian_ = 0;
+  double early_ = 0;
+  std::optional<double> drive_before_;  // where a late command acted during the last sample
 };
 
 }  // namespace hydro::model

@@ -40,11 +40,20 @@ BalanceSeries Empty(const RunMotion& run) {
   return series;
 }
 
-// A held value acts from its instant on: at the instant itself the mean of the two is what a filter sees.
-std::vector<double> SmoothHeld(const std::vector<double>& held, double step) {
-  std::vector<double> middle(held);
-  for (size_t k = 1; k < held.size(); ++k) middle[k] = 0.5 * (held[k - 1] + held[k]);
+std::vector<double> SmoothDrive(const std::vector<double>& middle, double step) {
   return Smoothed(middle, SmoothingOf(step) / step);
+}
+
+// What a filter sees of the motor's torque at an instant at which it may jump: the mean of both. A jump before the instant, where a
+// command acts late by part of a sample, counts in both samples beside it, so that its time stays what it is.
+void SetMiddle(const model::BalanceEquations& equations, const RunMotion& run, size_t k, double drive,
+               std::vector<double>* middle) {
+  (*middle)[k] = drive;
+  if (k == 0) return;
+  if (!equations.acted_late() && run.at[k].voltage == run.at[k - 1].voltage) return;
+  const double jump = drive - equations.DriveBefore(run.at[k], run.at[k - 1].voltage);
+  (*middle)[k] -= 0.5 * (1 - equations.early()) * jump;
+  (*middle)[k - 1] += 0.5 * equations.early() * jump;
 }
 
 // Calls visit(k, balances) at every instant in turn, states along with the motion.
@@ -96,16 +105,18 @@ BaseSeries SeriesOf(const model::ModelDescription& model, const RunMotion& run) 
   BaseSeries base;
   base.left = Empty(run);
   base.drive.raw.resize(run.size());
+  base.drive.middle.resize(run.size());
   WalkAlong(model, run, 1, [&](size_t k, const model::BalanceEquations& equations) {
     const model::BalancesOf<double> left = equations.Values(run.at[k]);
     base.drive.raw[k] = left.drive;
+    SetMiddle(equations, run, k, left.drive, &base.drive.middle);
     if (k % run.stride != 0) return;
     for (const BalanceKind balance : kAllBalances) {
       Eigen::VectorXd& series = base.left[Place(balance)];
       if (series.size() > 0) series[static_cast<Eigen::Index>(k / run.stride)] = Part(left, balance);
     }
   });
-  base.drive.smooth = SmoothHeld(base.drive.raw, run.step);
+  base.drive.smooth = SmoothDrive(base.drive.middle, run.step);
   Eigen::VectorXd& torque = base.left[Place(BalanceKind::kTorque)];
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
     const auto k = static_cast<size_t>(i) * run.stride;
@@ -116,13 +127,14 @@ BaseSeries SeriesOf(const model::ModelDescription& model, const RunMotion& run) 
 
 BalanceSeries Beyond(const model::ModelDescription& model, const RunMotion& run, const BaseSeries& base) {
   BalanceSeries beyond = Empty(run);
-  std::vector<double> drive(run.size(), 0.0);
+  std::vector<double> raw(run.size(), 0.0), middle(run.size(), 0.0);
   const auto pass = [&](size_t stride) {
     bool driven = false;
     WalkAlong(model, run, stride, [&](size_t k, const model::BalanceEquations& equations) {
       const model::BalancesOf<double> left = equations.Values(run.at[k]);
-      drive[k] = left.drive - base.drive.raw[k];
-      driven |= drive[k] != 0;
+      raw[k] = left.drive - base.drive.raw[k];
+      driven |= raw[k] != 0;
+      if (stride == 1) SetMiddle(equations, run, k, left.drive, &middle);
       if (k % run.stride != 0) return;
       for (const BalanceKind balance : kAllBalances) {
         Eigen::VectorXd& series = beyond[Place(balance)];
@@ -138,11 +150,12 @@ BalanceSeries Beyond(const model::ModelDescription& model, const RunMotion& run,
   if (driven && !likely && run.stride > 1) driven = pass(1);
   Eigen::VectorXd& torque = beyond[Place(BalanceKind::kTorque)];
   if (torque.size() == 0) return beyond;
-  const std::vector<double> smooth = driven ? SmoothHeld(drive, run.step) : std::vector<double>{};
+  for (size_t k = 0; k < middle.size() && driven; ++k) middle[k] -= base.drive.middle[k];
+  const std::vector<double> smooth = driven ? SmoothDrive(middle, run.step) : std::vector<double>{};
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
     const auto k = static_cast<size_t>(i) * run.stride;
     torque[i] += base.drive.smooth[k] - base.drive.raw[k];
-    if (driven) torque[i] += smooth[k] - drive[k];
+    if (driven) torque[i] += smooth[k] - raw[k];
   }
   return beyond;
 }
@@ -205,8 +218,8 @@ SignalErrors ErrorsOf(const model::ModelDescription& model, const RunMotion& run
   for (std::vector<double>& of : errors.of) of.assign(run.size(), 0.0);
   WalkAlong(model, run, 1, [&](size_t k, const model::BalanceEquations& equations) {
     const model::ReadingErrors read = equations.Errors(run.at[k]);
-    const double values[kMeasured] = {read.motor_speed, read.motor_angle, read.arm_angle, read.p1, read.p2};
-    for (size_t s = 0; s < kMeasured; ++s) errors.of[s][k] = values[s];
+    const double values[kGridChannels] = {read.motor_speed, read.motor_angle, read.arm_angle, read.p1, read.p2};
+    for (size_t s = 0; s < kGridChannels; ++s) errors.of[s][k] = values[s];
   });
   for (std::vector<double>& of : errors.of) {
     if (std::all_of(of.begin(), of.end(), [](double value) { return value == 0; })) of.clear();

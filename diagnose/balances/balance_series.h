@@ -26,8 +26,9 @@ bool CanForm(const RunMotion& run, BalanceKind balance);
 
 // What the motor's torque is over time, smoothed as the signals are.
 struct Drive {
-  std::vector<double> raw;     // at every instant, as held
-  std::vector<double> smooth;  // at every instant
+  std::vector<double> raw;     // at every instant, from then on
+  std::vector<double> middle;  // the mean of just before and from then on
+  std::vector<double> smooth;  // `middle`, smoothed
 };
 
 struct BaseSeries {

@@ -90,7 +90,7 @@ BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalEr
   const RunMotion& motion = maker.Motion(run);
   // A thousandth of the signals' own ranges: the balances are all but linear there, and rounding is far.
   double largest = 0;
-  for (size_t s = 0; s < kMeasured; ++s) {
+  for (size_t s = 0; s < kGridChannels; ++s) {
     if (errors.of[s].empty() || !motion.signals[s].measured()) continue;
     const double range = RangeOfValues(motion.signals[s].values).size();
     for (const double error : errors.of[s])

@@ -71,6 +71,24 @@ struct Together {
   int switches = 0;
 };
 
+// The series of an amount of an effect that has states: by a change that is small against the balances.
+void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
+  const EffectVariant& variant = maker->setup->variants[v];
+  double amount = Probe(variant, maker->Motion(run));
+  for (int pass = 0; pass < 2; ++pass) {
+    const model::ModelDescription with = With(maker->setup->given, AtAmount(variant, parameter, amount, 0));
+    const BalanceSeries change = Beyond(with, maker->Motion(run), (*maker->base)[run]);
+    double largest = 0;
+    for (size_t b = 0; b < kBalanceKinds; ++b) {
+      if (change[b].size() == 0 || !(maker->setup->sizes.of[b] > 0)) continue;
+      largest = std::max(largest, change[b].cwiseAbs().maxCoeff() / maker->setup->sizes.of[b]);
+    }
+    if (!(largest > 0) || !std::isfinite(largest)) return;
+    if (pass == 1 || variant.is_time) return maker->Put(column, run, change, 1 / amount);
+    amount *= kSmallChange / largest;
+  }
+}
+
 // One evaluation of the model with all these effects, at amounts of 0.
 void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   model::ModelDescription model = maker->setup->given;
@@ -95,23 +113,19 @@ void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   }
   const std::vector<BalanceSeries> series = DerivativesOf(model, maker->Motion(run), unknowns);
   for (size_t u = 0; u < series.size(); ++u) maker->Put(together.columns[u], run, series[u]);
-}
-
-// The series of an amount of an effect that has states: by a change that is small against the balances.
-void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
-  const EffectVariant& variant = maker->setup->variants[v];
-  double amount = Probe(variant, maker->Motion(run));
-  for (int pass = 0; pass < 2; ++pass) {
-    const model::ModelDescription with = With(maker->setup->given, AtAmount(variant, parameter, amount, 0));
-    const BalanceSeries change = Beyond(with, maker->Motion(run), (*maker->base)[run]);
-    double largest = 0;
-    for (size_t b = 0; b < kBalanceKinds; ++b) {
-      if (change[b].size() == 0 || !(maker->setup->sizes.of[b] > 0)) continue;
-      largest = std::max(largest, change[b].cwiseAbs().maxCoeff() / maker->setup->sizes.of[b]);
+  if (!series.empty()) return;
+  // Some of them change the motor's torque, which only a change of the whole shows, and hide the others.
+  size_t next = 0;
+  for (const size_t v : together.variants) {
+    const std::vector<std::string>& amounts = maker->setup->variants[v].amounts;
+    const auto from = together.columns.begin() + static_cast<std::ptrdiff_t>(next);
+    const std::vector<int> columns(from, from + static_cast<std::ptrdiff_t>(amounts.size()));
+    next += amounts.size();
+    if (together.variants.size() > 1) {
+      PutTogether(maker, {{v}, columns, together.switches}, run);
+      continue;
     }
-    if (!(largest > 0) || !std::isfinite(largest)) return;
-    if (pass == 1 || variant.is_time) return maker->Put(column, run, change, 1 / amount);
-    amount *= kSmallChange / largest;
+    for (size_t a = 0; a < amounts.size(); ++a) PutWithMemory(maker, v, amounts[a], columns[a], run);
   }
 }
 
@@ -157,7 +171,7 @@ double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const
     const double amount = Probe(variant, run);
     const SignalErrors errors =
         ErrorsOf(With(maker.setup->given, AtAmount(variant, parameter, amount, 0)), run);
-    for (size_t s = 0; s < kMeasured; ++s) {
+    for (size_t s = 0; s < kGridChannels; ++s) {
       if (errors.of[s].empty() || !run.signals[s].measured()) continue;
       double sum = 0;
       for (const double error : errors.of[s]) sum += error * error;

@@ -41,7 +41,7 @@ Eigen::VectorXd Lagged(const Eigen::VectorXd& x, double step, double time) {
 
 // What a signal reads too much where it is late by a second, to first order.
 SignalErrors LateBySecond(const RunMotion& run, GridChannel signal) {
-  double model::KnownMotion::*const rates[kMeasured] = {
+  double model::KnownMotion::*const rates[kGridChannels] = {
       &model::KnownMotion::motor_acceleration, &model::KnownMotion::motor_speed,
       &model::KnownMotion::arm_speed, &model::KnownMotion::p1_rate, &model::KnownMotion::p2_rate};
   const auto place = static_cast<size_t>(signal);

@@ -24,10 +24,10 @@ constexpr double kBalanceStep = 2e-3;
 constexpr double kTurnPart = 1e-3;
 constexpr double kTurnNoise = 3;
 
-constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kMeasured] = {
+constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kGridChannels] = {
     &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
     &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
-constexpr model::Channel kChannelOf[kMeasured] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
+constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
                                                   model::Channel::kArmAngle, model::Channel::kP1,
                                                   model::Channel::kP2};
 
@@ -275,8 +275,8 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   motion.stride =
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
   motion.voltage = HeldOnGrid(run, motion.step, count);
-  for (size_t s = 0; s < kMeasured; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
-  for (size_t s = 0; s < kMeasured; ++s) {
+  for (size_t s = 0; s < kGridChannels; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
+  for (size_t s = 0; s < kGridChannels; ++s) {
     if (std::find(inverted.begin(), inverted.end(), ChannelName(kChannelOf[s])) == inverted.end()) continue;
     for (double& value : motion.signals[s].values) value = -value;
   }

@@ -15,7 +15,7 @@ namespace hydro::diagnose {
 
 // The signals that balances are made of.
 enum class GridChannel { kSpeed, kAngle, kArm, kP1, kP2 };
-inline constexpr size_t kMeasured = 5;
+inline constexpr size_t kGridChannels = 5;
 
 // One signal on the grid, as measured: gaps bridged.
 struct GridSignal {
@@ -34,7 +34,7 @@ struct RunMotion {
   size_t stride = 1;               // every stride-th instant is enough for the balances
   std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
   std::vector<double> voltage;  // held from each instant to the next
-  std::array<GridSignal, kMeasured> signals;
+  std::array<GridSignal, kGridChannels> signals;
   bool pressures = false;              // both were measured, and the two sides are not connected
   bool arm_moves = false;              // and was measured
   bool speed_known = false;            // measured, or from the angle
@@ -58,7 +58,7 @@ RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, u
 // The same with `errors`, one series of values a signal (empty: none), taken off what was measured, times `part`. The series are of
 // smoothed signals.
 struct SignalErrors {
-  std::array<std::vector<double>, kMeasured> of;
+  std::array<std::vector<double>, kGridChannels> of;
 };
 RunMotion Without(const RunMotion& run, const SignalErrors& errors, double part);
 

@@ -68,13 +68,17 @@ void AddWaveColumns(ColumnMaker* maker) {
     maker->works.back().push_back([maker, v, parts](size_t run) {
       const BalanceSeries carrier = CarrierOf(*maker, v, run);
       const RunMotion& motion = maker->Motion(run);
+      const double smoothing = SmoothingOf(motion.step);
       for (const Part& part : parts) {
         if (part.run != run) continue;
         BalanceSeries wave = carrier;
         for (Eigen::VectorXd& series : wave) {
           for (Eigen::Index i = 0; i < series.size(); ++i) {
-            const double angle = part.periods * motion.at[static_cast<size_t>(i) * motion.stride].motor_angle;
-            series[i] *= part.sine ? std::sin(angle) : std::cos(angle);
+            const model::KnownMotion& at = motion.at[static_cast<size_t>(i) * motion.stride];
+            const double angle = part.periods * at.motor_angle;
+            // What the Gaussian that smooths the signals leaves of this frequency.
+            const double left = std::exp(-0.5 * std::pow(part.periods * at.motor_speed * smoothing, 2));
+            series[i] *= left * (part.sine ? std::sin(angle) : std::cos(angle));
           }
         }
         maker->Put(part.column, run, wave);

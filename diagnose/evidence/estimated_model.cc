@@ -21,13 +21,30 @@ constexpr double kLeastPart = 0.05;
 constexpr double kMostMove = 2;
 constexpr double kMoveStep = 0.1;
 
-// The sum of the amounts of all columns of a base parameter that hold for all runs.
-std::map<size_t, double> Deviations(const ScanRuns& runs, const SetFit& fit) {
+// Whether any balance of the runs has the column. One that none has may still seem to move, with what it shares a yardstick with.
+bool Acts(const Rows& rows, int column) {
+  return std::any_of(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& block) {
+    const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+    if (found == block.columns.end() || *found != column) return false;
+    return block.X.col(found - block.columns.begin()).squaredNorm() > 0;
+  });
+}
+
+// A value is shown by runs that make its interval smaller than it was by this part at least.
+constexpr double kShown = 0.9;
+
+// The sum of the amounts of all columns of a base parameter that hold for all runs, of those that the runs show.
+std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, const SetFit& fit) {
   std::map<size_t, double> sums;
   for (size_t i = 0; i < fit.columns.size(); ++i) {
     const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
-    if (meaning.kind == MeaningKind::kBase && meaning.run < 0)
-      sums[meaning.base] += fit.amounts[static_cast<Eigen::Index>(i)] * meaning.unit;
+    if (meaning.kind != MeaningKind::kBase || meaning.run >= 0) continue;
+    const auto place = static_cast<Eigen::Index>(i);
+    if (!Acts(rows, fit.columns[i])) continue;
+    const double before = rows.prior(fit.columns[i], fit.columns[i]);
+    if (fit.covariance(place, place) < kShown * kShown * before ||
+        !rows.columns[static_cast<size_t>(fit.columns[i])].set.empty())
+      sums[meaning.base] += fit.amounts[place] * meaning.unit;
   }
   return sums;
 }
@@ -38,10 +55,10 @@ void ScaleFlows(double by, Parameters* p) {
   for (double Parameters::*member : {&Parameters::c, &Parameters::c_E, &Parameters::c_I}) p->*member *= by;
 }
 
-void SetBase(const ScanRuns& runs, const SetFit& fit, EstimatedModel* estimated) {
+void SetBase(const ScanRuns& runs, const Rows& rows, const SetFit& fit, EstimatedModel* estimated) {
   Parameters& p = estimated->model.parameters;
   const Parameters given = p;
-  for (const auto& [base, amount] : Deviations(runs, fit)) {
+  for (const auto& [base, amount] : Deviations(runs, rows, fit)) {
     const model::BaseParameter& parameter = model::BaseParameters()[base];
     const double before = given.*parameter.member;
     double value = before != 0 ? before * std::max(kLeastPart, 1 + amount) : amount;
@@ -170,7 +187,7 @@ std::optional<EstimatedModel> ModelOf(const ScanRuns& runs, const Rows& rows, co
                                       const SetFit& fit) {
   EstimatedModel estimated;
   estimated.model = runs.setup().given;
-  SetBase(runs, fit, &estimated);
+  SetBase(runs, rows, fit, &estimated);
   SetGivenEffects(runs, fit, &estimated);
   for (const std::string& name : set) {
     if (name.starts_with("run.")) continue;

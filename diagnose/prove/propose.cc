@@ -62,6 +62,25 @@ void Invert(const std::string& sensor, Proposal* proposal) {
   for (model::ModelDescription& model : proposal->without) model.effects.push_back(effect);
 }
 
+// What a fit may move: values that the runs show, and the yardsticks of the balances that could be formed.
+std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
+                          const std::vector<size_t>& allowed) {
+  bool torque = false, arm = false;
+  for (const RowBlock& block : rows.blocks) {
+    torque |= block.balance == BalanceKind::kTorque;
+    arm |= block.balance == BalanceKind::kArm;
+  }
+  std::vector<size_t> shown;
+  for (const size_t place : allowed) {
+    double model::Parameters::*member = model::BaseParameters()[place].member;
+    const bool yardstick =
+        (torque && member == &model::Parameters::k_1) || (arm && member == &model::Parameters::k_2);
+    if (yardstick || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
+      shown.push_back(place);
+  }
+  return shown;
+}
+
 std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   std::vector<std::string> remarks;
   for (const RunMotion& motion : runs.motions()) {
@@ -108,6 +127,7 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
     const SetFit fit = evidence.Fit(set);
     const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
     if (!estimated || IsImpossible(rows, set, fit)) continue;
+    if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,

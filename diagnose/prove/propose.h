@@ -14,6 +14,8 @@ struct Proposed {
   ExplanationWeights weights;       // of all sets that the balances tell apart
   // What the balances alone say of every set that was tried: score beyond that of nothing, best first.
   std::vector<ScoredSet> scores;
+  // Of the base parameters that may differ, those that the runs show, and those by which their balances are measured.
+  std::vector<size_t> shown;
   std::vector<std::string>
       remarks;  // on signals that contradict each other, and effects that are doubles of values
 };

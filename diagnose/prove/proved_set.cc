@@ -74,7 +74,7 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   if (!other.tested()) return false;
   if (!set.tested()) return true;
   const GapFall far = FallOf(set.far, other.far);
-  return FallOf(set.near, other.near).logarithm > 0 && far.logarithm >= -far.error;
+  return FallOf(set.near, other.near).Exceeds(0) && far.logarithm >= -far.error;
 }
 
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without) {

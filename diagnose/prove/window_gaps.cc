@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "diagnose/data/thinned.h"
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/run_cost.h"
@@ -17,6 +18,10 @@
 namespace hydro::diagnose {
 
 namespace {
+
+// A start is mended by so many steps of least squares, while each takes a part of the squared gap.
+constexpr int kStartSteps = 3;
+constexpr double kStartGain = 0.9;
 
 using Eigen::MatrixXd;
 
@@ -98,16 +103,38 @@ double WindowGap::Typical() const {
   return channels > 0 ? std::exp(logarithms / channels) : std::numeric_limits<double>::quiet_NaN();
 }
 
+// The window as a start should be fitted to it: what the model leaves of a channel is not the sensor's noise, and a start that had to
+// mend the channel with the finest sensor would spoil the others.
+RunData WithWhatIsLeft(const RunData& window, const WindowGap& gap) {
+  RunData weighed = ThinnedCopy(window);
+  for (SignalData& signal : weighed.signals) {
+    const double left = gap.squared[static_cast<size_t>(signal.channel)];
+    if (left > 1) signal.noise *= std::sqrt(left);
+  }
+  return weighed;
+}
+
 WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
   Hypothesis held;
   held.model = model;
-  WindowGap measured, corrected;
-  const model::StartState from = AtBestTurn(model, window, window.start);
-  const bool there = SetResiduals(model, window, from, &measured);
-  const std::optional<model::StartState> start = BetterStart(held, window, from);
-  if (!start.has_value() || *start == from) return measured;
-  const bool better = SetResiduals(model, window, *start, &corrected) && corrected.sum < measured.sum;
-  return better || !there ? corrected : measured;
+  WindowGap best;
+  model::StartState from = AtBestTurn(model, window, window.start);
+  if (!SetResiduals(model, window, from, &best)) {
+    const std::optional<model::StartState> start = BetterStart(held, window, from);
+    if (start.has_value()) SetResiduals(model, window, *start, &best);
+    return best;
+  }
+  for (int step = 0; step < kStartSteps; ++step) {
+    const std::optional<model::StartState> start = BetterStart(held, WithWhatIsLeft(window, best), from);
+    if (!start.has_value() || *start == from) break;
+    WindowGap corrected;
+    if (!SetResiduals(model, window, *start, &corrected) || !(corrected.Typical() < best.Typical())) break;
+    const bool enough = corrected.Typical() > kStartGain * best.Typical();
+    best = std::move(corrected);
+    from = *start;
+    if (enough) break;
+  }
+  return best;
 }
 
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/report/html_parts.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/report/terminal_summary.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/sentence.h"
 #include "page/figure_svg.h"
@@ -103,26 +105,35 @@ std::string GapCells(const BeforeAfter& gap) {
   return NumberCell(gap.before) + NumberCell(gap.refit_only) + NumberCell(gap.after);
 }
 
-// How many changes an explanation makes.
-size_t Parts(const Candidate& candidate) {
-  size_t parts = 1;
-  for (size_t at = candidate.id.find(" + "); at != std::string::npos; at = candidate.id.find(" + ", at + 3))
-    ++parts;
-  return parts;
+// Whether the missing terms of an explanation are the effects that were found.
+bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) {
+  std::set<std::string> terms, found;
+  for (const std::string& change : explanation.changes) {
+    const bool is_value = change.starts_with("value.") || change.starts_with("run.");
+    if (!is_value) terms.insert(change.substr(0, change.find('(')));
+  }
+  for (const FoundEffect& effect : diagnosis.effects) found.insert(effect.id);
+  if (terms.empty() && found.empty()) return explanation.changes.empty() == diagnosis.parameters.empty();
+  if (terms == found) return true;
+  for (const Closure& closure : diagnosis.closures) found.insert(closure.id);
+  return terms == found;
 }
 
-// By weight.
-std::vector<const Candidate*> Likeliest(const Diagnosis& diagnosis) {
-  constexpr double kWorthARow = 0.005;
-  constexpr size_t kMostRows = 8;
-  std::vector<const Candidate*> likeliest;
-  for (const Candidate& candidate : diagnosis.candidates) {
-    if (candidate.weight >= kWorthARow) likeliest.push_back(&candidate);
+// What the weights together say.
+std::string WeightsInWords(size_t set_90, bool first_was_found) {
+  std::string words = "By the balances of the runs, ";
+  if (set_90 <= 1) {
+    words += "the first is the truth nine times in ten: they tell it from all others.";
+  } else {
+    const bool two = set_90 == 2;
+    words += "one of the first " + (two ? "two" : std::to_string(set_90)) +
+             " is the truth nine times in ten: they cannot tell " + (two ? "the two" : "these") +
+             " apart more surely.";
   }
-  std::stable_sort(likeliest.begin(), likeliest.end(),
-                   [](const Candidate* a, const Candidate* b) { return a->weight > b->weight; });
-  if (likeliest.size() > kMostRows) likeliest.resize(kMostRows);
-  return likeliest;
+  if (first_was_found) return words;
+  return words +
+         " The likeliest of them is not what predicts held-out runs best, and that is what counts: see "
+         "what was found.";
 }
 
 }  // namespace
@@ -135,36 +146,41 @@ std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
 }
 
 std::string HowSure(const Diagnosis& diagnosis) {
-  std::string effects, explanations;
-  size_t most_taken = 0;
-  for (const Candidate& candidate : diagnosis.candidates) {
-    if (candidate.rejected_because.empty()) most_taken = std::max(most_taken, Parts(candidate));
-  }
+  std::string effects;
   for (const FoundEffect& effect : diagnosis.effects) {
     effects += "<tr>" + Cell(effect.id) + PercentCell(effect.weight) + PercentCell(effect.share) +
                Cell(effect.tied_with.empty() ? "nothing" : Joined(InWords(effect.tied_with))) + "</tr>\n";
   }
-  for (const Candidate* candidate : Likeliest(diagnosis)) {
-    const bool taken = Parts(*candidate) == most_taken, part = candidate->rejected_because.empty();
-    explanations += std::string(taken && part ? "<tr class=\"taken\">" : "<tr>") + Cell(candidate->id) +
-                    PercentCell(candidate->weight) +
-                    (part ? taken ? "<td>what was found</td>" : "<td>a part of what was found</td>"
-                          : Cell(candidate->rejected_because)) +
-                    "</tr>\n";
+  if (effects.empty()) return "";
+  return Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow") +
+         "<p>The weight says how likely an effect is among all that was simulated: how often a model with it "
+         "predicts best when the runs, and parts of them, count more or less at random. The share says how "
+         "much it does: the part of the held-out squared gap that comes back without it. An effect may be "
+         "certain and do little.</p>\n";
+}
+
+std::string WhatMayExplain(const Diagnosis& diagnosis) {
+  constexpr double kWorthARow = 0.005;
+  constexpr size_t kMostRows = 8;
+  std::string rows;
+  bool marked = false, first_was_found = false;
+  for (size_t i = 0; i < diagnosis.explanations.size(); ++i) {
+    const WeightedSet& one = diagnosis.explanations[i];
+    const bool in_90 = i < diagnosis.set_90;
+    if (!in_90 && (i >= kMostRows || one.weight < kWorthARow)) break;
+    const bool found = !marked && IsWhatWasFound(one, diagnosis);
+    marked = marked || found;
+    first_was_found = first_was_found || (found && i == 0);
+    rows += std::string(in_90 ? "<tr class=\"taken\">" : "<tr>") + Cell(InWords(one)) +
+            PercentCell(one.weight) + Cell(in_90 ? "yes" : "") + Cell(found ? "what was found" : "") +
+            "</tr>\n";
   }
-  std::string out;
-  if (!effects.empty()) {
-    out += Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow");
-  }
-  if (!explanations.empty()) {
-    out +=
-        "<p>The weight says how likely an explanation is among those tried: how often it wins when the runs, "
-        "and parts of them, count more or less at random. All weights add to 100 %. The share says how much "
-        "an effect does: the part of the held-out squared gap that comes back without it. An effect may be "
-        "certain and do little.</p>\n" +
-        Table({"explanation", "#weight", ""}, explanations, "narrow");
-  }
-  return out;
+  if (rows.empty()) return "";
+  return "<p>" + WeightsInWords(diagnosis.set_90, first_was_found) + "</p>\n" +
+         Table({"explanation", "#weight", "one of these, nine times in ten", ""}, rows, "narrow") +
+         "<p>The weights are of what the balances of torque and flow say before anything is simulated, and "
+         "add to "
+         "100 %. They compare what was tried, and nothing else.</p>\n";
 }
 
 std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {

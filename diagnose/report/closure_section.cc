@@ -66,7 +66,7 @@ void IncludeBand(const Closure& closure, page::Range* y) {
 page::Figure Picture(const Closure& closure) {
   page::Panel panel;
   panel.x.label = Label(closure.against[0], closure.against_units[0]);
-  panel.y.label = Label(closure.id.substr(closure.id.find('.') + 1), closure.unit);
+  panel.y.label = Label("value", closure.unit);  // the heading names the balance
   page::Range x, y;
   x.Include(closure.knots[0]);
   y.Include(0.0);

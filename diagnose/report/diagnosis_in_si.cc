@@ -1,6 +1,9 @@
 #include "diagnose/report/diagnosis_in_si.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include "base/units.h"
@@ -80,7 +83,68 @@ void Convert(Closure* closure) {
   closure->resembles = Resemblance(*closure);  // it may say a place
 }
 
+void Replace(const std::string& what, const std::string& with, std::string* text) {
+  for (size_t at = text->find(what); at != std::string::npos; at = text->find(what, at + with.size()))
+    text->replace(at, what.size(), with);
+}
+
+// The words of a text; ids such as pump.stribeck have no article.
+void SpeakOfTheMotor(std::string* text) {
+  Replace("the pump's", "the motor's or its gear's", text);
+  Replace("the pump", "the motor or its gear", text);
+  Replace("The pump", "The motor or its gear", text);
+}
+
 }  // namespace
+
+void SpeakOfTheMotor(Diagnosis* diagnosis) {
+  SpeakOfTheMotor(&diagnosis->sentence);
+  SpeakOfTheMotor(&diagnosis->next.why);
+  for (FoundEffect& effect : diagnosis->effects) SpeakOfTheMotor(&effect.summary);
+  for (Candidate& candidate : diagnosis->candidates) SpeakOfTheMotor(&candidate.rejected_because);
+  // There is nothing that could leak.
+  std::erase_if(diagnosis->remarks, [](const std::string& remark) {
+    return remark.starts_with("leakage and valves cannot be judged");
+  });
+  for (std::string& remark : diagnosis->remarks) SpeakOfTheMotor(&remark);
+}
+
+void ShowTheMotorAlone(Diagnosis* diagnosis) {
+  const auto name = [](std::string* balance) {
+    if (*balance == "pump_torque") *balance = "motor torque";
+  };
+  for (Location& location : diagnosis->location) name(&location.balance);
+  for (MissingTerm& term : diagnosis->missing) name(&term.balance);
+  for (FoundTerm& term : diagnosis->terms) name(&term.missing.balance);
+  std::erase_if(diagnosis->candidates, [](const Candidate& candidate) {
+    constexpr const char* kOfTheOil[] = {"accumulator.",
+                                         "actuator.",
+                                         "arm.",
+                                         "closure.flow",
+                                         "closure.arm",
+                                         "fluid.",
+                                         "line.",
+                                         "pump.flow_ripple",
+                                         "pump.pressure_friction",
+                                         "pump.turbulent_leakage",
+                                         "sensor.pressure",
+                                         "valve.",
+                                         "parameter beta",
+                                         "parameter V_ms",
+                                         "parameter c",
+                                         "parameter c_E",
+                                         "parameter c_I",
+                                         "parameter p_3",
+                                         "parameter k_2",
+                                         "parameter J_a",
+                                         "parameter mgl",
+                                         "parameter D"};
+    const bool tried =
+        std::isfinite(candidate.fit) || std::isfinite(candidate.held_out) || candidate.weight > 0;
+    return !tried && std::any_of(std::begin(kOfTheOil), std::end(kOfTheOil),
+                                 [&](const char* begin) { return candidate.id.starts_with(begin); });
+  });
+}
 
 ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si) {
   const std::string own = ChannelUnit(channel, units);

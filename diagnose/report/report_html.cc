@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "base/number_text.h"
@@ -28,6 +28,38 @@ std::string Plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
+// The verdict's first sentence, and what follows it. The gap in brackets at its end is said below it.
+std::pair<std::string, std::string> FirstSentence(const std::string& sentence) {
+  size_t end = sentence.find(". ");
+  while (end != std::string::npos &&
+         (end + 2 >= sentence.size() || sentence[end + 2] < 'A' || sentence[end + 2] > 'Z'))
+    end = sentence.find(". ", end + 2);
+  std::string first = sentence.substr(0, end == std::string::npos ? end : end + 1);
+  const std::string rest = end == std::string::npos ? "" : sentence.substr(end + 2);
+  for (const char* gap : {" (held-out gap ", " (the held-out gap "}) {
+    const size_t at = first.find(gap);
+    if (at != std::string::npos && first.ends_with(").")) first = first.substr(0, at) + ".";
+  }
+  return {first, rest};
+}
+
+// How far the model is off, before and after: over the horizon that decides, which is not the longest, because there small errors of
+// any value have added up; over whole runs where there is no other.
+std::string GapInWords(const Diagnosis& diagnosis) {
+  constexpr double kDecides = 0.4;  // s
+  BeforeAfter gap = diagnosis.held_out;
+  std::string over;
+  for (const HorizonGap& horizon : diagnosis.horizons) {
+    if (std::abs(horizon.seconds - kDecides) > 0.1 * kDecides) continue;
+    gap = horizon.held_out;
+    over = ", predicted over " + ShortNumber(horizon.seconds, 2) + " s,";
+  }
+  if (!std::isfinite(gap.before) || !std::isfinite(gap.after) || gap.before == 0) return "";
+  return "On runs that it was not fitted to" + over + " the model as given is off by " +
+         ShortNumber(gap.before, 3) + " times the noise of the sensors, with what was found by " +
+         ShortNumber(gap.after, 3) + " times; 1 is perfect.";
+}
+
 std::string Head(const Diagnosis& diagnosis) {
   std::string meta = Plural(diagnosis.runs.size(), "run") + " (" + Joined(diagnosis.runs) + "), " +
                      std::to_string(diagnosis.samples) + " samples; ";
@@ -37,9 +69,12 @@ std::string Head(const Diagnosis& diagnosis) {
   std::string verdict = VerdictName(diagnosis.verdict);
   const bool open = IsOpen(diagnosis.verdict);
   std::replace(verdict.begin(), verdict.end(), '_', ' ');
-  return "<h1>" + page::EscapeMarkup("Gap report: " + diagnosis.model.name) + "</h1>\n<p class=\"meta\">" +
-         page::EscapeMarkup(meta) + "</p>\n<p class=\"verdict" + (open ? " unexplained" : "") +
-         "\"><span class=\"badge\">" + verdict + "</span>\n" + page::TypesetHtml(diagnosis.sentence) +
+  const auto [first, rest] = FirstSentence(diagnosis.sentence);
+  const std::string gap = GapInWords(diagnosis);
+  return "<h1>" + page::TypesetHtml(first) + "</h1>\n<p class=\"verdict" + (open ? " unexplained" : "") +
+         "\"><span class=\"badge\">" + verdict + "</span>\n" + page::TypesetHtml(rest) +
+         (rest.empty() || gap.empty() ? "" : " ") + page::EscapeMarkup(gap) + "</p>\n<p class=\"meta\">" +
+         page::EscapeMarkup("Gap report: " + diagnosis.model.name) + ". " + page::EscapeMarkup(meta) +
          "</p>\n";
 }
 
@@ -84,24 +119,41 @@ std::string Dependence(const Diagnosis& diagnosis, bool si) {
   return figure ? page::HtmlFigure(*figure, "residuals against what they may depend on") : "";
 }
 
+// Whether no simulation had the candidate, because the balances did not propose it.
+bool IsUntried(const Candidate& candidate) {
+  return std::isnan(candidate.fit) && std::isnan(candidate.held_out) && candidate.weight == 0 &&
+         candidate.rejected_because.starts_with("the score test");
+}
+
 std::string Ranking(const Diagnosis& diagnosis) {
   std::string rows;
+  std::vector<std::string> untried;
   size_t rank = 0;
   for (const Candidate& candidate : diagnosis.candidates) {
+    if (IsUntried(candidate)) {
+      untried.push_back(candidate.id);
+      continue;
+    }
     const bool taken = candidate.rejected_because.empty();
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
-            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
-            NumberCell(candidate.fit) + NumberCell(candidate.held_out) + ShortCell(candidate.p_value) +
-            ShortCell(candidate.weight) + "<td>" +
-            (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
+            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.fit) +
+            NumberCell(candidate.held_out) + ShortCell(candidate.p_value) + ShortCell(candidate.weight) +
+            "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
-  if (rows.empty()) return "";
-  return "<p>Gaps are in noise units, with the candidate added and all parameters refitted. The score is the "
-         "drop in the squared gap that the score test predicts before any refit. p is the probability that "
-         "noise alone achieves as much, corrected for the number of candidates. <i>-</i>: not tried, because "
-         "the score is too low.</p>\n" +
-         Table({"#", "candidate", "#score", "#fitted", "#held out", "#p", "#weight", "rejected because"},
-               rows);
+  std::string out;
+  if (!rows.empty()) {
+    out =
+        "<p>Gaps are in noise units over whole runs, with the candidate added and the values fitted. p is "
+        "the "
+        "probability that noise alone achieves as much, corrected for the number of candidates. <i>-</i>: "
+        "compared on windows of the runs only.</p>\n" +
+        Table({"#", "candidate", "#fitted", "#held out", "#p", "#weight", "rejected because"}, rows);
+  }
+  if (!untried.empty()) {
+    out += "<p>The balances of the runs gave no reason to simulate these alone: " +
+           page::TypesetHtml(Joined(untried)) + ".</p>\n";
+  }
+  return out;
 }
 
 std::string Remarks(const Diagnosis& diagnosis) {
@@ -112,27 +164,29 @@ std::string Remarks(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string ReportHtml(const Diagnosis& given, bool si) {
+std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model_toml) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
-  return page::HtmlPage("Gap report: " + diagnosis.model.name,
-                        Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
-                            Section("How sure that is", HowSure(diagnosis)) +
-                            Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
-                            Section("What remains, and where", WhatRemains(diagnosis)) +
-                            Section("What no known effect explains", ClosureSection(diagnosis)) +
-                            Section("What differs from run to run", PerRunSection(diagnosis)) +
-                            Section("What to measure next", WhatToMeasureNext(diagnosis)) +
-                            Section("Remarks on the recordings", Remarks(diagnosis)) +
-                            Section("The gap by signal", GapTable(diagnosis, si)) +
-                            Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
-                            Section("Residuals against what they may depend on", Dependence(diagnosis, si)) +
-                            Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
-                            Section("The model with what was found",
-                                    "<p>As <code>model.toml</code>:</p>\n<pre>" +
-                                        Lines(settings::FormatModel(diagnosis.model)) + "</pre>\n") +
-                            "<p class=\"meta\">hydro-diagnose " +
-                            page::EscapeMarkup(settings::ProgramVersion()) +
-                            "; the numbers are in report.json.</p>\n");
+  return page::HtmlPage(
+      "Gap report: " + diagnosis.model.name,
+      Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
+          Section("How sure that is", HowSure(diagnosis)) +
+          Section("What may explain the runs", WhatMayExplain(diagnosis)) +
+          Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
+          Section("What remains, and where", WhatRemains(diagnosis)) +
+          Section("What no known effect explains", ClosureSection(diagnosis)) +
+          Section("What differs from run to run", PerRunSection(diagnosis)) +
+          Section("What to measure next", WhatToMeasureNext(diagnosis)) +
+          Section("Remarks on the recordings", Remarks(diagnosis)) +
+          Section("The gap by signal", GapTable(diagnosis, si)) +
+          Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
+          Section("Residuals against what they may depend on", Dependence(diagnosis, si)) +
+          Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
+          Section("The model with what was found",
+                  "<p>As <code>model.toml</code>:</p>\n<pre>" +
+                      Lines(model_toml.empty() ? settings::FormatModel(diagnosis.model) : model_toml) +
+                      "</pre>\n") +
+          "<p class=\"meta\">hydro-diagnose " + page::EscapeMarkup(settings::ProgramVersion()) +
+          "; the numbers are in report.json.</p>\n");
 }
 
 }  // namespace hydro::diagnose

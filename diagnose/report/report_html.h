@@ -8,7 +8,7 @@
 namespace hydro::diagnose {
 
 // One self-contained page: inline pictures, no scripts, no time of day. Identical diagnoses give identical
-// bytes. With `si`, figures are in SI.
-std::string ReportHtml(const Diagnosis& diagnosis, bool si);
+// bytes. With `si`, figures are in SI. `model_toml`: the model's file as written; empty: without comments.
+std::string ReportHtml(const Diagnosis& diagnosis, bool si, const std::string& model_toml = "");
 
 }  // namespace hydro::diagnose

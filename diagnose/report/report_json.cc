@@ -150,6 +150,13 @@ Json ChosenWithout(const Diagnosis& diagnosis) {
   return choices;
 }
 
+Json Explanations(const Diagnosis& diagnosis) {
+  Json explanations = Json::array();
+  for (const WeightedSet& one : diagnosis.explanations)
+    explanations.push_back({{"changes", one.changes}, {"weight", one.weight}});
+  return explanations;
+}
+
 Json Candidates(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
   for (const Candidate& candidate : diagnosis.candidates) {
@@ -185,6 +192,8 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"gap", Gaps(diagnosis)},
                        {"next_experiment", NextExperimentOf(diagnosis, next_config)},
                        {"candidates", Candidates(diagnosis)},
+                       {"explanations", Explanations(diagnosis)},
+                       {"set_90", diagnosis.set_90},
                        {"remarks", diagnosis.remarks},
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},

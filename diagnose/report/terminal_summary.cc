@@ -1,12 +1,20 @@
 #include "diagnose/report/terminal_summary.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "base/number_text.h"
+#include "base/text_file.h"
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_json.h"
+#include "diagnose/verdict/sentence.h"
+#include "model/terms/parameter_info.h"
+#include "settings/command_line.h"
+#include "settings/model_file.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -34,9 +42,9 @@ std::string EffectText(const FoundEffect& effect) {
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.summary + ")";
   if (!parts.empty()) text += ": " + Joined(parts);
-  if (effect.weight > 0) text += "; likely to " + Percent(effect.weight) + " among what was tried (weight)";
+  if (effect.weight > 0) text += "; weight " + Percent(effect.weight) + " of what was simulated";
   if (std::isfinite(effect.share)) text += ", without it " + Percent(effect.share) + " of the gap comes back";
-  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
+  if (!effect.tied_with.empty()) text += "; tied with " + Joined(InWords(effect.tied_with));
   return text;
 }
 
@@ -51,7 +59,118 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
   return parts.empty() ? "" : "signals:    " + Joined(parts, "; ") + "\n";
 }
 
+// "closure.pump_torque(motor_speed)" is "an unknown curve over motor speed in pump torque".
+std::string ChangeInWords(const std::string& change) {
+  const auto begins = [&](const std::string& with) { return change.starts_with(with); };
+  if (begins("value.")) return "another value of " + change.substr(6);
+  if (begins("run.")) return change.substr(4) + " that differs by run";
+  if (!begins("closure.")) return change;
+  const size_t open = change.find('('), close = change.rfind(')');
+  std::string of = change.substr(8, open == std::string::npos ? open : open - 8), over;
+  if (open != std::string::npos && close != std::string::npos)
+    over = " over " + change.substr(open + 1, close - open - 1);
+  std::replace(of.begin(), of.end(), '_', ' ');
+  std::replace(over.begin(), over.end(), '_', ' ');
+  return "an unknown curve" + over + " in " + of;
+}
+
+// The likeliest explanations: those that hold the truth nine times in ten, as far as a line can have them.
+std::string LikelyLine(const Diagnosis& diagnosis) {
+  constexpr size_t kMost = 4;
+  const size_t shown =
+      std::min({std::max<size_t>(diagnosis.set_90, 2), kMost, diagnosis.explanations.size()});
+  std::vector<std::string> parts;
+  for (size_t i = 0; i < shown; ++i) {
+    const WeightedSet& one = diagnosis.explanations[i];
+    if (i < diagnosis.set_90 || std::round(100 * one.weight) > 0)
+      parts.push_back(InWords(one) + " " + Percent(one.weight));
+  }
+  const size_t more = diagnosis.set_90 - std::min(diagnosis.set_90, shown);
+  return parts.empty() ? ""
+                       : "likely:     " + Joined(parts) +
+                             (more > 0 ? ", and " + std::to_string(more) + " more in the report" : "") + "\n";
+}
+
+std::string IntervalText(const Estimated& estimated) {
+  if (!std::isfinite(estimated.low) && !std::isfinite(estimated.high)) return "no interval";
+  return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high);
+}
+
+// By the key's line: "parameters.b", "effects.pump.stribeck.speed"; of an effect itself its heading's: "effects.pump.stribeck".
+using Comments = std::map<std::string, std::string>;
+
+void CommentOnValues(const Diagnosis& diagnosis, const model::ModelDescription& given, Comments* comments) {
+  for (const model::BaseParameter& base : model::BaseParameters()) {
+    const double now = diagnosis.model.parameters.*base.member, was = given.parameters.*base.member;
+    if (now == was) continue;
+    (*comments)["parameters." + base.info.name] =
+        "refitted with the others; was " + ShortNumber(was) + ", which these runs do not exclude";
+  }
+  for (const ChangedParameter& changed : diagnosis.parameters) {
+    const std::string& name = changed.fitted.name;
+    const bool of_an_effect = name.find('.') != std::string::npos;
+    std::string& comment = (*comments)[(of_an_effect ? "effects." : "parameters.") + name];
+    comment = IntervalText(changed.fitted) + ", fitted to the runs; was " + ShortNumber(changed.model);
+    if (changed.resting) comment += "; it rests on how well the model's values are known";
+    if (changed.implausible) comment += "; implausible";
+  }
+  for (const ValueByRun& value : diagnosis.per_run) {
+    std::string& comment = (*comments)["parameters." + value.name];
+    comment += (comment.empty() ? "" : "; ") +
+               ("differs from run to run by " + ShortNumber(100 * value.Spread(), 2) + " %");
+  }
+}
+
+void CommentOnEffects(const Diagnosis& diagnosis, Comments* comments) {
+  for (const FoundEffect& effect : diagnosis.effects) {
+    std::string& comment = (*comments)["effects." + effect.id];
+    comment = "found in the runs: " + effect.summary;
+    if (!effect.tied_with.empty())
+      comment += "; these runs cannot tell it from " + Joined(InWords(effect.tied_with));
+    for (const Estimated& parameter : effect.parameters) {
+      (*comments)["effects." + effect.id + "." + parameter.name] =
+          IntervalText(parameter) + ", found in the runs";
+    }
+  }
+  for (const Closure& closure : diagnosis.closures) {
+    (*comments)["effects." + closure.id] = "a curve through what no known effect explains; it names no cause";
+  }
+}
+
+// [effects."pump.stribeck"] is effects.pump.stribeck.
+std::string SectionOf(std::string heading) {
+  std::erase_if(heading, [](char c) { return c == '[' || c == ']' || c == '"'; });
+  return heading;
+}
+
 }  // namespace
+
+std::string InWords(const WeightedSet& explanation) {
+  if (explanation.changes.empty()) return "nothing is missing";
+  std::vector<std::string> parts;
+  for (const std::string& change : explanation.changes) parts.push_back(ChangeInWords(change));
+  return Joined(parts, " + ");
+}
+
+std::string CommentedModel(const Diagnosis& diagnosis, const model::ModelDescription& given) {
+  Comments comments;
+  CommentOnValues(diagnosis, given, &comments);
+  CommentOnEffects(diagnosis, &comments);
+  const std::string text = settings::FormatModel(diagnosis.model);
+  std::string out = "# Written by hydro-diagnose " + settings::ProgramVersion() +
+                    ". What it changed has a comment; report.html has the reasons.\n";
+  std::string section;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
+    std::string key = section + "." + line.substr(0, line.find(" = "));
+    if (line.starts_with('[')) key = section = SectionOf(line);
+    const auto comment = comments.find(key);
+    out += line + (comment == comments.end() ? "" : "  # " + Printable(comment->second)) + "\n";
+  }
+  return out;
+}
 
 std::string WithInterval(const Estimated& estimated) {
   std::string text = estimated.name + " " + ShortNumber(estimated.value);
@@ -64,6 +183,7 @@ std::string WithInterval(const Estimated& estimated) {
 std::string TerminalSummary(const Diagnosis& given, const std::string& folder, bool si) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
   std::string out = VerdictName(diagnosis.verdict) + ": " + diagnosis.sentence + "\n";
+  out += LikelyLine(diagnosis);
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(EffectText(effect));
   if (!effects.empty()) out += "effects:    " + Joined(effects, "; ") + "\n";

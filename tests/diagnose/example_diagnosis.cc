@@ -128,6 +128,11 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
        0.125},
       {"sensor.pressure_lag", 300, kNan, kNan, 0.8, "no significant gain expected <by its score>"},
       {"parameter k_1", 9000, 18.0, 19.5, 0.04, "explains less than pump.stribeck"}};
+  d.explanations = {{{"pump.stribeck"}, 0.8125},
+                    {{"closure.pump_torque(motor_speed)"}, 0.125},
+                    {{"pump.stribeck", "run.T_s"}, 0.05},
+                    {{}, 0.0125}};
+  d.set_90 = 2;
   d.curves = {Curves("square <wave>", false, samples, 1), Curves("sine", true, samples, 2)};
   d.model = {"bench & rig",
              Table1(),

@@ -82,7 +82,6 @@ TEST(ReportHtml, Complete) {
                            "p2 is noisier than stated",
                            "A slow triangle",
                            "file = &quot;model.toml&quot;",
-                           "81000",
                            ">taken<",
                            "the held-out gap stays 13 times",
                            "noise floor",
@@ -105,8 +104,9 @@ TEST(ReportHtml, AnswersFirst) {
   const std::string page = ReportHtml(testing::ExampleDiagnosis(60), false);
   size_t before = 0;
   for (const char* heading :
-       {"What was found", "How sure that is", "How much of the gap it takes", "What remains, and where",
-        "What to measure next", "Remarks on the recordings", "The gap by signal", "Every candidate"}) {
+       {"What was found", "How sure that is", "What may explain the runs", "How much of the gap it takes",
+        "What remains, and where", "What to measure next", "Remarks on the recordings", "The gap by signal",
+        "Every candidate"}) {
     const size_t at = page.find("<h2>" + std::string(heading));
     ASSERT_NE(at, std::string::npos) << heading;
     EXPECT_GT(at, before) << heading;
@@ -117,6 +117,52 @@ TEST(ReportHtml, AnswersFirst) {
                            "the gap at each horizon", "whole runs"}) {
     EXPECT_TRUE(Has(page, part)) << part;
   }
+}
+
+// Tests that the verdict's first sentence is the page's heading, that what follows it stands below, and that the gap in brackets is
+// said in words over 0.4 s.
+TEST(ReportHtml, LeadsWithTheVerdict) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  diagnosis.sentence = "Missing: a 0.5 in. bore (held-out gap 12 to 1.04 noise units). T_s differs by run.";
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, "<body>\n<h1>Missing: a 0.5 in. bore.</h1>"));
+  EXPECT_TRUE(Has(page,
+                  "differs by run. On runs that it was not fitted to, predicted over 0.4 s, the model as "
+                  "given is off by 12 times the noise of the sensors, with what was found by 1.04 times"));
+  EXPECT_FALSE(Has(page, "held-out gap 12"));
+}
+
+// Tests that explanations are in plain words, that the page says which hold the truth nine times in ten, and which of them is what was
+// found.
+TEST(ReportHtml, SaysWhatMayExplainTheRuns) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  diagnosis.effects.resize(1);
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(
+      Has(page, "one of the first two is the truth nine times in ten: they cannot tell the two apart"));
+  EXPECT_TRUE(Has(page,
+                  "<tr class=\"taken\"><td>pump.stribeck</td><td class=\"number\">81 %</td>"
+                  "<td>yes</td><td>what was found</td></tr>"));
+  EXPECT_TRUE(Has(page, "an unknown curve over motor speed in pump torque"));
+  EXPECT_TRUE(
+      Has(page, "<tr><td>nothing is missing</td><td class=\"number\">1 %</td><td></td><td></td></tr>"));
+  EXPECT_FALSE(Has(page, "The likeliest of them is not"));
+  diagnosis.set_90 = 1;
+  EXPECT_TRUE(Has(ReportHtml(diagnosis, false), "they tell it from all others"));
+  diagnosis.effects.clear();
+  EXPECT_TRUE(
+      Has(ReportHtml(diagnosis, false), "The likeliest of them is not what predicts held-out runs best"));
+  EXPECT_FALSE(Has(ReportHtml(testing::EmptyDiagnosis(), false), "What may explain the runs"));
+}
+
+// Tests that what the balances did not propose is named below the ranking, without a row.
+TEST(ReportHtml, NamesWhatWasNotSimulated) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  diagnosis.candidates.push_back({"amp.lag", 0, nan, nan, 1, "the score test expects no gain from it"});
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, "gave no reason to simulate these alone: amp.lag.</p>"));
+  EXPECT_FALSE(Has(page, "<td>amp.lag</td>"));
 }
 
 // Tests that SI replaces the paper's units in tables and pictures.

@@ -104,6 +104,18 @@ TEST(ReportJson, ForeignBytes) {
   EXPECT_TRUE(Json::accept(ReportJson(diagnosis, "", 1)));
 }
 
+// Tests that explanations are lists of changes with their weights, "nothing" the empty one, and how many hold the truth.
+TEST(ReportJson, Explanations) {
+  const Json report = Json::parse(ReportJson(testing::ExampleDiagnosis(60), "", 1));
+  EXPECT_EQ(report["explanations"][0], Json({{"changes", {"pump.stribeck"}}, {"weight", 0.8125}}));
+  EXPECT_EQ(report["explanations"][2]["changes"], Json({"pump.stribeck", "run.T_s"}));
+  EXPECT_EQ(report["explanations"][3]["changes"], Json::array());
+  EXPECT_EQ(report["set_90"], 2);
+  const Json empty = Json::parse(ReportJson(testing::EmptyDiagnosis(), "", 1));
+  EXPECT_EQ(empty["explanations"], Json::array());
+  EXPECT_EQ(empty["set_90"], 0);
+}
+
 // Tests the names of verdicts.
 TEST(ReportJson, Verdicts) {
   EXPECT_EQ(VerdictName(Verdict::kNamed), "named");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/actuator.h"
+#include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
 
@@ -22,18 +23,24 @@ double VoltageAt(const CleanRun& run, double t) {
 
 }  // namespace
 
+model::ModelDescription PlainMachine(std::vector<model::EffectDescription> effects) {
+  model::ModelDescription machine = Table1With(std::move(effects));
+  machine.parameters.T_s = 1;
+  return machine;
+}
+
 std::vector<CleanRun> RichRuns() {
   return {{.name = "pressed",
            .arm_angle = 0.1,
            .pressure = 1500,
-           .levels = {6, -4, 9, -7, 12, 2, -11, 3, -5, -13, 8},
+           .levels = {6, -4, 5, -6, 15, 2, -14, 3, -5, -16, 4},
            .level_time = 0.13,
            .sine = 3,
            .frequency = 2,
            .turn = 8},
           {.name = "held",
            .arm_angle = -0.3,
-           .levels = {3, 8, -3, -8, 11, -6, 2, -12},
+           .levels = {3, 6, -3, -7, 14, -6, 2, -15},
            .level_time = 0.17,
            .sine = 2,
            .frequency = 5},
@@ -41,7 +48,7 @@ std::vector<CleanRun> RichRuns() {
            .shaft = model::Shaft::kFree,
            .arm_angle = -0.2,
            .pressure = 1200,
-           .levels = {4, -4, -6, 6, 12, -12, -2, 2},
+           .levels = {4, -4, -6, 6, 14, -14, -2, 2},
            .level_time = 0.12,
            .sine = 2,
            .frequency = 3,
@@ -49,10 +56,11 @@ std::vector<CleanRun> RichRuns() {
           {.name = "bypass",
            .bypass = true,
            .pressure = 300,
-           .levels = {4, -3, 7, -6, 12, 2, -11, -2},
+           .levels = {4, -3, 7, -6, 14, 2, -15, -2},
            .level_time = 0.2,
            .sine = 2,
-           .frequency = 3}};
+           .frequency = 3},
+          {.name = "slow", .bypass = true, .pressure = 300, .sine = 0.6, .frequency = 1.2}};
 }
 
 runs::MeasuredRun Measure(const model::ModelDescription& truth, const CleanRun& how) {
@@ -89,7 +97,12 @@ runs::MeasuredRun Measure(const model::ModelDescription& truth, const CleanRun& 
 
 std::vector<runs::MeasuredRun> MeasureAll(const model::ModelDescription& truth) {
   std::vector<runs::MeasuredRun> runs;
-  for (const CleanRun& how : RichRuns()) runs.push_back(Measure(truth, how));
+  for (const CleanRun& how : RichRuns()) {
+    runs.push_back(Measure(truth, how));
+    const std::vector<double>& angle = runs.back().motor_angle.values;
+    if (angle.front() == angle.back() && *std::max_element(angle.begin(), angle.end()) == angle.front())
+      runs.pop_back();
+  }
   return runs;
 }
 

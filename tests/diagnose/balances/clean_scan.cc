@@ -73,7 +73,7 @@ std::vector<Comparison> Compare(const CleanScan& scan, const std::vector<Share>&
         xx += x.squaredNorm();
         xy += x.dot(y);
       }
-      all.push_back({.run = r,
+      all.push_back({.run = motion.name,
                      .balance = balance,
                      .said = std::sqrt(xx),
                      .left = std::sqrt(yy),

@@ -23,8 +23,8 @@ struct CleanScan {
 
 // Columns for `given` of these variants, and of the base parameters in `allowed`; of waves at `periods` where there are any.
 CleanScan ScanClean(const model::ModelDescription& given, const std::vector<diagnose::RunData>& runs,
-                    const std::vector<diagnose::EffectVariant>& variants, const std::vector<size_t>& allowed = {},
-                    const std::vector<int>& periods = {});
+                    const std::vector<diagnose::EffectVariant>& variants,
+                    const std::vector<size_t>& allowed = {}, const std::vector<int>& periods = {});
 
 // A column and how much of it there is.
 struct Share {
@@ -34,7 +34,7 @@ struct Share {
 
 // What is left of one balance in one run, beside what columns say that it should be.
 struct Comparison {
-  size_t run = 0;
+  std::string run;
   diagnose::BalanceKind balance{};
   double said = 0;         // norm of X amounts
   double left = 0;         // norm of y
