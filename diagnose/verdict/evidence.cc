@@ -111,7 +111,7 @@ Contest DecidingContest(const SearchContext& context, const SearchResult& search
   return ContestOf(whole, RunOfEachBlock(context.predicted(), search.given.blocks.sums.size()));
 }
 
-std::string ClaimOf(const std::vector<std::string>& changes) {
+std::string ClaimOfSet(const std::vector<std::string>& changes) {
   std::vector<std::string> effects, values;
   for (const std::string& change : changes) {
     const bool value = change.starts_with("value.");
@@ -131,7 +131,7 @@ std::map<std::string, double> WeightsOf(const SearchContext& context, const Wide
   const std::string claim = ClaimOf(found.search.best.fitted.hypothesis);
   std::map<std::string, double> weights;
   for (const WeightedSet& one : explanations) {
-    std::string said = ClaimOf(one.changes);
+    std::string said = ClaimOfSet(one.changes);
     // No balance holds its values: where the model as given does not do, the set without changes is that of other values.
     if (said == kAsGiven && claim == kAllValues) said = claim;
     weights[said] += one.weight;

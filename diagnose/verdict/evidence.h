@@ -31,7 +31,7 @@ Contest DecidingContest(const SearchContext& context, const SearchResult& search
                         const WindowTrials& windows);
 
 // The claim of a set of changes as the balances name them: "sensor.skew(p1)", "value.b", "run.T_s".
-std::string ClaimOf(const std::vector<std::string>& changes);
+std::string ClaimOfSet(const std::vector<std::string>& changes);
 
 // How probable each claim is: as the balances' explanations say, where one of them claims what was found. Where none does, because
 // balances cannot see it or there are none, the evidence that decided says it.

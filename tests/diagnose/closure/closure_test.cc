@@ -1,14 +1,11 @@
-// The closure of a gap that no known effect explains: of a rig with friction that none of the catalogue's has the form of.
+// Closures of a model that was found, as a diagnosis states them, and what they resemble.
 #include "diagnose/closure/closure.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "diagnose/closure/curve_start.h"
 #include "diagnose/closure/resemblance.h"
-#include "model/actuator.h"
-#include "settings/model_file.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::diagnose {
@@ -19,130 +16,67 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr double kFilm = 0.4;  // in-lbf at 10 rad/s
-
-// Friction as the root of speed, as a curve with many knots: the rig's own form, which the gap finder does not know.
-model::ModelDescription Filmed() {
+// Friction as the root of speed, as the evidence would find it.
+Hypothesis WithFilm() {
   model::EffectDescription film;
   film.id = "closure.pump_torque";
   film.name_lists["against"] = {"motor_speed"};
-  for (int k = -40; k <= 40; ++k) {
-    const double speed = k * std::abs(k) * 0.125;
+  for (int k = -8; k <= 8; ++k) {
+    const double speed = k * std::abs(k) * 2.0;
     film.lists["knots"].push_back(speed);
-    film.lists["values"].push_back(-std::copysign(kFilm * std::sqrt(std::abs(speed) / 10), speed));
+    film.lists["values"].push_back(-std::copysign(0.4 * std::sqrt(std::abs(speed) / 10), speed));
   }
-  return testing::Table1With({film});
+  Hypothesis hypothesis;
+  hypothesis.model = testing::Table1With({film});
+  hypothesis.changes = {{"closure.pump_torque", {}, ""}};
+  return hypothesis;
 }
 
-struct Rigs {
-  std::vector<RunData> fitted, held_out;
-  SearchContext context;
-};
+// Tests that a closure has its knots, values, units and what it resembles, and a band where its values are free.
+TEST(FoundClosures, KnotsValuesAndBand) {
+  Hypothesis hypothesis = WithFilm();
+  std::vector<Closure> closures = FoundClosures(hypothesis, {});
+  ASSERT_THAT(closures, SizeIs(1));
+  EXPECT_EQ(closures[0].id, "closure.pump_torque");
+  EXPECT_THAT(closures[0].against, ElementsAre("motor_speed"));
+  EXPECT_THAT(closures[0].against_units, ElementsAre("rad/s"));
+  EXPECT_EQ(closures[0].unit, "in-lbf");
+  EXPECT_EQ(closures[0].value, hypothesis.model.effects[0].lists["values"]);
+  EXPECT_EQ(closures[0].low, closures[0].value) << "its values are held";
+  EXPECT_THAT(closures[0].resembles, HasSubstr("square root of |motor_speed|, against it"));
 
-// Clamped runs to fit, of a rig of this model, and one to hold out.
-Rigs RigsOf(const model::ModelDescription& truth, int fitted = 2) {
-  Rigs rigs;
-  for (int which = 0; which < fitted; ++which) {
-    rigs.fitted.push_back(testing::SmallRun(truth, model::Shaft::kClamped, false, 3, which, 7));
+  hypothesis.effects = {"closure.pump_torque"};
+  std::vector<Interval> intervals;
+  for (const FreeParameter& free : hypothesis.Free())
+    intervals.push_back({free.value - 0.1, free.value + 0.2});
+  closures = FoundClosures(hypothesis, intervals);
+  for (size_t i = 0; i < closures[0].value.size(); ++i) {
+    EXPECT_NEAR(closures[0].low[i], closures[0].value[i] - 0.1, 1e-12);
+    EXPECT_NEAR(closures[0].high[i], closures[0].value[i] + 0.2, 1e-12);
   }
-  rigs.held_out.push_back(testing::SmallRun(truth, model::Shaft::kClamped, false, 3, 5, 7));
-  rigs.context.given = testing::Table1With();
-  rigs.context.runs = PointersTo(rigs.fitted);
-  rigs.context.held_out = PointersTo(rigs.held_out);
-  return rigs;
 }
 
-Explanation AsGiven(const model::ModelDescription& model) {
-  Explanation given;
-  given.fitted.hypothesis.model = model;
-  return given;
+// Tests that a closure that the model as given has is none that was found.
+TEST(FoundClosures, NotThoseOfTheModelAsGiven) {
+  Hypothesis hypothesis = WithFilm();
+  hypothesis.changes.clear();
+  EXPECT_THAT(FoundClosures(hypothesis, {}), IsEmpty());
 }
 
-ClosedModel ClosedOf(const Rigs& rigs) {
-  const Explanation given = AsGiven(rigs.context.given);
-  const Localisation located = Locate(rigs.context.given, rigs.context.runs);
-  return FindClosure(rigs.context, {&given, false}, located.possible);
-}
-
-// Tests that a closure takes most of the held-out gap, says what it resembles, and that its model is written, read back bit
-// by bit and simulated.
-TEST(Closure, TakesMostOfTheGap) {
-  const ClosedModel closed = ClosedOf(RigsOf(Filmed()));
-  ASSERT_THAT(closed.closures, SizeIs(1));
-  const Closure& closure = closed.closures[0];
-  EXPECT_EQ(closure.id, "closure.pump_torque");
-  EXPECT_THAT(closure.against, ElementsAre("motor_speed"));
-  EXPECT_EQ(closure.unit, "in-lbf");
-  EXPECT_THAT(closure.against_units, ElementsAre("rad/s"));
-  EXPECT_GT(closure.before, 3);
-  EXPECT_LT(std::pow(closure.after / closure.before, 2), 0.3);
-  EXPECT_THAT(closure.resembles, HasSubstr("square root of |motor_speed|"))
-      << ::testing::PrintToString(closure.knots[0]) << ::testing::PrintToString(closure.value)
-      << ::testing::PrintToString(closure.low) << ::testing::PrintToString(closure.high);
-  EXPECT_THAT(closure.resembles, HasSubstr("against it"));
-  ASSERT_EQ(closure.low.size(), closure.value.size());
-  for (size_t i = 0; i < closure.value.size(); ++i) EXPECT_LT(closure.low[i], closure.high[i]);
-  EXPECT_THAT(ClosureSentence(closed.closures),
-              HasSubstr("a curve of motor_speed in the torque on the pump"));
-
-  const model::ModelDescription back =
-      settings::ParseModel(settings::FormatModel(closed.model), "model.toml");
-  EXPECT_EQ(back.effects.at(0).lists, closed.model.effects.at(0).lists);
-  model::Actuator actuator(back, {.shaft = model::Shaft::kClamped});
-  actuator.Advance(3, 0.1);
-  EXPECT_TRUE(std::isfinite(actuator.Measure().p2));
-}
-
-// Tests that the same inputs give the same bits, whatever the number of threads is.
-TEST(Closure, DoesNotDependOnJobs) {
-  Rigs rigs = RigsOf(Filmed());
-  const ClosedModel one = ClosedOf(rigs);
-  rigs.context.jobs = 2;
-  const ClosedModel two = ClosedOf(rigs);
-  ASSERT_THAT(one.closures, SizeIs(1));
-  ASSERT_THAT(two.closures, SizeIs(1));
-  EXPECT_EQ(one.closures[0].value, two.closures[0].value);
-  EXPECT_EQ(one.closures[0].after, two.closures[0].after);
-}
-
-// Tests that where runs are held out in turn, every other one is fitted and the rest judges.
-TEST(Closure, InTurn) {
-  Rigs rigs = RigsOf(Filmed(), 4);
-  rigs.context.held_out.clear();
-  const ClosedModel closed = ClosedOf(rigs);
-  ASSERT_THAT(closed.closures, SizeIs(1));
-  EXPECT_EQ(closed.closures[0].id, "closure.pump_torque");
-}
-
-// Tests that nothing is added where nothing is missing, nor a second time.
-TEST(Closure, NotWhereNothingIsMissing) {
-  EXPECT_THAT(ClosedOf(RigsOf(testing::Table1With())).closures, IsEmpty());
-  const Rigs rigs = RigsOf(Filmed());
-  Localisation located = Locate(rigs.context.given, rigs.context.runs);
-  std::erase_if(located.possible,
-                [](const PossibleTerm& term) { return term.table.balance != "pump_torque"; });
-  ASSERT_THAT(located.possible, ::testing::Not(IsEmpty()));
-  const Explanation has = AsGiven(Filmed());
-  EXPECT_THAT(FindClosure(rigs.context, {&has, false}, located.possible).closures, IsEmpty());
-}
-
-// Tests that knots reach from the lowest to the highest value, increase, and are as many as asked for at most.
-TEST(CurveStart, Knots) {
-  PossibleTerm term;
-  term.table = {"flow_1", "in^3/s", "p1", "psi", {110, 120, 120.1, 300, 500, 700, 900, 950}, {}, {}};
-  term.low = 100;
-  term.high = 1000;
-  const std::vector<double> knots = CurveOf(term, 8).lists.at("knots");
-  EXPECT_EQ(knots.front(), 100);
-  EXPECT_EQ(knots.back(), 1000);
-  EXPECT_LE(knots.size(), 8u);
-  for (size_t i = 1; i < knots.size(); ++i) EXPECT_GT(knots[i], knots[i - 1] + 3);
-  PossibleTerm second = term;
-  second.table.against = "arm_angle";
-  const model::EffectDescription surface = SurfaceOf(term, second);
-  EXPECT_THAT(surface.name_lists.at("against"), ElementsAre("p1", "arm_angle"));
-  EXPECT_EQ(surface.lists.at("values").size(),
-            surface.lists.at("knots").size() * surface.lists.at("knots_2").size());
+// Tests the words: where the curve is, and what it takes; nothing where it takes nothing that can be seen.
+TEST(ClosureSentence, SaysWhatItTakes) {
+  std::vector<Closure> closures = FoundClosures(WithFilm(), {});
+  closures[0].before = 4;
+  closures[0].after = 2;
+  closures[0].seconds = 0.4;
+  EXPECT_THAT(ClosureSentence(closures),
+              AllOf(HasSubstr("a curve of motor_speed in the torque on the pump, which "),
+                    HasSubstr("over 0.4 s better: 4 to 2 noise units, 75 % of the squared gap")));
+  closures[0].after = 3.9999;
+  EXPECT_EQ(ClosureSentence(closures), "");
+  closures[0].before = INFINITY;
+  EXPECT_THAT(ClosureSentence(closures), HasSubstr("which it cannot without"));
+  EXPECT_EQ(ClosureSentence({}), "");
 }
 
 Closure Like(double (*law)(double), double from, double to) {
