@@ -19,7 +19,7 @@ const char* const kBlind[] = {kFlexure, "valve.relief", "pump.stribeck", "accumu
 // Of what an effect has to take: with less, other values beside it do not make it.
 constexpr double kWorthRefining = 0.5;
 // From the catalogue's starts, which are factors of 2 to 6 apart.
-constexpr int kStepsOfARace = 4;
+constexpr int kStepsOfARace = 2;
 
 }  // namespace
 

@@ -20,7 +20,7 @@ namespace hydro::diagnose {
 namespace {
 
 // A start is mended by so many steps of least squares, while each takes a part of the squared gap.
-constexpr int kStartSteps = 3;
+constexpr int kStartSteps = 2;
 constexpr double kStartGain = 0.9;
 
 using Eigen::MatrixXd;
