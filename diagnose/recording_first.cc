@@ -1,6 +1,7 @@
 #include "diagnose/recording_first.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -49,6 +50,29 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
     return std::all_of(mistakes.begin(), mistakes.end(),
                        [&](const RecordingMistake& mistake) { return MayHave(mistake, possible); });
   }));
+}
+
+// Pressures that read below nothing in every run: no oil is under tension for half of the time, and the charge pressure alone holds
+// both sides above it.
+std::vector<std::string> InvertedPressures(const model::Parameters& model,
+                                           const std::vector<runs::MeasuredRun>& runs) {
+  std::vector<std::string> inverted;
+  for (const SignalOfRun side : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
+    size_t measured = 0, below = 0;
+    for (const runs::MeasuredRun& run : runs) {
+      std::vector<double> values;
+      for (const double value : (run.*side).values) {
+        if (!std::isnan(value)) values.push_back(value);
+      }
+      if (values.empty()) continue;
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      ++measured;
+      below += *middle < -0.5 * model.p_3 ? 1 : 0;
+    }
+    if (measured > 0 && below == measured && model.p_3 > 0) inverted.emplace_back(NameOf(side));
+  }
+  return inverted;
 }
 
 std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
@@ -131,6 +155,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool contradicts = AddContradictions(model, all, findings, &checked.mistakes);
   checked.mend_first = !twins.empty() || contradicts ||
                        (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
+  if (!checked.mend_first && may_name_signs) checked.inverted = InvertedPressures(model.parameters, all);
   if (!checked.mend_first && most && OnlySigns(findings)) {
     for (const RecordingFinding& finding : findings) {
       const std::string sensor = finding.mistakes[0].InvertedSensor();

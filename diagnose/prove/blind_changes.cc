@@ -14,7 +14,7 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr char kFlexure[] = "arm.flexure";
-const char* const kBlind[] = {kFlexure, "valve.relief", "pump.stribeck", "accumulator.stiffness"};
+const char* const kBlind[] = {kFlexure, "valve.relief"};
 
 // Of what an effect has to take: with less, other values beside it do not make it.
 constexpr double kWorthRefining = 0.5;

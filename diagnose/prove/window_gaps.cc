@@ -22,6 +22,9 @@ namespace {
 // A start is mended by so many steps of least squares, while each takes a part of the squared gap.
 constexpr int kStartSteps = 2;
 constexpr double kStartGain = 0.9;
+// Two predictions whose gaps differ by less than this part are the same; so many others have to be left.
+constexpr double kAlike = 0.005;
+constexpr size_t kFewestThatDiffer = 2;
 
 using Eigen::MatrixXd;
 
@@ -168,6 +171,11 @@ GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap
     }
     if (channels > 0) falls.push_back(sum / channels);
   }
+  // Where both predict the same, the window has no say: a valve that opens in two windows of twenty is judged by these two.
+  const auto alike = [](double fall) { return std::abs(fall) < kAlike; };
+  if (static_cast<size_t>(std::count_if(falls.begin(), falls.end(), alike)) + kFewestThatDiffer <=
+      falls.size())
+    std::erase_if(falls, alike);
   GapFall fall;
   fall.windows = falls.size();
   if (falls.empty()) return fall;
