@@ -188,7 +188,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const Proposed proposed = Propose(context, allowed, checked.inverted);
   const WideSearch found =
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
-                     proposed.proposals, BlindChanges(context));
+                     proposed.proposals, BlindChanges(context), proposed.said);
   std::vector<WeightedSet> explanations;
   for (const WeighedExplanation& one : proposed.weights.explanations)
     explanations.push_back({one.changes, one.weight});

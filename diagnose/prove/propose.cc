@@ -16,12 +16,12 @@ constexpr size_t kMostExplanations = 5;
 // What a set gains over a smaller one that is no explanation of its own; simulation decides between the two.
 constexpr size_t kMostProposals = 8;
 
-// The sets that are proposed: the likeliest explanations, the best sets by score, and those with one change less than the first.
+// The sets that may be proposed, in the order in which they are: nothing, the likeliest explanations, the best set by score, those
+// with one change less than the first, and each change alone at its best shape.
 std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
                                      const std::vector<ScoredSet>& scores) {
   std::vector<ChangeSet> sets = {{}};
   const auto add = [&](const ChangeSet& set) {
-    if (sets.size() >= kMostProposals) return;
     if (std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
   };
   for (size_t i = 0; i < std::min(kMostExplanations, weights.explanations.size()); ++i)
@@ -35,8 +35,13 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
       add(less);
     }
   }
+  std::vector<std::string> alone;
   for (const ScoredSet& scored : scores) {
-    if (scored.set.size() == 1) add(scored.set);
+    if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
+    const std::string change(ChangeOf(scored.set[0]));
+    if (std::find(alone.begin(), alone.end(), change) != alone.end()) continue;
+    alone.push_back(change);
+    add(scored.set);
   }
   return sets;
 }
@@ -51,6 +56,14 @@ bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
     }
   }
   return false;
+}
+
+// A model has each effect once: two curves on one balance, over different variables, cannot both be in it.
+bool HasTwoOfAKind(const model::ModelDescription& model) {
+  std::vector<std::string> ids;
+  for (const model::EffectDescription& effect : model.effects) ids.push_back(effect.id);
+  std::sort(ids.begin(), ids.end());
+  return std::adjacent_find(ids.begin(), ids.end()) != ids.end();
 }
 
 // States that the sensor reads with the wrong sign.
@@ -120,13 +133,18 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   const SetEvidence evidence(rows);
   SetScores scores = ScanSets(evidence, {}, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);
+  for (const WeighedExplanation& one : proposed.weights.explanations) {
+    for (const std::string& change : one.changes)
+      proposed.said[change.substr(0, change.find('('))] += one.weight;
+  }
   proposed.scores = scores.BestFirst();
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
   for (const ChangeSet& set : SetsToPropose(proposed.weights, proposed.scores)) {
+    if (proposed.proposals.size() >= kMostProposals) break;
     const SetFit fit = evidence.Fit(set);
     const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
-    if (!estimated || IsImpossible(rows, set, fit)) continue;
+    if (!estimated || IsImpossible(rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,

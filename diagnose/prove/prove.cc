@@ -24,8 +24,13 @@ constexpr double kNoBetter = 0.01;
 
 class Prover {
  public:
-  Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed)
-      : context_(context), as_given_(as_given), allowed_(allowed), windows_(ProofWindowsOf(context)) {
+  Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
+         const std::map<std::string, double>& said)
+      : context_(context),
+        as_given_(as_given),
+        allowed_(allowed),
+        said_(said),
+        windows_(ProofWindowsOf(context)) {
     sets_.emplace_back().hypothesis = as_given;
   }
 
@@ -127,13 +132,19 @@ class Prover {
     return BestWithEffects(sets_, fewer);
   }
 
+  // What the effect has to take of the gap.
+  double PartOf(const Change& change) const {
+    const auto weight = said_.find(change.effect);
+    return weight != said_.end() && weight->second >= kSaid ? kPartOfASaidEffect : kPartOfAnEffect;
+  }
+
   // The best of the sets that remain when one of the effects that are not needed is left out; the set itself where all are needed.
   size_t Reduced(size_t place) {
     size_t reduced = place;
     double least = 0;
     for (const Change& change : sets_[place].Effects()) {
       const size_t without = PlaceWithout(place, change);
-      if (without >= sets_.size() || IsEffectKept(sets_[place], sets_[without])) continue;
+      if (without >= sets_.size() || IsEffectKept(sets_[place], sets_[without], PartOf(change))) continue;
       const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm;
       if (reduced != place && lost >= least) continue;
       reduced = without;
@@ -218,6 +229,7 @@ class Prover {
   const SearchContext& context_;
   const Hypothesis& as_given_;
   const std::vector<size_t>& allowed_;
+  const std::map<std::string, double>& said_;
   ProofWindows windows_;
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted
@@ -229,8 +241,8 @@ class Prover {
 
 WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind) {
-  return Prover(context, as_given, allowed).Run(proposals, blind);
+                          const std::vector<Change>& blind, const std::map<std::string, double>& said) {
+  return Prover(context, as_given, allowed, said).Run(proposals, blind);
 }
 
 }  // namespace hydro::diagnose

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "diagnose/prove/proposal.h"
@@ -12,11 +14,12 @@ namespace hydro::diagnose {
 // Simulates the model as given, with other values, and each proposal over windows of 0.4 s and 1.6 s of the held-out runs (where
 // none is held out, of every other window of the runs), and chooses:
 // - values are those of the proposal or, where that predicts better, refined by a few steps of a fit to windows of the fitted runs;
-// - an effect is kept only if the gap over 0.4 s is at least 10 % smaller with it than with the same set without it, and the gap
-//   over 1.6 s is not larger; among sets that predict equally well, the one with fewer effects is chosen;
+// - an effect is kept only if the gap over 0.4 s is at least 10 % smaller with it than with the same set without it (5 % where the
+//   balances of all runs say the effect at nine to one, `said`), and the gap over 1.6 s is not larger; among sets that predict equally well, the one with fewer effects is chosen;
 // - what cannot be simulated is "not tested": it is not chosen, and rules out nothing.
 // `blind`: effects that a scan of balances cannot see (BlindChanges()). Where the best proposal leaves a gap, each is added to it,
 // fitted from its starts in the catalogue, and has to gain as much.
+// `said`: the weight of all explanations that have an effect, by its id.
 // `allowed`: indices in BaseParameters() of those that may be refitted; they are where no proposal has other values alone.
 //
 // The result is as of a search: `search.best` and the explanations in `windows.tried`, all of windows, which decide. The work is
@@ -24,6 +27,7 @@ namespace hydro::diagnose {
 // follow a whole run, its whole-run gap is infinite and its windows still count.
 WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind = {});
+                          const std::vector<Change>& blind = {},
+                          const std::map<std::string, double>& said = {});
 
 }  // namespace hydro::diagnose

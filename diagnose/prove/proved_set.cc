@@ -77,11 +77,11 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   return FallOf(set.near, other.near).Exceeds(0) && far.logarithm >= -far.error;
 }
 
-bool IsEffectKept(const ProvedSet& with, const ProvedSet& without) {
+bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double part) {
   if (!with.tested() || !without.tested()) return true;
   const GapFall near = FallOf(without.near, with.near);
   if (near.windows == 0) return true;
-  return near.Exceeds(kPartOfAnEffect) && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
+  return near.Exceeds(part) && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
 }
 
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {

@@ -93,8 +93,11 @@ std::string Unexplained(const BeforeAfter& gap, const std::vector<std::string>& 
 
 std::string Partly(const Diagnosis& d, const std::vector<std::string>& effects,
                    const std::vector<std::string>& parameters) {
-  if (effects.empty() && !d.closures.empty())
-    return Unexplained({}, {}) + "; a curve closes a part of the gap";
+  if (effects.empty() && !d.closures.empty()) {
+    std::string sentence = Unexplained({}, {}) + "; a curve closes a part of the gap";
+    return parameters.empty() || d.parameters.empty() ? sentence
+                                                      : sentence + ", with " + Enumerated(parameters);
+  }
   return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ", effects,
                parameters) +
          (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
