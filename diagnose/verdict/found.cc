@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/closure/closure.h"
 #include "diagnose/fit/intervals.h"
+#include "diagnose/verdict/found_values.h"
 #include "diagnose/verdict/plausible.h"
 #include "diagnose/verdict/rivals.h"
 #include "diagnose/verdict/without_effect.h"
@@ -90,27 +90,6 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
     }
   }
   return found;
-}
-
-// The value that the model as given has: a base parameter's, or that of an effect it has; nothing of an effect that was found.
-std::optional<double> ValueGiven(const FreeParameter& fitted, const model::ModelDescription& given) {
-  if (fitted.unknown.kind == model::Unknown::Kind::kBase)
-    return given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
-  model::ModelDescription model = given;
-  for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
-    if (given.effects[parameter.effect].id + "." + parameter.Label() == fitted.name)
-      return parameter.In(&model);
-  }
-  return std::nullopt;
-}
-
-ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval, double given) {
-  ChangedParameter changed;
-  changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
-  changed.model = given;
-  changed.why = WhyRemarkable(changed);
-  changed.implausible = !changed.why.empty();
-  return changed;
 }
 
 // The weight of all claims that have the change.
@@ -219,39 +198,7 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     d->effects.push_back(std::move(found));
   }
   d->closures = DescribeClosures(windows, best, intervals);
-  std::vector<std::string> unsure;
-  for (size_t i = 0; i < free.size(); ++i) {
-    const std::optional<double> given = ValueGiven(free[i], context.given);
-    if (!given.has_value()) continue;
-    const ChangedParameter changed = DescribeParameter(free[i], intervals[i], *given);
-    // Of a refit of all values only those that are surely others.
-    const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
-    if (best.fitted.hypothesis.known == nullptr || !as_given) {
-      d->parameters.push_back(changed);
-    } else if (ShortNumber(free[i].value) != ShortNumber(changed.model)) {
-      unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " +
-                       ShortNumber(changed.model) + ")");
-    }
-  }
-  std::vector<std::string> resting;
-  const std::vector<bool> rests = RestOnKnown(best.fitted);
-  for (ChangedParameter& changed : d->parameters) {
-    const auto it = std::find_if(free.begin(), free.end(),
-                                 [&](const FreeParameter& one) { return one.name == changed.fitted.name; });
-    changed.resting = rests[static_cast<size_t>(it - free.begin())];
-    if (changed.resting) resting.push_back(changed.fitted.name);
-  }
-  if (!resting.empty()) {
-    d->remarks.push_back(
-        "These runs do not show " + Enumerated(resting) +
-        " apart from other values: what is said of them rests on how well the model's values are known "
-        "([uncertainty] in the model file; --free names those to refit)");
-  }
-  if (!unsure.empty()) {
-    d->remarks.push_back(
-        "model.toml has refitted values that these runs do not show to differ from those given: " +
-        Joined(unsure));
-  }
+  DescribeValues(context, best, intervals, d);
   const std::vector<std::string> implausible =
       Implausible(d->parameters, d->effects, context.given.parameters);
   if (!implausible.empty()) kept->doubts.push_back("no rig is likely to have " + Enumerated(implausible));
