@@ -64,10 +64,10 @@ void DescribeValues(const SearchContext& context, const Explanation& best,
     const auto it = std::find_if(free.begin(), free.end(),
                                  [&](const FreeParameter& one) { return one.name == number.name; });
     const auto place = static_cast<size_t>(it - free.begin());
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     const bool held = it == free.end();
     if (held && LooksTheSame(number)) continue;
-    const Interval interval = held ? Interval{kNan, kNan} : intervals[place];
+    const Interval interval = held ? Interval{kUnknown, kUnknown} : intervals[place];
     // What is held of the base values follows from those that are free: a displacement scales all flows.
     const bool follows = held && number.is_base;
     const bool as_given = number.given >= interval.low && number.given <= interval.high;

@@ -11,7 +11,7 @@ namespace {
 
 // Noise units, squared: what a model leaves beside the noise is no larger than the noise itself. Less cannot be asked for: the noise is
 // known to some 10 %, and starts and values are estimates.
-constexpr double kAtTheNoise = 2;
+constexpr double kNoiseAndAsMuchAgain = 2;
 
 // The horizon with a gap that is nearest to 0.4 s, by its factor; null where no horizon has one.
 const HorizonGap* NearHorizon(const Diagnosis& d) {
@@ -32,7 +32,7 @@ bool IsClosed(const BeforeAfter& gap, double limit, bool exact) {
 // Whether only noise is left on the windows. Errors of values grow at most as fast as the time: what is left beside the noise may be
 // as many times larger as a longer horizon is.
 bool WindowsAreClosed(const Diagnosis& d, const HorizonGap& near, bool exact) {
-  const double beside = std::sqrt(kAtTheNoise - 1);
+  const double beside = std::sqrt(kNoiseAndAsMuchAgain - 1);
   return std::all_of(d.horizons.begin(), d.horizons.end(), [&](const HorizonGap& one) {
     if (one.seconds < near.seconds || !std::isfinite(one.typical.after)) return true;
     return IsClosed(one.typical, std::hypot(1, beside * one.seconds / near.seconds), exact);
@@ -98,7 +98,7 @@ Verdict VerdictOn(const SearchContext& context, const Kept& kept, const WindowTr
   const Explanation& best = kept.search.best;
   // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
   const bool values = windows.decide && !best.fitted.hypothesis.Free().empty() &&
-                      !(GapToCompare(d, windows).gap.before <= std::sqrt(kAtTheNoise));
+                      !(GapToCompare(d, windows).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
   const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
   const bool closed = IsGapClosed(kept, windows, d, ExactSensors(context.runs));
   if (!kept.doubts.empty() || (!closed && !windows.decide))
