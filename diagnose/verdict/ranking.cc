@@ -61,7 +61,6 @@ class Ranker {
   Candidate Single(const Rated& rated) const {
     Candidate candidate;
     candidate.id = rated.change.Label();
-    candidate.score = rated.expected;
     candidate.fit = candidate.held_out = kNan;
     double fall = 0;
     const Explanation* alone = AddedAlone(search_.tried, rated.change);
@@ -81,7 +80,7 @@ class Ranker {
   Candidate Other(const std::string& claim) const {
     Candidate candidate;
     candidate.id = claim;
-    candidate.score = candidate.fit = candidate.held_out = candidate.p_value = kNan;
+    candidate.fit = candidate.held_out = candidate.p_value = kNan;
     const Explanation* whole = BestOf(search_.tried, claim);
     if (whole != nullptr) SetGaps(*whole, &candidate);
     if (windows_.decide) SetGapsOfWindows(claim, &candidate);
@@ -122,7 +121,7 @@ class Ranker {
     if (!rated.failure.empty()) return "could not be tried: " + rated.failure;
     if (windows_.decide) {
       std::string on_windows = WhyOnWindows(rated.change.Label());
-      return on_windows.empty() ? "the balances of the runs do not propose it" : on_windows;
+      return on_windows.empty() ? kNotProposed : on_windows;
     }
     const Explanation* on_top = AddedToBest(search_, rated.change);
     if (on_top != nullptr && !search_.best.changes().empty()) {
@@ -162,8 +161,7 @@ void Sort(std::vector<Candidate>* candidates) {
   const auto order = [](const Candidate& c) {
     const double gap = !std::isnan(c.held_out) ? c.held_out : std::numeric_limits<double>::infinity();
     const double fit = !std::isnan(c.fit) ? c.fit : std::numeric_limits<double>::infinity();
-    const double score = !std::isnan(c.score) ? c.score : 0;
-    return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, fit, -score);
+    return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, fit);
   };
   std::stable_sort(candidates->begin(), candidates->end(),
                    [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
