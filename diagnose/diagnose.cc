@@ -189,9 +189,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const WideSearch found =
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);
-  Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
+  std::vector<WeightedSet> explanations;
   for (const WeighedExplanation& one : proposed.weights.explanations)
-    diagnosis.explanations.push_back({one.changes, one.weight});
+    explanations.push_back({one.changes, one.weight});
+  Diagnosis diagnosis = Conclude(context, found, explanations);
   diagnosis.set_90 = proposed.weights.in_90;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {

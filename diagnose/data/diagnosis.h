@@ -145,16 +145,17 @@ struct Candidate {
   // Of the effect, or "parameter k_1"; sets of them are joined with " + ". "parameters": all values refitted;
   // "as given": the model itself.
   std::string id;
-  // Fall of the squared gap that the score test expects, in noise units squared.
-  double score = 0;
-  double fit = 0;       // gap after refitting; NaN: not refitted
-  double held_out = 0;  // gap on held-out runs; NaN: not tried
+  // Gaps of windows where these decide, else of whole runs, in noise units; NaN: not tried.
+  double fit = 0, held_out = 0;
   // Probability that chance alone improves the fit this much, allowing for the number tried.
   double p_value = 1;
   std::string rejected_because;  // "" for those that were taken
   // How probable the explanation is among those tried: those of all candidates add to 1.
   double weight = 0;
 };
+
+// Why a candidate was rejected that no simulation has tried.
+inline constexpr char kNotProposed[] = "the balances of the runs do not propose it";
 
 // One run as the pictures show it, thinned to what a page can hold.
 struct RunCurves {

@@ -93,7 +93,12 @@ double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitt
   double weighted = 0;
   double count = 0;
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(fitted.hypothesis.model, *runs[r], fitted.runs[r].start);
+    Residuals residuals;
+    try {
+      residuals = ResidualsOf(fitted.hypothesis.model, *runs[r], fitted.runs[r].start);
+    } catch (const model::ModelError&) {
+      continue;
+    }
     for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
       const double* x = residuals.values.data() + residuals.first[s];
       const size_t n = residuals.first[s + 1] - residuals.first[s];

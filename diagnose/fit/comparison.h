@@ -41,7 +41,7 @@ bool ExactSensors(const std::vector<const RunData*>& runs);
 double PValue(double fall, double squared_gap, double correlation, size_t parameters, size_t tried);
 
 // The number of successive residuals that count as one: the integrated autocorrelation, averaged over the
-// signals.
+// signals. Of runs that can be simulated.
 double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitted);
 
 }  // namespace hydro::diagnose

@@ -51,25 +51,6 @@ class Prover {
     best = TakeGivenValues(best);
     SetFitted(best);
     RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
-      for (const ProvedSet& set : sets_) {
-        fprintf(stderr, "SET w %.3f tested %d near %.4g far %.4g:", set.weight, set.tested(),
-                std::sqrt(TypicalGap(set.near)), std::sqrt(TypicalGap(set.far)));
-        for (const Change& c : set.hypothesis.changes) fprintf(stderr, " %s", c.Label().c_str());
-        for (const auto& e : set.hypothesis.model.effects)
-          for (const auto& [n, v] : e.parameters) fprintf(stderr, " %s.%s=%.4g", e.id.c_str(), n.c_str(), v);
-        fprintf(stderr, " base %zu\n", set.hypothesis.base.size());
-        for (int w = 0; w < 2; ++w) {
-          fprintf(stderr, "   CH");
-          for (size_t c = 0; c < model::kChannels; ++c) {
-            double sum = 0;
-            int n = 0;
-            for (const WindowGap& g : w == 0 ? set.near : set.far)
-              if (g.tested && g.squared[c] > 0) sum += std::log(g.squared[c]), ++n;
-            if (n > 0) fprintf(stderr, " %zu:%.3g", c, std::exp(0.5 * sum / n));
-          }
-          fprintf(stderr, "\n");
-        }
-      }
     Report("fitting the whole runs", 0.93);
     return OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best});
   }

@@ -123,7 +123,7 @@ std::string Dependence(const Diagnosis& diagnosis, bool si) {
 // Whether no simulation had the candidate, because the balances did not propose it.
 bool IsUntried(const Candidate& candidate) {
   return std::isnan(candidate.fit) && std::isnan(candidate.held_out) && candidate.weight == 0 &&
-         candidate.rejected_because.starts_with("the score test");
+         candidate.rejected_because == kNotProposed;
 }
 
 std::string Ranking(const Diagnosis& diagnosis) {
@@ -144,10 +144,10 @@ std::string Ranking(const Diagnosis& diagnosis) {
   std::string out;
   if (!rows.empty()) {
     out =
-        "<p>Gaps are in noise units over whole runs, with the candidate added and the values fitted. p is "
-        "the "
-        "probability that noise alone achieves as much, corrected for the number of candidates. <i>-</i>: "
-        "compared on windows of the runs only.</p>\n" +
+        "<p>Gaps are in noise units, of short predictions where these decide, else over whole runs, with the "
+        "candidate added and the "
+        "values fitted. p is the probability that noise alone achieves as much, corrected for the number of "
+        "candidates.</p>\n" +
         Table({"#", "candidate", "#fitted", "#held out", "#p", "#weight", "rejected because"}, rows);
   }
   if (!untried.empty()) {

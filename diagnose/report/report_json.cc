@@ -161,7 +161,6 @@ Json Candidates(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
   for (const Candidate& candidate : diagnosis.candidates) {
     candidates.push_back({{"id", candidate.id},
-                          {"score", candidate.score},
                           {"fit", candidate.fit},
                           {"held_out", candidate.held_out},
                           {"p_value", candidate.p_value},

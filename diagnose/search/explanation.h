@@ -38,7 +38,6 @@ struct SearchContext {
   bool windows = false;                  // the runs are windows of runs
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
-  std::vector<double> ringing;  // frequencies at which the runs ring although the refitted model does not, Hz
   int jobs = 1;
   uint64_t seed = 1;
   // The runs that an explanation's held_out speaks of.
@@ -46,10 +45,6 @@ struct SearchContext {
   std::function<bool()> time_is_up;  // may be empty: the search has all the time it needs
   ProgressCallback report_progress;
 };
-
-// Whether an explanation leaves nothing to search for: below `squared_gap` on held-out runs, or, where runs are held out in turn, in
-// the fit to all of them. A run that alone shows an effect is predicted badly by the others, whatever is added.
-bool LeavesNothing(const SearchContext& context, const Explanation& one, double squared_gap);
 
 // Whether the search has to end with what it has.
 bool TimeIsUp(const SearchContext& context);
@@ -66,22 +61,10 @@ Explanation ExplanationOf(const SearchContext& context, Fitted fitted, int jobs)
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options);
 
-// Fits an explanation finely, from where it is.
-void Settle(const SearchContext& context, Explanation* one);
-
-// If a fit of whole runs leaves a gap, fits again from the measured starts and from each run's best start; returns the best fit. Starts that were fitted while something was missing made up for it, and may trap the fit where friction or cogging catches the
-// shaft in another place.
-Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
-                                 const FitOptions& options);
 // What is known of base parameters beforehand, where a fit leaves `sum`: a deviation of one standard deviation has to gain its part.
 std::shared_ptr<const Knowledge> KnownAt(const SearchContext& context, double sum);
 
-// Of windows with all values refitted: fits again from the values as given, with what is known weighted by the gap that is left now;
-// returns the better fit. Values that were fitted while something was missing made up for it, or were held by what was known.
-Explanation RefitFromGivenValues(const SearchContext& context, const Explanation& one,
-                                 const FitOptions& options);
-// Fits again from each run's best start (BestStarts) alone, if one is better than the fit's.
-Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,
-                                const FitOptions& options);
+// Whether both have the same changes, in whatever order and with whatever numbers.
+bool SameChanges(const Hypothesis& a, const Hypothesis& b);
 
 }  // namespace hydro::diagnose

@@ -1,8 +1,6 @@
-// A search from the model as given and, where its values are wrong too, from the model with all of its own
-// parameters refitted.
+// What was tried on windows and on whole runs, as a verdict reads it.
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +17,7 @@ inline constexpr double kHorizon = 0.4;
 struct WindowTrials {
   std::vector<Explanation> tried;
   std::vector<std::string> runs;
-  // Whether whole runs are so far from the noise that windows decide.
+  // Whether windows decide, as they do wherever a set of changes could be proved.
   bool decide = false;
   // The windows, and the fit of the best explanation to those that were fitted.
   std::shared_ptr<const std::vector<RunData>> all;
@@ -31,12 +29,7 @@ struct WideSearch {
   SearchResult search;
   // The given model with all base parameters fitted, as far as what is known of them allows.
   Explanation refit;
-  WindowTrials windows;  // empty without a search on windows
+  WindowTrials windows;  // empty where no windows can be cut
 };
-
-// `allowed`: indices in BaseParameters() of those that may be refitted. If the given model cannot be simulated,
-// `search.given` says so and the rest is empty.
-WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
-                        const std::vector<size_t>& allowed);
 
 }  // namespace hydro::diagnose

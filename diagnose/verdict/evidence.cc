@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/word_list.h"
-#include "diagnose/search/proof.h"
 
 namespace hydro::diagnose {
 
@@ -35,13 +34,11 @@ std::vector<std::string> RunOfEachBlock(const std::vector<const RunData*>& runs,
   return names;
 }
 
-// Drops what is materially behind the best on windows.
-void KeepLeading(const WindowTrials& windows, std::map<std::string, double>* weights) {
-  const double least = LeastGap(windows.tried);
-  for (auto& [claim, weight] : *weights) {
-    const Explanation* one = BestOf(windows.tried, claim);
-    if (one != nullptr && Material(one->held_out_gap(), least)) weight = 0;
-  }
+// As Change::Label(): "sensor.skew (p1)".
+std::string LabelOf(const std::string& change) {
+  const size_t names = change.find('(');
+  if (names == std::string::npos || change.starts_with("closure.")) return change;
+  return change.substr(0, names) + " " + change.substr(names);
 }
 
 }  // namespace
@@ -78,12 +75,14 @@ const Explanation* BestOf(const std::vector<Explanation>& tried, const std::stri
   return best;
 }
 
-double LeastGap(const std::vector<Explanation>& tried) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Explanation& one : tried) {
-    if (!one.blocks.sums.empty()) least = std::min(least, one.held_out_gap());
+const Explanation* OnWindowsOf(const WindowTrials& windows, const Hypothesis& best) {
+  const Explanation* found = nullptr;
+  for (const Explanation& one : windows.tried) {
+    if (!one.fitted.ok() || one.blocks.sums.empty()) continue;
+    if (!one.fitted.hypothesis.FreesTheSame(best) || !SameChanges(one.fitted.hypothesis, best)) continue;
+    if (found == nullptr || one.held_out_gap() < found->held_out_gap()) found = &one;
   }
-  return least;
+  return found != nullptr ? found : BestOf(windows.tried, ClaimOf(best));
 }
 
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs) {
@@ -112,15 +111,33 @@ Contest DecidingContest(const SearchContext& context, const SearchResult& search
   return ContestOf(whole, RunOfEachBlock(context.predicted(), search.given.blocks.sums.size()));
 }
 
-std::map<std::string, double> WeightsOf(const SearchContext& context, const SearchResult& search,
-                                        const Explanation& refit, const WindowTrials& windows) {
-  std::map<std::string, double> near =
-      Weights(ContestOf(PointersToAll(windows.tried), windows.runs), context.seed);
-  if (!near.empty() && LeastGap(windows.tried) >= kOutOfReach) return near;
-  // Where whole runs are explained to the noise, what is behind on windows and was not proved for it has no part.
-  if (search.best.held_out_gap() < kCloseEnough) KeepLeading(windows, &near);
-  WindowTrials none;
-  return Refined(near, Weights(DecidingContest(context, search, refit, none), context.seed));
+std::string ClaimOfSet(const std::vector<std::string>& changes) {
+  std::vector<std::string> effects, values;
+  for (const std::string& change : changes) {
+    const bool value = change.starts_with("value.");
+    if (value || change.starts_with("run.")) {
+      values.push_back(value ? "parameter " + change.substr(change.find('.') + 1) : change);
+    } else {
+      effects.push_back(LabelOf(change));
+    }
+  }
+  std::vector<std::string>& said = effects.empty() ? values : effects;
+  std::sort(said.begin(), said.end());
+  return said.empty() ? kAsGiven : Joined(said, " + ");
+}
+
+std::map<std::string, double> WeightsOf(const SearchContext& context, const WideSearch& found,
+                                        const std::vector<WeightedSet>& explanations) {
+  const std::string claim = ClaimOf(found.search.best.fitted.hypothesis);
+  std::map<std::string, double> weights;
+  for (const WeightedSet& one : explanations) {
+    std::string said = ClaimOfSet(one.changes);
+    // No balance holds its values: where the model as given does not do, the set without changes is that of other values.
+    if (said == kAsGiven && claim == kAllValues) said = claim;
+    weights[said] += one.weight;
+  }
+  if (weights.count(claim) > 0) return weights;
+  return Weights(DecidingContest(context, found.search, found.refit, found.windows), context.seed);
 }
 
 }  // namespace hydro::diagnose

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/data/diagnosis.h"
 #include "diagnose/search/wide_search.h"
 #include "diagnose/verdict/weights.h"
 
@@ -19,8 +20,8 @@ inline constexpr char kAsGiven[] = "as given";
 std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tried);
 // The best explanation of a claim among those that were predicted; null when there is none.
 const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim);
-// The least squared gap among those that were predicted; infinite when there is none.
-double LeastGap(const std::vector<Explanation>& tried);
+// What was tried with the best explanation's changes and as many free values; else with its claim. Null where windows did not.
+const Explanation* OnWindowsOf(const WindowTrials& windows, const Hypothesis& best);
 
 // Of those that were predicted. `runs`: that each block is from.
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs);
@@ -29,11 +30,12 @@ Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vecto
 Contest DecidingContest(const SearchContext& context, const SearchResult& search, const Explanation& refit,
                         const WindowTrials& windows);
 
-// How probable each claim is. Windows say it of everything tried there; where they come near the noise, whole
-// runs share out among those proved what windows leave to them. Once whole runs are explained to the noise, what is
-// materially behind on windows has no part. Far from the noise whole runs say little, because small errors add up
-// over them.
-std::map<std::string, double> WeightsOf(const SearchContext& context, const SearchResult& search,
-                                        const Explanation& refit, const WindowTrials& windows);
+// The claim of a set of changes as the balances name them: "sensor.skew(p1)", "value.b", "run.T_s".
+std::string ClaimOfSet(const std::vector<std::string>& changes);
+
+// How probable each claim is: as the balances' explanations say, where one of them claims what was found. Where none does, because
+// balances cannot see it or there are none, the evidence that decided says it.
+std::map<std::string, double> WeightsOf(const SearchContext& context, const WideSearch& found,
+                                        const std::vector<WeightedSet>& explanations);
 
 }  // namespace hydro::diagnose

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/closure/closure.h"
 #include "diagnose/fit/intervals.h"
-#include "diagnose/search/refits.h"
+#include "diagnose/verdict/found_values.h"
 #include "diagnose/verdict/plausible.h"
 #include "diagnose/verdict/rivals.h"
 #include "diagnose/verdict/without_effect.h"
@@ -59,14 +59,6 @@ Fitted WithoutIt(const SearchContext& context, const SearchResult& search, const
   return none;
 }
 
-std::vector<Change> EffectsOf(const Explanation& one) {
-  std::vector<Change> effects;
-  for (const Change& change : one.changes()) {
-    if (!change.effect.empty()) effects.push_back(change);
-  }
-  return effects;
-}
-
 // Where the interval of an effect's single amount reaches to none of it though the runs show some, the interval
 // is that of the profile on this side.
 void RaiseFromNone(const Hypothesis& hypothesis, const Change& change, double lowest,
@@ -100,27 +92,6 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
   return found;
 }
 
-// The value that the model as given has: a base parameter's, or that of an effect it has; nothing of an effect that was found.
-std::optional<double> ValueGiven(const FreeParameter& fitted, const model::ModelDescription& given) {
-  if (fitted.unknown.kind == model::Unknown::Kind::kBase)
-    return given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
-  model::ModelDescription model = given;
-  for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
-    if (given.effects[parameter.effect].id + "." + parameter.Label() == fitted.name)
-      return parameter.In(&model);
-  }
-  return std::nullopt;
-}
-
-ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval, double given) {
-  ChangedParameter changed;
-  changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
-  changed.model = given;
-  changed.why = WhyRemarkable(changed);
-  changed.implausible = !changed.why.empty();
-  return changed;
-}
-
 // The weight of all claims that have the change.
 double WeightOf(const Change& change, const std::map<std::string, double>& weights) {
   const std::string label = " + " + change.Label() + " + ";
@@ -131,9 +102,50 @@ double WeightOf(const Change& change, const std::map<std::string, double>& weigh
   return std::min(1.0, sum);
 }
 
+// The closures, with the typical gap over windows with and without them.
+std::vector<Closure> DescribeClosures(const WindowTrials& windows, const Explanation& best,
+                                      const std::vector<Interval>& intervals) {
+  std::vector<Closure> closures = FoundClosures(best.fitted.hypothesis, intervals);
+  if (closures.empty() || !windows.decide) return closures;
+  std::vector<Change> curves = EffectsOf(best);
+  std::erase_if(curves, [](const Change& change) { return !IsClosureEffect(change.effect); });
+  for (Closure& closure : closures) {
+    closure.before = TypicalWithout(windows, best, curves);
+    closure.after = TypicalWithout(windows, best, {});
+    closure.seconds = kHorizon;
+  }
+  return closures;
+}
+
+// Of the gap that the model's own values leave. An effect that takes less is not worth a name, whatever the scatter between windows.
+constexpr double kLeastShareOfAnEffect = 0.02;
+
+// The best explanation over whole runs without the change, with the values that it has beside it; fails where it cannot follow them.
+Explanation TakenAway(const SearchContext& context, const Explanation& best, const Change& change) {
+  FitOptions held;
+  held.most_iterations = 0;
+  held.jobs = context.jobs;
+  return Explain(context, Without(best.fitted.hypothesis, change, context.given), StartsOf(best.fitted),
+                 held);
+}
+
+// Where windows decide, the proof has tried to do without each effect. What it needs for hardly any of the gap is dropped.
+Kept KeepWhatWasProved(const SearchContext& context, const SearchResult& search,
+                       const WindowTrials& windows) {
+  Kept kept{search, {}};
+  for (const Change& change : EffectsOf(search.best)) {
+    if (EffectsOf(kept.search.best).size() < 2) break;
+    if (!(ShareOf(context, kept.search, windows, change) < kLeastShareOfAnEffect)) continue;
+    Explanation without = TakenAway(context, kept.search.best, change);
+    if (without.fitted.ok()) kept.search.best = std::move(without);
+  }
+  return kept;
+}
+
 }  // namespace
 
 Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search, const WindowTrials& windows) {
+  if (windows.decide) return KeepWhatWasProved(context, search, windows);
   Kept kept{search, {}};
   bool dropped = true;
   while (dropped) {
@@ -141,24 +153,18 @@ Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search, c
     kept.doubts.clear();
     const Explanation& best = kept.search.best;
     const std::vector<Interval> intervals = IntervalsOf(context, best, windows);
-    const Basis basis = BasisOf(context, best, windows);
     for (const Change& change : EffectsOf(best)) {
       if (!MayBeNone(best.fitted.hypothesis, change, intervals)) continue;
-      Explanation without;
-      if (&basis.fitted != &best.fitted) {
-        without.fitted = WithoutIt(context, kept.search, windows, change);
-      } else {
-        without = FitWithout(context, kept.search, change);
-        kept.search.tried.push_back(without);  // it is asked for again
-        if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
-          kept.search.best = std::move(without);
-          dropped = true;
-          break;
-        }
+      Explanation without = FitWithout(context, kept.search, change);
+      kept.search.tried.push_back(without);  // it is asked for again
+      if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
+        kept.search.best = std::move(without);
+        dropped = true;
+        break;
       }
-      const bool fitted = without.fitted.ok();
-      if (fitted && ProfileAtNone(basis.runs, basis.fitted, without.fitted, change).shows) continue;
-      kept.doubts.push_back("the interval of " + change.Label() + " includes none of it");
+      const bool shows =
+          without.fitted.ok() && ProfileAtNone(context.runs, best.fitted, without.fitted, change).shows;
+      if (!shows) kept.doubts.push_back("the interval of " + change.Label() + " includes none of it");
     }
   }
   return kept;
@@ -174,6 +180,7 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
   const Basis basis = BasisOf(context, best, windows);
   std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : EffectsOf(best)) {
+    if (IsClosureEffect(change.effect)) continue;
     if (MayBeNone(best.fitted.hypothesis, change, intervals)) {
       const Fitted without = WithoutIt(context, kept->search, windows, change);
       if (without.ok()) {
@@ -190,39 +197,8 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     }
     d->effects.push_back(std::move(found));
   }
-  std::vector<std::string> unsure;
-  for (size_t i = 0; i < free.size(); ++i) {
-    const std::optional<double> given = ValueGiven(free[i], context.given);
-    if (!given.has_value()) continue;
-    const ChangedParameter changed = DescribeParameter(free[i], intervals[i], *given);
-    // Of a refit of all values only those that are surely others.
-    const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
-    if (best.fitted.hypothesis.known == nullptr || !as_given) {
-      d->parameters.push_back(changed);
-    } else if (ShortNumber(free[i].value) != ShortNumber(changed.model)) {
-      unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " +
-                       ShortNumber(changed.model) + ")");
-    }
-  }
-  std::vector<std::string> resting;
-  const std::vector<bool> rests = RestOnKnown(best.fitted);
-  for (ChangedParameter& changed : d->parameters) {
-    const auto it = std::find_if(free.begin(), free.end(),
-                                 [&](const FreeParameter& one) { return one.name == changed.fitted.name; });
-    changed.resting = rests[static_cast<size_t>(it - free.begin())];
-    if (changed.resting) resting.push_back(changed.fitted.name);
-  }
-  if (!resting.empty()) {
-    d->remarks.push_back(
-        "These runs do not show " + Enumerated(resting) +
-        " apart from other values: what is said of them rests on how well the model's values are known "
-        "([uncertainty] in the model file; --free names those to refit)");
-  }
-  if (!unsure.empty()) {
-    d->remarks.push_back(
-        "model.toml has refitted values that these runs do not show to differ from those given: " +
-        Joined(unsure));
-  }
+  d->closures = DescribeClosures(windows, best, intervals);
+  DescribeValues(context, best, intervals, d);
   const std::vector<std::string> implausible =
       Implausible(d->parameters, d->effects, context.given.parameters);
   if (!implausible.empty()) kept->doubts.push_back("no rig is likely to have " + Enumerated(implausible));

@@ -8,12 +8,13 @@
 #include "diagnose/data/windows.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/start_fit.h"
-#include "diagnose/search/horizon_score.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
+// s. What a pressure loop has to foresee, what a position loop has, and what every error of a value adds up over.
+constexpr std::array<double, 3> kHorizons = {0.1, 0.4, 1.6};
 constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
 constexpr double kNan =
     std::numeric_limits<double>::quiet_NaN();  // of what was not measured or cannot be simulated
@@ -84,16 +85,17 @@ SumsOfAll Over(double seconds, const std::vector<Predicted>& runs, int jobs) {
   }
   const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostWindows);
   std::vector<SumsOfAll> parts(chosen.size());
-  std::vector<char> simulated(chosen.size(), 1);
+  std::vector<std::array<char, kModels>> simulated(chosen.size());
   ParallelFor(chosen.size(), jobs, [&](size_t w) {
     const Predicted& by = *owner[static_cast<size_t>(chosen[w] - windows.data())];
-    for (size_t m = 0; m < kModels; ++m) {
-      if (!Predict(*by.models[m], *chosen[w], &parts[w][m])) simulated[w] = 0;
-    }
+    for (size_t m = 0; m < kModels; ++m)
+      simulated[w][m] = Predict(*by.models[m], *chosen[w], &parts[w][m]) ? 1 : 0;
   });
   SumsOfAll all{};
   for (size_t w = 0; w < chosen.size(); ++w) {
-    for (size_t m = 0; simulated[w] != 0 && m < kModels; ++m) all[m].Add(parts[w][m]);
+    for (size_t m = 0; m < kModels; ++m) {
+      if (simulated[w][m] != 0) all[m].Add(parts[w][m]);
+    }
   }
   return all;
 }
@@ -106,9 +108,13 @@ BeforeAfter TypicalGaps(const SumsOfAll& sums) {
 std::vector<SignalGap> BySignal(const SumsOfAll& fit, const SumsOfAll& held_out) {
   std::vector<SignalGap> gaps;
   for (size_t c = 0; c < model::kChannels; ++c) {
-    const double scaled = fit[0].scaled[c] + held_out[0].scaled[c];
-    const double square = fit[0].square[c] + held_out[0].square[c];
-    if (fit[0].count[c] + held_out[0].count[c] == 0) continue;
+    double scaled = 0, square = 0, count = 0;
+    for (size_t m = 0; m < kModels; ++m) {
+      scaled += fit[m].scaled[c] + held_out[m].scaled[c];
+      square += fit[m].square[c] + held_out[m].square[c];
+      count += fit[m].count[c] + held_out[m].count[c];
+    }
+    if (count == 0) continue;
     SignalGap gap;
     gap.channel = static_cast<model::Channel>(c);
     gap.noise = scaled > 0 ? std::sqrt(square / scaled) : 0;
@@ -121,7 +127,7 @@ std::vector<SignalGap> BySignal(const SumsOfAll& fit, const SumsOfAll& held_out)
 
 }  // namespace
 
-std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds, const Explanation& given,
+std::vector<HorizonGap> HorizonGaps(const SearchContext& context, const Explanation& given,
                                     const Explanation& refit, const Explanation& best) {
   const std::array<const Explanation*, kModels> all = {&given, &refit, &best};
   std::vector<Predicted> fitted, held_out;
@@ -135,9 +141,9 @@ std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds
     for (size_t m = 0; m < kModels; ++m) held_out.back().models[m] = &all[m]->held_out.models[r];
   }
   std::vector<HorizonGap> horizons;
-  for (const double factor : kHorizonFactors) {
+  for (const double seconds : kHorizons) {
     HorizonGap horizon;
-    horizon.seconds = factor * seconds;
+    horizon.seconds = seconds;
     const SumsOfAll of_fit = Over(horizon.seconds, fitted, context.jobs);
     const SumsOfAll of_held_out = Over(horizon.seconds, held_out, context.jobs);
     horizon.fit = Gaps(of_fit);

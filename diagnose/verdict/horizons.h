@@ -9,10 +9,10 @@
 
 namespace hydro::diagnose {
 
-// Of the model as given, refitted, and with what was found, over a quarter of `seconds`, `seconds`, and four
-// times that. Runs held out in turn are predicted by models that did not see them. Windows are spread evenly
-// over the runs. Those that one of the models cannot be simulated over are left out.
-std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds, const Explanation& given,
+// Of the model as given, refitted, and with what was found, over 0.1, 0.4 and 1.6 s, as far as the runs are that long. Runs held out
+// in turn are predicted by models that did not see them. Windows are spread evenly over the runs. A window that a model cannot be
+// simulated over is left out of that model's gap; NaN where none is left.
+std::vector<HorizonGap> HorizonGaps(const SearchContext& context, const Explanation& given,
                                     const Explanation& refit, const Explanation& best);
 
 }  // namespace hydro::diagnose

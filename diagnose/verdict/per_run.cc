@@ -22,6 +22,11 @@ constexpr size_t kMostPerRun = 8;
 // A spread below this part of the value is within what any rig repeats.
 constexpr double kLeastSpread = 0.01;
 
+struct RunWindows {
+  std::vector<RunData> all;
+  std::vector<const RunData*> fitted, choosing;  // among `all`
+};
+
 Hypothesis Holding(const model::ModelDescription& model, const std::vector<size_t>& free) {
   Hypothesis hypothesis;
   hypothesis.model = model;
@@ -58,7 +63,7 @@ class ByRun {
     runs_.insert(runs_.end(), context.held_out.begin(), context.held_out.end());
     const double seconds = SearchHorizon(context.runs);
     for (const RunData* run : runs_) {
-      SearchWindows windows;
+      RunWindows windows;
       windows.all = WindowsOf(*run, seconds, model.parameters);
       windows.fitted = EvenlySpread(windows.all, kMostPerRun, 0, 2);
       windows.choosing = EvenlySpread(windows.all, kMostPerRun, 1, 2);
@@ -68,8 +73,7 @@ class ByRun {
 
   // Whether each run has windows to fit and to predict.
   bool Possible() const {
-    return runs_.size() > 1 &&
-           std::all_of(windows_.begin(), windows_.end(), [](const SearchWindows& windows) {
+    return runs_.size() > 1 && std::all_of(windows_.begin(), windows_.end(), [](const RunWindows& windows) {
              return !windows.fitted.empty() && !windows.choosing.empty();
            });
   }
@@ -100,7 +104,7 @@ class ByRun {
     value.values.resize(runs_.size());
     std::vector<HeldOut> common(runs_.size()), own(runs_.size());
     ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
-      const SearchWindows& windows = windows_[r];
+      const RunWindows& windows = windows_[r];
       const std::vector<model::StartState> starts = MeasuredStarts(windows.fitted);
       const Fitted as_given = Fit(Holding(model_, {}), windows.fitted, starts, {});
       const Fitted fitted = Fit(Holding(model_, {base}), windows.fitted,
@@ -154,7 +158,7 @@ class ByRun {
   const SearchContext& context_;
   const model::ModelDescription& model_;
   std::vector<const RunData*> runs_;
-  std::vector<SearchWindows> windows_;
+  std::vector<RunWindows> windows_;
 };
 
 }  // namespace

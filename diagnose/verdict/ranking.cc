@@ -53,7 +53,7 @@ class Ranker {
  public:
   Ranker(const SearchContext& context, const SearchResult& search, const WindowTrials& windows)
       : search_(search), windows_(windows), correlation_(CorrelationOf(context.runs, search.best.fitted)) {
-    if (const Explanation* best = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis))) {
+    if (const Explanation* best = OnWindowsOf(windows, search.best.fitted.hypothesis)) {
       best_on_windows_ = best->held_out_gap();
     }
   }
@@ -61,15 +61,15 @@ class Ranker {
   Candidate Single(const Rated& rated) const {
     Candidate candidate;
     candidate.id = rated.change.Label();
-    candidate.score = rated.expected;
     candidate.fit = candidate.held_out = kNan;
-    double fall = rated.expected * static_cast<double>(search_.given.fitted.count);
+    double fall = 0;
     const Explanation* alone = AddedAlone(search_.tried, rated.change);
     if (alone != nullptr) {
       SetGaps(*alone, &candidate);
       fall = (search_.given.squared_gap() - alone->squared_gap()) *
              static_cast<double>(search_.given.fitted.count);
     }
+    if (windows_.decide) fall = SetGapsOfWindows(candidate.id, &candidate);
     candidate.p_value = PValue(fall, search_.best.squared_gap(), correlation_, OwnNumbers(rated.change),
                                search_.rated.size());
     if (!search_.best.fitted.hypothesis.Has(rated.change)) candidate.rejected_because = Why(rated, alone);
@@ -80,18 +80,21 @@ class Ranker {
   Candidate Other(const std::string& claim) const {
     Candidate candidate;
     candidate.id = claim;
-    candidate.score = candidate.fit = candidate.held_out = candidate.p_value = kNan;
+    candidate.fit = candidate.held_out = candidate.p_value = kNan;
     const Explanation* whole = BestOf(search_.tried, claim);
     if (whole != nullptr) SetGaps(*whole, &candidate);
+    if (windows_.decide) SetGapsOfWindows(claim, &candidate);
     if (claim == ClaimOf(search_.best.fitted.hypothesis)) {
       const bool closed =
           claim != kAsGiven || Closed(search_.given.held_out_gap(), search_.given.held_out_gap(), false);
       if (!closed) candidate.rejected_because = "it leaves a gap of " + Gap(search_.given.held_out_gap());
       return candidate;
     }
-    candidate.rejected_because =
-        whole != nullptr ? "held-out gap " + ComparedGaps(whole->held_out_gap(), search_.best.held_out_gap())
-                         : WhyOnWindows(claim);
+    candidate.rejected_because = WhyOnWindows(claim);
+    if (candidate.rejected_because.empty() && whole != nullptr) {
+      candidate.rejected_because =
+          "held-out gap " + ComparedGaps(whole->held_out_gap(), search_.best.held_out_gap());
+    }
     if (candidate.rejected_because.empty()) candidate.rejected_because = "others explain more";
     return candidate;
   }
@@ -104,8 +107,22 @@ class Ranker {
     if (!one.blocks.sums.empty()) candidate->held_out = std::sqrt(one.held_out_gap());
   }
 
+  // Where windows decide, the gaps are theirs. Returns how far the fitted sum of squares falls; 0 where the claim was not tried.
+  double SetGapsOfWindows(const std::string& claim, Candidate* candidate) const {
+    candidate->fit = candidate->held_out = kNan;
+    const Explanation* one = BestOf(windows_.tried, claim);
+    if (one == nullptr) return 0;
+    SetGaps(*one, candidate);
+    const Explanation* given = BestOf(windows_.tried, kAsGiven);
+    return given == nullptr ? 0 : given->fitted.sum - one->fitted.sum;
+  }
+
   std::string Why(const Rated& rated, const Explanation* alone) const {
     if (!rated.failure.empty()) return "could not be tried: " + rated.failure;
+    if (windows_.decide) {
+      std::string on_windows = WhyOnWindows(rated.change.Label());
+      return on_windows.empty() ? kNotProposed : on_windows;
+    }
     const Explanation* on_top = AddedToBest(search_, rated.change);
     if (on_top != nullptr && !search_.best.changes().empty()) {
       return "added to " + search_.best.changes().front().Label() +
@@ -115,12 +132,8 @@ class Ranker {
     if (alone != nullptr && !alone->blocks.sums.empty()) {
       return "held-out gap " + ComparedGaps(alone->held_out_gap(), search_.best.held_out_gap());
     }
-    std::string on_windows = WhyOnWindows(rated.change.Label());
-    if (!on_windows.empty()) return on_windows;
     if (alone != nullptr) return "refitted, it leaves a gap of " + Gap(alone->squared_gap());
-    if (rated.expected <= 0) return "the score test expects no gain from it";
-    const double expected = std::max(0.0, search_.given.squared_gap() - rated.expected);
-    return "the score test expects it to leave a gap of " + Gap(expected);
+    return "it was not tried";
   }
 
   // "" for what was not predicted on windows.
@@ -148,8 +161,7 @@ void Sort(std::vector<Candidate>* candidates) {
   const auto order = [](const Candidate& c) {
     const double gap = !std::isnan(c.held_out) ? c.held_out : std::numeric_limits<double>::infinity();
     const double fit = !std::isnan(c.fit) ? c.fit : std::numeric_limits<double>::infinity();
-    const double score = !std::isnan(c.score) ? c.score : 0;
-    return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, fit, -score);
+    return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, fit);
   };
   std::stable_sort(candidates->begin(), candidates->end(),
                    [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });

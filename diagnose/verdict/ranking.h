@@ -11,7 +11,7 @@
 namespace hydro::diagnose {
 
 // Every single change, and every other explanation with a weight (evidence.h). Taken ones first, then by
-// held-out gap, fit and score. `windows`: what was tried there is rejected for what it leaves of them.
+// held-out gap and fit. `windows`: what was tried there is rejected for what it leaves of them.
 std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult& search,
                                const std::map<std::string, double>& weights, const WindowTrials& windows);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/word_list.h"
-#include "diagnose/search/proof.h"
+#include "diagnose/closure/closure.h"
 #include "diagnose/verdict/evidence.h"
 
 namespace hydro::diagnose {
@@ -49,13 +49,19 @@ bool LeavesNearlyTheSame(const Explanation& other, const Explanation& best) {
   return loss <= std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1));
 }
 
+// A curve of its own can draw most effects: that it does as well is no reason to doubt their names.
+bool HasAClosure(const Explanation& one) {
+  return std::any_of(one.changes().begin(), one.changes().end(),
+                     [](const Change& change) { return IsClosureEffect(change.effect); });
+}
+
 // Adds the rivals among explanations of the same blocks as `best`.
 void AddRivals(const Change& change, const std::vector<const Explanation*>& tried, const Explanation& best,
                const std::map<std::string, double>& weights, std::vector<Rival>* rivals) {
   const double comparable = kComparable * std::min(WeightOf(weights, best), Largest(weights));
   for (const Explanation* other : tried) {
     if (other->blocks.sums.size() != best.blocks.sums.size() || other->blocks.sums.empty()) continue;
-    if (other->fitted.hypothesis.Has(change)) continue;
+    if (other->fitted.hypothesis.Has(change) || HasAClosure(*other)) continue;
     const double weight = WeightOf(weights, *other);
     const bool weighty = weight > 0 && weight >= comparable;
     if (!weighty && !(Exchanges(*other, best) && LeavesNearlyTheSame(*other, best))) continue;
@@ -75,20 +81,14 @@ void AddRivals(const Change& change, const std::vector<const Explanation*>& trie
 std::vector<Rival> RivalsOf(const Change& change, const SearchResult& search, const Explanation& refit,
                             const WindowTrials& windows, const std::map<std::string, double>& weights) {
   std::vector<Rival> rivals;
-  const Explanation* near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
-  if (near == nullptr || LeastGap(windows.tried) < kOutOfReach) {
-    std::vector<const Explanation*> proved = PointersToAll(search.tried);
-    proved.push_back(&refit);
-    AddRivals(change, proved, search.best, weights, &rivals);
+  const Explanation* near = windows.decide ? OnWindowsOf(windows, search.best.fitted.hypothesis) : nullptr;
+  if (near != nullptr) {
+    AddRivals(change, PointersToAll(windows.tried), *near, weights, &rivals);
+    return rivals;
   }
-  if (near == nullptr) return rivals;
-  std::vector<const Explanation*> only_there;
-  for (const Explanation& one : windows.tried) {
-    const bool proved = LeastGap(windows.tried) < kOutOfReach &&
-                        BestOf(search.tried, ClaimOf(one.fitted.hypothesis)) != nullptr;
-    if (!proved) only_there.push_back(&one);
-  }
-  AddRivals(change, only_there, *near, weights, &rivals);
+  std::vector<const Explanation*> whole = PointersToAll(search.tried);
+  whole.push_back(&refit);
+  AddRivals(change, whole, search.best, weights, &rivals);
   return rivals;
 }
 

@@ -17,7 +17,7 @@ struct Rival {
 // The explanations that do without `change`, one of the best one's, and cannot be told from it: they are not
 // worse by 2.5 standard errors, block by block, and either exchange the change for one other and leave nearly
 // the same gap, or have at least a fifth of the weight of the best claim or of the likeliest, whichever is less.
-// They are compared on whole runs, and on windows where those were not tried or say little (kOutOfReach).
+// They are compared on windows where these decide, else on whole runs.
 std::vector<Rival> RivalsOf(const Change& change, const SearchResult& search, const Explanation& refit,
                             const WindowTrials& windows, const std::map<std::string, double>& weights);
 

@@ -1,6 +1,7 @@
 #include "diagnose/verdict/sentence.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
@@ -39,7 +40,7 @@ std::vector<std::string> ParametersOf(const Diagnosis& d) {
     parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
                          ShortNumber(changed.model));
   }
-  if (parameters.empty() && !d.parameters.empty() && d.effects.empty()) {
+  if (parameters.empty() && d.effects.empty()) {
     parameters.emplace_back("several together, none of which these runs show alone (see the remarks)");
   }
   return parameters;
@@ -57,43 +58,70 @@ bool Tied(const Diagnosis& d) {
                      [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
 }
 
-// Whether the gap falls by what a reader sees in its digits.
+// Whether the gap falls by what a reader sees in its digits. From what a model cannot follow it falls to whatever is left.
 bool Falls(const BeforeAfter& gap) {
+  if (!std::isfinite(gap.before)) return std::isfinite(gap.after);
   return gap.after < gap.before && ShortNumber(gap.before, 3) != ShortNumber(gap.after, 3);
 }
 
-std::string GapOf(const BeforeAfter& gap) {
+std::string GapOf(const ComparedGap& compared) {
+  const BeforeAfter& gap = compared.gap;
+  const std::string over = compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "";
   const std::string before = ShortNumber(gap.before, 3), after = ShortNumber(gap.after, 3);
-  if (before == after) return " (the held-out gap stays at " + before + " noise units).";
-  return " (held-out gap " + before + " to " + after + " noise units).";
+  if (!std::isfinite(gap.after)) {
+    return " (" + std::string(std::isfinite(gap.before) ? "with it the model" : "the model") +
+           " cannot follow the held-out runs" + over + ").";
+  }
+  if (!std::isfinite(gap.before)) {
+    return " (the model as given cannot follow the held-out runs" + over + "; " + after +
+           " noise units are left).";
+  }
+  if (before == after) return " (the held-out gap" + over + " stays at " + before + " noise units).";
+  return " (held-out gap" + over + " " + before + " to " + after + " noise units).";
 }
 
-std::string Unexplained(const Diagnosis& d, const std::vector<std::string>& effects) {
-  const double before = d.held_out.before * d.held_out.before - 1;
-  const double left = (d.held_out.after * d.held_out.after - 1) / before;
+std::string Unexplained(const BeforeAfter& gap, const std::vector<std::string>& effects) {
   std::string sentence = "Something is missing that no known effect explains";
   if (effects.empty()) return sentence;
-  if (!Falls(d.held_out))
+  if (!Falls(gap))
     return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the held-out gap";
-  return sentence + "; the nearest is " + Enumerated(effects) + ", which leaves " +
-         ShortNumber(100 * left, 2) + " % of the squared gap";
+  sentence += "; the nearest is " + Enumerated(effects);
+  if (!std::isfinite(gap.before)) return sentence;
+  const double left = (gap.after * gap.after - 1) / (gap.before * gap.before - 1);
+  return sentence + ", which leaves " + ShortNumber(100 * left, 2) + " % of the squared gap";
+}
+
+std::string Partly(const Diagnosis& d, const std::vector<std::string>& effects,
+                   const std::vector<std::string>& parameters) {
+  if (effects.empty() && !d.closures.empty()) {
+    std::string sentence = Unexplained({}, {}) + "; a curve closes a part of the gap";
+    return parameters.empty() || d.parameters.empty() ? sentence
+                                                      : sentence + ", with " + Enumerated(parameters);
+  }
+  return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ", effects,
+               parameters) +
+         (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
+                  : "; nothing else that was tried takes as much of the gap") +
+         ", and a significant gap is left";
 }
 
 }  // namespace
 
-std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts) {
-  const std::string gap = GapOf(d.held_out);
+std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts,
+                     const ComparedGap& compared) {
+  const std::string gap = GapOf(compared);
   const std::vector<std::string> effects = EffectsOf(d), parameters = ParametersOf(d);
   if (!doubts.empty() && IsOpen(d.verdict)) {
-    const std::string begin = Falls(d.held_out) ? "The gap becomes smaller with "
-                                                : "Only the fitted runs are predicted better with ";
+    const std::string begin = Falls(compared.gap) ? "The gap becomes smaller with "
+                                                  : "Only the fitted runs are predicted better with ";
     return Found(begin, begin + "other values: ", effects, parameters) +
            ", but that is not the cause: " + Enumerated(doubts) + gap;
   }
   switch (d.verdict) {
     case Verdict::kNothingMissing:
       return "Nothing is missing: the model as given explains the data to " +
-             ShortNumber(d.held_out.before, 3) + " noise units.";
+             ShortNumber(compared.gap.before, 3) + " noise units" +
+             (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s." : ".");
     case Verdict::kParameters:
       return "The equations suffice with other values: " + Enumerated(parameters) + gap;
     case Verdict::kNamed:
@@ -101,13 +129,9 @@ std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts)
     case Verdict::kTied:
       return Found("Missing, but these data cannot tell which: ", "", effects, parameters) + gap;
     case Verdict::kPartly:
-      return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ",
-                   effects, parameters) +
-             (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
-                      : "; nothing else that was tried takes as much of the gap") +
-             std::string(", and a significant gap is left") + gap;
+      return Partly(d, effects, parameters) + gap;
     case Verdict::kUnexplained:
-      return Unexplained(d, effects) + gap;
+      return Unexplained(compared.gap, effects) + gap;
   }
   return "";
 }

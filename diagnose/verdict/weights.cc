@@ -142,16 +142,4 @@ std::map<std::string, double> Weights(const Contest& contest, uint64_t seed) {
   return weights;
 }
 
-std::map<std::string, double> Refined(const std::map<std::string, double>& first,
-                                      const std::map<std::string, double>& second) {
-  if (second.empty()) return first;
-  std::map<std::string, double> weights = first;
-  double left = 1;
-  for (const auto& [id, weight] : first) {
-    if (second.count(id) == 0) left -= weight;
-  }
-  for (const auto& [id, weight] : second) weights[id] = std::max(0.0, left) * weight;
-  return weights;
-}
-
 }  // namespace hydro::diagnose

@@ -29,9 +29,4 @@ struct Contest {
 // for any order of the evidence. Empty without evidence.
 std::map<std::string, double> Weights(const Contest& contest, uint64_t seed);
 
-// The weights of `first`, where the explanations in `second` share among them what `first` leaves to them, as
-// `second` has it. What `second` alone has shares too.
-std::map<std::string, double> Refined(const std::map<std::string, double>& first,
-                                      const std::map<std::string, double>& second);
-
 }  // namespace hydro::diagnose

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/search/refits.h"
-#include "diagnose/search/window_search.h"
+#include "base/parallel.h"
+#include "diagnose/prove/window_gaps.h"
 #include "diagnose/verdict/evidence.h"
 
 namespace hydro::diagnose {
@@ -25,34 +25,78 @@ const Explanation* Find(const std::vector<const Explanation*>& tried, const Hypo
   return found;
 }
 
-double Part(double given, double with, double without) {
-  if (!(given > 1) || !std::isfinite(without)) return std::numeric_limits<double>::quiet_NaN();
-  return std::clamp((without - std::max(1.0, with)) / (given - 1), 0.0, 1.0);
+// Of the squared gap above the noise that there is to take, what comes back. A model that cannot follow the runs leaves nothing to
+// compare with.
+double Part(double to_take, double with, double without) {
+  if (!(to_take > 1) || !std::isfinite(to_take) || !std::isfinite(without))
+    return std::numeric_limits<double>::quiet_NaN();
+  return std::clamp((without - std::max(1.0, with)) / (to_take - 1), 0.0, 1.0);
+}
+
+bool HasEffects(const Explanation& one, const std::vector<Change>& effects) {
+  const std::vector<Change> own = EffectsOf(one);
+  return std::is_permutation(own.begin(), own.end(), effects.begin(), effects.end());
+}
+
+// The least squared gap of what was tried with exactly these effects; infinite where nothing was.
+double LeastWith(const std::vector<Explanation>& tried, const std::vector<Change>& effects) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Explanation& one : tried) {
+    if (HasEffects(one, effects) && !one.blocks.sums.empty()) least = std::min(least, one.held_out_gap());
+  }
+  return least;
+}
+
+// The typical squared gap of the windows that judge, with the hypothesis fitted to the others; NaN where it cannot be fitted.
+double FittedWindowsGap(const SearchContext& context, const WindowTrials& windows,
+                        const Hypothesis& hypothesis, const std::vector<model::StartState>& starts) {
+  const Fitted fitted = Fit(hypothesis, windows.fitted, starts, FitToCompare(context.jobs));
+  if (!fitted.ok()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<WindowGap> gaps(windows.choosing.size());
+  ParallelFor(gaps.size(), context.jobs,
+              [&](size_t w) { gaps[w] = GapOf(fitted.hypothesis.model, *windows.choosing[w]); });
+  return TypicalGap(gaps);
+}
+
+double ShareOnWindows(const SearchContext& context, const WindowTrials& windows, const Explanation& near,
+                      const Change& change) {
+  std::vector<Change> others = EffectsOf(near);
+  std::erase(others, change);
+  const double with = near.held_out_gap();
+  double without = LeastWith(windows.tried, others);
+  if (!std::isfinite(without)) {
+    without = FittedWindowsGap(context, windows, Without(near.fitted.hypothesis, change, context.given),
+                               StartsOf(near.fitted));
+  }
+  const double of_values = LeastWith(windows.tried, {});
+  return Part(std::isfinite(of_values) ? of_values : without, with, without);
 }
 
 }  // namespace
 
+std::vector<Change> EffectsOf(const Explanation& one) {
+  std::vector<Change> effects;
+  for (const Change& change : one.changes()) {
+    if (!change.effect.empty()) effects.push_back(change);
+  }
+  return effects;
+}
+
 double ShareOf(const SearchContext& context, const SearchResult& search, const WindowTrials& windows,
                const Change& change) {
-  const Explanation* near = Find(PointersToAll(windows.tried), search.best.fitted.hypothesis);
-  if (near == nullptr) near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
-  const Explanation* given = BestOf(windows.tried, kAsGiven);
-  if (near == nullptr || given == nullptr) {
-    const Explanation without = FitWithout(context, search, change);
-    if (!without.fitted.ok()) return std::numeric_limits<double>::quiet_NaN();
-    return Part(search.given.held_out.squared_gap(), search.best.held_out.squared_gap(),
-                without.held_out.squared_gap());
-  }
-  const Hypothesis less = Without(near->fitted.hypothesis, change, context.given);
-  Explanation fitted;
-  const Explanation* without = Find(PointersToAll(windows.tried), less);
-  if (without == nullptr) {
-    const SearchContext on_windows = OnWindows(context, windows.fitted, windows.choosing);
-    fitted = Explain(on_windows, less, StartsOf(near->fitted), FitToCompare(context.jobs));
-    without = &fitted;
-  }
-  if (!without->fitted.ok()) return std::numeric_limits<double>::quiet_NaN();
-  return Part(given->held_out.squared_gap(), near->held_out.squared_gap(), without->held_out.squared_gap());
+  const Explanation* near = windows.decide ? OnWindowsOf(windows, search.best.fitted.hypothesis) : nullptr;
+  if (near != nullptr) return ShareOnWindows(context, windows, *near, change);
+  const Explanation without = FitWithout(context, search, change);
+  if (!without.fitted.ok()) return std::numeric_limits<double>::quiet_NaN();
+  return Part(search.given.held_out.squared_gap(), search.best.held_out.squared_gap(),
+              without.held_out.squared_gap());
+}
+
+double TypicalWithout(const WindowTrials& windows, const Explanation& best,
+                      const std::vector<Change>& effects) {
+  std::vector<Change> others = EffectsOf(best);
+  for (const Change& change : effects) std::erase(others, change);
+  return std::sqrt(LeastWith(windows.tried, others));
 }
 
 std::vector<std::string> Amounts(const model::EffectInfo& effect) {

@@ -9,11 +9,18 @@
 
 namespace hydro::diagnose {
 
-// The part of the held-out squared gap above the noise that comes back without `change`: 0 to 1, NaN where it
-// cannot be said. Measured on windows where there are any, else on whole runs. Fitted once, unless the search
-// has tried it.
+// The changes that are effects, closures among them.
+std::vector<Change> EffectsOf(const Explanation& one);
+
+// The part of the held-out squared gap above the noise that comes back without `change`: 0 to 1, NaN where it cannot be said. Where
+// windows decide it is the typical gap, a geometric mean, and a part of what the model's own values leave of it: how far they were
+// off is nothing that an effect takes. Else of whole runs, and of what the model as given leaves. Fitted once, unless it was tried.
 double ShareOf(const SearchContext& context, const SearchResult& search, const WindowTrials& windows,
                const Change& change);
+
+// The typical gap of windows, in noise units, with what was found but `effects`, as it was tried; infinite where it was not.
+double TypicalWithout(const WindowTrials& windows, const Explanation& best,
+                      const std::vector<Change>& effects);
 
 // What an effect amounts to: those of its parameters that are 0 where there is none of it. Names within the
 // effect; empty where none of them is.

@@ -183,7 +183,8 @@ TEST(Diagnose, NamesOnlyWhatItMay) {
   options.free = {"k_1", "beta"};
   const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {});
   for (const diagnose::Candidate& candidate : d.candidates) {
-    const bool effects = candidate.id.find('.') != std::string::npos;
+    // A curve of its own names no effect.
+    const bool effects = candidate.id.find('.') != std::string::npos && !candidate.id.starts_with("closure.");
     EXPECT_TRUE(!effects || candidate.id == "sensor.pressure_lag" || candidate.id == "valve.check" ||
                 candidate.id == "sensor.pressure_lag + valve.check")
         << candidate.id;

@@ -13,7 +13,6 @@
 #include "diagnose/data/windows.h"
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
-#include "diagnose/search/search.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -66,35 +65,6 @@ std::vector<model::StartState> TeethOff(const model::StartState& start) {
     }
   }
   return teeth;
-}
-
-// Tests that a start which puts a fit one cogging tooth off is given up for the measured one, where nothing holds it.
-TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
-  const model::ModelDescription truth =
-      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
-  std::vector<diagnose::RunData> runs;
-  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
-  runs[0].angle_counts = true;
-  runs[0].start_error = diagnose::kUnknownStart;
-  diagnose::FitOptions options;
-  options.most_iterations = 15;
-  options.tolerance = 1e-5;
-  diagnose::Hypothesis hypothesis;
-  hypothesis.model = truth;
-  const std::vector<model::StartState> teeth = TeethOff(StartsOf(runs)[0]);
-  const auto held = std::find_if(teeth.begin(), teeth.end(), [&](const model::StartState& tooth) {
-    const diagnose::Fitted fitted = diagnose::Fit(hypothesis, PointersTo(runs), {tooth}, options);
-    return fitted.ok() && fitted.squared_gap() > 1.5;
-  });
-  ASSERT_NE(held, teeth.end());
-  const std::vector<model::StartState> elsewhere{*held};
-  diagnose::SearchContext context;
-  context.given = Table1With();
-  context.runs = context.held_out = PointersTo(runs);
-  const diagnose::Explanation explained = diagnose::RefitFromOtherStarts(
-      context, diagnose::Explain(context, hypothesis, elsewhere, options), options);
-  ASSERT_TRUE(explained.fitted.ok());
-  EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }
 
 // Tests that a run's start is also searched for at rest where the first samples allow it: the measured start

@@ -159,7 +159,7 @@ TEST(ReportHtml, SaysWhatMayExplainTheRuns) {
 TEST(ReportHtml, NamesWhatWasNotSimulated) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  diagnosis.candidates.push_back({"amp.lag", 0, nan, nan, 1, "the score test expects no gain from it"});
+  diagnosis.candidates.push_back({"amp.lag", nan, nan, 1, diagnose::kNotProposed});
   const std::string page = ReportHtml(diagnosis, false);
   EXPECT_TRUE(Has(page, "gave no reason to simulate these alone: amp.lag.</p>"));
   EXPECT_FALSE(Has(page, "<td>amp.lag</td>"));

@@ -1,13 +1,11 @@
-// Where a closure begins, and what it resembles.
-#include "diagnose/closure/curve_start.h"
+// Closures of a model that was found, as a diagnosis states them, and what they resemble.
+#include "diagnose/closure/closure.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "diagnose/closure/resemblance.h"
-#include "model/actuator.h"
-#include "settings/model_file.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::diagnose {
@@ -18,23 +16,67 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-// Tests that knots reach from the lowest to the highest value, increase, and are as many as asked for at most.
-TEST(CurveStart, Knots) {
-  PossibleTerm term;
-  term.table = {"flow_1", "in^3/s", "p1", "psi", {110, 120, 120.1, 300, 500, 700, 900, 950}, {}, {}};
-  term.low = 100;
-  term.high = 1000;
-  const std::vector<double> knots = CurveOf(term, 8).lists.at("knots");
-  EXPECT_EQ(knots.front(), 100);
-  EXPECT_EQ(knots.back(), 1000);
-  EXPECT_LE(knots.size(), 8u);
-  for (size_t i = 1; i < knots.size(); ++i) EXPECT_GT(knots[i], knots[i - 1] + 3);
-  PossibleTerm second = term;
-  second.table.against = "arm_angle";
-  const model::EffectDescription surface = SurfaceOf(term, second);
-  EXPECT_THAT(surface.name_lists.at("against"), ElementsAre("p1", "arm_angle"));
-  EXPECT_EQ(surface.lists.at("values").size(),
-            surface.lists.at("knots").size() * surface.lists.at("knots_2").size());
+// Friction as the root of speed, as the evidence would find it.
+Hypothesis WithFilm() {
+  model::EffectDescription film;
+  film.id = "closure.pump_torque";
+  film.name_lists["against"] = {"motor_speed"};
+  for (int k = -8; k <= 8; ++k) {
+    const double speed = k * std::abs(k) * 2.0;
+    film.lists["knots"].push_back(speed);
+    film.lists["values"].push_back(-std::copysign(0.4 * std::sqrt(std::abs(speed) / 10), speed));
+  }
+  Hypothesis hypothesis;
+  hypothesis.model = testing::Table1With({film});
+  hypothesis.changes = {{"closure.pump_torque", {}, ""}};
+  return hypothesis;
+}
+
+// Tests that a closure has its knots, values, units and what it resembles, and a band where its values are free.
+TEST(FoundClosures, KnotsValuesAndBand) {
+  Hypothesis hypothesis = WithFilm();
+  std::vector<Closure> closures = FoundClosures(hypothesis, {});
+  ASSERT_THAT(closures, SizeIs(1));
+  EXPECT_EQ(closures[0].id, "closure.pump_torque");
+  EXPECT_THAT(closures[0].against, ElementsAre("motor_speed"));
+  EXPECT_THAT(closures[0].against_units, ElementsAre("rad/s"));
+  EXPECT_EQ(closures[0].unit, "in-lbf");
+  EXPECT_EQ(closures[0].value, hypothesis.model.effects[0].lists["values"]);
+  EXPECT_EQ(closures[0].low, closures[0].value) << "its values are held";
+  EXPECT_THAT(closures[0].resembles, HasSubstr("square root of |motor_speed|, against it"));
+
+  hypothesis.effects = {"closure.pump_torque"};
+  std::vector<Interval> intervals;
+  for (const FreeParameter& free : hypothesis.Free())
+    intervals.push_back({free.value - 0.1, free.value + 0.2});
+  closures = FoundClosures(hypothesis, intervals);
+  for (size_t i = 0; i < closures[0].value.size(); ++i) {
+    EXPECT_NEAR(closures[0].low[i], closures[0].value[i] - 0.1, 1e-12);
+    EXPECT_NEAR(closures[0].high[i], closures[0].value[i] + 0.2, 1e-12);
+  }
+}
+
+// Tests that a closure that the model as given has is none that was found.
+TEST(FoundClosures, NotThoseOfTheModelAsGiven) {
+  Hypothesis hypothesis = WithFilm();
+  hypothesis.changes.clear();
+  EXPECT_THAT(FoundClosures(hypothesis, {}), IsEmpty());
+}
+
+// Tests the words: where the curve is, and what it takes; nothing where it takes nothing that can be seen.
+TEST(ClosureSentence, SaysWhatItTakes) {
+  std::vector<Closure> closures = FoundClosures(WithFilm(), {});
+  closures[0].before = 4;
+  closures[0].after = 2;
+  closures[0].seconds = 0.4;
+  EXPECT_THAT(ClosureSentence(closures),
+              AllOf(HasSubstr("a curve of motor_speed in the torque on the pump, which "),
+                    HasSubstr("over 0.4 s better: 4 to 2 noise units, 75 % of the squared gap")));
+  closures[0].after = 3.9999;
+  EXPECT_EQ(ClosureSentence(closures), "");
+  closures[0].before = INFINITY;
+  EXPECT_THAT(ClosureSentence(closures), HasSubstr("which it cannot without"));
+  EXPECT_EQ(ClosureSentence({}), "");
 }
 
 Closure Like(double (*law)(double), double from, double to) {

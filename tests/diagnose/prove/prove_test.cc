@@ -93,7 +93,7 @@ TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
   EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
   EXPECT_LT(NearGap(proved, {kDrag}), 0.8 * NearGap(proved, {}));
   EXPECT_TRUE(proved.windows.decide);
-  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved.search, proved.refit, proved.windows);
+  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1u);
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
@@ -124,7 +124,7 @@ TEST_F(ProveTest, NothingStaysNothing) {
                                   diagnose::BlindChanges(context_));
   EXPECT_THAT(proved.search.best.changes(), IsEmpty());
   EXPECT_THAT(proved.search.best.fitted.hypothesis.base, IsEmpty());
-  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved.search, proved.refit, proved.windows);
+  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
 }
 
@@ -187,7 +187,7 @@ TEST_F(ProveTest, GivenModelThatCannotBeSimulated) {
   EXPECT_TRUE(proved.windows.decide);
   EXPECT_THAT(proved.search.best.fitted.hypothesis.base, ::testing::Not(IsEmpty()));
   EXPECT_NEAR(proved.search.best.held_out_gap(), 1, 0.2);
-  EXPECT_NO_THROW(diagnose::Conclude(context_, proved.search, proved.refit, proved.windows));
+  EXPECT_NO_THROW(diagnose::Conclude(context_, proved));
 }
 
 // Tests that runs are held out in turn where none is named: every other window judges.

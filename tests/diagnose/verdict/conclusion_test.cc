@@ -17,7 +17,7 @@ namespace {
 // with one.
 TEST(Ranking, TakenFirstOthersWithAReason) {
   SmallSearch& small = OfADrag();
-  const auto weights = diagnose::WeightsOf(small.context, small.search, small.search.given, {});
+  const auto weights = diagnose::WeightsOf(small.context, small.Found(), {});
   const std::vector<diagnose::Candidate> ranking =
       diagnose::Ranking(small.context, small.search, weights, {});
   ASSERT_EQ(ranking.size(), 4u);
@@ -41,7 +41,7 @@ TEST(Ranking, TakenFirstOthersWithAReason) {
 // whose runs they were.
 TEST(Conclusion, NamesTheDrag) {
   SmallSearch& small = OfADrag();
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.search, small.search.given);
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Found());
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1u);
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
@@ -63,7 +63,7 @@ TEST(Conclusion, NamesTheDrag) {
 // Tests that a model which explains its runs is said to lack nothing, and is left as it is.
 TEST(Conclusion, NothingMissing) {
   SmallSearch small(Table1With());
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.search, small.search.given);
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Found());
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_TRUE(d.effects.empty());
   EXPECT_TRUE(d.parameters.empty());
@@ -75,9 +75,9 @@ TEST(Conclusion, NothingMissing) {
 // Tests that a gap that nothing tried closes is called unexplained, with its place.
 TEST(Conclusion, Unexplained) {
   SmallSearch& small = OfADrag();
-  diagnose::SearchResult none = small.search;
-  none.best = none.given;
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, none, none.given);
+  diagnose::WideSearch none = small.Found();
+  none.search.best = none.search.given;
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, none);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kUnexplained);
   EXPECT_TRUE(d.effects.empty());
   EXPECT_DOUBLE_EQ(d.held_out.before, d.held_out.after);

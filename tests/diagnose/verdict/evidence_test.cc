@@ -44,59 +44,43 @@ TEST(ContestOf, SquaredGapsOfBlocks) {
   EXPECT_THAT(on_runs.evidence[0].parts, UnorderedElementsAre("amp.lag", "b"));
 }
 
-class WeightsOfTest : public ::testing::Test {
- protected:
-  // A lag that leaves this squared gap on whole runs, and a relief valve that was only tried on windows, where it
-  // is behind in most of them.
-  std::map<std::string, double> WithAnotherOnWindows(double gap_of_lag) {
-    std::vector<diagnose::RunData> runs;
-    runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, true, 0.2, 0, 1));
-    diagnose::SearchContext context;
-    context.runs = PointersTo(runs);
-    diagnose::WindowTrials windows;
-    for (int i = 0; i < 10; ++i) windows.runs.push_back("run " + std::to_string(i));
-    windows.tried = {Leaving(1.1, Freed({}, {kLag}), true), Scattered(1.4, 2, Freed({}, {kRelief}))};
-    // The gap is that of the blocks.
-    for (size_t w = 0; w < 10; ++w)
-      windows.tried[1].held_out.gaps[w] = std::exp(windows.tried[1].blocks.sums[w]);
-    diagnose::SearchResult search;
-    search.given = Leaving(100, Freed({}), false);
-    search.tried = {Leaving(gap_of_lag, Freed({}, {kLag}), false)};
-    search.best = search.tried[0];
-    return diagnose::WeightsOf(context, search, search.given, windows);
-  }
-
-  // A lag and a delay on windows and on whole runs, where the lag fits better on windows and the delay on runs.
-  std::map<std::string, double> With(double gap_of_windows) {
-    std::vector<diagnose::RunData> runs;
-    runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, true, 0.2, 0, 1));
-    diagnose::SearchContext context;
-    context.runs = PointersTo(runs);
-    diagnose::WindowTrials windows;
-    windows.runs.assign(10, "square");
-    windows.tried = {Leaving(50 * gap_of_windows, Freed({}), true),
-                     Leaving(gap_of_windows, Freed({}, {kLag}), true),
-                     Leaving(1.5 * gap_of_windows, Freed({}, {kDelay}), true)};
-    diagnose::SearchResult search;
-    search.given = Leaving(100, Freed({}), false);
-    search.tried = {Leaving(4, Freed({}, {kLag}), false), Leaving(1.1, Freed({}, {kDelay}), false)};
-    search.best = search.tried[1];
-    return diagnose::WeightsOf(context, search, search.given, windows);
-  }
-};
-
-// Tests that whole runs decide where windows come near the noise, and windows where they do not.
-TEST_F(WeightsOfTest, WholeRunsDecideNearTheNoise) {
-  EXPECT_GT(With(1.1).at("amp.delay"), 0.99);
-  EXPECT_GT(With(30).at("amp.lag"), 0.99);
+// A lag found on windows, where a delay leaves more; over whole runs the delay leaves less.
+diagnose::WideSearch FoundLag() {
+  diagnose::WideSearch found;
+  found.windows.decide = true;
+  found.windows.runs.assign(10, "square");
+  found.windows.tried = {Leaving(1500, Freed({}), true), Leaving(30, Freed({}, {kLag}), true),
+                         Leaving(45, Freed({}, {kDelay}), true)};
+  found.search.given = found.refit = Leaving(100, Freed({}), false);
+  found.search.best = Leaving(4, Freed({}, {kLag}), false);
+  found.search.tried = {found.search.best, Leaving(1.1, Freed({}, {kDelay}), false)};
+  return found;
 }
 
-// Tests that what is behind on windows, and was therefore not tried on whole runs, takes no weight from what
-// explains whole runs to the noise, but does where they are not explained.
-TEST_F(WeightsOfTest, WhatIsBehindOnWindowsHasNoPartOnceTheNoiseIsReached) {
-  EXPECT_NEAR(WithAnotherOnWindows(1.1).at("amp.lag"), 1, 1e-9);
-  EXPECT_LT(WithAnotherOnWindows(1.6).at("amp.lag"), 0.99);
-  EXPECT_GT(WithAnotherOnWindows(1.6).at("valve.relief"), 0.01);
+// Tests the claims of sets as the balances name them: effects with their names, values by themselves only.
+TEST(ClaimOfSet, SetsOfTheBalances) {
+  EXPECT_EQ(diagnose::ClaimOfSet({}), "as given");
+  EXPECT_EQ(diagnose::ClaimOfSet({"sensor.skew(p1)", "amp.lag", "value.b"}), "amp.lag + sensor.skew (p1)");
+  EXPECT_EQ(diagnose::ClaimOfSet({"value.b"}), "parameter b");
+  EXPECT_EQ(diagnose::ClaimOfSet({"run.T_s"}), "run.T_s");
+}
+
+// Tests that the balances' explanations say how probable what was found is, the same claims together.
+TEST(WeightsOf, AsTheBalancesSay) {
+  const diagnose::SearchContext context;
+  const std::map<std::string, double> weights = diagnose::WeightsOf(
+      context, FoundLag(), {{{"amp.lag"}, 0.5}, {{"amp.lag", "value.b"}, 0.2}, {{"amp.delay"}, 0.3}});
+  EXPECT_NEAR(weights.at("amp.lag"), 0.7, 1e-12);
+  EXPECT_NEAR(weights.at("amp.delay"), 0.3, 1e-12);
+}
+
+// Tests that the windows that decided say it where no explanation of the balances claims what was found.
+TEST(WeightsOf, AsWindowsSayOfWhatBalancesCannotSee) {
+  const diagnose::SearchContext context;
+  for (const std::vector<diagnose::WeightedSet>& explanations :
+       {std::vector<diagnose::WeightedSet>{}, {{{"amp.delay"}, 1.0}}}) {
+    EXPECT_GT(diagnose::WeightsOf(context, FoundLag(), explanations).at("amp.lag"), 0.99);
+  }
 }
 
 }  // namespace

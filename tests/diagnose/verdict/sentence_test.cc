@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 namespace hydro::testing {
 namespace {
 
@@ -24,14 +27,19 @@ diagnose::Diagnosis With(Verdict verdict, std::vector<std::string> tied_with = {
   return d;
 }
 
+// The sentence on whole runs.
+std::string Said(const diagnose::Diagnosis& d, const std::vector<std::string>& doubts = {}) {
+  return diagnose::Sentence(d, doubts, {d.held_out, 0});
+}
+
 // Tests that rivals are named in words, other values among them.
 TEST(Sentence, RivalsInWords) {
-  EXPECT_EQ(diagnose::Sentence(With(Verdict::kNamed), {}),
+  EXPECT_EQ(Said(With(Verdict::kNamed)),
             "Missing: the amplifier lags [amp.lag] (held-out gap 20 to 1.05 noise units).");
   const diagnose::Diagnosis tied =
       With(Verdict::kTied, {"amp.delay", "parameter J + parameter b", "parameters"});
-  EXPECT_THAT(diagnose::Sentence(tied, {}), HasSubstr("[amp.lag] (or amp.delay, or other values of J and "
-                                                      "b, or other values of the model's parameters)"));
+  EXPECT_THAT(Said(tied), HasSubstr("[amp.lag] (or amp.delay, or other values of J and "
+                                    "b, or other values of the model's parameters)"));
   EXPECT_EQ(diagnose::WhyNext(tied.effects),
             "distinguishes amp.lag from amp.delay, other values of J and b and other values of the model's "
             "parameters");
@@ -41,7 +49,7 @@ TEST(Sentence, RivalsInWords) {
 // Tests that a doubt takes the place of a claim.
 TEST(Sentence, ADoubtIsSaid) {
   EXPECT_THAT(
-      diagnose::Sentence(With(Verdict::kPartly), {"the interval of amp.lag includes none of it"}),
+      Said(With(Verdict::kPartly), {"the interval of amp.lag includes none of it"}),
       AllOf(StartsWith(
                 "The gap becomes smaller with the amplifier lags [amp.lag], but that is not the cause: "),
             HasSubstr("includes none of it"), Not(HasSubstr("Missing"))));
@@ -56,17 +64,16 @@ TEST(Sentence, ValuesThatExplainAPart) {
   b.fitted.value = 0.03;
   b.model = 0.02;
   d.parameters = {b};
-  EXPECT_THAT(diagnose::Sentence(d, {}),
-              StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
+  EXPECT_THAT(Said(d), StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
 }
 
 // Tests that a change that rounds to nothing is not claimed.
 TEST(Sentence, NoImprovementIsClaimed) {
   diagnose::Diagnosis d = With(Verdict::kUnexplained);
   d.held_out = {0.9981, 0.998, 0.9979};
-  EXPECT_THAT(diagnose::Sentence(d, {}), AllOf(HasSubstr("takes nothing of the held-out gap"),
-                                               HasSubstr("the held-out gap stays at 0.998 noise units")));
-  EXPECT_THAT(diagnose::Sentence(d, {"no rig is likely to have it"}),
+  EXPECT_THAT(Said(d), AllOf(HasSubstr("takes nothing of the held-out gap"),
+                             HasSubstr("the held-out gap stays at 0.998 noise units")));
+  EXPECT_THAT(Said(d, {"no rig is likely to have it"}),
               AllOf(StartsWith("Only the fitted runs are predicted better with"), Not(HasSubstr("smaller"))));
 }
 
@@ -78,7 +85,36 @@ TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   J.fitted.name = "J";
   J.resting = true;
   d.parameters = {b, J};
-  EXPECT_THAT(diagnose::Sentence(d, {}), AllOf(HasSubstr("b = "), Not(HasSubstr("J = "))));
+  EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = "))));
+}
+
+// Tests that a model that cannot follow the runs is said to be that, and no number stands for it.
+TEST(Sentence, WhatCannotBeFollowed) {
+  diagnose::Diagnosis d = With(Verdict::kNamed);
+  d.held_out.before = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(Said(d), AllOf(StartsWith("Missing: the amplifier lags"),
+                             HasSubstr("the model as given cannot follow the held-out runs; 1.05 noise "
+                                       "units are left")));
+  d.verdict = Verdict::kUnexplained;
+  EXPECT_THAT(Said(d),
+              AllOf(HasSubstr("the nearest is the amplifier lags [amp.lag] ("), Not(HasSubstr("%"))));
+  d.held_out.after = std::nan("");
+  EXPECT_THAT(Said(d), HasSubstr("the model cannot follow the held-out runs"));
+}
+
+// Tests that a gap of windows is said with the time that they reach.
+TEST(Sentence, AGapOverWindows) {
+  EXPECT_THAT(diagnose::Sentence(With(Verdict::kNamed), {}, {{11, 6, 1.2}, 0.4}),
+              HasSubstr("(held-out gap over 0.4 s 11 to 1.2 noise units)"));
+}
+
+// Tests that a curve alone is no cause.
+TEST(Sentence, ACurveAlone) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  d.effects.clear();
+  d.closures.emplace_back().id = "closure.pump_torque";
+  EXPECT_THAT(Said(d),
+              StartsWith("Something is missing that no known effect explains; a curve closes a part"));
 }
 
 }  // namespace

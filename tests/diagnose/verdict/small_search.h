@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnose/search/search.h"
+#include "diagnose/search/wide_search.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -31,7 +31,26 @@ struct SmallSearch {
     diagnose::Hypothesis given;
     given.model = context.given;
     const std::vector<model::StartState> starts = diagnose::MeasuredStarts(context.runs);
-    search = diagnose::Search(context, diagnose::Explain(context, given, starts, diagnose::FineFit(1)), {2});
+    search.given = search.best = diagnose::Explain(context, given, starts, diagnose::FineFit(1));
+    for (const diagnose::Change& change : context.changes) Try(given, change, starts);
+  }
+
+  // As where no windows can be cut: whole runs decide. The refit is the model as given.
+  diagnose::WideSearch Found() const { return {search, search.given, {}}; }
+
+ private:
+  // Fits the change from each of its starts, and takes the best fit.
+  void Try(const diagnose::Hypothesis& given, const diagnose::Change& change,
+           const std::vector<model::StartState>& starts) {
+    diagnose::Explanation best;
+    for (const diagnose::Hypothesis& start : diagnose::With(given, change, context.sizes, false)) {
+      diagnose::Explanation one = diagnose::Explain(context, start, starts, diagnose::FineFit(1));
+      if (!one.fitted.ok()) continue;
+      if (best.held_out.gaps.empty() || one.squared_gap() < best.squared_gap()) best = std::move(one);
+    }
+    search.rated.push_back({change, search.given.squared_gap() - best.squared_gap(), ""});
+    search.tried.push_back(best);
+    if (diagnose::Material(search.best.held_out_gap(), best.held_out_gap())) search.best = std::move(best);
   }
 };
 

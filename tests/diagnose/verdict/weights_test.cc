@@ -159,16 +159,5 @@ TEST(Weights, MeansOfSquaresHangOnTheWorst) {
 // Tests that there are no weights without evidence.
 TEST(Weights, NoneWithoutEvidence) { EXPECT_TRUE(diagnose::Weights({}, 1).empty()); }
 
-// Tests that what was proved shares what windows leave to it, as the proof has it, and the rest keeps its own.
-TEST(Refined, TheProofSharesOutWhatWindowsLeaveToIt) {
-  const std::map<std::string, double> near = {{"amp.lag", 0.5}, {"amp.delay", 0.3}, {"line.wave", 0.2}};
-  const auto weights = diagnose::Refined(near, {{"amp.lag", 0.1}, {"amp.delay", 0.8}, {"sensor.drift", 0.1}});
-  EXPECT_NEAR(weights.at("amp.lag"), 0.08, 1e-12);
-  EXPECT_NEAR(weights.at("amp.delay"), 0.64, 1e-12);
-  EXPECT_NEAR(weights.at("sensor.drift"), 0.08, 1e-12);
-  EXPECT_NEAR(weights.at("line.wave"), 0.2, 1e-12);
-  EXPECT_EQ(diagnose::Refined(near, {}), near);
-}
-
 }  // namespace
 }  // namespace hydro::testing

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/diagnose/verdict/made_up.h"
 #include "tests/diagnose/verdict/small_search.h"
@@ -71,31 +72,44 @@ TEST(ShareOf, TheOnlyEffectHasAll) {
   EXPECT_LE(diagnose::ShareOf(small.context, small.search, {}, kDrag), 1);
 }
 
-// Tests shares on windows: of what was tried without the effect, as a part of the gap of the model as given.
+// Tests shares on windows: of what was tried without the effect, as a part of the gap that the model's own values leave.
 TEST(ShareOf, PartsOnWindows) {
   diagnose::SearchContext context;
   context.given = Table1With();
   diagnose::SearchResult search;
   search.best = Leaving(1, Freed({}, {kLag, kRelief}), false);
   diagnose::WindowTrials windows;
-  windows.tried = {Leaving(101, Freed({}), true), Leaving(1, Freed({}, {kLag, kRelief}), true),
-                   Leaving(81, Freed({}, {kRelief}), true), Leaving(11, Freed({}, {kLag}), true)};
+  windows.decide = true;
+  windows.tried = {Leaving(1000, Freed({}), true), Leaving(101, Freed({"b"}), true),
+                   Leaving(1, Freed({}, {kLag, kRelief}), true), Leaving(81, Freed({}, {kRelief}), true),
+                   Leaving(11, Freed({}, {kLag}), true)};
   EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kLag), 0.8, 1e-12);
   EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kRelief), 0.1, 1e-12);
-  // What was fitted with other values as well does not speak for what was found without them.
-  windows.tried.push_back(Leaving(0.9, Freed({"b"}, {kLag, kRelief}), true));
-  EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kLag), 0.8, 1e-12);
+  // Without it, values may take its part.
+  windows.tried.push_back(Leaving(6, Freed({"b"}, {kLag}), true));
+  EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kRelief), 0.05, 1e-12);
 }
 
-// Tests that without a gap there is nothing to share.
+// Tests that without a gap there is nothing to share, and none with a model that cannot follow the runs.
 TEST(ShareOf, NothingWithoutAGap) {
   diagnose::SearchContext context;
   context.given = Table1With();
   diagnose::SearchResult search;
   search.best = Leaving(0.9, Freed({}, {kLag}), false);
   diagnose::WindowTrials windows;
+  windows.decide = true;
   windows.tried = {Leaving(0.98, Freed({}), true), Leaving(0.9, Freed({}, {kLag}), true)};
   EXPECT_TRUE(std::isnan(diagnose::ShareOf(context, search, windows, kLag)));
+}
+
+// Tests the typical gap without some of the effects, as it was tried.
+TEST(TypicalWithout, AsTried) {
+  const diagnose::Explanation best = Leaving(1, Freed({}, {kLag, kRelief}), false);
+  diagnose::WindowTrials windows;
+  windows.tried = {Leaving(25, Freed({}, {kLag}), true), Leaving(4, Freed({"b"}, {kRelief, kLag}), true)};
+  EXPECT_NEAR(diagnose::TypicalWithout(windows, best, {kRelief}), 5, 1e-12);
+  EXPECT_NEAR(diagnose::TypicalWithout(windows, best, {}), 2, 1e-12);
+  EXPECT_EQ(diagnose::TypicalWithout(windows, best, {kLag}), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
