@@ -22,10 +22,10 @@ constexpr double kFewestSamplesOfAWindow = 60;
 constexpr size_t kFewestOfAThinned = 200;
 constexpr double kWindowsOfARun = 3;
 
-using Pool = std::vector<const RunData*>;
+using WindowPool = std::vector<const RunData*>;
 
 // The windows where the channel, times the sign, is largest; without those in which it is not measured.
-Pool ByHeight(const Pool& pool, model::Channel channel, double sign) {
+WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign) {
   std::vector<std::pair<double, const RunData*>> heights;
   for (const RunData* window : pool) {
     const SignalData* signal = window->Find(channel);
@@ -35,13 +35,13 @@ Pool ByHeight(const Pool& pool, model::Channel channel, double sign) {
   }
   std::stable_sort(heights.begin(), heights.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  Pool sorted;
+  WindowPool sorted;
   for (const auto& [height, window] : heights) sorted.push_back(window);
   return sorted;
 }
 
 // At most `most` of the pool, evenly spread, and the extremes.
-Pool Chosen(const Pool& pool, size_t most) {
+WindowPool Chosen(const WindowPool& pool, size_t most) {
   std::vector<bool> taken(pool.size());
   const size_t spread = std::min(most, pool.size());
   for (size_t k = 0; k < spread; ++k) taken[k * pool.size() / spread] = true;
@@ -50,13 +50,13 @@ Pool Chosen(const Pool& pool, size_t most) {
     for (const double sign : {1.0, -1.0}) {
       // A side's lowest pressure is that of its valve, most of the time.
       if (sign < 0 && channel != model::Channel::kMotorSpeed) continue;
-      const Pool highest = ByHeight(pool, channel, sign);
+      const WindowPool highest = ByHeight(pool, channel, sign);
       for (size_t k = 0; k < std::min(highest.size(), kMostOfAnExtreme); ++k) {
         taken[static_cast<size_t>(std::find(pool.begin(), pool.end(), highest[k]) - pool.begin())] = true;
       }
     }
   }
-  Pool chosen;
+  WindowPool chosen;
   for (size_t i = 0; i < pool.size(); ++i) {
     if (taken[i]) chosen.push_back(pool[i]);
   }
@@ -64,13 +64,13 @@ Pool Chosen(const Pool& pool, size_t most) {
 }
 
 // Every `stride`-th window of `all` from `first` to `last`, beginning with the one at `offset`.
-Pool PoolOf(const std::vector<RunData>& all, size_t first, size_t last, size_t offset, size_t stride) {
-  Pool pool;
+WindowPool PoolOf(const std::vector<RunData>& all, size_t first, size_t last, size_t offset, size_t stride) {
+  WindowPool pool;
   for (size_t i = first + offset; i < last; i += stride) pool.push_back(&all[i]);
   return pool;
 }
 
-void SetJudging(const std::vector<const RunData*>& predicted, const Pool& windows, JudgingWindows* judging) {
+void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& windows, JudgingWindows* judging) {
   judging->windows = windows;
   for (const RunData* window : windows) {
     const auto run = std::find_if(predicted.begin(), predicted.end(),
@@ -118,7 +118,7 @@ ProofWindows ProofWindowsOf(const SearchContext& context) {
   const bool in_turn = context.held_out.empty();
   const std::vector<RunData>& kept = *proof.all;
   proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted);
-  const Pool near = in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
+  const WindowPool near = in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
   SetJudging(predicted, Chosen(near, kMostNear), &proof.near);
   SetJudging(predicted, Chosen(PoolOf(kept, near_end, far_end, 0, 1), kMostFar), &proof.far);
   return proof;
