@@ -218,7 +218,8 @@ SignalErrors ErrorsOf(const model::ModelDescription& model, const RunMotion& run
   for (std::vector<double>& of : errors.of) of.assign(run.size(), 0.0);
   WalkAlong(model, run, 1, [&](size_t k, const model::BalanceEquations& equations) {
     const model::ReadingErrors read = equations.Errors(run.at[k]);
-    const double values[kGridChannels] = {read.motor_speed, read.motor_angle, read.arm_angle, read.p1, read.p2};
+    const double values[kGridChannels] = {read.motor_speed, read.motor_angle, read.arm_angle, read.p1,
+                                          read.p2};
     for (size_t s = 0; s < kGridChannels; ++s) errors.of[s][k] = values[s];
   });
   for (std::vector<double>& of : errors.of) {

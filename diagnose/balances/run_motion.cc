@@ -27,9 +27,9 @@ constexpr double kTurnNoise = 3;
 constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kGridChannels] = {
     &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
     &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
-constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed, model::Channel::kMotorAngle,
-                                                  model::Channel::kArmAngle, model::Channel::kP1,
-                                                  model::Channel::kP2};
+constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed,
+                                                      model::Channel::kMotorAngle, model::Channel::kArmAngle,
+                                                      model::Channel::kP1, model::Channel::kP2};
 
 std::vector<double> KernelOf(double sigma) {
   const int reach = std::max(1, static_cast<int>(std::ceil(kReach * sigma)));

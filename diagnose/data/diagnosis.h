@@ -36,8 +36,8 @@ struct Window {
 struct Location {
   // pump_torque | flow_1 | flow_2 | arm_torque | command | sensor; where no balance can be formed, a signal's name
   std::string balance;
-  double share = 0;     // of the disagreement
-  std::string where;    // "|motor_speed| < 5 rad/s, at reversals"
+  double share = 0;   // of the disagreement
+  std::string where;  // "|motor_speed| < 5 rad/s, at reversals"
   std::vector<Window> windows;
 };
 

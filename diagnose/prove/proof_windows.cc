@@ -70,7 +70,8 @@ WindowPool PoolOf(const std::vector<RunData>& all, size_t first, size_t last, si
   return pool;
 }
 
-void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& windows, JudgingWindows* judging) {
+void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& windows,
+                JudgingWindows* judging) {
   judging->windows = windows;
   for (const RunData* window : windows) {
     const auto run = std::find_if(predicted.begin(), predicted.end(),
@@ -118,7 +119,8 @@ ProofWindows ProofWindowsOf(const SearchContext& context) {
   const bool in_turn = context.held_out.empty();
   const std::vector<RunData>& kept = *proof.all;
   proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted);
-  const WindowPool near = in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
+  const WindowPool near =
+      in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
   SetJudging(predicted, Chosen(near, kMostNear), &proof.near);
   SetJudging(predicted, Chosen(PoolOf(kept, near_end, far_end, 0, 1), kMostFar), &proof.far);
   return proof;

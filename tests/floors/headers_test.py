@@ -14,14 +14,19 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 ROOMS = {
     "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
     "position_ctrl/law", "logger", "process/safety", "sim", "plot", "design",
-    "experiments", "diagnose/data", "diagnose/fit", "diagnose/locate", "diagnose/search", "diagnose/verdict", "diagnose/report",
-    "diagnose",
+    "experiments", "diagnose/data", "diagnose/fit", "diagnose/balances", "diagnose/search", "diagnose/evidence", "diagnose/say",
+    "diagnose/prove", "diagnose/verdict", "diagnose/report", "diagnose",
 }
 # From a header's path to the reason.
 EXEMPT = {
     "diagnose/report/answer_sections.h": "parts of one page, which the tests of report_html.h read as a whole",
     "diagnose/report/closure_json.h": "a part of report.json, which closure_report_test reads as a whole",
     "diagnose/report/html_parts.h": "what the sections of the page share: their tests read its output",
+    "diagnose/balances/column_maker.h": "what the makers of columns share: column_test reads every column",
+    "diagnose/evidence/normal_equations.h": "inside of SetEvidence, which set_evidence_test compares with a dense reference",
+    "diagnose/evidence/set_solution.h": "inside of SetEvidence",
+    "diagnose/evidence/grams.h": "inside of SetEvidence",
+    "diagnose/prove/proof_outcome.h": "what a verdict reads: prove_test reads the whole",
     "diagnose/search/progress.h": "one struct without a function",
     "pressure_ctrl/own_pressure_loop.h": "a whole program: e2e.own_controller runs the example that stands on it",
     "model/start_from.h": "where Respond and StartedActuator begin: their tests go through it",
