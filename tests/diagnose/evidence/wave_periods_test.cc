@@ -1,0 +1,45 @@
+// Tests that the periods of what repeats with the shaft are found.
+#include "diagnose/evidence/wave_periods.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "tests/diagnose/evidence/scanned.h"
+
+namespace hydro::testing {
+namespace {
+
+std::vector<int> PeriodsOf(const Scanned& scanned, int jobs) {
+  return diagnose::LikelyPeriods(scanned.runs, scanned.rows, diagnose::SetEvidence(scanned.rows), jobs);
+}
+
+// Tests that the periods of cogging are among the few that are likely, the same on one job and on two.
+TEST(WavePeriods, OfCogging) {
+  for (const double periods : {7.0, 12.0}) {
+    const model::EffectDescription cogging = {
+        "motor.cogging", {{"amplitude", 2}, {"periods", periods}, {"phase", 0.4}}, {}};
+    const Scanned scanned(ClampedPair(Table1With({cogging}), 2, 21), {"motor.cogging"});
+    const std::vector<int> likely = PeriodsOf(scanned, 1);
+    EXPECT_THAT(likely, ::testing::Contains(static_cast<int>(periods)));
+    EXPECT_LE(likely.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(likely.begin(), likely.end()));
+    EXPECT_EQ(PeriodsOf(scanned, 2), likely);
+  }
+}
+
+// Tests that a pump with nine pistons is found by its flow, among what cogging could be.
+TEST(WavePeriods, OfTheFlow) {
+  const model::EffectDescription ripple = {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}};
+  const Scanned scanned(ClampedPair(Table1With({ripple}), 2, 22), {"motor.cogging", "pump.flow_ripple"});
+  EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::Contains(9));
+}
+
+// Tests that there are none where no effect that may be missing repeats with the shaft.
+TEST(WavePeriods, NoneWithoutSuchEffects) {
+  const Scanned scanned(ClampedPair(Table1With(), 0.5, 23), {"amp.lag"});
+  EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace hydro::testing
