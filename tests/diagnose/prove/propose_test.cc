@@ -1,0 +1,210 @@
+// Tests of what the balances of short noisy runs propose.
+#include "diagnose/prove/propose.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/prove/proposal.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+using diagnose::Change;
+using diagnose::Proposal;
+using diagnose::Proposed;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Change Of(const std::string& effect) { return {effect, {}, ""}; }
+
+// Three clamped runs and a free one.
+std::vector<diagnose::RunData> RunsOf(const model::ModelDescription& truth, uint64_t seed) {
+  std::vector<diagnose::RunData> runs = ClampedPair(truth, 2, seed);
+  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 2, 2, seed));
+  runs.push_back(SmallRun(truth, model::Shaft::kClamped, true, 2, 3, seed));
+  return runs;
+}
+
+std::vector<diagnose::RunData> BypassOf(const model::ModelDescription& truth, uint64_t seed) {
+  std::vector<diagnose::RunData> runs;
+  for (const int which : {0, 1})
+    runs.push_back(SmallRun(truth, model::Shaft::kClamped, true, 2, which, seed));
+  return runs;
+}
+
+diagnose::SearchContext ContextOf(const std::vector<diagnose::RunData>& runs,
+                                  const std::vector<std::string>& effects) {
+  diagnose::SearchContext context;
+  context.given = Table1With();
+  context.runs = diagnose::PointersTo(runs);
+  context.sizes = diagnose::SizesOf(context.given, context.runs);
+  for (const std::string& effect : effects) context.changes.push_back(Of(effect));
+  return context;
+}
+
+std::vector<size_t> Allowed() {
+  std::vector<size_t> allowed;
+  for (size_t i = 0; i < model::BaseParameters().size(); ++i) allowed.push_back(i);
+  return allowed;
+}
+
+const std::vector<std::string>& Some() {
+  static const std::vector<std::string> effects = {
+      "pump.stribeck",          "pump.quadratic_drag", "amp.lag", "amp.bias", "fluid.entrained_air",
+      "pump.turbulent_leakage", "sensor.pressure_lag"};
+  return effects;
+}
+
+// The place among the proposals of the one with this effect alone; their number: none.
+size_t PlaceOf(const Proposed& proposed, const std::string& effect) {
+  const std::vector<Change> wanted = {Of(effect)};
+  const auto at = std::find_if(proposed.proposals.begin(), proposed.proposals.end(),
+                               [&](const Proposal& one) { return one.changes == wanted; });
+  return static_cast<size_t>(at - proposed.proposals.begin());
+}
+
+double ValueOf(const model::ModelDescription& model, const std::string& effect, const std::string& name) {
+  for (const model::EffectDescription& one : model.effects) {
+    if (one.id == effect) return one.parameters.at(name);
+  }
+  return std::nan("");
+}
+
+// Tests that what is missing is among the first three sets after that of nothing, and first of them by score, with about its amounts;
+// each held-out run has a model of its own, which has the effect too.
+TEST(Propose, WhatIsMissing) {
+  const std::vector<diagnose::RunData> runs =
+      RunsOf(Table1With({{"pump.stribeck", {{"static_excess", 1.0}, {"speed", 8}}, {}}}), 31);
+  const Proposed proposed = Propose(ContextOf(runs, Some()), Allowed());
+  const size_t place = PlaceOf(proposed, "pump.stribeck");
+  ASSERT_LE(place, 3u);
+  const Proposal& with = proposed.proposals[place];
+  EXPECT_GT(with.score, 10);
+  EXPECT_GT(ValueOf(with.model, "pump.stribeck", "static_excess"), 0.5);
+  EXPECT_LT(ValueOf(with.model, "pump.stribeck", "static_excess"), 2);
+  ASSERT_EQ(with.without.size(), runs.size());
+  for (const model::ModelDescription& one : with.without)
+    EXPECT_FALSE(std::isnan(ValueOf(one, "pump.stribeck", "static_excess")));
+  EXPECT_GT(proposed.said.at("pump.stribeck"), 0.5);
+  EXPECT_THAT(proposed.scores.front().set, Contains(HasSubstr("pump.stribeck|")));
+}
+
+// Tests that of runs that are held out by name no proposal has models without others.
+TEST(Propose, HeldOutByName) {
+  const std::vector<diagnose::RunData> runs =
+      RunsOf(Table1With({{"pump.quadratic_drag", {{"k", 3e-4}}, {}}}), 32);
+  diagnose::SearchContext context = ContextOf(runs, Some());
+  context.held_out = {context.runs.back()};
+  context.runs.pop_back();
+  const Proposed proposed = Propose(context, Allowed());
+  const size_t place = PlaceOf(proposed, "pump.quadratic_drag");
+  ASSERT_LE(place, 3u);
+  EXPECT_NEAR(ValueOf(proposed.proposals[place].model, "pump.quadratic_drag", "k"), 3e-4, 1e-4);
+  for (const Proposal& one : proposed.proposals) EXPECT_THAT(one.without, IsEmpty());
+}
+
+// Tests that nothing is proposed first where nothing is missing, that it is the likeliest, and that weights are shares.
+TEST(Propose, NothingMissing) {
+  const std::vector<diagnose::RunData> runs = RunsOf(Table1With(), 33);
+  const Proposed proposed = Propose(ContextOf(runs, Some()), Allowed());
+  ASSERT_FALSE(proposed.proposals.empty());
+  EXPECT_THAT(proposed.proposals.front().changes, IsEmpty());
+  EXPECT_THAT(proposed.weights.explanations.front().changes, IsEmpty());
+  EXPECT_GT(proposed.proposals.front().weight, 0.5);
+  EXPECT_EQ(proposed.proposals.front().score, 0);
+  EXPECT_THAT(proposed.remarks, IsEmpty());
+  double sum = 0;
+  for (const Proposal& one : proposed.proposals) sum += one.weight;
+  EXPECT_LE(sum, 1 + 1e-9);
+  const auto shown = [&](const char* base) {
+    return std::count(proposed.shown.begin(), proposed.shown.end(), model::BasePlace(base)) == 1;
+  };
+  for (const char* base : {"k_1", "J", "b", "T_s", "beta", "k_2", "J_a"}) EXPECT_TRUE(shown(base)) << base;
+}
+
+// Tests that a bypass whose pressures nobody measured says nothing of the oil, and no more of the arm's values.
+TEST(Propose, NoOilWithoutPressures) {
+  std::vector<diagnose::RunData> runs;
+  for (diagnose::RunData& run : BypassOf(Table1With({{"pump.quadratic_drag", {{"k", 3e-4}}, {}}}), 34)) {
+    runs::MeasuredRun measured = run.measured;
+    measured.p1 = measured.p2 = {};
+    runs.push_back(diagnose::PrepareRun(std::move(measured), Table1()));
+  }
+  const Proposed proposed =
+      Propose(ContextOf(runs, {"pump.quadratic_drag", "fluid.entrained_air", "fluid.stiffening",
+                               "pump.turbulent_leakage", "sensor.pressure_lag"}),
+              Allowed());
+  EXPECT_LE(PlaceOf(proposed, "pump.quadratic_drag"), 3u);
+  for (const Proposal& one : proposed.proposals) {
+    for (const model::EffectDescription& effect : one.model.effects) {
+      EXPECT_FALSE(effect.id.starts_with("fluid.") || effect.id.starts_with("sensor.")) << effect.id;
+      EXPECT_NE(effect.id, "pump.turbulent_leakage");
+    }
+  }
+  for (const char* base : {"beta", "c_I", "J_a", "k_2"})
+    EXPECT_EQ(std::count(proposed.shown.begin(), proposed.shown.end(), model::BasePlace(base)), 0) << base;
+}
+
+// Tests that friction that grows with the pressures is, where these stand still, another value of T_s: a remark says so, and it is
+// not proposed.
+TEST(Propose, DoubleOfAValue) {
+  const std::vector<diagnose::RunData> runs =
+      BypassOf(Table1With({{"pump.pressure_friction", {{"f", 2e-3}}, {}}}), 35);
+  const Proposed proposed =
+      Propose(ContextOf(runs, {"pump.pressure_friction", "pump.quadratic_drag"}), Allowed());
+  EXPECT_THAT(proposed.remarks,
+              Contains(HasSubstr("pump.pressure_friction does in these runs what another value")));
+  for (const Proposal& one : proposed.proposals)
+    EXPECT_TRUE(std::isnan(ValueOf(one.model, "pump.pressure_friction", "f")));
+}
+
+// Tests that each proposal has a sensor's wrong sign where the recording has it.
+TEST(Propose, WrongSignIsInAll) {
+  std::vector<diagnose::RunData> runs;
+  for (diagnose::RunData& run : ClampedPair(Table1With(), 1, 36)) {
+    runs::MeasuredRun measured = run.measured;
+    for (double& value : measured.motor_angle.values) value = -value;
+    runs.push_back(diagnose::PrepareRun(std::move(measured), Table1()));
+  }
+  const Proposed proposed = Propose(ContextOf(runs, {"amp.bias"}), Allowed(), {"motor_angle"});
+  ASSERT_FALSE(proposed.proposals.empty());
+  const Change sign{"sensor.sign", {{"signal", "motor_angle"}}, ""};
+  for (const Proposal& one : proposed.proposals) EXPECT_THAT(one.changes, Contains(sign));
+  EXPECT_THAT(proposed.remarks, IsEmpty());  // turned round, it agrees with the speed
+}
+
+// Tests that nothing is proposed where no balance can be formed.
+TEST(Propose, NoBalanceNoProposal) {
+  std::vector<diagnose::RunData> runs;
+  for (diagnose::RunData& run : ClampedPair(Table1With(), 1, 37)) {
+    runs::MeasuredRun measured = run.measured;
+    measured.p1 = measured.p2 = {};
+    runs.push_back(diagnose::PrepareRun(std::move(measured), Table1()));
+  }
+  EXPECT_THAT(Propose(ContextOf(runs, Some()), Allowed()).proposals, IsEmpty());
+}
+
+// Tests that one and two threads propose the same bits.
+TEST(Propose, SameForAnyNumberOfJobs) {
+  const std::vector<diagnose::RunData> runs = RunsOf(Table1With({{"amp.bias", {{"bias", 0.6}}, {}}}), 38);
+  diagnose::SearchContext context = ContextOf(runs, Some());
+  const Proposed one = Propose(context, Allowed());
+  context.jobs = 2;
+  const Proposed two = Propose(context, Allowed());
+  ASSERT_EQ(one.proposals.size(), two.proposals.size());
+  for (size_t i = 0; i < one.proposals.size(); ++i) {
+    EXPECT_EQ(one.proposals[i].changes, two.proposals[i].changes);
+    EXPECT_EQ(one.proposals[i].score, two.proposals[i].score);
+    EXPECT_EQ(one.proposals[i].weight, two.proposals[i].weight);
+    EXPECT_EQ(one.proposals[i].model.parameters.J, two.proposals[i].model.parameters.J);
+  }
+  EXPECT_EQ(one.said, two.said);
+}
+
+}  // namespace
+}  // namespace hydro::testing
