@@ -184,7 +184,13 @@ double EstimateResolution(const std::vector<double>& values) {
   return 10 * multiples >= 9 * steps.size() ? single / static_cast<double>(singles) : 0;
 }
 
-double EstimateNoise(const std::vector<double>& values) {
+double EstimateNoise(const std::vector<double>& all) {
+  // A signal that stands in every second row or fewer has samples of its own: between them nothing is missing.
+  constexpr double kOwnSamples = 0.75;
+  std::vector<double> values = all;
+  if (static_cast<double>(CountValid(all)) < kOwnSamples * static_cast<double>(all.size()))
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return 0;
   const double rounding = EstimateResolution(values) / std::sqrt(12.0);
   std::vector<double> whole = values;
   const std::vector<Gap> gaps = Gaps(values);

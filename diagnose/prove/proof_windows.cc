@@ -14,7 +14,7 @@ namespace {
 
 // What the work of a proof is bounded by. With 20 windows that judge, a difference of 10 % is seen where single windows scatter by
 // 40 %.
-constexpr size_t kMostFitted = 9, kMostNear = 20, kMostFar = 6;
+constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 20, kMostFar = 6;
 // And those of each extreme.
 constexpr size_t kMostOfAnExtreme = 1;
 constexpr double kFarTimes = 4;
@@ -119,6 +119,7 @@ ProofWindows ProofWindowsOf(const SearchContext& context) {
   const bool in_turn = context.held_out.empty();
   const std::vector<RunData>& kept = *proof.all;
   proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted);
+  proof.told = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostTold);
   const WindowPool near =
       in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
   SetJudging(predicted, Chosen(near, kMostNear), &proof.near);

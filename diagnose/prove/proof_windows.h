@@ -21,6 +21,7 @@ struct JudgingWindows {
 struct ProofWindows {
   // Owns all below.
   std::shared_ptr<const std::vector<RunData>> all;
+  std::vector<const RunData*> told;  // of the fitted runs: what intervals rest on, more than a fit can afford
   std::vector<const RunData*> fitted;  // of the fitted runs, as long as those of `near`
   // 0.4 s: a lag shows less in 0.1 s than where the window begins, and over 1.6 s the base values' errors outweigh what is
   // missing (both measured).

@@ -35,6 +35,12 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
       add(less);
     }
   }
+  // Other values are the likeliest cause of all: the best one is tried by itself.
+  for (const ScoredSet& scored : scores) {
+    if (scored.set.size() != 1 || !scored.set[0].starts_with("value.")) continue;
+    add(scored.set);
+    break;
+  }
   std::vector<std::string> alone;
   for (const ScoredSet& scored : scores) {
     if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
@@ -56,6 +62,27 @@ bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
     }
   }
   return false;
+}
+
+// Where one value is far off, the model with this value alone changed: all others may well be as given.
+std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, const ChangeSet& set,
+                                      const Proposal& all) {
+  if (set.size() != 1 || !set[0].starts_with("value.") || all.changes.size() != 1) return std::nullopt;
+  const std::string& name = all.changes[0].parameter;
+  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
+    const model::BaseParameter& base = model::BaseParameters()[place];
+    if (base.info.name != name) continue;
+    Proposal alone = all;
+    alone.model.parameters = given.parameters;
+    alone.model.parameters.*base.member = all.model.parameters.*base.member;
+    for (size_t r = 0; r < alone.without.size(); ++r) {
+      alone.without[r].parameters = given.parameters;
+      alone.without[r].parameters.*base.member = all.without[r].parameters.*base.member;
+    }
+    alone.base = {place};
+    return alone;
+  }
+  return std::nullopt;
 }
 
 // A model has each effect once: two curves on one balance, over different variables, cannot both be in it.
@@ -165,6 +192,8 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
       }
     }
     for (const std::string& sensor : inverted) Invert(sensor, &proposal);
+    if (const std::optional<Proposal> alone = OneValueAlone(context.given, set, proposal))
+      proposed.proposals.push_back(*alone);
     proposed.proposals.push_back(std::move(proposal));
   }
   return proposed;

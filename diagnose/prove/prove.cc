@@ -22,6 +22,23 @@ constexpr size_t kMostMade = 10;
 // Of the gap: sets that differ by less predict equally well.
 constexpr double kNoBetter = 0.01;
 
+bool RepeatsWithTheShaft(const model::EffectDescription& effect) {
+  const model::EffectInfo* info = model::FindEffect(effect);
+  return info != nullptr &&
+         std::any_of(info->parameters.begin(), info->parameters.end(),
+                     [](const auto& parameter) { return parameter.role == model::Role::kPeriods; });
+}
+
+// How many numbers the set adds to the model.
+size_t NumbersOf(const ProvedSet& set) {
+  size_t numbers = 0;
+  for (const Change& change : set.Effects()) {
+    for (const model::EffectDescription& effect : set.hypothesis.model.effects)
+      numbers += effect.id == change.effect ? effect.parameters.size() : 0;
+  }
+  return numbers;
+}
+
 class Prover {
  public:
   Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
@@ -52,6 +69,7 @@ class Prover {
     SetFitted(best);
     RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
     Report("fitting the whole runs", 0.93);
+    scaled_ = WithDiscrepancy(windows_.told, sets_[best].hypothesis.model, context_.jobs);
     return OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best});
   }
 
@@ -76,6 +94,10 @@ class Prover {
       }
       for (const Change& change : proposal.changes) {
         if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
+      }
+      // The estimate moves the numbers of effects that the model has as it moves base values. Periods of a turn are whole numbers.
+      for (const model::EffectDescription& effect : context_.given.effects) {
+        if (!proposal.base.empty() && !RepeatsWithTheShaft(effect)) hypothesis.effects.push_back(effect.id);
       }
       ProvedSet& set = sets_.emplace_back();
       set.hypothesis = std::move(hypothesis);
@@ -164,9 +186,22 @@ class Prover {
       next = Reduced(best);
       if (next == best) next = BetterOfTheSameSize(best);
     }
+    best = WithFewerNumbers(best);
     const bool has_effects = !sets_[best].Effects().empty();
     if (!has_effects && best != kGiven && !AreValuesKept(sets_[best], sets_[kGiven])) best = kGiven;
     return best;
+  }
+
+  // Of sets with as many effects that predict as well, the one whose effects have the fewest numbers: a bias has one, an asymmetry two.
+  size_t WithFewerNumbers(size_t place) const {
+    size_t fewest = place;
+    for (size_t i = 0; i < sets_.size(); ++i) {
+      if (!sets_[i].tested() || sets_[i].Effects().size() != sets_[place].Effects().size()) continue;
+      if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
+      const GapFall fall = FallOf(sets_[i].near, sets_[place].near);
+      if (!fall.Exceeds(kPartOfValues)) fewest = i;
+    }
+    return fewest;
   }
 
   // What is chosen is not worse than another set with as few effects.

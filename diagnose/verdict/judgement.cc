@@ -103,6 +103,8 @@ Verdict VerdictOn(const SearchContext& context, const Kept& kept, const WindowTr
   const bool closed = IsGapClosed(kept, windows, d, ExactSensors(context.runs));
   if (!kept.doubts.empty() || (!closed && !windows.decide))
     return something && TakesMaterialPart(d, windows) ? Verdict::kPartly : Verdict::kUnexplained;
+  // A curve is no cause: what it closes stays unexplained.
+  if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
   if (!closed || !d.closures.empty()) return something ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
