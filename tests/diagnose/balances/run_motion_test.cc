@@ -19,9 +19,9 @@ using diagnose::RunMotion;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kStep = 1e-3;
+constexpr double kEvery = 1e-3;
 
-const runs::MeasuredRun& Pressed() {
+const runs::MeasuredRun& PressedRun() {
   static const runs::MeasuredRun run = Measure(PlainMachine(), RichRuns()[0]);
   return run;
 }
@@ -29,7 +29,7 @@ const runs::MeasuredRun& Pressed() {
 // The motion of a clamped run with something changed in the recording.
 RunMotion MotionWith(const std::function<void(runs::MeasuredRun*)>& change,
                      const std::vector<std::string>& inverted = {}) {
-  runs::MeasuredRun run = Pressed();
+  runs::MeasuredRun run = PressedRun();
   change(&run);
   const model::Parameters given = PlainMachine().parameters;
   return diagnose::MotionOf(diagnose::PrepareRun(std::move(run), given), given, inverted);
@@ -50,14 +50,14 @@ void Delay(size_t samples, std::vector<double>* values) {
 TEST(RunMotion, DerivativeIsExactOnCubics) {
   std::vector<double> cubic, line;
   for (int k = 0; k < 40; ++k) {
-    const double t = kStep * k;
+    const double t = kEvery * k;
     cubic.push_back(2 + 3 * t - 40 * t * t + 500 * t * t * t);
     line.push_back(2 - 7 * t);
   }
-  const std::vector<double> rate = diagnose::Derivative(cubic, kStep),
-                            slope = diagnose::Derivative(line, kStep);
+  const std::vector<double> rate = diagnose::Derivative(cubic, kEvery),
+                            slope = diagnose::Derivative(line, kEvery);
   for (size_t k = 3; k + 3 < cubic.size(); ++k) {
-    const double t = kStep * static_cast<double>(k);
+    const double t = kEvery * static_cast<double>(k);
     EXPECT_NEAR(rate[k], 3 - 80 * t + 1500 * t * t, 1e-9);
   }
   for (const double one : slope) EXPECT_NEAR(one, -7, 1e-9);
@@ -91,7 +91,7 @@ TEST(RunMotion, RatesBelongToValues) {
   EXPECT_EQ(motion.stride, 4u);  // balances are needed each 2 ms
   EXPECT_TRUE(motion.pressures);
   EXPECT_FALSE(motion.arm_moves);
-  ASSERT_EQ(motion.size(), Pressed().time.size());
+  ASSERT_EQ(motion.size(), PressedRun().time.size());
   double fastest = 0, apart = 0;
   for (size_t k = 200; k + 200 < motion.size(); k += 50) {
     const model::KnownMotion &before = motion.at[k - 1], &at = motion.at[k], &after = motion.at[k + 1];
@@ -99,7 +99,7 @@ TEST(RunMotion, RatesBelongToValues) {
     fastest = std::max(fastest, std::abs(rate));
     apart = std::max(apart, std::abs(at.p1_rate - rate));
     EXPECT_NEAR((after.motor_angle - before.motor_angle) / (2 * motion.step), at.motor_speed, 1.0);
-    EXPECT_EQ(at.voltage, Pressed().voltage.values[k]);
+    EXPECT_EQ(at.voltage, PressedRun().voltage.values[k]);
     EXPECT_EQ(at.arm_angle, 0.1);
   }
   EXPECT_LT(apart, 0.02 * fastest);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "diagnose/data/run_data.h"
+#include "diagnose/search/window_search.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -64,7 +65,10 @@ TEST(ProofWindows, OfHeldOutRuns) {
   EXPECT_DOUBLE_EQ(windows.near.seconds, 0.4);
   EXPECT_DOUBLE_EQ(windows.far.seconds, 1.6);
   ASSERT_FALSE(windows.fitted.empty());
-  for (const RunData* window : windows.fitted) EXPECT_EQ(window->name, runs[0].name);
+  EXPECT_GE(windows.told.size(), windows.fitted.size());
+  for (const std::vector<const RunData*>* of_fitted : {&windows.fitted, &windows.told}) {
+    for (const RunData* window : *of_fitted) EXPECT_EQ(window->name, runs[0].name);
+  }
   for (const diagnose::JudgingWindows* judging : {&windows.near, &windows.far}) {
     ASSERT_EQ(judging->runs.size(), judging->windows.size());
     for (size_t w = 0; w < judging->windows.size(); ++w) {
@@ -83,6 +87,7 @@ TEST(ProofWindows, InTurnTheyDoNotOverlap) {
   EXPECT_GE(windows.fitted.size(), 3u);
   EXPECT_GE(windows.near.windows.size(), 3u);
   for (const RunData* judging : windows.near.windows) {
+    for (const RunData* fitted : windows.told) EXPECT_FALSE(Overlap(*judging, *fitted)) << judging->name;
     for (const RunData* fitted : windows.fitted) EXPECT_FALSE(Overlap(*judging, *fitted)) << judging->name;
   }
   for (size_t w = 0; w < windows.near.windows.size(); ++w)
@@ -95,6 +100,7 @@ TEST(ProofWindows, BoundedWithTheExtremes) {
   const ProofWindows windows = ProofWindowsOf(ContextOf(runs, 1));
   // Those that are spread, and one for each of four extremes.
   EXPECT_LE(windows.fitted.size(), 9u + 4u);
+  EXPECT_LE(windows.told.size(), 20u + 4u);
   EXPECT_GE(windows.near.windows.size(), 20u);
   EXPECT_LE(windows.near.windows.size(), 20u + 4u);
   EXPECT_LE(windows.far.windows.size(), 6u + 4u);
@@ -115,6 +121,7 @@ TEST(ProofWindows, OfShortRuns) {
   const std::vector<RunData> runs = RunsOf(1);
   const ProofWindows windows = ProofWindowsOf(ContextOf(runs, 2));
   EXPECT_NEAR(windows.near.seconds, 0.25, 0.01);
+  EXPECT_EQ(windows.near.seconds, diagnose::SearchHorizon(diagnose::PointersTo(runs)));
   EXPECT_GE(windows.near.windows.size(), 3u);
   const std::vector<RunData> some = RunsOf(1.5);
   const ProofWindows without = ProofWindowsOf(ContextOf(some, 2));

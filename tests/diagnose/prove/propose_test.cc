@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Change Of(const std::string& effect) { return {effect, {}, ""}; }
+Change NamedEffect(const std::string& effect) { return {effect, {}, ""}; }
 
 // Two clamped runs, a free one, and the bypass.
 std::vector<diagnose::RunData> RunsOf(const model::ModelDescription& truth, uint64_t seed) {
@@ -53,7 +53,7 @@ diagnose::SearchContext ContextOf(const std::vector<diagnose::RunData>& runs,
   context.given = Table1With();
   context.runs = diagnose::PointersTo(runs);
   context.sizes = diagnose::SizesOf(context.given, context.runs);
-  for (const std::string& effect : effects) context.changes.push_back(Of(effect));
+  for (const std::string& effect : effects) context.changes.push_back(NamedEffect(effect));
   return context;
 }
 
@@ -66,7 +66,7 @@ std::vector<size_t> Allowed() {
   return allowed;
 }
 
-const std::vector<std::string>& Some() {
+const std::vector<std::string>& SomeEffects() {
   static const std::vector<std::string> effects = {
       "pump.stribeck",          "pump.quadratic_drag", "amp.lag", "amp.bias", "fluid.entrained_air",
       "pump.turbulent_leakage", "sensor.pressure_lag"};
@@ -75,7 +75,7 @@ const std::vector<std::string>& Some() {
 
 // The place among the proposals of the one with this effect alone; their number: none.
 size_t PlaceOf(const Proposed& proposed, const std::string& effect) {
-  const std::vector<Change> wanted = {Of(effect)};
+  const std::vector<Change> wanted = {NamedEffect(effect)};
   const auto at = std::find_if(proposed.proposals.begin(), proposed.proposals.end(),
                                [&](const Proposal& one) { return one.changes == wanted; });
   return static_cast<size_t>(at - proposed.proposals.begin());
@@ -93,7 +93,7 @@ double ValueOf(const model::ModelDescription& model, const std::string& effect, 
 TEST(Propose, WhatIsMissing) {
   const std::vector<diagnose::RunData> runs =
       RunsOf(Table1With({{"pump.stribeck", {{"static_excess", 1.0}, {"speed", 8}}, {}}}), 31);
-  const Proposed proposed = Propose(ContextOf(runs, Some()), Allowed());
+  const Proposed proposed = Propose(ContextOf(runs, SomeEffects()), Allowed());
   const size_t place = PlaceOf(proposed, "pump.stribeck");
   ASSERT_LE(place, 3u);
   const Proposal& with = proposed.proposals[place];
@@ -111,7 +111,7 @@ TEST(Propose, WhatIsMissing) {
 TEST(Propose, HeldOutByName) {
   const std::vector<diagnose::RunData> runs =
       RunsOf(Table1With({{"pump.quadratic_drag", {{"k", 3e-4}}, {}}}), 32);
-  diagnose::SearchContext context = ContextOf(runs, Some());
+  diagnose::SearchContext context = ContextOf(runs, SomeEffects());
   context.held_out = {context.runs.back()};
   context.runs.pop_back();
   const Proposed proposed = Propose(context, Allowed());
@@ -124,7 +124,7 @@ TEST(Propose, HeldOutByName) {
 // Tests that nothing is proposed first where nothing is missing, that it is the likeliest, and that weights are shares.
 TEST(Propose, NothingMissing) {
   const std::vector<diagnose::RunData> runs = RunsOf(Table1With(), 33);
-  const Proposed proposed = Propose(ContextOf(runs, Some()), Allowed());
+  const Proposed proposed = Propose(ContextOf(runs, SomeEffects()), Allowed());
   ASSERT_FALSE(proposed.proposals.empty());
   EXPECT_THAT(proposed.proposals.front().changes, IsEmpty());
   EXPECT_THAT(proposed.weights.explanations.front().changes, IsEmpty());
@@ -196,13 +196,13 @@ TEST(Propose, WrongSignIsInAll) {
 // Tests that nothing is proposed where no balance can be formed.
 TEST(Propose, NoBalanceNoProposal) {
   const std::vector<diagnose::RunData> runs = WithoutPressures(ClampedPair(Table1With(), 1, 37));
-  EXPECT_THAT(Propose(ContextOf(runs, Some()), Allowed()).proposals, IsEmpty());
+  EXPECT_THAT(Propose(ContextOf(runs, SomeEffects()), Allowed()).proposals, IsEmpty());
 }
 
 // Tests that one and two threads propose the same bits.
 TEST(Propose, SameForAnyNumberOfJobs) {
   const std::vector<diagnose::RunData> runs = RunsOf(Table1With({{"amp.bias", {{"bias", 0.6}}, {}}}), 38);
-  diagnose::SearchContext context = ContextOf(runs, Some());
+  diagnose::SearchContext context = ContextOf(runs, SomeEffects());
   const Proposed one = Propose(context, Allowed());
   context.jobs = 2;
   const Proposed two = Propose(context, Allowed());
