@@ -55,6 +55,17 @@ TEST(EstimatedModel, ValuesOfTheMachine) {
   EXPECT_THAT(estimated.model.effects, ::testing::IsEmpty());
 }
 
+// Tests that what a short run hardly shows stays as it is given, though it acts there.
+TEST(EstimatedModel, WhatIsNotShown) {
+  const Scanned scanned(ClampedPair(Table1With(), 0.4, 10), {});
+  const EstimatedModel estimated = ModelOf(scanned, {});
+  EXPECT_TRUE(Moves(estimated, "c_E"));
+  EXPECT_FALSE(Moves(estimated, "c_I"));
+  // The yardstick of all flows may move.
+  const model::Parameters& p = estimated.model.parameters;
+  EXPECT_NEAR(p.c_I / Table1().c_I, p.D / Table1().D, 1e-9);
+}
+
 // Tests that a value far off is a change, and is estimated.
 TEST(EstimatedModel, ValueFarOff) {
   model::ModelDescription truth = Table1With();

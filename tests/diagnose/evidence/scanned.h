@@ -12,16 +12,19 @@ namespace hydro::testing {
 
 // All of it belongs together, and stays where it is.
 struct Scanned {
-  // All base values of the model as given may differ, and these effects may be missing.
+  // All base values of the model as given that are not 0 may differ, and these effects may be missing.
   Scanned(std::vector<diagnose::RunData> measured, const std::vector<std::string>& effects,
           const model::ModelDescription& given = Table1With())
       : data(std::move(measured)),
-        runs(given, diagnose::PointersTo(data), OptionsWith(effects)),
+        runs(given, diagnose::PointersTo(data), OptionsWith(given.parameters, effects)),
         rows(runs.MakeRows({})) {}
 
-  static diagnose::ScanOptions OptionsWith(const std::vector<std::string>& effects) {
+  static diagnose::ScanOptions OptionsWith(const model::Parameters& given,
+                                           const std::vector<std::string>& effects) {
     diagnose::ScanOptions options;
-    for (size_t i = 0; i < model::BaseParameters().size(); ++i) options.allowed.push_back(i);
+    for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
+      if (given.*model::BaseParameters()[i].member != 0) options.allowed.push_back(i);
+    }
     for (const std::string& effect : effects) options.changes.push_back({effect, {}, ""});
     return options;
   }
