@@ -96,13 +96,16 @@ TEST(Propose, WhatIsMissing) {
   const Proposed proposed = Propose(ContextOf(runs, SomeEffects()), Allowed());
   const size_t place = PlaceOf(proposed, "pump.stribeck");
   ASSERT_LE(place, 3u);
+  ASSERT_LT(place, proposed.proposals.size());
   const Proposal& with = proposed.proposals[place];
   EXPECT_GT(with.score, 10);
   EXPECT_GT(ValueOf(with.model, "pump.stribeck", "static_excess"), 0.5);
   EXPECT_LT(ValueOf(with.model, "pump.stribeck", "static_excess"), 2);
   ASSERT_EQ(with.without.size(), runs.size());
-  for (const model::ModelDescription& one : with.without)
+  for (const model::ModelDescription& one : with.without) {
     EXPECT_FALSE(std::isnan(ValueOf(one, "pump.stribeck", "static_excess")));
+    EXPECT_NE(one.parameters.J, with.model.parameters.J);  // other runs estimate it a little otherwise
+  }
   EXPECT_GT(proposed.said.at("pump.stribeck"), 0.5);
   EXPECT_THAT(proposed.scores.front().set, Contains(HasSubstr("pump.stribeck|")));
 }
@@ -117,8 +120,21 @@ TEST(Propose, HeldOutByName) {
   const Proposed proposed = Propose(context, Allowed());
   const size_t place = PlaceOf(proposed, "pump.quadratic_drag");
   ASSERT_LE(place, 3u);
+  ASSERT_LT(place, proposed.proposals.size());
   EXPECT_NEAR(ValueOf(proposed.proposals[place].model, "pump.quadratic_drag", "k"), 3e-4, 1e-4);
   for (const Proposal& one : proposed.proposals) EXPECT_THAT(one.without, IsEmpty());
+}
+
+// Tests that what repeats with the shaft is proposed at its periods.
+TEST(Propose, Periods) {
+  const std::vector<diagnose::RunData> runs = ClampedPair(
+      Table1With({{"motor.cogging", {{"amplitude", 3}, {"periods", 9}, {"phase", 0.4}}, {}}}), 2, 39);
+  const Proposed proposed = Propose(ContextOf(runs, {"motor.cogging", "pump.quadratic_drag"}), Allowed());
+  const size_t place = PlaceOf(proposed, "motor.cogging");
+  ASSERT_LE(place, 3u);
+  ASSERT_LT(place, proposed.proposals.size());
+  EXPECT_EQ(ValueOf(proposed.proposals[place].model, "motor.cogging", "periods"), 9);
+  EXPECT_NEAR(ValueOf(proposed.proposals[place].model, "motor.cogging", "amplitude"), 3, 0.5);
 }
 
 // Tests that nothing is proposed first where nothing is missing, that it is the likeliest, and that weights are shares.
@@ -149,6 +165,7 @@ TEST(Propose, NoOilWithoutPressures) {
                                "pump.turbulent_leakage", "sensor.pressure_lag"}),
               Allowed());
   EXPECT_LE(PlaceOf(proposed, "pump.quadratic_drag"), 3u);
+  EXPECT_LT(PlaceOf(proposed, "pump.quadratic_drag"), proposed.proposals.size());
   for (const Proposal& one : proposed.proposals) {
     for (const model::EffectDescription& effect : one.model.effects) {
       EXPECT_FALSE(effect.id.starts_with("fluid.") || effect.id.starts_with("sensor.")) << effect.id;
