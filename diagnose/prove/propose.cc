@@ -41,6 +41,12 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
     add(scored.set);
     break;
   }
+  // So is the best curve that no effect stands for: without it the nearest effect takes its place.
+  for (const ScoredSet& scored : scores) {
+    if (scored.set.size() != 1 || !scored.set[0].starts_with("closure.")) continue;
+    add(scored.set);
+    break;
+  }
   std::vector<std::string> alone;
   for (const ScoredSet& scored : scores) {
     if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;

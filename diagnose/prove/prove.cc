@@ -33,10 +33,20 @@ bool RepeatsWithTheShaft(const model::EffectDescription& effect) {
 size_t NumbersOf(const ProvedSet& set) {
   size_t numbers = 0;
   for (const Change& change : set.Effects()) {
-    for (const model::EffectDescription& effect : set.hypothesis.model.effects)
-      numbers += effect.id == change.effect ? effect.parameters.size() : 0;
+    for (const model::EffectDescription& effect : set.hypothesis.model.effects) {
+      if (effect.id != change.effect) continue;
+      numbers += effect.parameters.size();
+      const auto values = effect.lists.find("values");
+      numbers += values == effect.lists.end() ? 0 : values->second.size();
+    }
   }
   return numbers;
+}
+
+bool HasACurve(const ProvedSet& set) {
+  const std::vector<Change> effects = set.Effects();
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Change& change) { return change.effect.starts_with("closure."); });
 }
 
 class Prover {
@@ -199,7 +209,9 @@ class Prover {
       if (!sets_[i].tested() || sets_[i].Effects().size() != sets_[place].Effects().size()) continue;
       if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
       const GapFall fall = FallOf(sets_[i].near, sets_[place].near);
-      if (!fall.Exceeds(kPartOfValues)) fewest = i;
+      // A curve fits whatever is there: it has to take as much more as an effect.
+      const bool curve = HasACurve(sets_[place]) && !HasACurve(sets_[i]);
+      if (!fall.Exceeds(curve ? kPartOfAnEffect : kPartOfValues)) fewest = i;
     }
     return fewest;
   }

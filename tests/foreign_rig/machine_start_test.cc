@@ -8,7 +8,7 @@
 namespace foreign_rig {
 namespace {
 
-Day Pressed() {
+Day StartsPressed() {
   Day day;
   day.pressure_1 = 500;
   day.pressure_2 = 800;
@@ -19,7 +19,7 @@ Day Pressed() {
 TEST(MachineStart, TemperatureIsNotHandedOver) {
   Rig rig;
   rig.effects.warming = 0.5;
-  Day day = Pressed();
+  Day day = StartsPressed();
   Machine warm(rig, day);
   for (int i = 0; i < 25000; ++i) warm.Step(0);
   EXPECT_GT(warm.celsius(), day.celsius + 1);
@@ -35,7 +35,7 @@ TEST(MachineStart, TemperatureIsNotHandedOver) {
 TEST(MachineStart, StartsCanBeShifted) {
   using Start = Machine::Start;
   Rig rig;
-  Day day = Pressed();
+  Day day = StartsPressed();
   EXPECT_EQ(Machine(rig, day).FreeStarts(),
             (std::vector<Start>{Start::kSpeed, Start::kPressure1, Start::kPressure2}));
   day.bypass = true;

@@ -78,7 +78,7 @@ TEST(Masks, CoverThePumpAtRest) {
   for (size_t r = 0; r < scan.motions.size(); ++r) {
     const diagnose::RunMotion& motion = scan.motions[r];
     const std::vector<uint8_t>& mask = scan.masks[r][static_cast<size_t>(BalanceKind::kTorque)];
-    const std::vector<double>& speed = motion.Of(diagnose::Measured::kSpeed).values;
+    const std::vector<double>& speed = motion.Of(diagnose::GridChannel::kSpeed).values;
     for (size_t i = 0; i < mask.size(); ++i) {
       const size_t k = i * motion.stride;
       if (k < 30 || k + 30 >= speed.size()) continue;
