@@ -120,7 +120,9 @@ void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount
   const double here = SizeAt(runs, variant, shape, at),
                there = SizeAt(runs, variant, shape, at * (1 + kMoveStep));
   if (!(here > 0) || !(there > 0) || !(amount > 0)) return;
-  const double slope = std::log(there / here) / std::log(1 + kMoveStep);
+  // A time acts in proportion: what grows more slowly is the part of it that the balances' filters pass.
+  const bool is_time = ParameterOf(effect->id, shape).role == model::Role::kTime;
+  const double slope = is_time ? 1 : std::log(there / here) / std::log(1 + kMoveStep);
   if (std::abs(slope) < kMoveStep) return;
   const double move = std::clamp(std::pow(amount, 1 / slope), 1 / kMostMove, kMostMove);
   effect->parameters[shape] = Bounded(ParameterOf(effect->id, shape), at * move);

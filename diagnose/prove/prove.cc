@@ -8,6 +8,7 @@
 #include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/proved_set.h"
 #include "diagnose/prove/refined_values.h"
+#include "diagnose/prove/whole_runs.h"
 #include "diagnose/search/search.h"
 
 namespace hydro::diagnose {
@@ -80,7 +81,11 @@ class Prover {
     RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
     Report("fitting the whole runs", 0.93);
     scaled_ = WithDiscrepancy(windows_.told, sets_[best].hypothesis.model, context_.jobs);
-    return OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best});
+    // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.
+    const bool at_the_noise = TypicalGap(sets_[best].near) < 2;
+    return ProvedOnWholeRuns(
+        context_, as_given_,
+        OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best}), at_the_noise);
   }
 
  private:

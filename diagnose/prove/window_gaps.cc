@@ -127,12 +127,19 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
     if (start.has_value()) SetResiduals(model, window, *start, &best);
     return best;
   }
-  for (int step = 0; step < kStartSteps; ++step) {
-    const std::optional<model::StartState> start = BetterStart(held, WithWhatIsLeft(window, best), from);
+  for (int step = 0; step <= kStartSteps; ++step) {
+    // First as the sensors' noise has it. What that leaves beyond the noise is the model's, and weighs the next step.
+    const bool plain = step == 0;
+    if (!plain && best.sum < kAtTheNoise * kAtTheNoise * static_cast<double>(best.count)) break;
+    const std::optional<model::StartState> start =
+        BetterStart(held, plain ? ThinnedCopy(window) : WithWhatIsLeft(window, best), from);
     if (!start.has_value() || *start == from) break;
     WindowGap corrected;
-    if (!SetResiduals(model, window, *start, &corrected) || !(corrected.Typical() < best.Typical())) break;
-    const bool enough = corrected.Typical() > kStartGain * best.Typical();
+    if (!SetResiduals(model, window, *start, &corrected)) break;
+    const bool better = plain ? corrected.sum < best.sum : corrected.Typical() < best.Typical();
+    if (plain && !better) continue;
+    if (!better) break;
+    const bool enough = !plain && corrected.Typical() > kStartGain * best.Typical();
     best = std::move(corrected);
     from = *start;
     if (enough) break;

@@ -32,7 +32,7 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
     // Effects that are added come after those that the model has.
     if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;
     std::string unit;
-    for (const model::ParameterInfo& info : model::FindEffect(id)->parameters) {
+    for (const model::ParameterInfo& info : model::FindEffect(given.effects[parameter.effect])->parameters) {
       if (info.name == parameter.name) unit = info.UnitIn(given.units);
     }
     numbers.push_back(
