@@ -258,9 +258,9 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
     for (const TestFunctions& one : functions) {
       const Eigen::MatrixXd weighed = one.values * all.middleRows(one.first, one.values.cols());
       const Eigen::Index n = weighed.rows();
-      block.X.middleRows(row, n) = weighed.leftCols(half - 1);
+      if (half > 1) block.X.middleRows(row, n) = weighed.leftCols(half - 1);
       block.y.segment(row, n) = weighed.col(half - 1);
-      block.noise_X.middleRows(row, n) = weighed.middleCols(half, half - 1);
+      if (half > 1) block.noise_X.middleRows(row, n) = weighed.middleCols(half, half - 1);
       block.noise_y.segment(row, n) = weighed.col(all.cols() - 1);
       block.frequency.segment(row, n) = one.frequency;
       row += n;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/data/thinned.h"
+#include "diagnose/fit/fit.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/proof_outcome.h"
 #include "diagnose/prove/proof_windows.h"
@@ -15,6 +17,8 @@ namespace hydro::diagnose {
 
 namespace {
 
+// Numbers that are fitted to whole runs times their samples: some seconds of work.
+constexpr size_t kMostNumbersTimesSamples = 200000;
 constexpr size_t kGiven = 0;  // the place of the model as given
 // Proposals whose values are refined: a scan has to have what is true among its first five to be of use.
 constexpr size_t kMostRefined = 5;
@@ -79,6 +83,7 @@ class Prover {
     best = TakeGivenValues(best);
     SetFitted(best);
     RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[best]);
+    RefineOnWholeRuns(&sets_[best]);
     Report("fitting the whole runs", 0.93);
     scaled_ = WithDiscrepancy(windows_.told, sets_[best].hypothesis.model, context_.jobs);
     // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.
@@ -116,6 +121,7 @@ class Prover {
       }
       ProvedSet& set = sets_.emplace_back();
       set.hypothesis = std::move(hypothesis);
+      set.proposed = proposal.model;
       set.without = proposal.without;
       set.weight = proposal.weight;
       values = values || (proposal.changes.empty() && !proposal.base.empty());
@@ -146,6 +152,36 @@ class Prover {
     if (place == kGiven || sets_[place].refined) return;
     RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
     sets_[place].refined = true;
+  }
+
+  // Values as fitted to the whole runs, where that is affordable, and where it predicts windows better: what acts seldom or slowly moves
+  // few of the fitted windows.
+  void RefineOnWholeRuns(ProvedSet* set) const {
+    if (set->hypothesis.Free().empty() || !set->without.empty()) return;
+    std::vector<RunData> thinned;
+    size_t samples = 0;
+    for (const RunData* run : context_.runs) {
+      thinned.push_back(ThinnedCopy(*run));
+      samples += thinned.back().samples();
+    }
+    if (set->hypothesis.Free().size() * samples > kMostNumbersTimesSamples) return;
+    FitOptions coarse = FineFit(context_.jobs);
+    coarse.tolerance = kToCompare;
+    ProvedSet whole = *set;
+    Fitted fitted = Fit(set->hypothesis, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
+    if (set->proposed.parameters.J > 0) {
+      // A fit from where the windows led may end beside what the balances saw.
+      Hypothesis as_proposed = set->hypothesis;
+      as_proposed.model = set->proposed;
+      Fitted other = Fit(as_proposed, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
+      if (other.ok() && (!fitted.ok() || other.sum < fitted.sum)) fitted = std::move(other);
+    }
+    if (!fitted.ok()) return;
+    whole.hypothesis = fitted.hypothesis;
+    JudgeSet(windows_, context_.jobs, &whole);
+    if (!whole.tested()) return;
+    const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
+    if (near.logarithm + far.logarithm > 0 && near.logarithm > -near.error) *set = whole;
   }
 
   // The best set without the effect, among them the set itself without it, refined: values that were estimated beside an effect, or

@@ -11,6 +11,8 @@ namespace hydro::diagnose {
 
 struct ProvedSet {
   Hypothesis hypothesis;  // with the values that predict best of those tried
+  model::ModelDescription proposed =
+      {};  // with the values as the balances estimate them; no parameters: it was not proposed
   // Of runs that are held out in turn, the same without each run; empty: the hypothesis' model predicts all.
   std::vector<model::ModelDescription> without;
   std::vector<WindowGap> near, far;

@@ -22,8 +22,6 @@ constexpr double kNearEnough = 10;
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
 constexpr double kMost = 0.5;
-// Two changes may be needed together.
-constexpr int kMostTogether = 2;
 
 // How much the sum of squares falls in a linear model of the hypothesis' free numbers; from its values, which cost nothing.
 double ExpectedFall(const Fitted& fitted) {
@@ -101,22 +99,18 @@ WideSearch ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_
   whole.search.given = given;
   whole.search.rated = near.search.rated;
   whole.search.best = given;
-  for (int round = 0; round < kMostTogether; ++round) {
-    if (LeavesNothing(whole.search.best)) break;
-    std::optional<Explanation> better;
-    for (const Tested& tested : ScoreTest(context, whole.search.best)) {
-      Explanation one =
-          Explain(context, tested.hypothesis, StartsOf(whole.search.best.fitted), FitToCompare(context.jobs));
-      if (!one.fitted.ok()) continue;
-      whole.search.tried.push_back(one);
-      const auto cost = [](const Explanation& of) {
-        return Cost(of.held_out_gap(), NumbersFactor(of.fitted.hypothesis));
-      };
-      if (!better || cost(one) < cost(*better)) better = std::move(one);
-    }
-    if (!better || !TakesMost(whole.search.best.held_out_gap(), better->held_out_gap())) break;
-    whole.search.best = std::move(*better);
+  std::optional<Explanation> better;
+  for (const Tested& tested : ScoreTest(context, given)) {
+    Explanation one = Explain(context, tested.hypothesis, StartsOf(given.fitted), FitToCompare(context.jobs));
+    if (!one.fitted.ok()) continue;
+    whole.search.tried.push_back(one);
+    const auto cost = [](const Explanation& of) {
+      return Cost(of.held_out_gap(), NumbersFactor(of.fitted.hypothesis));
+    };
+    if (!better || cost(one) < cost(*better)) better = std::move(one);
   }
+  if (better && TakesMost(given.held_out_gap(), better->held_out_gap()))
+    whole.search.best = std::move(*better);
   // Windows may have found as much with values that whole runs confirm.
   const bool found = !whole.search.best.changes().empty();
   if (!found || !Material(near.search.best.held_out_gap(), whole.search.best.held_out_gap())) return near;

@@ -96,13 +96,13 @@ TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
 
-// Tests that a curve is a part of the gap and no cause, whatever is left.
+// Tests that a curve is a part of the gap and no cause: beside an effect a part is found, alone nothing is explained.
 TEST(VerdictOn, AClosureIsAPart) {
   Judged one({12, 6, 1.1}, {30, 12, 1.5});
   one.d.closures.emplace_back().id = "closure.pump_torque";
   EXPECT_EQ(one.Of(), Verdict::kPartly);
   one.d.effects.clear();
-  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
 }
 
 // Tests that the gap that is compared is of the horizon next to 0.4 s that has one.
