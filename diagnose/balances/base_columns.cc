@@ -100,6 +100,7 @@ void AddBaseColumns(ColumnMaker* maker) {
         free.begin() + static_cast<std::ptrdiff_t>(std::min(free.size(), first + model::kJetWidth)));
     maker->works.back().push_back([maker, some](size_t run) {
       std::vector<model::Unknown> unknowns;
+      unknowns.reserve(some.size());
       for (const Free& one : some) unknowns.push_back({model::Unknown::Kind::kBase, one.base});
       const std::vector<BalanceSeries> all = DerivativesOf(maker->setup->given, maker->Motion(run), unknowns);
       for (size_t u = 0; u < all.size(); ++u) {

@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::sqrt2;
 
-// Times are as good as even where they differ by less than this part of a sample.
-constexpr double kUneven = 0.02;
 // The Gaussian's reach, in standard deviations.
 constexpr double kReach = 4;
 // s: balances are needed this often, four times the highest frequency of their test functions.

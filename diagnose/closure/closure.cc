@@ -22,7 +22,7 @@ std::string BalanceOf(const Closure& closure) {
 // Of a variable that closures depend on, in the model's units.
 std::string UnitOf(const std::string& variable, const UnitSystem& units) {
   if (variable == "voltage") return "V";
-  const std::string angle = ChannelUnit(model::Channel::kArmAngle, units);
+  std::string angle = ChannelUnit(model::Channel::kArmAngle, units);
   if (variable == "arm_angle") return angle;
   if (variable == "arm_speed") return angle + "/s";
   return ChannelUnit(variable == "motor_speed" ? model::Channel::kMotorSpeed : model::Channel::kP1, units);

@@ -31,6 +31,7 @@ std::vector<double> AmountsOf(const Rows& rows, const std::string& set, const Se
       amounts[std::stoi(column.name.substr(set.size() + 1))] = fit.amounts[static_cast<Eigen::Index>(i)];
   }
   std::vector<double> all;
+  all.reserve(amounts.size());
   for (const auto& [sine, amount] : amounts) all.push_back(amount);
   return all;
 }

@@ -56,6 +56,7 @@ class SetSearch {
   void Pair(const std::vector<std::string>& names) {
     const std::vector<ScoredSet> singles = scores_.Leaders(1, std::max(kSinglesToPair, kPartnersOfSingles));
     std::vector<std::string> partners;
+    partners.reserve(singles.size());
     for (const ScoredSet& single : singles) partners.push_back(single.set.front());
     for (size_t i = 0; i < std::min(singles.size(), kSinglesToPair); ++i)
       Extend({singles[i].set}, i < kWithAllPartners ? names : partners);

@@ -181,7 +181,9 @@ class Prover {
     JudgeSet(windows_, context_.jobs, &whole);
     if (!whole.tested()) return;
     const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
-    if (near.logarithm + far.logarithm > 0 && near.logarithm > -near.error) *set = whole;
+    const bool near_falls = near.Exceeds(0) && far.logarithm >= -far.error;
+    const bool far_falls = far.Exceeds(0) && near.logarithm >= -near.error;
+    if (near_falls || far_falls) *set = whole;
   }
 
   // The best set without the effect, among them the set itself without it, refined: values that were estimated beside an effect, or

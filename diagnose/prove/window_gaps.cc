@@ -20,7 +20,7 @@ namespace hydro::diagnose {
 namespace {
 
 // A start is mended by so many steps of least squares, while each takes a part of the squared gap.
-constexpr int kStartSteps = 2;
+constexpr int kPlainSteps = 2, kStartSteps = 2;
 constexpr double kStartGain = 0.9;
 // Two predictions whose gaps differ by less than this part are the same; so many others have to be left.
 constexpr double kAlike = 0.005;
@@ -127,9 +127,9 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
     if (start.has_value()) SetResiduals(model, window, *start, &best);
     return best;
   }
-  for (int step = 0; step <= kStartSteps; ++step) {
+  for (int step = 0; step < kPlainSteps + kStartSteps; ++step) {
     // First as the sensors' noise has it. What that leaves beyond the noise is the model's, and weighs the next step.
-    const bool plain = step == 0;
+    const bool plain = step < kPlainSteps;
     if (!plain && best.sum < kAtTheNoise * kAtTheNoise * static_cast<double>(best.count)) break;
     const std::optional<model::StartState> start =
         BetterStart(held, plain ? ThinnedCopy(window) : WithWhatIsLeft(window, best), from);
@@ -140,7 +140,7 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
     if (plain && !better) continue;
     if (!better) break;
     const bool enough = !plain && corrected.Typical() > kStartGain * best.Typical();
-    best = std::move(corrected);
+    best = corrected;
     from = *start;
     if (enough) break;
   }

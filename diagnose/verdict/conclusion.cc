@@ -157,7 +157,7 @@ bool IsChanged(const Explanation& best) {
 
 std::string SentenceOf(const SearchContext& context, const WideSearch& found, const Kept& kept,
                        const Diagnosis& d) {
-  const std::string sentence =
+  std::string sentence =
       Sentence(d, kept.doubts, GapToCompare(d, found.windows)) + ClosureSentence(d.closures);
   if (!IsOpen(d.verdict)) return sentence;
   return sentence +
