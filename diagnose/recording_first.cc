@@ -13,6 +13,7 @@
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/data/twin_pressures.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -65,10 +66,8 @@ std::vector<std::string> InvertedPressures(const model::Parameters& model,
         if (!std::isnan(value)) values.push_back(value);
       }
       if (values.empty()) continue;
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
       ++measured;
-      below += *middle < -0.5 * model.p_3 ? 1 : 0;
+      below += maths::Median(std::move(values)) < -0.5 * model.p_3 ? 1 : 0;
     }
     if (measured > 0 && below == measured && model.p_3 > 0) inverted.emplace_back(NameOf(side));
   }

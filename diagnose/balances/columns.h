@@ -49,7 +49,7 @@ struct ColumnTable {
 struct BalanceSizes {
   std::array<double, kBalanceKinds>
       of{};  // torque, flow, arm torque, pressure: root mean square of the main term
-  double speed = 0, pressure = 0, difference = 0, charge = 0, largest_speed = 0;
+  double speed = 0, pressure = 0, difference = 0, largest_speed = 0;
   double arm_low = 0, arm_high = 0, arm_speed = 0;
 };
 

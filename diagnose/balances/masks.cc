@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "maths/median.h"
+
 namespace hydro::diagnose {
 
 namespace {
@@ -76,12 +78,6 @@ std::vector<uint8_t> EachStride(const std::vector<uint8_t>& mask, size_t stride)
   return thin;
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Where the side's valve passes oil: more flows in than noise and other terms explain.
 std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low, const Eigen::VectorXd& flow,
                           double D) {
@@ -102,9 +98,9 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
   // Five robust standard deviations, and two per cent of the pump's flow, which leakage alone may be wrong by.
   double limit = 0.15 * flow_size;
   if (far.size() > 50) {
-    const double middle = Median(far);
+    const double middle = maths::Median(far);
     for (double& one : far) one = std::abs(one - middle);
-    limit = 5 * 1.48 * Median(far);
+    limit = 5 * 1.48 * maths::Median(far);
   }
   limit += 0.02 * flow_size;
   std::vector<uint8_t> mask(n, 1);
@@ -132,7 +128,7 @@ HeldPressure FindHeldPressure(const std::vector<RunMotion>& runs, const model::P
   }
   double spread = 0;
   if (low.size() > kEnoughLow) {
-    held.at = Median(low);
+    held.at = maths::Median(low);
     double sum = 0, count = 0, mean = 0;
     for (const double value : low) {
       if (std::abs(value - held.at) < 30 * noise) mean += value, ++count;

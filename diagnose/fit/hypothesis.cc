@@ -196,13 +196,7 @@ namespace {
 // Where fits of the effect's parameter begin.
 std::vector<double> StartsOf(const model::ParameterInfo& parameter, const Sizes& sizes) {
   std::vector<double> starts;
-  if (parameter.role == model::Role::kFrequency && !sizes.ringing.empty()) {
-    // What a resonance is coupled to moves it.
-    for (const double frequency : sizes.ringing) {
-      for (const double factor : {0.7, 0.83, 1.0}) starts.push_back(factor * frequency);
-    }
-    return starts;
-  }
+  starts.reserve(parameter.starts.size());
   for (const double start : parameter.starts) starts.push_back(start * sizes.Of(parameter.scale));
   return starts;
 }

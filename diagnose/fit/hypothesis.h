@@ -73,8 +73,6 @@ struct Hypothesis {
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
   double flow = 0, arm_stiffness = 0, arm_damping = 0;
-  std::vector<double>
-      ringing;  // frequencies near which resonances start, Hz; empty: at those of the catalogue
 
   double Of(model::Scale scale) const;
 };
