@@ -57,7 +57,7 @@ bool HasACurve(const ProvedSet& set) {
 class Prover {
  public:
   Prover(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
-         const std::map<std::string, double>& said)
+         const SaidByBalances& said)
       : context_(context),
         as_given_(as_given),
         allowed_(allowed),
@@ -90,7 +90,8 @@ class Prover {
     const bool at_the_noise = TypicalGap(sets_[best].near) < 2;
     return ProvedOnWholeRuns(
         context_, as_given_,
-        OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best}), at_the_noise);
+        OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best}), at_the_noise,
+        said_.likely);
   }
 
  private:
@@ -180,6 +181,8 @@ class Prover {
     whole.hypothesis = fitted.hypothesis;
     JudgeSet(windows_, context_.jobs, &whole);
     if (!whole.tested()) return;
+    JudgeFar(windows_, context_.jobs, set);
+    JudgeFar(windows_, context_.jobs, &whole);
     const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
     const bool near_falls = near.Exceeds(0) && far.logarithm >= -far.error;
     const bool far_falls = far.Exceeds(0) && near.logarithm >= -near.error;
@@ -209,8 +212,15 @@ class Prover {
 
   // What the effect has to take of the gap.
   double PartOf(const Change& change) const {
-    const auto weight = said_.find(change.effect);
-    return weight != said_.end() && weight->second >= kSaid ? kPartOfASaidEffect : kPartOfAnEffect;
+    const auto weight = said_.weights.find(change.effect);
+    return weight != said_.weights.end() && weight->second >= kSaid ? kPartOfASaidEffect : kPartOfAnEffect;
+  }
+
+  bool IsKept(size_t with, size_t without, double part) {
+    if (!IsEffectKept(sets_[with], sets_[without], part)) return false;
+    JudgeFar(windows_, context_.jobs, &sets_[with]);
+    JudgeFar(windows_, context_.jobs, &sets_[without]);
+    return IsEffectKept(sets_[with], sets_[without], part);
   }
 
   // The best of the sets that remain when one of the effects that are not needed is left out; the set itself where all are needed.
@@ -219,7 +229,7 @@ class Prover {
     double least = 0;
     for (const Change& change : sets_[place].Effects()) {
       const size_t without = PlaceWithout(place, change);
-      if (without >= sets_.size() || IsEffectKept(sets_[place], sets_[without], PartOf(change))) continue;
+      if (without >= sets_.size() || IsKept(place, without, PartOf(change))) continue;
       const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm;
       if (reduced != place && lost >= least) continue;
       reduced = without;
@@ -319,7 +329,7 @@ class Prover {
   const SearchContext& context_;
   const Hypothesis& as_given_;
   const std::vector<size_t>& allowed_;
-  const std::map<std::string, double>& said_;
+  const SaidByBalances& said_;
   ProofWindows windows_;
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted
@@ -331,7 +341,7 @@ class Prover {
 
 WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind, const std::map<std::string, double>& said) {
+                          const std::vector<Change>& blind, const SaidByBalances& said) {
   return Prover(context, as_given, allowed, said).Run(proposals, blind);
 }
 

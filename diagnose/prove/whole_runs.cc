@@ -18,6 +18,8 @@ namespace {
 
 // Noise units: beyond, small errors of values that add up over a run say more than what is missing.
 constexpr double kNearEnough = 10;
+// Effects that are tested: the balances rank them too, and what is true was among their first five nearly always.
+constexpr size_t kMostTestedEffects = 8;
 // Changes that are fitted: of two that the score test expects about as much of, a fit tells.
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
@@ -45,13 +47,22 @@ struct Tested {
   double sum = 0;  // that it may come to
 };
 
+// Values are; an effect that the balances rank far down is not, unless they cannot see it.
+bool IsWorthTesting(const Change& change, const std::vector<std::string>& likely) {
+  if (change.effect.empty() || likely.empty()) return true;
+  const auto place = std::find(likely.begin(), likely.end(), change.effect);
+  return place == likely.end() || place - likely.begin() < static_cast<std::ptrdiff_t>(kMostTestedEffects);
+}
+
 // The best start of each change, by what a score test expects, the most promising first.
-std::vector<Tested> ScoreTest(const SearchContext& context, const Explanation& from) {
+std::vector<Tested> ScoreTest(const SearchContext& context, const Explanation& from,
+                              const std::vector<std::string>& likely) {
   std::vector<Hypothesis> starts;
   std::vector<size_t> owner;
   for (size_t c = 0; c < context.changes.size(); ++c) {
-    if (from.fitted.hypothesis.Has(context.changes[c])) continue;
-    for (Hypothesis& start : With(from.fitted.hypothesis, context.changes[c], context.sizes, false)) {
+    const Change& change = context.changes[c];
+    if (from.fitted.hypothesis.Has(change) || !IsWorthTesting(change, likely)) continue;
+    for (Hypothesis& start : With(from.fitted.hypothesis, change, context.sizes, false)) {
       starts.push_back(std::move(start));
       owner.push_back(c);
     }
@@ -85,7 +96,7 @@ bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1
 }  // namespace
 
 WideSearch ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, WideSearch near,
-                             bool at_the_noise) {
+                             bool at_the_noise, const std::vector<std::string>& likely) {
   if (!at_the_noise) return near;
   const Explanation given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   const auto near_enough = [](const Explanation& one) {
@@ -100,7 +111,7 @@ WideSearch ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_
   whole.search.rated = near.search.rated;
   whole.search.best = given;
   std::optional<Explanation> better;
-  for (const Tested& tested : ScoreTest(context, given)) {
+  for (const Tested& tested : ScoreTest(context, given, likely)) {
     Explanation one = Explain(context, tested.hypothesis, StartsOf(given.fitted), FitToCompare(context.jobs));
     if (!one.fitted.ok()) continue;
     whole.search.tried.push_back(one);
