@@ -6,12 +6,11 @@
 #include "diagnose/data/thinned.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/blind_changes.h"
-#include "diagnose/prove/proof_outcome.h"
 #include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/proved_set.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
-#include "diagnose/search/search.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -66,7 +65,7 @@ class Prover {
     sets_.emplace_back().hypothesis = as_given;
   }
 
-  WideSearch Run(const std::vector<Proposal>& proposals, const std::vector<Change>& blind) {
+  Proof Run(const std::vector<Proposal>& proposals, const std::vector<Change>& blind) {
     Report("simulating the proposals", 0.85);
     AddProposals(proposals);
     for (ProvedSet& set : sets_) JudgeSet(windows_, context_.jobs, &set);
@@ -90,7 +89,7 @@ class Prover {
     const bool at_the_noise = TypicalGap(sets_[best].near) < 2;
     return ProvedOnWholeRuns(
         context_, as_given_,
-        OutcomeOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best}), at_the_noise);
+        ProofOf(context_, windows_, std::move(scaled_), sets_, {kGiven, BestValues(), best}), at_the_noise);
   }
 
  private:
@@ -329,9 +328,9 @@ class Prover {
 
 }  // namespace
 
-WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
-                          const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind, const std::map<std::string, double>& said) {
+Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+                     const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
+                     const std::vector<Change>& blind, const std::map<std::string, double>& said) {
   return Prover(context, as_given, allowed, said).Run(proposals, blind);
 }
 
