@@ -142,10 +142,9 @@ size_t ChoiceWithoutRun(const Proof& proof, const std::string& run) {
 
 }  // namespace
 
-std::vector<Candidate> CandidatesOf(const SearchContext& context, const Proof& proof,
-                                    const std::vector<WeightedSet>& explanations,
+std::vector<Candidate> CandidatesOf(const SearchContext& context, const Proof& proof, const Diagnosis& d,
                                     const std::vector<ScoredSet>& scores) {
-  const Ranking ranking(proof, explanations, scores, context.changes.size());
+  const Ranking ranking(proof, d.explanations, scores, context.changes.size());
   const std::string found = ClaimOf(proof.Found());
   std::vector<std::string> claims = ranking.Claims();
   for (const Change& change : context.changes) {
@@ -156,7 +155,8 @@ std::vector<Candidate> CandidatesOf(const SearchContext& context, const Proof& p
   for (const std::string& claim : claims) {
     const bool parts = std::any_of(proof.Found().changes.begin(), proof.Found().changes.end(),
                                    [&](const Change& change) { return change.Label() == claim; });
-    candidates.push_back(ranking.Of(claim, claim == found || parts));
+    const bool taken = claim == found && (claim != kAsGiven || d.verdict == Verdict::kNothingMissing);
+    candidates.push_back(ranking.Of(claim, taken || parts));
   }
   Sort(&candidates);
   return candidates;

@@ -13,9 +13,8 @@ namespace hydro::diagnose {
 // Every single change, and every other set that has a weight or was proved. Taken ones first, then by weight and by held-out gap.
 // Weights are those of the balances' explanations. `scores`: of sets, beyond that of nothing: the evidence for a set is so many times
 // that for none, and chance alone gives as much at most once in so many times (Markov's inequality); where balances cannot speak,
-// windows do, by their scatter.
-std::vector<Candidate> CandidatesOf(const SearchContext& context, const Proof& proof,
-                                    const std::vector<WeightedSet>& explanations,
+// windows do, by their scatter. `d` has the verdict and the explanations: the model as given is taken only where nothing is missing.
+std::vector<Candidate> CandidatesOf(const SearchContext& context, const Proof& proof, const Diagnosis& d,
                                     const std::vector<ScoredSet>& scores);
 
 // What would be chosen without each run that was held out in turn: what was found, unless another set predicts the others better by

@@ -119,7 +119,7 @@ Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Propo
     return Conclude(context, nothing, proposed);
   }
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
-  d.candidates = CandidatesOf(context, proof, d.explanations, proposed.scores);
+  d.candidates = CandidatesOf(context, proof, d, proposed.scores);
   RemarkOnRivals(&d);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);

@@ -71,7 +71,10 @@ bool HasOneWitness(const Diagnosis& d) {
     return weight >= kAWord;
   };
   return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
-    return IsUnseenByBalances(effect.id) || said(effect.id) ||
+    if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
+    // Where other values do as well, not even the windows say that anything is missing.
+    const auto values = [](const std::string& tied) { return tied.find('.') == std::string::npos; };
+    return std::none_of(effect.tied_with.begin(), effect.tied_with.end(), values) &&
            std::any_of(effect.tied_with.begin(), effect.tied_with.end(), said);
   });
 }

@@ -35,9 +35,10 @@ TEST(Candidates, TakenFirstOthersWithAReason) {
   const Proof proof = ProofOf({Leaving(100, Freed({})), Leaving(81, Freed({"b", "T_s", "J", "beta"})),
                                Leaving(4, Freed({}, {kDelay})), untested,
                                Leaving(0.9, Freed({}, {kDelay, kLag})), Leaving(1, Freed({}, {kLag}))});
+  diagnose::Diagnosis d;
+  d.explanations = {{{"amp.lag"}, 0.7}, {{"amp.delay", "value.b"}, 0.2}, {{}, 0.1}};
   const std::vector<Candidate> all =
-      CandidatesOf(context, proof, {{{"amp.lag"}, 0.7}, {{"amp.delay", "value.b"}, 0.2}, {{}, 0.1}},
-                   {{{"amp.lag|0.01"}, 40}, {{"amp.delay"}, 20}, {{"amp.lag|0.1"}, 10}});
+      CandidatesOf(context, proof, d, {{{"amp.lag|0.01"}, 40}, {{"amp.delay"}, 20}, {{"amp.lag|0.1"}, 10}});
   EXPECT_EQ(all[0].id, "amp.lag");
   EXPECT_EQ(all[0].rejected_because, "");
   EXPECT_EQ(all[0].score, 40);
