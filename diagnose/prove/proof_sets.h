@@ -8,7 +8,7 @@
 #include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/proposal.h"
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 

@@ -6,7 +6,7 @@
 
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/proposal.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/prove/proof_outcome.h"
 #include "diagnose/prove/proof_sets.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
-#include "diagnose/search/search.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -159,9 +158,9 @@ void Report(const SearchContext& context, const char* stage, double fraction) {
 
 }  // namespace
 
-WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
-                          const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind, const SaidByBalances& said) {
+Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+                     const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
+                     const std::vector<Change>& blind, const SaidByBalances& said) {
   Report(context, "simulating the proposals", 0.85);
   ProofSets sets(context, as_given, allowed);
   sets.Add(proposals);
@@ -185,7 +184,7 @@ WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_giv
   const bool at_the_noise = TypicalGap(sets[best].near) < 2;
   return ProvedOnWholeRuns(
       context, as_given,
-      OutcomeOf(context, windows, std::move(told), sets.all(), {kGiven, prover.BestValues(), best}),
+      ProofOf(context, windows, std::move(told), sets.all(), {kGiven, prover.BestValues(), best}),
       at_the_noise, said.likely);
 }
 

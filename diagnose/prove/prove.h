@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "diagnose/prove/proof.h"
 #include "diagnose/prove/proposal.h"
-#include "diagnose/search/wide_search.h"
 
 namespace hydro::diagnose {
 
@@ -19,11 +19,10 @@ namespace hydro::diagnose {
 // fitted from its starts in the catalogue, and has to gain as much.
 // `allowed`: indices in BaseParameters() of those that may be refitted; they are where no proposal has other values alone.
 //
-// The result is as of a search: `search.best` and the explanations in `windows.tried`, all of windows, which decide. The work is
-// bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a model cannot
-// follow a whole run, its whole-run gap is infinite and its windows still count.
-WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
-                          const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind = {}, const SaidByBalances& said = {});
+// The work is bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a
+// model cannot follow a whole run, its windows still count.
+Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+                     const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
+                     const std::vector<Change>& blind = {}, const SaidByBalances& said = {});
 
 }  // namespace hydro::diagnose

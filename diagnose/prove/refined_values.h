@@ -6,7 +6,7 @@
 
 #include "diagnose/data/run_data.h"
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -33,10 +33,11 @@ inline constexpr Refinement kReportedValues = {2, 6};
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set);
 
-// What is known of the hypothesis' base values where a fit to the context's windows leaves `sum`; null where only those are free that
-// the set itself names.
-std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& on_windows, const Hypothesis& hypothesis,
-                                               double sum);
+// What is known of the hypothesis' base values where a fit to these windows leaves `sum`; null where only those are free that the set
+// itself names.
+std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
+                                               const std::vector<const RunData*>& windows,
+                                               const Hypothesis& hypothesis, double sum);
 
 // The starts that the model's windows have: measured, corrected by a step.
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,

@@ -172,6 +172,13 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
   return best;
 }
 
+std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
+                                  const std::vector<const RunData*>& windows, int jobs) {
+  std::vector<WindowGap> gaps(windows.size());
+  ParallelFor(windows.size(), jobs, [&](size_t w) { gaps[w] = GapOf(model, *windows[w]); });
+  return gaps;
+}
+
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs) {
   std::vector<WindowGap> gaps(windows.windows.size());
   ParallelFor(gaps.size(), jobs,
