@@ -152,32 +152,28 @@ class Prover {
   const SaidByBalances& said_;
 };
 
-void Report(const SearchContext& context, const char* stage, double fraction) {
-  if (context.report_progress) context.report_progress({stage, fraction});
-}
-
 }  // namespace
 
 Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
                      const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
                      const std::vector<Change>& blind, const SaidByBalances& said) {
-  Report(context, "simulating the proposals", 0.85);
+  context.Report("simulating the proposals", 0.85);
   ProofSets sets(context, as_given, allowed);
   sets.Add(proposals);
   sets.SetFitted(LeadingSet(sets.all()));
-  Report(context, "refining their values", 0.88);
+  context.Report("refining their values", 0.88);
   for (const size_t i : WorthRefining(sets.all(), kMostRefined)) sets.Refine(i);
   Prover prover(&sets, said);
   size_t best = prover.Choice();
   if (prover.LeavesAGap(best)) {
-    Report(context, "what balances cannot show", 0.91);
+    context.Report("what balances cannot show", 0.91);
     prover.Race(best, blind);
     best = prover.Choice();
   }
   best = prover.TakeGivenValues(best);
   sets.SetFitted(best);
   sets.RefineForReport(best);
-  Report(context, "fitting the whole runs", 0.93);
+  context.Report("fitting the whole runs", 0.93);
   const ProofWindows& windows = sets.windows();
   std::vector<RunData> told = WithDiscrepancy(windows.told, sets[best].hypothesis.model, context.jobs);
   // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.

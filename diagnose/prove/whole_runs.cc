@@ -170,7 +170,7 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
   const double given = MeanSquare(whole.Given().near);
   const bool far = !(std::min(given, MeanSquare(found)) < kNearEnough * kNearEnough);
   if (far || !std::isfinite(given) || given < kCloseEnough) return near;
-  if (context.report_progress) context.report_progress({"what only whole runs show", 0.94});
+  context.Report("what only whole runs show", 0.94);
   const Fitted start = Fit(as_given, context.runs, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!start.ok()) return near;
   for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start), likely)) {

@@ -94,14 +94,10 @@ void ShowWhere(const SearchContext& context, Diagnosis* d) {
   d->missing = std::move(located.missing);
 }
 
-void Report(const SearchContext& context, const char* stage, double fraction) {
-  if (context.report_progress) context.report_progress({stage, fraction});
-}
-
 }  // namespace
 
 Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Proposed& proposed) {
-  Report(context, "intervals", 0.95);
+  context.Report("intervals", 0.95);
   Diagnosis d;
   for (const WeighedExplanation& one : proposed.weights.explanations)
     d.explanations.push_back({one.changes, one.weight});
@@ -123,12 +119,12 @@ Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Propo
   RemarkOnRivals(&d);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);
-  Report(context, "where the gap is", 0.97);
+  context.Report("where the gap is", 0.97);
   if (d.verdict != Verdict::kNothingMissing) ShowWhere(context, &d);
   d.measured = MeasuredCurves(context.given, d.model, context.runs, context.jobs);
   ShowEffects(context, proof, whole, &d);
   if (tied.size() > 1 && !TimeIsUp(context)) {
-    Report(context, "the next experiment", 0.98);
+    context.Report("the next experiment", 0.98);
     d.next = DesignNextExperiment(tied, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);
