@@ -8,10 +8,8 @@
 
 #include "base/number_text.h"
 #include "diagnose/closure/closure.h"
-#include "diagnose/say/effect_term.h"
 #include "diagnose/say/locate.h"
 #include "diagnose/say/measured_curves.h"
-#include "diagnose/say/worst_signal.h"
 #include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/effect_stretch.h"
 #include "diagnose/verdict/evidence.h"
@@ -137,7 +135,7 @@ bool HasOneWitness(const Diagnosis& d) {
 // Where each effect that was found acts, or shows.
 void ShowEffects(const SearchContext& context, const Explanation& best, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
-    if (std::optional<FoundTerm> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
+    if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
       d->terms.push_back(std::move(*term));
     } else if (std::optional<FoundStretch> stretch = StretchOf(context, best, effect.id)) {
       d->stretches.push_back(std::move(*stretch));
