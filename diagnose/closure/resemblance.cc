@@ -1,6 +1,8 @@
 // Which simple law a closure looks like.
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
