@@ -41,28 +41,18 @@ struct Location {
   std::vector<Window> windows;
 };
 
-// The missing term of a balance as a function of what it depends on: one row a bin, mean and standard error.
-struct MissingTerm {
-  std::string balance, unit;          // of the term, e.g. in-lbf
-  std::string against, against_unit;  // "motor_speed", "rad/s"
-  std::vector<double> at, mean, error;
-};
-
-// The term of an effect that was found, over the variable that it depends on: what the balance lacks without
-// the effect, and the effect's own term there. Effects that act through time have none.
-struct FoundTerm {
-  std::string effect;
-  MissingTerm missing;
-  std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
-};
-
-// What one element of the machine does, as the balances measure it, over the variable where it acts: the pump's friction,
-// the leakage across its ports, the arm's load. Means over bins, and the standard errors of those measured.
+// Something of the machine over the variable that it depends on, as the balances measure it without any simulation: means
+// over bins, and their standard errors; beside them what models have at the same instants. The missing term of a balance (no
+// models), the term of an effect that was found (what the balance lacks without it, and the effect's own), or what one element
+// does: the pump's friction, the leakage across its ports, the arm's load.
 struct MeasuredCurve {
-  std::string element;  // pump_friction | cross_leakage | arm_load
-  std::string unit, against, against_unit;
-  std::vector<double> at, measured, error;
-  std::vector<double> model, found;  // the model's own as given, and with what was found
+  // pump_friction | cross_leakage | arm_load; of a term the effect; "": what is missing.
+  std::string element = {};
+  std::string balance = {}, unit = {};          // the curve's unit, e.g. in-lbf
+  std::string against = {}, against_unit = {};  // "motor_speed", "rad/s"
+  std::vector<double> at = {}, measured = {}, error = {};
+  // The model's own as given, and with what was found; empty: none.
+  std::vector<double> model = {}, found = {};
 };
 
 // A stretch of a run in which an effect that acts through time shows: one signal, in the model's unit, and what the
@@ -200,8 +190,8 @@ struct Diagnosis {
   // What is suspect in the recordings, what could not be tried, and noise unlike the stated noise.
   std::vector<std::string> remarks;
   std::vector<Location> location;
-  std::vector<MissingTerm> missing;
-  std::vector<FoundTerm> terms;
+  std::vector<MeasuredCurve> missing;
+  std::vector<MeasuredCurve> terms;     // of effects, where they act at an instant
   std::vector<MeasuredCurve> measured;  // of what balances could be formed for
   std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;

@@ -1,5 +1,4 @@
-#include "diagnose/report/terminal_summary.h"
-
+// A diagnosis as plain text: for a terminal, and in model.toml.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +9,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 #include "diagnose/verdict/sentence.h"
 #include "model/terms/parameter_info.h"
 #include "settings/command_line.h"

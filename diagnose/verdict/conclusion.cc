@@ -8,10 +8,8 @@
 
 #include "base/number_text.h"
 #include "diagnose/closure/closure.h"
-#include "diagnose/say/effect_term.h"
 #include "diagnose/say/locate.h"
 #include "diagnose/say/measured_curves.h"
-#include "diagnose/say/worst_signal.h"
 #include "diagnose/verdict/candidates.h"
 #include "diagnose/verdict/found.h"
 #include "diagnose/verdict/gaps.h"
@@ -65,7 +63,7 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks
 // Where each effect that was found acts, or shows.
 void ShowEffects(const SearchContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
-    if (std::optional<FoundTerm> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
+    if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
       d->terms.push_back(std::move(*term));
     } else if (std::optional<FoundStretch> stretch = StretchOf(context, proof, whole, effect.id)) {
       d->stretches.push_back(std::move(*stretch));

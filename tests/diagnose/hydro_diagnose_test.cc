@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "diagnose/report/progress_bar.h"
-#include "diagnose/report/terminal_summary.h"
+#include "diagnose/report/report.h"
 #include "settings/model_file.h"
 #include "tests/diagnose/example_diagnosis.h"
 #include "tests/table1.h"
