@@ -68,7 +68,7 @@ void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
     const std::vector<double> rate = Derivative((*maker->base)[run].drive.smooth, motion.step);
     Eigen::VectorXd series((*maker->base)[run].left[0].size());
     for (Eigen::Index i = 0; i < series.size(); ++i)
-      series[i] = -rate[static_cast<size_t>(i) * motion.stride];
+      series[i] = rate[static_cast<size_t>(i) * motion.stride];
     maker->Put(voltage, run, BalanceKind::kTorque, std::move(series));
   });
   const auto add = [&](const char* name, const std::vector<GridChannel>& signals) {
