@@ -126,7 +126,6 @@ class ClockSteps {
       for (int step = 0; step < kMostSteps; ++step) {
         found = At(highest);
         const Delays before = moved_;
-        if (getenv("TRACE")) { printf("   %g:", highest); for (double d : found.delay) printf(" %.4f", d); printf("  score %.1f\n", found.score); }
         for (size_t i = 0; i < late_.size(); ++i)
           moved_[static_cast<size_t>(late_[i])] = Rounded(found.delay[i]);
         if (moved_ == before) break;
