@@ -13,7 +13,7 @@ namespace hydro::diagnose {
 // Estimates the clocks of a recording relative to that of p1 and p2 (a common shift cannot be seen) and shifts its signals to it
 // (RemoveDelays of runs/run_delays.h). A clock is the column of a late signal in the balances, with a wide prior: Gauss-Newton on their
 // evidence, first on rows up to 0.25 Hz, where a large delay is a small change, at last on those up to 2 Hz. All values of the model are
-// as good as free there, so that a wrong one is not taken for a delay.
+// as good as free there, so that a wrong one is not taken for a delay (late_signals.h).
 //
 // Command and motor that are both late by 20 ms, two samples or more are another clock, where that is likelier than that one
 // signal alone, or the pressures, are late: these have names in the catalogue of effects, and smaller delays too. Otherwise the run stays
@@ -24,16 +24,5 @@ std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, runs::
 // is no more certain than its timing: its change within the standard error of the delays counts as noise.
 RunData PrepareAligned(runs::MeasuredRun run, const model::ModelDescription& given,
                        std::vector<ClockDelay>* delays);
-
-// How probable it is, by the balances up to 2 Hz, that these signals are late, and by how much: the inside of AlignClocks.
-struct LateSignals {
-  double score = 0;  // log evidence, with the odds of a late signal
-  // s; of command, motor and arm, and of both pressures and of p2 beyond p1.
-  std::vector<double> delay, error;  // standard errors
-};
-enum class Late { kCommand, kMotor, kArm, kPressures, kP2 };
-// Throws InputError as PrepareRun does. `late`: without doubles.
-LateSignals ScoreOf(const model::ModelDescription& given, const runs::MeasuredRun& run,
-                    const std::vector<Late>& late);
 
 }  // namespace hydro::diagnose
