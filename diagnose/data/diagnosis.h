@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/alignment.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 
@@ -18,6 +17,14 @@ enum class Verdict { kNamed, kTied, kPartly, kParameters, kUnexplained, kNothing
 inline bool IsOpen(Verdict verdict) {
   return verdict == Verdict::kUnexplained || verdict == Verdict::kPartly;
 }
+
+// A clock of a recording, relative to that of p1 and p2.
+struct ClockDelay {
+  std::string run;
+  std::vector<std::string> signals;  // recorded by that clock
+  double delay = 0;                  // s; negative: early
+  double error = 0;                  // half the width of the 95 % interval, s
+};
 
 // A number with its 95 % interval.
 struct Estimated {

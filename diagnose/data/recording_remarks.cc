@@ -184,6 +184,13 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
   return remarks;
 }
 
+std::string DelayRemark(const ClockDelay& delay) {
+  return RunNamed(delay.run) + ": " + Enumerated(delay.signals) +
+         (delay.signals.size() > 1 ? " are " : " is ") + (delay.delay < 0 ? "early" : "late") + " by " +
+         ShortNumber(std::abs(delay.delay), 3) + " +- " + ShortNumber(delay.error, 2) +
+         " s relative to p1 and p2";
+}
+
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "diagnose/data/alignment.h"
 #include "diagnose/data/sample_interval.h"
 #include "diagnose/fit/arm_load.h"
 #include "diagnose/fit/window_errors.h"
@@ -50,7 +49,6 @@ RunCheck::RunCheck(const model::ModelDescription& model, const Run& run,
   std::erase_if(possible_, [&](const RecordingMistake& mistake) {
     return mistake.time_factor != 1 && mistake.time_factor * interval > kTooSlow;
   });
-  if (!slow_) AlignClocks(model.parameters, &run_);
   windows_ = MovingWindows(run_, kWindows);
   for (const Run& window : windows_) moves_.push_back(ChannelsThatMove(window));
   if (windows_.size() < kFewestOfARunCheck || time_is_up_()) return;

@@ -5,6 +5,7 @@
 
 #include "diagnose/balances/make_rows.h"
 #include "diagnose/evidence/estimated_model.h"
+#include "diagnose/evidence/refined_shapes.h"
 #include "diagnose/evidence/wave_periods.h"
 
 namespace hydro::diagnose {
@@ -187,25 +188,28 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   proposed.said.likely = LikelyEffects(proposed.scores);
   for (const ChangeSet& set : SetsToPropose(proposed.weights, proposed.scores)) {
     if (proposed.proposals.size() >= kMostProposals) break;
-    const SetFit fit = evidence.Fit(set);
-    const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
-    if (!estimated || IsImpossible(rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
+    const RefinedShapes shaped(&runs, rows, set);
+    const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;
+    const Rows& own_rows = shaped.any() ? shaped.rows() : rows;
+    const SetFit fit = own.Fit(set);
+    const std::optional<EstimatedModel> estimated = ModelOf(runs, own_rows, set, fit);
+    if (!estimated || IsImpossible(own_rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,
                       {},
-                      scores.Score(set) - nothing,
+                      fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
                       WeightOf(proposed.weights, set)};
     if (context.held_out.empty() && context.runs.size() > 1) {
       for (size_t r = 0; r < context.runs.size(); ++r) {
-        const SetEvidence others = evidence.Without({r});
+        const SetEvidence others = own.Without({r});
         const std::vector<std::string>& names = others.names();
         const bool shown = std::all_of(set.begin(), set.end(), [&](const std::string& name) {
           return std::find(names.begin(), names.end(), name) != names.end();
         });
         const ChangeSet left = shown ? set : ChangeSet{};
-        const std::optional<EstimatedModel> without = ModelOf(runs, rows, left, others.Fit(left));
+        const std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }
