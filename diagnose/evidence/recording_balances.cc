@@ -24,10 +24,15 @@ using Run = runs::MeasuredRun;
 
 // Hz: recorders, filters and delays of any kind pass this.
 constexpr double kHighest = 40;
+// Of the rate of the slowest signal.
+constexpr double kOfTheRate = 0.2;
 // Bands of frequencies up to there: a balance counts as that many numbers.
 constexpr double kNumbers = 6;
 // Of a term, squared: what a model that lacks an effect or two leaves of a balance. Smaller residuals say no more about a recording.
 constexpr double kLacking = 0.01;
+// Of what noise makes of the terms, squared: a band in which they are smaller says nothing.
+constexpr double kAboveNoise = 1;
+constexpr uint64_t kSeed = 5;
 // Relative: how wrong the gain of a sensor is that is no mistake.
 constexpr double kGain = 0.05;
 // Of a pressure's range: there a one-way valve may be open, and no flow balances.
@@ -56,6 +61,7 @@ class BalanceMaker {
     if (run.motor_speed.measured()) speeds.motor_angle = {};
     if (run.shaft == model::Shaft::kDriven) speeds.shaft = model::Shaft::kFree;
     motion_ = MotionOf(Bare(speeds), p_);
+    noisy_ = WithNoiseAgain(motion_, p_, kSeed);
     step_ = motion_.step * static_cast<double>(motion_.stride);
     count_ = static_cast<Index>((motion_.size() + motion_.stride - 1) / motion_.stride);
     tile_ = TileLength(step_ * static_cast<double>(count_));
@@ -76,21 +82,29 @@ class BalanceMaker {
   using Known = double model::KnownMotion::*;
   struct Open {  // a balance in the making
     TermBalance balance;
-    std::vector<VectorXd> series;
+    std::vector<MatrixXd> series;
   };
 
+  // In the first column a term over time, in the second what noise adds to it.
   template <class Value>
-  VectorXd Series(const Value& value) const {
-    VectorXd series(count_);
-    for (Index i = 0; i < count_; ++i) series[i] = value(motion_.at[static_cast<size_t>(i) * motion_.stride]);
+  MatrixXd Series(const RunMotion& motion, const RunMotion& noisy, const Value& value) const {
+    MatrixXd series(count_, 2);
+    for (Index i = 0; i < count_; ++i) {
+      const size_t k = static_cast<size_t>(i) * motion.stride;
+      series(i, 0) = value(motion.at[k]);
+      series(i, 1) = value(noisy.at[k]) - series(i, 0);
+    }
     return series;
   }
-  VectorXd Series(Known one, double scale) const {
+  template <class Value>
+  MatrixXd Series(const Value& value) const {
+    return Series(motion_, noisy_, value);
+  }
+  MatrixXd Series(Known one, double scale) const {
     return Series([=](const model::KnownMotion& at) { return scale * at.*one; });
   }
-  static void Put(Open* open, std::function<double(const Factors&)> factor, VectorXd series, double sd,
-                  double mean = 1) {
-    open->balance.terms.push_back({std::move(factor), mean, sd, static_cast<int>(open->series.size())});
+  static void Put(Open* open, std::function<double(const Factors&)> factor, MatrixXd series, double sd) {
+    open->balance.terms.push_back({std::move(factor), sd, static_cast<int>(open->series.size())});
     open->series.push_back(std::move(series));
   }
 
@@ -100,27 +114,52 @@ class BalanceMaker {
     return [measured](const Factors& f) { return measured ? f.motor_speed : f.motor_angle; };
   }
 
-  void Finish(Open open, const std::vector<uint8_t>& mask) {
-    const auto width = static_cast<Index>(open.series.size());
-    MatrixXd all(count_, width);
-    for (Index t = 0; t < width; ++t) all.col(t) = open.series[static_cast<size_t>(t)];
+  // Several balances share a mask.
+  const std::vector<TestFunctions>& FunctionsOf(const std::vector<uint8_t>& mask) {
+    const auto [known, is_new] = functions_.try_emplace(mask);
+    if (!is_new) return known->second;
     double interval = motion_.step;
     for (const GridSignal& signal : motion_.signals) interval = std::max(interval, signal.interval);
-    std::map<int, MatrixXd> products;
-    for (const TestFunctions& one : TestFunctionsOf(mask, step_, tile_, std::min(kHighest, 0.2 / interval))) {
-      const MatrixXd rows = one.values * all.middleRows(one.first, one.values.cols());
-      for (Index k = 0; k < rows.rows(); ++k) {
-        MatrixXd& sum = products[BandOf(one.frequency[k], tile_)];
-        if (sum.size() == 0) sum = MatrixXd::Zero(width, width);
-        sum += rows.row(k).transpose() * rows.row(k);
-      }
-    }
-    for (auto& [band, sum] : products) open.balance.products.push_back(std::move(sum));
-    if (!products.empty()) all_.push_back(std::move(open.balance));
+    return known->second = TestFunctionsOf(mask, step_, tile_, std::min(kHighest, kOfTheRate / interval));
   }
 
-  // Where a side's pressure is low, as a mask of the side; of both sides alike for 0.
-  std::vector<uint8_t> MaskOf(BalanceKind balance, GridChannel side) const {
+  void Finish(Open open, const std::vector<uint8_t>& mask) {
+    const auto width = static_cast<Index>(open.series.size());
+    MatrixXd all(count_, 2 * width);
+    for (Index t = 0; t < width; ++t) {
+      all.col(t) = open.series[static_cast<size_t>(t)].col(0);
+      all.col(width + t) = open.series[static_cast<size_t>(t)].col(1);
+    }
+    std::map<int, TermBalance::Band> bands;
+    for (const TestFunctions& one : FunctionsOf(mask)) {
+      const MatrixXd rows = one.values * all.middleRows(one.first, one.values.cols());
+      for (Index k = 0; k < rows.rows(); ++k) {
+        const auto [found, is_new] = bands.try_emplace(BandOf(one.frequency[k], tile_));
+        TermBalance::Band& band = found->second;
+        if (is_new) band.products = band.noise = MatrixXd::Zero(width, width);
+        band.products += rows.row(k).head(width).transpose() * rows.row(k).head(width);
+        band.noise += rows.row(k).tail(width).transpose() * rows.row(k).tail(width);
+      }
+    }
+    for (auto& [place, band] : bands) open.balance.bands.push_back(std::move(band));
+    if (!bands.empty()) all_.push_back(std::move(open.balance));
+  }
+
+  // The sizes of a signal's factor in all mistakes: what is not linear in the signal has a term for each.
+  std::vector<double> SizesOf(double SignalFactors::*signal) const {
+    std::vector<double> sizes = {1};
+    for (const RecordingMistake& mistake : possible_) {
+      Factors factors;
+      AddFactors(mistake, &factors);
+      const double size = std::abs(factors.*signal);
+      if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+    }
+    return sizes;
+  }
+  static bool IsSize(double factor, double size) { return std::abs(std::abs(factor) - size) < 1e-9 * size; }
+
+  // Where the balance says nothing: the pump at rest, gaps, or the pressure of its side low.
+  std::vector<uint8_t> MaskOf(BalanceKind balance, GridChannel side = GridChannel::kSpeed) const {
     HeldPressure held;
     if (motion_.Of(side).measured()) {
       const ValueRange range = RangeOfValues(motion_.Of(side).values);
@@ -134,7 +173,6 @@ class BalanceMaker {
   void AddTorque() {
     if (!CanForm(motion_, BalanceKind::kTorque)) return;
     Open open;
-    open.balance.holds = [](const Factors&) { return true; };
     const auto speed = Speed();
     Put(
         &open, [=](const Factors& f) { return speed(f); },
@@ -146,7 +184,7 @@ class BalanceMaker {
         Series(&model::KnownMotion::pump_direction, p_.T_s), Relative(model_, &model::Parameters::T_s));
     if (motion_.pressures) AddPressures(p_.D, &open);
     AddCommands(&open);
-    Finish(std::move(open), MaskOf(BalanceKind::kTorque, GridChannel::kSpeed));
+    Finish(std::move(open), MaskOf(BalanceKind::kTorque));
   }
 
   // coefficient (p2 - p1), whichever column is which.
@@ -162,25 +200,18 @@ class BalanceMaker {
 
   // The command's torque for each size of the voltage's factor: it has a limit.
   void AddCommands(Open* open) const {
-    std::vector<double> sizes = {1};
-    for (const RecordingMistake& mistake : possible_) {
-      Factors factors;
-      AddFactors(mistake, &factors);
-      const double size = std::abs(factors.voltage);
-      if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
-    }
-    for (const double size : sizes) {
+    for (const double size : SizesOf(&Factors::voltage)) {
       std::vector<double> torque;
       torque.reserve(motion_.size());
       for (const double voltage : motion_.voltage)
         torque.push_back(-std::clamp(p_.k_1 * size * voltage, -p_.T_pmax, p_.T_pmax));
       torque = Smoothed(torque, SmoothingOf(motion_.step) / motion_.step);
-      VectorXd series(count_);
-      for (Index i = 0; i < count_; ++i) series[i] = torque[static_cast<size_t>(i) * motion_.stride];
+      MatrixXd series = MatrixXd::Zero(count_, 2);  // a command has no noise
+      for (Index i = 0; i < count_; ++i) series(i, 0) = torque[static_cast<size_t>(i) * motion_.stride];
       Put(
           open,
           [size](const Factors& f) {
-            if (std::abs(std::abs(f.voltage) - size) > 1e-9 * size) return 0.0;
+            if (!IsSize(f.voltage, size)) return 0.0;
             return f.voltage < 0 ? -1.0 : 1.0;
           },
           std::move(series), kGain);
@@ -232,40 +263,29 @@ class BalanceMaker {
   void AddArm() {
     if (run_.shaft != model::Shaft::kFree || !motion_.pressures || !motion_.speed_known) return;
     Open open;
-    open.balance.holds = [](const Factors&) { return true; };
-    const double inertia = Relative(model_, &model::Parameters::J_a);
     AddPressures(p_.k_2, &open);
-    if (!motion_.arm_moves) {
+    const double inertia = Relative(model_, &model::Parameters::J_a);
+    if (motion_.arm_moves) {
+      Put(
+          &open, [](const Factors& f) { return f.arm_angle; },
+          Series(&model::KnownMotion::arm_acceleration, -p_.J_a), inertia);
+    } else {
       // Nobody measured the arm: below the resonance of the oil it follows the pump.
-      Put(
-          &open, [speed = Speed()](const Factors& f) { return speed(f); },
-          Series(&model::KnownMotion::motor_acceleration, -p_.J_a * p_.D / p_.c), inertia);
-      Finish(std::move(open), MaskOf(BalanceKind::kTorque, GridChannel::kSpeed));
-      return;
+      Put(&open, Speed(), Series(&model::KnownMotion::motor_acceleration, -p_.J_a * p_.D / p_.c), inertia);
     }
-    Put(
-        &open, [](const Factors& f) { return f.arm_angle; },
-        Series(&model::KnownMotion::arm_acceleration, -p_.J_a), inertia);
-    // A weight that the model does not state may be any that the pump can hold.
-    const bool stated = p_.mgl != 0;
-    const double weight = stated ? p_.mgl : p_.k_2 * p_.T_pmax / p_.D;
-    std::vector<double> sizes = {1};
-    for (const RecordingMistake& mistake : possible_) {
-      Factors factors;
-      AddFactors(mistake, &factors);
-      if (std::find(sizes.begin(), sizes.end(), std::abs(factors.arm_angle)) == sizes.end())
-        sizes.push_back(std::abs(factors.arm_angle));
+    if (motion_.arm_moves && p_.mgl != 0) {
+      for (const double size : SizesOf(&Factors::arm_angle)) {
+        Put(
+            &open, [size](const Factors& f) { return IsSize(f.arm_angle, size) ? 1.0 : 0.0; },
+            Series(
+                [=, this](const model::KnownMotion& at) { return -p_.mgl * std::cos(size * at.arm_angle); }),
+            Relative(model_, &model::Parameters::mgl));
+      }
+    } else {
+      // A weight that nobody stated may be any: what does not change says nothing.
+      for (MatrixXd& series : open.series) series.rowwise() -= series.colwise().mean().eval();
     }
-    for (const double size : sizes) {
-      Put(
-          &open,
-          [size](const Factors& f) {
-            return std::abs(std::abs(f.arm_angle) - size) > 1e-9 * size ? 0.0 : 1.0;
-          },
-          Series([=](const model::KnownMotion& at) { return -weight * std::cos(size * at.arm_angle); }),
-          stated ? Relative(model_, &model::Parameters::mgl) : 1, stated ? 1 : 0);
-    }
-    Finish(std::move(open), MaskOf(BalanceKind::kArm, GridChannel::kArm));
+    Finish(std::move(open), MaskOf(motion_.arm_moves ? BalanceKind::kArm : BalanceKind::kTorque));
   }
 
   // A speed against its angle.
@@ -273,16 +293,14 @@ class BalanceMaker {
                double SignalFactors::*of_speed, double SignalFactors::*of_angle) {
     if (!(run_.*speed).measured() || !(run_.*angle).measured()) return;
     Open open;
-    open.balance.holds = [](const Factors&) { return true; };
     for (const bool rate : {false, true}) {
       Run alone = run_;
       alone.motor_speed = rate ? runs::MeasuredSignal{} : run_.*speed;
       alone.motor_angle = rate ? run_.*angle : runs::MeasuredSignal{};
       const RunMotion motion = MotionOf(Bare(std::move(alone)), p_);
-      VectorXd series(count_);
-      for (Index i = 0; i < count_; ++i) {
-        series[i] = (rate ? -1 : 1) * motion.at[static_cast<size_t>(i) * motion.stride].motor_speed;
-      }
+      MatrixXd series =
+          Series(motion, WithNoiseAgain(motion, p_, kSeed),
+                 [sign = rate ? -1.0 : 1.0](const model::KnownMotion& at) { return sign * at.motor_speed; });
       Put(
           &open, [=](const Factors& f) { return rate ? f.*of_angle : f.*of_speed; }, std::move(series),
           kGain);
@@ -300,9 +318,10 @@ class BalanceMaker {
   const model::Parameters& p_;
   const Run& run_;
   const std::vector<RecordingMistake>& possible_;
-  RunMotion motion_;
+  RunMotion motion_, noisy_;
   double step_ = 0, tile_ = 0;
   Index count_ = 0;
+  std::map<std::vector<uint8_t>, std::vector<TestFunctions>> functions_;
   std::vector<TermBalance> all_;
 };
 
@@ -341,42 +360,68 @@ struct Closed {
   double penalty = 0;  // of the values
 };
 
-Closed Close(const TermBalance& balance, const Factors& factors) {
-  const auto n = static_cast<Index>(balance.terms.size());
-  VectorXd f(n), mean(n), precision(n);
-  for (Index t = 0; t < n; ++t) {
-    const SignalTerm& term = balance.terms[static_cast<size_t>(t)];
-    f[t] = term.factor(factors);
-    mean[t] = term.mean;
-    precision[t] = 1 / (term.sd * term.sd);
+// Products of corrected terms in a band: of their sum, and of each group by itself, without and of noise.
+struct Band {
+  MatrixXd sum, parts, noise_sum, noise_parts;
+
+  // The share of the terms that is left, a ratio of squares, and what is never known better. More than all of them is left by terms
+  // that have nothing to do with each other, which is no worse than nothing.
+  double Left(const VectorXd& x) const {
+    const double noise = x.dot(noise_parts * x), size = x.dot(parts * x) - noise;
+    if (!(size > kAboveNoise * noise)) return 1;
+    const double left = std::max(0.0, x.dot(sum * x) - x.dot(noise_sum * x));
+    return std::min(1.0, left / size + kLacking);
   }
-  std::vector<MatrixXd> bands;  // products of the corrected terms, over the terms' size
-  for (const MatrixXd& products : balance.products) {
-    MatrixXd of = f.asDiagonal() * products * f.asDiagonal();
-    double size = 0;
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < n; ++j) {
-        const bool same =
-            balance.terms[static_cast<size_t>(i)].group == balance.terms[static_cast<size_t>(j)].group;
-        if (same) size += mean[i] * mean[j] * of(i, j);
+};
+
+std::vector<Band> Corrected(const TermBalance& balance, const VectorXd& factors) {
+  const auto parts_of = [&](MatrixXd products) {
+    for (Index i = 0; i < products.rows(); ++i) {
+      for (Index j = 0; j < products.cols(); ++j) {
+        if (balance.terms[static_cast<size_t>(i)].group != balance.terms[static_cast<size_t>(j)].group)
+          products(i, j) = 0;
       }
     }
-    if (size > 0) bands.push_back(of / size);
+    return products;
+  };
+  std::vector<Band> bands;
+  for (const TermBalance::Band& band : balance.bands) {
+    const MatrixXd sum = factors.asDiagonal() * band.products * factors.asDiagonal();
+    const MatrixXd noise = factors.asDiagonal() * band.noise * factors.asDiagonal();
+    bands.push_back({sum, parts_of(sum), noise, parts_of(noise)});
   }
-  Closed closed;
-  if (bands.empty()) return closed;
-  // Amounts and variances in turn.
+  return bands;
+}
+
+Closed Close(const TermBalance& balance, const VectorXd& f) {
+  const Index n = f.size();
+  const VectorXd given = VectorXd::Ones(n);
+  VectorXd precision(n);
+  for (Index t = 0; t < n; ++t) {
+    const SignalTerm& term = balance.terms[static_cast<size_t>(t)];
+    precision[t] = 1 / (term.sd * term.sd);
+  }
+  const std::vector<Band> bands = Corrected(balance, f);
   const double weight = kNumbers / static_cast<double>(bands.size());
-  VectorXd x = mean;
+  const auto closed_at = [&](const VectorXd& x) {
+    Closed closed;
+    for (const Band& band : bands) closed.left += std::log(band.Left(x)) * weight / kNumbers;
+    closed.penalty = 0.5 * precision.dot((x - given).cwiseAbs2());
+    return closed;
+  };
+  // Amounts and variances in turn. Amounts that only make all terms small gain nothing: what is left is measured by the terms.
+  VectorXd x = given;
   for (int turn = 0; turn < 8; ++turn) {
     MatrixXd normal = precision.asDiagonal();
-    for (const MatrixXd& band : bands) normal += weight / (x.dot(band * x) + kLacking) * band;
-    x = normal.ldlt().solve(precision.cwiseProduct(mean));
+    for (const Band& band : bands) {
+      const double variance = x.dot(band.sum * x) + kLacking * x.dot(band.parts * x);
+      if (variance > 0) normal += weight / variance * band.sum;
+    }
+    x = normal.ldlt().solve(precision);
   }
-  for (const MatrixXd& band : bands)
-    closed.left += std::log(x.dot(band * x) + kLacking) / static_cast<double>(bands.size());
-  closed.penalty = 0.5 * precision.dot((x - mean).cwiseAbs2());
-  return closed;
+  const Closed fitted = closed_at(x), held = closed_at(given);
+  const auto cost = [](const Closed& one) { return 0.5 * kNumbers * one.left + one.penalty; };
+  return cost(fitted) < cost(held) ? fitted : held;
 }
 
 }  // namespace
@@ -385,18 +430,28 @@ double RecordingBalances::Evidence(const SignalFactors& factors) const {
   double evidence = 0;
   for (const TermBalance& balance : balances_) {
     if (!balance.holds(factors)) continue;
-    const Closed closed = Close(balance, factors);
-    evidence -= 0.5 * kNumbers * closed.left + closed.penalty;
+    evidence += EvidenceOf(balance, factors);
   }
   return evidence;
 }
 
-double RecordingBalances::LeastLeftOpen() const {
-  double least = 1;
-  for (const TermBalance& balance : balances_) {
-    if (balance.holds({})) least = std::min(least, std::exp(Close(balance, {}).left));
+double RecordingBalances::EvidenceOf(const TermBalance& balance, const SignalFactors& factors) const {
+  std::vector<double> f;
+  for (const SignalTerm& term : balance.terms) f.push_back(term.factor(factors));
+  const auto [known, is_new] = balance.evidence.try_emplace(f, 0.0);
+  if (is_new) {
+    const Closed closed = Close(balance, Eigen::Map<const VectorXd>(f.data(), static_cast<Index>(f.size())));
+    known->second = -0.5 * kNumbers * closed.left - closed.penalty;
   }
-  return balances_.empty() ? 0 : least;
+  return known->second;
+}
+
+double RecordingBalances::LeastLeftOpen() const {
+  double most = 0;
+  for (const TermBalance& balance : balances_) {
+    if (balance.holds({})) most = std::max(most, EvidenceOf(balance, {}));
+  }
+  return balances_.empty() ? 0 : std::exp(-2 * most / kNumbers);
 }
 
 }  // namespace hydro::diagnose

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "diagnose/data/recording_mistake.h"
@@ -21,18 +22,23 @@ struct SignalFactors {
 // Adds what undoes one more mistake.
 void AddFactors(const RecordingMistake& mistake, SignalFactors* factors);
 
-// A term of a balance: its part is `mean`, known to `sd` (both relative), times the factor that a correction gives it.
+// A term of a balance: known to `sd`, relative, times the factor that a correction gives it.
 struct SignalTerm {
   std::function<double(const SignalFactors&)> factor;
-  double mean = 1, sd = 0;
+  double sd = 0;
   int group = 0;  // terms of one group are a single one: a difference of pressures
 };
 
 // The terms of one balance of the recording, whose sum is 0, and their products in each band of frequencies.
 struct TermBalance {
-  std::function<bool(const SignalFactors&)> holds;  // whether it is this one for the correction
+  // Whether it is this one for the correction.
+  std::function<bool(const SignalFactors&)> holds = [](const SignalFactors&) { return true; };
   std::vector<SignalTerm> terms;
-  std::vector<Eigen::MatrixXd> products;  // by band
+  struct Band {
+    Eigen::MatrixXd products, noise;  // of the terms, and of what noise adds to them
+  };
+  std::vector<Band> bands;
+  mutable std::map<std::vector<double>, double> evidence;  // that was asked for, by the terms' factors
 };
 
 // Eqs. (4), (13), (14), (15) of the recording, and that a speed is the rate of its angle.
@@ -51,6 +57,8 @@ class RecordingBalances {
   double LeastLeftOpen() const;
 
  private:
+  double EvidenceOf(const TermBalance& balance, const SignalFactors& factors) const;
+
   std::vector<TermBalance> balances_;
 };
 
