@@ -1,14 +1,15 @@
-#include "diagnose/data/checklist.h"
+#include "diagnose/evidence/checklist.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
 #include "base/number_text.h"
 #include "base/units.h"
-#include "diagnose/data/interval_means.h"
 #include "diagnose/data/run_data.h"
+#include "diagnose/evidence/run_mistakes.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
@@ -18,8 +19,6 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
-// A balance that holds correlates by 0.8 and more; one with a wrong sign by the same, negative.
-constexpr double kClear = 0.5;
 constexpr double kFarOff =
     6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
 
@@ -48,47 +47,17 @@ std::string Text(const Range& range, const std::string& unit) {
   return text;
 }
 
-// Of the pairs in which both are known; nothing where too few are, or one is constant.
-std::optional<double> Correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double n = 0, sum_a = 0, sum_b = 0;
-  const auto each = [&](auto&& use) {
-    for (size_t i = 0; i < a.size(); ++i) {
-      if (std::isfinite(a[i]) && std::isfinite(b[i])) use(a[i], b[i]);
-    }
-  };
-  each([&](double x, double y) { ++n, sum_a += x, sum_b += y; });
-  if (n < 10) return std::nullopt;
-  double aa = 0, bb = 0, ab = 0;
-  each([&](double x, double y) {
-    const double u = x - sum_a / n, v = y - sum_b / n;
-    aa += u * u, bb += v * v, ab += u * v;
-  });
-  if (aa == 0 || bb == 0) return std::nullopt;
-  return ab / std::sqrt(aa * bb);
-}
-
-ChecklistLine SignLine(const std::string& item, const std::optional<double>& correlation,
-                       const std::string& good, const std::string& turned) {
-  if (!correlation.has_value()) return {State::kLook, item, "the run moves too little to tell"};
-  const std::string number = " (correlation " + ShortNumber(*correlation, 2) + ")";
-  if (*correlation > kClear) return {State::kGood, item, good + number};
-  if (*correlation < -kClear) return {State::kLook, item, turned + number};
-  return {State::kLook, item,
-          "not clear from this run" + number + ": " + good + " where the model fits the rig"};
-}
-
 class RunChecklist {
  public:
   RunChecklist(const model::ModelDescription& model, const MeasuredRun& run, bool si)
-      : p_(model.parameters), units_(model.units), si_(si), run_(run), intervals_(run) {}
+      : p_(model.parameters), units_(model.units), si_(si), run_(run), mistakes_(model, run) {}
 
   std::vector<ChecklistLine> Lines() {
     AddSamples();
     for (const runs::SignalName& name : runs::kSignals) AddSignal(name);
     AddPressures();
     AddShaft();
-    AddTorqueSign();
-    AddFlowSigns();
+    AddSigns();
     return std::move(lines_);
   }
 
@@ -99,7 +68,6 @@ class RunChecklist {
   std::optional<SiUnit> InSi(const std::string& unit, double size) const {
     return si_ ? FindSiUnit(unit, size) : std::nullopt;
   }
-  std::vector<double> MeansOf(const MeasuredSignal& signal) const { return intervals_.Means(signal.values); }
 
   void AddSamples() {
     const double seconds = run_.time.back() - run_.time.front();
@@ -184,57 +152,55 @@ class RunChecklist {
           "c times the arm's angle exceeds V_ms: one side would have no volume");
   }
 
-  void AddTorqueSign() {
+  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
+  void AddSign(const std::string& item, const std::function<bool(const RecordingMistake&)>& is_mistake,
+               const std::string& good, const std::string& turned) {
+    const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
+    const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
+    if (mistake == possible.end()) return;
+    const double gain = mistakes_.Try({*mistake}).gain;
+    const std::string number = " (log odds " + ShortNumber(gain, 2) + ")";
+    if (std::abs(gain) < OddsAgainstMistake()) {
+      Add(State::kLook, item,
+          gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
+    } else {
+      Add(gain < 0 ? State::kGood : State::kLook, item, (gain < 0 ? good : turned) + number);
+    }
+  }
+  static bool IsSignOf(const RecordingMistake& mistake, SignalOfRun signal) {
+    return mistake.IsSign() && mistake.factors.size() == 1 && mistake.factors[0].first == signal;
+  }
+
+  void AddSigns() {
     if (!run_.motor_speed.measured()) return;
     const bool pressures = run_.p1.measured() && run_.p2.measured() && !run_.bypass;
-    const std::vector<double> command = MeansOf(run_.voltage), speed = MeansOf(run_.motor_speed);
-    const std::vector<double> acceleration = intervals_.Rates(speed);
-    std::vector<double> needed(command.size());
-    const std::vector<double> p1 = pressures ? MeansOf(run_.p1) : std::vector<double>(command.size(), 0);
-    const std::vector<double> p2 = pressures ? MeansOf(run_.p2) : p1;
-    for (size_t i = 0; i < needed.size(); ++i) {
-      const double friction = std::isnan(speed[i]) ? 0 : (speed[i] > 0) - (speed[i] < 0);
-      needed[i] = p_.J * acceleration[i] + p_.b * speed[i] + p_.D * (p2[i] - p1[i]) + p_.T_s * friction;
-    }
-    std::vector<double> torque(command);
-    for (double& value : torque) value = std::clamp(p_.k_1 * value, -p_.T_pmax, p_.T_pmax);
-    Add("sign of the command", Correlation(torque, needed),
+    AddSign(
+        "sign of the command",
+        [](const RecordingMistake& one) { return IsSignOf(one, &MeasuredRun::voltage); },
         pressures ? "a positive command turns the motor forward and raises p2 over p1"
                   : "a positive command turns the motor forward",
         pressures ? "a positive command goes with a falling speed or p2 - p1: turn its sign, the speed's, or "
                     "exchange p1 and p2"
                   : "a positive command goes with a falling speed: turn the sign of one of them");
-  }
-
-  void AddFlowSigns() {
-    if (!run_.motor_speed.measured() || run_.bypass) return;
-    const std::vector<double> speed = MeansOf(run_.motor_speed);
-    const bool arm_moves = run_.shaft != model::Shaft::kClamped;
-    if (arm_moves && (run_.arm_speed.measured() || run_.arm_angle.measured())) {
-      const std::vector<double> arm =
-          run_.arm_speed.measured() ? MeansOf(run_.arm_speed) : intervals_.Rates(MeansOf(run_.arm_angle));
-      Add("sign of the arm", Correlation(speed, arm), "the arm moves up while the motor turns forward",
-          "the arm moves down while the motor turns forward: turn the sign of one of them");
-    } else if (!arm_moves && run_.p1.measured() && run_.p2.measured()) {
-      std::vector<double> dp = MeansOf(run_.p2);
-      const std::vector<double> p1 = MeansOf(run_.p1);
-      for (size_t i = 0; i < dp.size(); ++i) dp[i] -= p1[i];
-      Add("sign of the pressures", Correlation(speed, intervals_.Rates(dp)),
+    if (run_.bypass) return;
+    if (run_.shaft == model::Shaft::kClamped && pressures) {
+      AddSign(
+          "sign of the pressures", [](const RecordingMistake& one) { return one.pressures_exchanged; },
           "p2 - p1 rises while the motor turns forward",
           "p2 - p1 falls while the motor turns forward: exchange p1 and p2, or turn the sign of the speed");
     }
-  }
-
-  void Add(const std::string& item, const std::optional<double>& correlation, const std::string& good,
-           const std::string& turned) {
-    lines_.push_back(SignLine(item, correlation, good, turned));
+    const SignalOfRun arm = run_.arm_angle.measured() ? &MeasuredRun::arm_angle : &MeasuredRun::arm_speed;
+    AddSign(
+        "sign of the arm", [arm](const RecordingMistake& one) { return IsSignOf(one, arm); },
+        "the arm moves up while the motor turns forward",
+        "the arm moves down while the motor turns forward: turn the sign of one of them");
   }
 
   const model::Parameters& p_;
   const UnitSystem& units_;
   bool si_;
   const MeasuredRun& run_;
-  IntervalMeans intervals_;
+  RunMistakes mistakes_;
   std::vector<ChecklistLine> lines_;
 };
 

@@ -21,9 +21,8 @@ struct ChecklistLine {
   std::string text;
 };
 
-// The lines of one run, in the order in which they are best settled: samples, ranges, then signs. A sign is judged by the
-// correlation of two sides of an equation over a hundred or so intervals of the run, with the model's numbers: the torque balance,
-// eq. (4), and the flow balance, eqs. (11) to (14).
+// The lines of one run, in the order in which they are best settled: samples, ranges, then signs. A sign is judged by what turning it
+// does to the evidence of the balances.
 std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const runs::MeasuredRun& run,
                                      bool si = false);
 

@@ -1,10 +1,10 @@
-#include "diagnose/fit/recording_check.h"
+#include "diagnose/evidence/recording_check.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
-#include "diagnose/fit/check_windows.h"
+#include "tests/diagnose/data/swing.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -54,23 +54,6 @@ TEST_F(RecordingCheckTest, NothingInASoundRecording) {
   EXPECT_THAT(Remarks([](runs::MeasuredRun&) {}), IsEmpty());
 }
 
-// Tests that windows are where signals move, and that a sound model predicts them.
-TEST_F(RecordingCheckTest, Windows) {
-  const std::vector<runs::MeasuredRun> windows = MovingWindows(recorded_->front(), 6);
-  ASSERT_EQ(windows.size(), 6u);
-  int predicted = 0;
-  for (const runs::MeasuredRun& window : windows) {
-    EXPECT_EQ(window.samples(), 50u);
-    const PredictionErrors errors = PredictWindow(given_, window, WindowStart::kFitted);
-    predicted += errors[static_cast<size_t>(model::Channel::kP2)] < 9 ? 1 : 0;
-    EXPECT_TRUE(std::isnan(errors[static_cast<size_t>(model::Channel::kArmAngle)]));
-    runs::MeasuredRun wrong = window;
-    Multiply(&wrong.voltage.values, -1);
-    EXPECT_GT(PredictWindow(given_, wrong, WindowStart::kFitted)[1], 30);
-  }
-  EXPECT_GE(predicted, 4);  // the relief valve, which the model lacks, is open in the others
-}
-
 // Tests signs: of the command, and of the motor.
 TEST_F(RecordingCheckTest, Signs) {
   const auto voltage = Remarks([](runs::MeasuredRun& run) { Multiply(&run.voltage.values, -1); });
@@ -112,6 +95,25 @@ TEST_F(RecordingCheckTest, Units) {
   });
   ASSERT_EQ(one.size(), 1u);
   EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
+}
+
+// Tests that a speed that is not the rate of its angle is named with its unit or its sign, and that a sensor 20 % too large is none.
+TEST_F(RecordingCheckTest, Rates) {
+  const auto remarks = [](runs::MeasuredSignal runs::MeasuredRun::*signal, double factor) {
+    std::vector<runs::MeasuredRun> runs = {testing::Swing(model::Shaft::kFree)};
+    Multiply(&(runs[0].*signal).values, factor);
+    return FindingRemarks(CheckRecordings(given_, runs, 1), runs);
+  };
+  const auto degrees = remarks(&runs::MeasuredRun::arm_speed, 57.2958);
+  ASSERT_THAT(degrees, SizeIs(1));
+  EXPECT_THAT(degrees[0], HasSubstr("arm_speed is in deg/s"));
+  const auto turns = remarks(&runs::MeasuredRun::motor_angle, 1 / 6.283185);
+  ASSERT_THAT(turns, SizeIs(1));
+  EXPECT_THAT(turns[0], HasSubstr("motor_angle is in rev"));
+  const auto turned = remarks(&runs::MeasuredRun::arm_speed, -1);
+  ASSERT_THAT(turned, SizeIs(1));
+  EXPECT_THAT(turned[0], HasSubstr("arm_speed has the wrong sign"));
+  EXPECT_THAT(remarks(&runs::MeasuredRun::arm_speed, 1.2), IsEmpty());
 }
 
 // Tests mistakes that come together, of which undoing one alone explains nothing.
@@ -191,7 +193,7 @@ TEST_F(RecordingCheckTest, UnknownFactor) {
 TEST_F(RecordingCheckTest, OtherShaft) {
   std::vector<runs::MeasuredRun> swing;
   for (const runs::MeasuredRun& run : *recorded_) {
-    if (run.name == "swing" || run.name == "levels") swing.push_back(run);
+    if (run.name == "swing" || run.name == "chirp") swing.push_back(run);
   }
   ASSERT_EQ(swing.size(), 2u);
   swing[1].shaft = model::Shaft::kClamped;
@@ -203,32 +205,10 @@ TEST_F(RecordingCheckTest, OtherShaft) {
   swing[1].shaft = swing[0].shaft = model::Shaft::kFree;
   remarks = FindingRemarks(CheckRecordings(given_, swing, 1), swing);
   ASSERT_EQ(remarks.size(), 1u);
-  EXPECT_THAT(remarks[0], HasSubstr("run levels: the shaft is clamped, not free"));
+  EXPECT_THAT(remarks[0], HasSubstr("run chirp: the shaft is clamped, not free"));
 }
 
-// Tests that one run of several that alone says something weakly, and is not in order then, is not believed: offsets and a lag of the
-// motor looked like bar in one run of six. One that is in order then, a great fall or a second run are.
-TEST(RecordingFindings, OneRunAloneSaysItWeakly) {
-  RecordingMistake bar, sign;
-  bar.what = "p1 and p2 are in bar";
-  bar.unit = "bar";
-  sign.what = "voltage has the wrong sign";
-  sign.factors = {{&runs::MeasuredRun::voltage, -1.0}};
-  const RecordingFinding weak = {5, {bar}, 142, 21, 3.6};
-  RecordingFinding in_order = weak, great = weak, other = weak, another = weak;
-  in_order.corrected = 2;
-  great.gain = 11;
-  other.run = 2;
-  another.mistakes = {sign};
-  EXPECT_THAT(WithoutDoubtful(6, {weak}), IsEmpty());
-  EXPECT_THAT(WithoutDoubtful(6, {weak, another}), IsEmpty());
-  EXPECT_THAT(WithoutDoubtful(2, {weak}), SizeIs(1)) << "the other run has as little weight";
-  EXPECT_THAT(WithoutDoubtful(6, {in_order}), SizeIs(1));
-  EXPECT_THAT(WithoutDoubtful(6, {great}), SizeIs(1));
-  EXPECT_THAT(WithoutDoubtful(6, {other, weak}), SizeIs(2));
-}
-
-// Tests that pressures in mbar are told from kPa, also with times in us, which no simulation could follow.
+// Tests that pressures in mbar are told from kPa, also with times in us.
 TEST_F(RecordingCheckTest, Millibars) {
   const auto remarks = Remarks([](runs::MeasuredRun& run) {
     for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2})

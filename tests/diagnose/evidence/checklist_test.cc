@@ -1,4 +1,4 @@
-#include "diagnose/data/checklist.h"
+#include "diagnose/evidence/checklist.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

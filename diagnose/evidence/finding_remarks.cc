@@ -4,7 +4,7 @@
 
 #include "base/word_list.h"
 #include "diagnose/data/sidecar_lines.h"
-#include "diagnose/fit/recording_check.h"
+#include "diagnose/evidence/recording_check.h"
 
 namespace hydro::diagnose {
 namespace {
