@@ -194,6 +194,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
     explanations.push_back({one.changes, one.weight});
   Diagnosis diagnosis = Conclude(context, found, explanations);
   diagnosis.set_90 = proposed.weights.in_90;
+  diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);

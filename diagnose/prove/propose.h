@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/proposal.h"
 #include "diagnose/search/explanation.h"
@@ -21,6 +22,8 @@ struct Proposed {
   std::map<std::string, double> said;  // the weight of all explanations that have an effect, by its id
   std::vector<std::string>
       remarks;  // on signals that contradict each other, and effects that are doubles of values
+  std::vector<Unjudged>
+      unjudged;  // effects whose balances cannot be formed, because signals were not recorded
 };
 
 // `allowed`: base parameters that may differ, as in BaseParameters(). Nothing is simulated. Without a balance that can be formed there

@@ -157,6 +157,13 @@ Json Explanations(const Diagnosis& diagnosis) {
   return explanations;
 }
 
+Json CannotJudge(const Diagnosis& diagnosis) {
+  Json all = Json::array();
+  for (const Unjudged& one : diagnosis.unjudged)
+    all.push_back({{"effects", one.effects}, {"because", one.because}});
+  return all;
+}
+
 Json Candidates(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
   for (const Candidate& candidate : diagnosis.candidates) {
@@ -193,6 +200,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"candidates", Candidates(diagnosis)},
                        {"explanations", Explanations(diagnosis)},
                        {"set_90", diagnosis.set_90},
+                       {"cannot_judge", CannotJudge(diagnosis)},
                        {"remarks", diagnosis.remarks},
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},

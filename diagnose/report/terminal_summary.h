@@ -16,6 +16,9 @@ std::string WithInterval(const Estimated& estimated);
 // What an explanation changes, in words: "pump.stribeck + another value of b", "nothing is missing".
 std::string InWords(const WeightedSet& explanation);
 
+// "Cannot be judged from these runs: valve.relief and line.wave, because p1 and p2 were not recorded"
+std::string UnjudgedText(const Unjudged& unjudged);
+
 // The text of model.toml: what settings::FormatModel writes, with a comment at each value that is not as in `given`: its 95 %
 // interval, where it comes from and what it was. Reads back as the same description.
 std::string CommentedModel(const Diagnosis& diagnosis, const model::ModelDescription& given);
