@@ -188,6 +188,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);
   Diagnosis diagnosis = Conclude(context, proof, proposed);
+  diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);

@@ -1,6 +1,10 @@
 // From runs to rows: motions, balances, masks, columns, test functions.
 #pragma once
 
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnose/balances/columns.h"
@@ -17,6 +21,11 @@ struct ScanOptions {
   bool only_always = false;                // no columns but those of every hypothesis
   double highest = 120;                    // Hz: what sensors of such machines pass, and what moves them
   double tile = 0;                         // s; 0: as suits the runs' lengths
+  // Base parameters that may differ by run, of any kind ("J"). Friction, charge pressure and load always may.
+  std::vector<std::string> per_run = {};
+  bool hold_effects = false;  // numbers of effects that the model has stay as they are
+  // What pressures are marched with that were not measured; none: the model as given. The balances stay those of the model as given.
+  std::optional<model::ModelDescription> marched = std::nullopt;
 };
 
 // The measured runs as the scan sees them, made once.
@@ -38,6 +47,11 @@ class ScanRuns {
   double tile() const { return tile_; }
   // Effects that these runs cannot tell from another value of the base parameter beside them: the value stands for both.
   const std::vector<std::pair<std::string, std::string>>& doubles() const { return doubles_; }
+
+  // Whether some pressure was not measured, and is marched.
+  bool HasLatent() const;
+  // Sets of changes (ScanColumn::set) that act in no balance but through such a pressure: of those, only that there is one can be told.
+  std::set<std::string> OilOnly() const;
 
   // The same rows with the columns of waves at these periods alone.
   Rows MakeWaveRows(const std::vector<int>& periods) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/balances/column_maker.h"
+#include "diagnose/balances/latent_pressures.h"
 
 namespace hydro::diagnose {
 
@@ -167,6 +168,7 @@ void AddPressures(ColumnMaker* maker) {
                       static_cast<int>(r));
     }
     for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
+      if (maker->Motion(r).IsLatent(side)) continue;
       const std::string name = side == GridChannel::kP1 ? "p1_offset" : "p2_offset";
       const int column =
           maker->Add({OfRun(name, r), "", sd, false},
@@ -175,6 +177,22 @@ void AddPressures(ColumnMaker* maker) {
         if (run == r) maker->Put(column, run, ReadingColumn(*maker, run, Constant(maker->Motion(run), side)));
       });
     }
+  }
+}
+
+// Where a marched pressure began: nothing is known of it but how large pressures are.
+void AddStarts(ColumnMaker* maker) {
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    if (maker->Motion(r).slopes.empty()) continue;
+    const int column = maker->Add({OfRun("start.p", r), "", maker->setup->sizes.difference, false});
+    maker->works.back().push_back([=](size_t run) {
+      if (run != r) return;
+      BalanceSeries still;
+      for (const BalanceKind balance : kAllBalances)
+        still[static_cast<size_t>(balance)] =
+            Eigen::VectorXd::Zero((*maker->base)[run].left[static_cast<size_t>(balance)].size());
+      maker->Put(column, run, AfterPressures(maker->Motion(run), still, 1));
+    });
   }
 }
 
@@ -215,6 +233,7 @@ void AddNuisanceColumns(ColumnMaker* maker) {
   AddFriction(maker);
   if (oil) AddCreep(maker);
   if (oil) AddPressures(maker);
+  AddStarts(maker);
   if (arm) AddLoads(maker);
 }
 

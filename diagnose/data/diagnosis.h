@@ -113,6 +113,7 @@ struct ValueByRun {
   std::vector<Estimated> values;  // named by run; NaN where the run cannot be simulated
   // The typical gap of the runs' windows that were not fitted, in noise units, with one value and with their own.
   double before = 0, after = 0;
+  bool differs = true;  // both the balances and these windows say so
 
   double Spread() const;  // relative standard deviation between runs
 };
@@ -184,6 +185,12 @@ struct WeightedSet {
   double weight = 0;  // how probable it is among all that were compared; they add to 1
 };
 
+// Effects that the runs cannot show, whatever they do, and why: "p1 and p2 were not recorded".
+struct Unjudged {
+  std::vector<std::string> effects;
+  std::string because;
+};
+
 struct NextExperiment {
   std::string why;
   std::string config;              // TOML of a stack that runs it, "" when none is needed
@@ -212,6 +219,7 @@ struct Diagnosis {
   std::vector<Candidate> candidates;
   std::vector<WeightedSet> explanations;  // the likeliest first
   size_t set_90 = 0;                      // so many of the first hold the truth nine times in ten
+  std::vector<Unjudged> unjudged;         // effects that the runs say nothing of, neither for nor against
   std::vector<RunCurves> curves;
   model::ModelDescription model;  // with the changes found
   // When held_out_runs is empty, the runs were held out in turn.

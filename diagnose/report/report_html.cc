@@ -11,6 +11,7 @@
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/report/terminal_summary.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
 #include "page/typeset.h"
@@ -156,6 +157,8 @@ std::string Ranking(const Diagnosis& diagnosis) {
 
 std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
+  for (const Unjudged& one : diagnosis.unjudged)
+    items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
   for (const std::string& remark : diagnosis.remarks) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }
