@@ -15,10 +15,10 @@ namespace {
 // What is between two neighbours on a grid is halved so often: to a thirtieth, which no balance shows.
 constexpr int kHalvings = 3;
 // Steps of Gauss-Newton of a whole effect, and the change of its numbers that is none.
-constexpr int kMostSteps = 4;
-constexpr double kSettled = 0.01;
+constexpr int kMostStepsOfAWhole = 4;
+constexpr double kSettledShape = 0.01;
 // Where a grid has one point only, and as far as a whole may go from its grid point: neighbours are no further apart.
-constexpr double kMostMove = 2;
+constexpr double kMostShapeMove = 2;
 
 bool IsOf(const ScanColumn& column, const ChangeSet& set) {
   return std::find(set.begin(), set.end(), column.set) != set.end();
@@ -100,11 +100,11 @@ double Apart(const std::vector<EffectVariant>& variants, const EffectVariant& va
     for (const EffectVariant& other : variants) {
       if (other.change != variant.change) continue;
       const double far = (up ? 1 : -1) * (std::log(other.at.parameters.at(parameter)) - at);
-      if (far > kSettled && (nearest == 0 || far < nearest)) nearest = far;
+      if (far > kSettledShape && (nearest == 0 || far < nearest)) nearest = far;
     }
     apart = std::max(apart, nearest);
   }
-  return apart > 0 ? std::min(apart, std::log(kMostMove)) : std::log(kMostMove);
+  return apart > 0 ? std::min(apart, std::log(kMostShapeMove)) : std::log(kMostShapeMove);
 }
 
 // The top of a parabola through three points that are `width` apart, from the middle one.
@@ -176,7 +176,7 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
 // An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
 void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
   const EffectVariant start = runs_->setup().variants[variant];
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostStepsOfAWhole; ++step) {
     const std::optional<EstimatedModel> estimated = ModelOf(*runs_, rows_, set, SetEvidence(rows_).Fit(set));
     if (!estimated) return;
     model::EffectDescription at = runs_->setup().variants[variant].at;
@@ -186,12 +186,13 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
       for (auto& [name, value] : at.parameters) {
         const double first = start.at.parameters.at(name);
         if (!(first > 0) || !(value > 0)) continue;
-        const double next = std::clamp(effect.parameters.at(name), first / kMostMove, first * kMostMove);
+        const double next =
+            std::clamp(effect.parameters.at(name), first / kMostShapeMove, first * kMostShapeMove);
         change = std::max(change, std::abs(std::log(next / value)));
         value = next;
       }
     }
-    if (!(change > kSettled)) return;
+    if (!(change > kSettledShape)) return;
     Take(variant, runs_->MakeShapeRows(variant, {at}), at);
   }
 }

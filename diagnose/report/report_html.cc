@@ -11,7 +11,6 @@
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
-#include "diagnose/report/terminal_summary.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
 #include "page/typeset.h"
