@@ -176,8 +176,10 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
 // An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
 void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
   const EffectVariant start = runs_->setup().variants[variant];
+  SetFit fit = SetEvidence(rows_).Fit(set);
+  double evidence = fit.log_evidence;
   for (int step = 0; step < kMostStepsOfAWhole; ++step) {
-    const std::optional<EstimatedModel> estimated = ModelOf(*runs_, rows_, set, SetEvidence(rows_).Fit(set));
+    const std::optional<EstimatedModel> estimated = ModelOf(*runs_, rows_, set, fit);
     if (!estimated) return;
     model::EffectDescription at = runs_->setup().variants[variant].at;
     double change = 0;
@@ -193,7 +195,21 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
       }
     }
     if (!(change > kSettledShape)) return;
+    const Rows before = rows_;
+    const model::EffectDescription at_before = runs_->setup().variants[variant].at;
+    std::vector<double> units;
+    for (const int column : runs_->ColumnsOf(variant))
+      units.push_back(runs_->meaning()[static_cast<size_t>(column)].unit);
     Take(variant, runs_->MakeShapeRows(variant, {at}), at);
+    fit = SetEvidence(rows_).Fit(set);
+    if (fit.log_evidence >= evidence) {
+      evidence = fit.log_evidence;
+      continue;
+    }
+    // A step too far, as of a resonance, whose phase turns within a few per cent.
+    rows_ = before;
+    runs_->SetShape(variant, at_before, units);
+    return;
   }
 }
 
