@@ -104,8 +104,7 @@ void ShowTheMotorAlone(Diagnosis* diagnosis) {
     for (MeasuredCurve& curve : *curves) name(&curve.balance), name(&curve.element);
   }
   std::erase_if(diagnosis->candidates, [](const Candidate& candidate) {
-    const bool tried =
-        std::isfinite(candidate.fit) || std::isfinite(candidate.held_out) || candidate.weight > 0;
+    const bool tried = std::isfinite(candidate.held_out) || candidate.weight > 0;
     return !tried && IsOfTheOil(candidate.id);
   });
 }

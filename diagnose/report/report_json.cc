@@ -158,7 +158,7 @@ Json ExplanationJson(const WeightedSet& one) { return {{"changes", one.changes},
 
 Json CandidateJson(const Candidate& candidate) {
   return {{"id", candidate.id},
-          {"fit", candidate.fit},
+          {"score", candidate.score},
           {"held_out", candidate.held_out},
           {"p_value", candidate.p_value},
           {"weight", candidate.weight},
