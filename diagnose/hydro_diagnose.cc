@@ -16,7 +16,7 @@
 #include "base/number_text.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
-#include "diagnose/data/checklist.h"
+#include "diagnose/evidence/checklist.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/progress_bar.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/alignment.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 
@@ -18,6 +17,14 @@ enum class Verdict { kNamed, kTied, kPartly, kParameters, kUnexplained, kNothing
 inline bool IsOpen(Verdict verdict) {
   return verdict == Verdict::kUnexplained || verdict == Verdict::kPartly;
 }
+
+// A clock of a recording, relative to that of p1 and p2.
+struct ClockDelay {
+  std::string run;
+  std::vector<std::string> signals;  // recorded by that clock
+  double delay = 0;                  // s; negative: early
+  double error = 0;                  // half the width of the 95 % interval, s
+};
 
 // A number with its 95 % interval.
 struct Estimated {
@@ -106,6 +113,7 @@ struct ValueByRun {
   std::vector<Estimated> values;  // named by run; NaN where the run cannot be simulated
   // The typical gap of the runs' windows that were not fitted, in noise units, with one value and with their own.
   double before = 0, after = 0;
+  bool differs = true;  // both the balances and these windows say so
 
   double Spread() const;  // relative standard deviation between runs
 };
@@ -177,6 +185,12 @@ struct WeightedSet {
   double weight = 0;  // how probable it is among all that were compared; they add to 1
 };
 
+// Effects that the runs cannot show, whatever they do, and why: "p1 and p2 were not recorded".
+struct Unjudged {
+  std::vector<std::string> effects;
+  std::string because;
+};
+
 struct NextExperiment {
   std::string why;
   std::string config;              // TOML of a stack that runs it, "" when none is needed
@@ -205,6 +219,7 @@ struct Diagnosis {
   std::vector<Candidate> candidates;
   std::vector<WeightedSet> explanations;  // the likeliest first
   size_t set_90 = 0;                      // so many of the first hold the truth nine times in ten
+  std::vector<Unjudged> unjudged;         // effects that the runs say nothing of, neither for nor against
   std::vector<RunCurves> curves;
   model::ModelDescription model;  // with the changes found
   // When held_out_runs is empty, the runs were held out in turn.

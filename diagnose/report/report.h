@@ -29,6 +29,9 @@ std::string CommentedModel(const Diagnosis& diagnosis, const model::ModelDescrip
 // "b 0.0203 [0.0199, 0.0207] in-lbf-s"
 std::string WithInterval(const Estimated& estimated);
 
+// "Cannot be judged from these runs: valve.relief and line.wave, because p1 and p2 were not recorded"
+std::string UnjudgedText(const Unjudged& unjudged);
+
 // What an explanation changes, in words: "pump.stribeck + another value of b", "nothing is missing".
 std::string InWords(const WeightedSet& explanation);
 

@@ -159,6 +159,8 @@ std::string Ranking(const Diagnosis& diagnosis) {
 
 std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
+  for (const Unjudged& one : diagnosis.unjudged)
+    items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
   for (const std::string& remark : diagnosis.remarks) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }

@@ -165,6 +165,8 @@ Json CandidateJson(const Candidate& candidate) {
           {"rejected_because", candidate.rejected_because}};
 }
 
+Json UnjudgedJson(const Unjudged& one) { return {{"effects", one.effects}, {"because", one.because}}; }
+
 }  // namespace
 
 const std::string& VerdictName(Verdict verdict) {
@@ -188,6 +190,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"candidates", List(diagnosis.candidates, CandidateJson)},
                        {"explanations", List(diagnosis.explanations, ExplanationJson)},
                        {"set_90", diagnosis.set_90},
+                       {"cannot_judge", List(diagnosis.unjudged, UnjudgedJson)},
                        {"remarks", diagnosis.remarks},
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},

@@ -31,19 +31,6 @@ void NameRuns(const SearchContext& context, Diagnosis* d) {
   for (const RunData* run : context.held_out) d->held_out_runs.push_back(run->name);
 }
 
-// Says of values that were found which effects do as well.
-void RemarkOnRivals(Diagnosis* d) {
-  constexpr double kWorthAWord = 0.2;
-  for (const Candidate& candidate : d->candidates) {
-    // Values of an effect that the model has are values too.
-    const bool rival =
-        candidate.id.find('.') != std::string::npos && !candidate.id.starts_with("parameters of ");
-    if (d->verdict != Verdict::kParameters || !rival || candidate.weight < kWorthAWord) continue;
-    d->remarks.push_back(candidate.id + " explains the runs about as well as other values (weight " +
-                         ShortNumber(candidate.weight, 2) + ")");
-  }
-}
-
 // Says of the user's own effects (--effect) which were never simulated, so that nobody takes them to be ruled out.
 void RemarkOnUsersOwn(Diagnosis* d) {
   for (const Candidate& candidate : d->candidates) {
@@ -114,7 +101,6 @@ Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Propo
   }
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
-  RemarkOnRivals(&d);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);
   context.Report("where the gap is", 0.97);

@@ -333,6 +333,17 @@ TEST(TerminalSummary, TenLines) {
   EXPECT_LT(text.find("effects:"), text.find("held out:")) << "what was found comes first";
 }
 
+// Tests that effects of which the runs say nothing have a line that says why.
+TEST(TerminalSummary, CannotBeJudged) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  EXPECT_THAT(TerminalSummary(diagnosis, "out", false), Not(HasSubstr("Cannot be judged")));
+  diagnosis.unjudged = {{{"line.wave", "valve.relief"}, "p1 and p2 were not recorded"}};
+  EXPECT_THAT(
+      TerminalSummary(diagnosis, "out", false),
+      HasSubstr("\nCannot be judged from these runs: line.wave and valve.relief, because p1 and p2 were "
+                "not recorded\n"));
+}
+
 // Tests that the likely explanations are as many as hold the truth nine times in ten, four at most, and that a single one has its
 // rival beside it where that has a hundredth.
 TEST(TerminalSummary, Likely) {
