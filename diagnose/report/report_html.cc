@@ -57,8 +57,11 @@ std::string GapInWords(const Diagnosis& diagnosis) {
   }
   if (!std::isfinite(gap.before) || !std::isfinite(gap.after) || gap.before == 0) return "";
   return "On runs that it was not fitted to" + over + " the model as given is off by " +
-         ShortNumber(gap.before, 3) + " times the noise of the sensors, with what was found by " +
-         ShortNumber(gap.after, 3) + " times; 1 is perfect.";
+         ShortNumber(gap.before, 3) + " times the noise of the sensors" +
+         (diagnosis.verdict == Verdict::kNothingMissing
+              ? ""
+              : ", with what was found by " + ShortNumber(gap.after, 3) + " times") +
+         "; 1 is perfect.";
 }
 
 std::string Head(const Diagnosis& diagnosis) {

@@ -184,7 +184,10 @@ std::optional<MeasuredCurve> TermOf(const model::ModelDescription& model, const 
   for (const BalanceKind balance :
        {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2, BalanceKind::kArm}) {
     double least = kFarLess;
-    for (const Variable& variable : MotionVariables(lacking, balance, model.units, IsWave(*description))) {
+    std::vector<Variable> variables = MotionVariables(lacking, balance, model.units, false);
+    if (IsWave(*description))
+      AddTurn(lacking, balance, model.units, description->parameters.at("periods"), &variables);
+    for (const Variable& variable : variables) {
       std::vector<CurvePoint> points;
       AddPoints({balance, -1}, variable, sampling, lacking, {}, effects, &points);
       const OverVariable shown = LeftOver(points);

@@ -70,26 +70,6 @@ bool Pressures(const std::vector<LackingRun>& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const LackingRun& run) { return run.motion.pressures; });
 }
 
-// The phase of a wave that repeats so often in a turn of the motor, and such a wave in proportion to the speed or the
-// pressure difference.
-void AddTurns(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units,
-              std::vector<Variable>* all) {
-  const bool torque = balance == BalanceKind::kTorque;
-  for (int n = 1; n <= kMostTurnPeriods; ++n) {
-    all->push_back(Along(runs, {"motor_angle, " + std::to_string(n) + " periods a turn", "rad"},
-                         [n](const Known& at) { return std::remainder(n * at.motor_angle, 2 * pi); }));
-  }
-  for (int n = 1; n <= kMostTurnPeriods && (!torque || Pressures(runs)); ++n) {
-    const std::string wave = " cos(" + std::to_string(n) + " motor_angle)";
-    all->push_back(
-        Along(runs, {(torque ? "(p2 - p1)" : "motor_speed") + wave, torque ? units.UnitFor("psi") : "rad/s"},
-              [torque, n](const Known& at) {
-                return (torque ? at.p2 - at.p1 : at.motor_speed) * std::cos(n * at.motor_angle);
-              }));
-    all->back().line = true;
-  }
-}
-
 // A function of the held command, smoothed as the balances are.
 template <class Of>
 Variable OfCommand(const std::vector<LackingRun>& runs, const char* name, const Of& of) {
@@ -133,8 +113,27 @@ std::vector<Variable> MotionVariables(const std::vector<LackingRun>& runs, Balan
     const bool names = row.use == Use::kOnlyNames;
     all.push_back(Along(runs, {row.name, units.UnitFor(row.unit, row.arm), {}, names, names}, row.of));
   }
-  if (turns && balance != BalanceKind::kArm) AddTurns(runs, balance, units, &all);
+  if (!turns || balance == BalanceKind::kArm) return all;
+  for (int periods = 1; periods <= kMostTurnPeriods; ++periods) AddTurn(runs, balance, units, periods, &all);
   return all;
+}
+
+void AddTurn(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units,
+             double periods, std::vector<Variable>* all) {
+  const bool torque = balance == BalanceKind::kTorque;
+  const std::string times = ShortNumber(periods, 4);
+  all->push_back(
+      Along(runs, {"motor_angle, " + times + " periods a turn", "rad"},
+            [periods](const Known& at) { return std::remainder(periods * at.motor_angle, 2 * pi); }));
+  if (torque && !Pressures(runs)) return;
+  all->push_back(Along(runs,
+                       {(torque ? "(p2 - p1)" : "motor_speed") + (" cos(" + times + " motor_angle)"),
+                        torque ? units.UnitFor("psi") : "rad/s"},
+                       [torque, periods](const Known& at) {
+                         return (torque ? at.p2 - at.p1 : at.motor_speed) *
+                                std::cos(periods * at.motor_angle);
+                       }));
+  all->back().line = true;
 }
 
 std::vector<Variable> CommandVariables(const std::vector<LackingRun>& runs) {

@@ -22,6 +22,10 @@ struct Variable {
 // turn of the shaft.
 std::vector<Variable> MotionVariables(const std::vector<LackingRun>& runs, BalanceKind balance,
                                       const UnitSystem& units, bool turns);
+// Those of one number of periods, which need not be whole: the phase of such a wave, and a wave in proportion to the speed or the pressure
+// difference.
+void AddTurn(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units,
+             double periods, std::vector<Variable>* all);
 // The voltage, its excess over several limits, and its difference from itself after several lags.
 std::vector<Variable> CommandVariables(const std::vector<LackingRun>& runs);
 // What late readings add to a balance: the rates of the signals that drive it.

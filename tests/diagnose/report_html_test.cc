@@ -129,6 +129,8 @@ TEST(ReportHtml, LeadsWithTheVerdict) {
                   "differs by run. On runs that it was not fitted to, predicted over 0.4 s, the model as "
                   "given is off by 12 times the noise of the sensors, with what was found by 1.04 times"));
   EXPECT_FALSE(Has(page, "held-out gap 12"));
+  EXPECT_TRUE(Has(ReportHtml(testing::EmptyDiagnosis(), false),
+                  "is off by 1.01 times the noise of the sensors; 1 is perfect."));
 }
 
 // Tests that explanations are in plain words, that the page says which hold the truth nine times in ten, and which of them is what was

@@ -160,10 +160,10 @@ TEST(TermOf, AReliefValveOverPressure) {
 // Tests that what repeats within a turn is drawn over a wave of the motor's angle.
 TEST(TermOf, CoggingOverTheMotorsAngle) {
   const auto term =
-      TermIn(Table1With({{"motor.cogging", {{"amplitude", 2}, {"periods", 9}, {"phase", 0.4}}, {}}}),
+      TermIn(Table1With({{"motor.cogging", {{"amplitude", 2}, {"periods", 9.03}, {"phase", 0.4}}, {}}}),
              "motor.cogging");
   ASSERT_TRUE(term.has_value());
-  EXPECT_EQ(term->against, "motor_angle, 9 periods a turn");
+  EXPECT_EQ(term->against, "motor_angle, 9.03 periods a turn");
   ASSERT_GE(term->at.size(), 12u);
   const auto [low, high] = std::minmax_element(term->found.begin(), term->found.end());
   EXPECT_NEAR(*high, 2, 0.2);
