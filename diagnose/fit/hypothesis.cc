@@ -53,6 +53,8 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const model::ParameterInfo& info = InfoOf(effect, all[i].name);
     model::ModelDescription own = {{}, {}, {effect}, {}};
     const double value = model::EffectParameter{0, all[i].name, all[i].place}.In(&own);
+    // Poles, teeth and pistons are counted, not measured.
+    if (info.role == model::Role::kPeriods && value == std::round(value)) continue;
     FreeParameter parameter{{model::Unknown::Kind::kEffect, i},
                             effect.id + "." + all[i].Label(),
                             info.UnitIn(model.units),

@@ -158,7 +158,6 @@ double MeanSquare(const std::vector<WindowGap>& runs) {
 Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
                         bool at_the_noise, const std::vector<std::string>& likely) {
   if (!at_the_noise) return near;
-  const std::vector<WindowGap> found = OverRuns(context, near.Best());
   Proof whole;
   for (const RunData* run : context.predicted()) whole.runs.push_back(run->name);
   whole.sets = {near.Given(), near.Values()};
@@ -168,8 +167,8 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
   }
   whole.values = 1;
   const double given = MeanSquare(whole.Given().near);
-  const bool far = !(std::min(given, MeanSquare(found)) < kNearEnough * kNearEnough);
-  if (far || !std::isfinite(given) || given < kCloseEnough) return near;
+  const bool near_enough = given < kNearEnough * kNearEnough;
+  if (!near_enough || given < kCloseEnough) return near;
   context.Report("what only whole runs show", 0.94);
   const Fitted start = Fit(as_given, context.runs, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!start.ok()) return near;
@@ -182,6 +181,7 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
     if (!TakesMost(given, square)) continue;
     if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
   }
+  const std::vector<WindowGap> found = OverRuns(context, near.Best());
   // Windows may have found as much with values that whole runs confirm.
   if (whole.best == whole.given || !FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect)) return near;
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));

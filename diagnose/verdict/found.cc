@@ -25,19 +25,26 @@ std::vector<Interval> IntervalsOf(const SearchContext& context, const Proof& pro
   return Intervals(proof.told, proof.told_runs, context.jobs);
 }
 
-FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
-                     const std::vector<Interval>& intervals) {
+FoundEffect Describe(const Change& change, const model::ModelDescription& model,
+                     const std::vector<FreeParameter>& free, const std::vector<Interval>& intervals) {
   const model::EffectInfo& info = *model::FindEffect(change.effect);
   FoundEffect found;
   found.id = info.id;
   found.summary = info.summary;
   found.equation = info.equation;
   for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
+  const auto effect = std::find_if(model.effects.begin(), model.effects.end(),
+                                   [&](const auto& one) { return one.id == info.id; });
   for (const model::ParameterInfo& parameter : info.parameters) {
-    for (size_t i = 0; i < free.size(); ++i) {
-      if (free[i].name != info.id + "." + parameter.name) continue;
-      found.parameters.push_back(
-          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, free[i].unit});
+    const auto fitted = std::find_if(free.begin(), free.end(), [&](const FreeParameter& one) {
+      return one.name == info.id + "." + parameter.name;
+    });
+    if (fitted != free.end()) {
+      const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
+      found.parameters.push_back({parameter.name, fitted->value, interval.low, interval.high, fitted->unit});
+    } else if (parameter.role == model::Role::kPeriods && effect != model.effects.end()) {
+      const double whole = effect->parameters.at(parameter.name);
+      found.parameters.push_back({parameter.name, whole, whole, whole, parameter.UnitIn(model.units)});
     }
   }
   return found;
@@ -125,7 +132,7 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
   std::vector<model::ModelDescription> models = {proof.Found().model};
   for (const Change& change : proof.Best().Effects()) {
     if (IsClosureEffect(change.effect)) continue;
-    FoundEffect found = Describe(change, free, intervals);
+    FoundEffect found = Describe(change, proof.Found().model, free, intervals);
     found.share = ShareOf(proof, change);
     found.weight = WeightOf(change, d->explanations);
     if (found.weight == 0 && IsUnseenByBalances(change.effect)) found.weight = kUnsaid;
