@@ -99,7 +99,7 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
     refined.hypothesis = at.hypothesis;
     refined.weight = set->weight;
     JudgeSet(windows, context.jobs, &refined);
-    if (PredictsBetter(refined, *set)) *set = std::move(refined);
+    if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;
   }
 }

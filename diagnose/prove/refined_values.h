@@ -24,9 +24,9 @@ struct Refinement {
   int steps = 0;  // of a round
 };
 // To compare a set with that without an effect: estimates are near where a fit ends, and one that needs more steps is wandering off.
-inline constexpr Refinement kComparedValues = {2, 3};
+inline constexpr Refinement kComparedValues = {1, 3};
 // Of what is reported.
-inline constexpr Refinement kReportedValues = {3, 8};
+inline constexpr Refinement kReportedValues = {2, 6};
 
 // The set with its values fitted, a few steps from where they are; the fit is taken where it predicts the judging windows better.
 // `fitted`: as WithDiscrepancy() makes them. A fit that fails, or ends no lower than it began, changes nothing.

@@ -16,6 +16,8 @@ namespace {
 
 // Noise units: beyond, small errors of values that add up over a run say more than what is missing.
 constexpr double kNearEnough = 10;
+// Effects that are tested: the balances rank them too, and what is true was among their first five nearly always.
+constexpr size_t kMostTestedEffects = 8;
 // Changes that are fitted: of two that the score test expects about as much of, a fit tells.
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
@@ -58,12 +60,21 @@ struct Tested {
   double sum = 0;  // that it may come to
 };
 
+// Values are; an effect that the balances rank far down is not, unless they cannot see it.
+bool IsWorthTesting(const Change& change, const std::vector<std::string>& likely) {
+  if (change.effect.empty() || likely.empty()) return true;
+  const auto place = std::find(likely.begin(), likely.end(), change.effect);
+  return place == likely.end() || place - likely.begin() < static_cast<std::ptrdiff_t>(kMostTestedEffects);
+}
+
 // The best start of each change, by what a score test expects, the most promising first.
 std::vector<Tested> ScoreTest(const SearchContext& context, const Hypothesis& given,
-                              const std::vector<model::StartState>& from) {
+                              const std::vector<model::StartState>& from,
+                              const std::vector<std::string>& likely) {
   std::vector<Hypothesis> starts;
   std::vector<size_t> owner;
   for (size_t c = 0; c < context.changes.size(); ++c) {
+    if (!IsWorthTesting(context.changes[c], likely)) continue;
     for (Hypothesis& start : With(given, context.changes[c], context.sizes)) {
       starts.push_back(std::move(start));
       owner.push_back(c);
@@ -145,7 +156,7 @@ double MeanSquare(const std::vector<WindowGap>& runs) {
 }
 
 Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
-                        bool at_the_noise) {
+                        bool at_the_noise, const std::vector<std::string>& likely) {
   if (!at_the_noise) return near;
   const std::vector<WindowGap> found = OverRuns(context, near.Best());
   Proof whole;
@@ -159,10 +170,10 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
   const double given = MeanSquare(whole.Given().near);
   const bool far = !(std::min(given, MeanSquare(found)) < kNearEnough * kNearEnough);
   if (far || !std::isfinite(given) || given < kCloseEnough) return near;
-  if (context.report_progress) context.report_progress({"what only whole runs show", 0.94});
+  context.Report("what only whole runs show", 0.94);
   const Fitted start = Fit(as_given, context.runs, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!start.ok()) return near;
-  for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start))) {
+  for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start), likely)) {
     const Fitted fitted = Fit(tested.hypothesis, context.runs, StartsOf(start), FitToCompare(context.jobs));
     if (fitted.ok()) whole.sets.push_back(SetOf(context, fitted));
   }

@@ -22,7 +22,12 @@ struct SearchContext {
   // The runs that are predicted.
   const std::vector<const RunData*>& predicted() const { return held_out.empty() ? runs : held_out; }
   std::function<bool()> time_is_up;  // may be empty: the search has all the time it needs
-  ProgressCallback report_progress;
+  ProgressCallback report_progress;  // may be empty
+
+  // `fraction`: of all the work.
+  void Report(const char* stage, double fraction) const {
+    if (report_progress) report_progress({stage, fraction});
+  }
 };
 
 // Whether the search has to end with what it has.

@@ -8,10 +8,8 @@
 
 #include "base/number_text.h"
 #include "diagnose/closure/closure.h"
-#include "diagnose/say/effect_term.h"
 #include "diagnose/say/locate.h"
 #include "diagnose/say/measured_curves.h"
-#include "diagnose/say/worst_signal.h"
 #include "diagnose/verdict/candidates.h"
 #include "diagnose/verdict/found.h"
 #include "diagnose/verdict/gaps.h"
@@ -65,7 +63,7 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks
 // Where each effect that was found acts, or shows.
 void ShowEffects(const SearchContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
-    if (std::optional<FoundTerm> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
+    if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
       d->terms.push_back(std::move(*term));
     } else if (std::optional<FoundStretch> stretch = StretchOf(context, proof, whole, effect.id)) {
       d->stretches.push_back(std::move(*stretch));
@@ -81,14 +79,10 @@ void ShowWhere(const SearchContext& context, Diagnosis* d) {
   d->missing = std::move(located.missing);
 }
 
-void Report(const SearchContext& context, const char* stage, double fraction) {
-  if (context.report_progress) context.report_progress({stage, fraction});
-}
-
 }  // namespace
 
 Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Proposed& proposed) {
-  Report(context, "intervals", 0.95);
+  context.Report("intervals", 0.95);
   Diagnosis d;
   for (const WeighedExplanation& one : proposed.weights.explanations)
     d.explanations.push_back({one.changes, one.weight});
@@ -109,12 +103,12 @@ Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Propo
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);
-  Report(context, "where the gap is", 0.97);
+  context.Report("where the gap is", 0.97);
   if (d.verdict != Verdict::kNothingMissing) ShowWhere(context, &d);
   d.measured = MeasuredCurves(context.given, d.model, context.runs, context.jobs);
   ShowEffects(context, proof, whole, &d);
   if (tied.size() > 1 && !TimeIsUp(context)) {
-    Report(context, "the next experiment", 0.98);
+    context.Report("the next experiment", 0.98);
     d.next = DesignNextExperiment(tied, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);

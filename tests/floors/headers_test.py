@@ -19,9 +19,6 @@ ROOMS = {
 }
 # From a header's path to the reason.
 EXEMPT = {
-    "diagnose/report/answer_sections.h": "parts of one page, which the tests of report_html.h read as a whole",
-    "diagnose/report/closure_json.h": "a part of report.json, which closure_report_test reads as a whole",
-    "diagnose/report/html_parts.h": "what the sections of the page share: their tests read its output",
     "diagnose/balances/column_maker.h": "what the makers of columns share: column_test reads every column",
     "diagnose/evidence/normal_equations.h": "inside of SetEvidence, which set_evidence_test compares with a dense reference",
     "diagnose/evidence/set_solution.h": "inside of SetEvidence",
