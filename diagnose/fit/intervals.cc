@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -93,6 +94,23 @@ MatrixXd CovarianceOf(const MatrixXd& information) {
   return scale.asDiagonal() * maths::SolveSymmetric(scaled, one) * scale.asDiagonal();
 }
 
+// How far the numbers move between windows or runs: the variances of the fit with each left out in turn. What the model lacks lasts as
+// long as these do, and differs from one to the next.
+Eigen::VectorXd ScatterOf(const Fitted& fitted, const MatrixXd& information) {
+  // A run that holds nearly all that is known of a number says nothing of its scatter: it counts as if it held no more than this.
+  constexpr double kMostLeverage = 0.75;
+  const Index p = information.rows();
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(p);
+  for (const RunFit& run : fitted.runs) {
+    const Map<const MatrixXd> own(run.information.data(), p, p);
+    const Map<const Eigen::VectorXd> gradient(run.gradient.data(), p);
+    squares += (CovarianceOf(information - kMostLeverage * own) * gradient).cwiseAbs2();
+  }
+  const auto n = static_cast<double>(fitted.runs.size());
+  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
+  return std::pow(t / 1.96, 2) * (n - 1) / n * squares;
+}
+
 // What is known of the free numbers beforehand, as inverse variances.
 std::vector<double> KnownVariances(const Hypothesis& hypothesis) {
   const Knowledge* known = hypothesis.known.get();
@@ -163,13 +181,19 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   }
   const MatrixXd information = InformationOf(all, discrepancy, KnownVariances(all.hypothesis));
   const MatrixXd covariance = CovarianceOf(information(own, own));
+  Eigen::VectorXd variance = covariance.diagonal();
+  if (runs.size() > 2) {
+    const MatrixXd total =
+        discrepancy * InformationOf(fitted, discrepancy, KnownVariances(fitted.hypothesis));
+    variance = variance.cwiseMax(ScatterOf(fitted, total));
+  }
   // The fit follows the held numbers as far as the runs cannot tell them from the free ones.
   const Map<const Eigen::VectorXd> off_by(off.data(), static_cast<Index>(off.size()));
   const MatrixXd by_held = covariance * information(own, held) * off_by.asDiagonal();
   std::vector<Interval> intervals;
   for (size_t i = 0; i < free.size(); ++i) {
     const auto at = static_cast<Index>(i);
-    intervals.push_back(Around(free[i], covariance(at, at) + by_held.row(at).squaredNorm(), sample));
+    intervals.push_back(Around(free[i], variance(at) + by_held.row(at).squaredNorm(), sample));
   }
   return intervals;
 }

@@ -12,7 +12,7 @@ struct Interval {
 };
 
 // 95 % intervals of the fit's free parameters, in the order of Free(): from the fit's information, with residuals counted by what the
-// model leaves of them and by how long that lasts. They allow for what the equations idealise, in their own form and in the numbers
+// model leaves of them and by how long that lasts, and from the scatter between windows or runs, where these are three or more. They allow for what the equations idealise, in their own form and in the numbers
 // that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "diagnose/fit/held_out.h"
 #include "maths/median.h"
 
 namespace hydro::diagnose {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "diagnose/fit/held_out.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/turn.h"
 #include "maths/median.h"
@@ -137,6 +136,8 @@ bool IsAtTheNoise(const std::vector<WindowGap>& gaps, size_t channel) {
 }
 
 }  // namespace
+
+double LogarithmOf(double squared_gap) { return std::log(std::clamp(squared_gap, 1e-3, 1e12)); }
 
 double WindowGap::Typical() const {
   double logarithms = 0, channels = 0;

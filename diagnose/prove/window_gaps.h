@@ -12,6 +12,9 @@
 
 namespace hydro::diagnose {
 
+// The logarithm of a squared gap, of one that is kept finite: what typical gaps are means of.
+double LogarithmOf(double squared_gap);
+
 // One window, predicted from its measured start, which a step of least squares corrects as far as its errors allow.
 struct WindowGap {
   bool tested = false;  // false: it cannot be simulated, or takes more steps than a window may

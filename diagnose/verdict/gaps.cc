@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "diagnose/data/windows.h"
-#include "diagnose/fit/held_out.h"
 #include "diagnose/prove/whole_runs.h"
 
 namespace hydro::diagnose {

@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "diagnose/data/windows.h"
-#include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
