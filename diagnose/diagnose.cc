@@ -14,9 +14,9 @@
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
 #include "diagnose/recording_first.h"
-#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
+#include "diagnose/verdict/sentence.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -186,14 +186,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
-  const WideSearch found =
+  const Proof proof =
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);
-  std::vector<WeightedSet> explanations;
-  for (const WeighedExplanation& one : proposed.weights.explanations)
-    explanations.push_back({one.changes, one.weight});
-  Diagnosis diagnosis = Conclude(context, found, explanations);
-  diagnosis.set_90 = proposed.weights.in_90;
+  Diagnosis diagnosis = Conclude(context, proof, proposed);
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);

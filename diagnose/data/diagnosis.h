@@ -97,7 +97,7 @@ struct FoundEffect {
   std::vector<std::string> tied_with;
   // The part of the held-out squared gap that comes back without it, 0 to 1; NaN where it cannot be said.
   double share = std::numeric_limits<double>::quiet_NaN();
-  double weight = 0;  // of all explanations that have it
+  double weight = 0;  // of all explanations that have it; NaN where balances cannot speak for it
 };
 
 // A base parameter ("J"), or one of an effect that the model as given has ("valve.relief.set").
@@ -145,12 +145,14 @@ struct Candidate {
   // Of the effect, or "parameter k_1"; sets of them are joined with " + ". "parameters": all values refitted;
   // "as given": the model itself.
   std::string id;
-  // Gaps of windows where these decide, else of whole runs, in noise units; NaN: not tried.
-  double fit = 0, held_out = 0;
-  // Probability that chance alone improves the fit this much, allowing for the number tried.
+  // What the balances say of it, beyond what they say of nothing: nats of evidence, and of odds beforehand. NaN: nothing.
+  double score = 0;
+  // Typical gap of the held-out windows that judge, or of whole runs where these do, in noise units; NaN: not tried.
+  double held_out = 0;
+  // Probability that chance alone gives as much evidence for it, allowing for the number tried.
   double p_value = 1;
   std::string rejected_because;  // "" for those that were taken
-  // How probable the explanation is among those tried: those of all candidates add to 1.
+  // How probable the explanation is among those that the balances compared: those of all candidates add to 1.
   double weight = 0;
 };
 

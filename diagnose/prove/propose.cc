@@ -140,6 +140,17 @@ std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   return remarks;
 }
 
+// The ids of all effects that were scored alone, the likeliest first.
+std::vector<std::string> LikelyEffects(const std::vector<ScoredSet>& scores) {
+  std::vector<std::string> likely;
+  for (const ScoredSet& scored : scores) {
+    if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
+    const std::string id(scored.set[0].substr(0, scored.set[0].find_first_of("(|")));
+    if (std::find(likely.begin(), likely.end(), id) == likely.end()) likely.push_back(id);
+  }
+  return likely;
+}
+
 double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   for (const WeighedExplanation& one : weights.explanations) {
     if (one.set == set) return one.weight;
@@ -168,11 +179,12 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   proposed.weights = WeighExplanations(&scores, context.seed);
   for (const WeighedExplanation& one : proposed.weights.explanations) {
     for (const std::string& change : one.changes)
-      proposed.said[change.substr(0, change.find('('))] += one.weight;
+      proposed.said.weights[change.substr(0, change.find('('))] += one.weight;
   }
   proposed.scores = scores.BestFirst();
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
+  proposed.said.likely = LikelyEffects(proposed.scores);
   for (const ChangeSet& set : SetsToPropose(proposed.weights, proposed.scores)) {
     if (proposed.proposals.size() >= kMostProposals) break;
     const SetFit fit = evidence.Fit(set);

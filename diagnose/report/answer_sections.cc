@@ -9,7 +9,6 @@
 #include "diagnose/report/html_parts.h"
 #include "diagnose/report/report_pictures.h"
 #include "diagnose/report/terminal_summary.h"
-#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
@@ -153,8 +152,9 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   if (effects.empty()) return "";
   return Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow") +
-         "<p>The weight says how likely an effect is among all that was simulated: how often a model with it "
-         "predicts best when the runs, and parts of them, count more or less at random. The share says how "
+         "<p>The weight says how likely an effect is by what the balances of torque and flow say; it has "
+         "none "
+         "where these cannot speak for it, and simulation alone does. The share says how "
          "much it does: the part of the held-out squared gap that comes back without it. An effect may be "
          "certain and do little.</p>\n";
 }

@@ -139,8 +139,7 @@ void ShowTheMotorAlone(Diagnosis* diagnosis) {
                                          "parameter J_a",
                                          "parameter mgl",
                                          "parameter D"};
-    const bool tried =
-        std::isfinite(candidate.fit) || std::isfinite(candidate.held_out) || candidate.weight > 0;
+    const bool tried = std::isfinite(candidate.held_out) || candidate.weight > 0;
     return !tried && std::any_of(std::begin(kOfTheOil), std::end(kOfTheOil),
                                  [&](const char* begin) { return candidate.id.starts_with(begin); });
   });

@@ -122,7 +122,7 @@ std::string Dependence(const Diagnosis& diagnosis, bool si) {
 
 // Whether no simulation had the candidate, because the balances did not propose it.
 bool IsUntried(const Candidate& candidate) {
-  return std::isnan(candidate.fit) && std::isnan(candidate.held_out) && candidate.weight == 0 &&
+  return std::isnan(candidate.held_out) && candidate.weight == 0 &&
          candidate.rejected_because == kNotProposed;
 }
 
@@ -137,18 +137,20 @@ std::string Ranking(const Diagnosis& diagnosis) {
     }
     const bool taken = candidate.rejected_because.empty();
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
-            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.fit) +
+            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
             NumberCell(candidate.held_out) + ShortCell(candidate.p_value) + ShortCell(candidate.weight) +
             "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   std::string out;
   if (!rows.empty()) {
     out =
-        "<p>Gaps are in noise units, of short predictions where these decide, else over whole runs, with the "
-        "candidate added and the "
-        "values fitted. p is the probability that noise alone achieves as much, corrected for the number of "
-        "candidates.</p>\n" +
-        Table({"#", "candidate", "#fitted", "#held out", "#p", "#weight", "rejected because"}, rows);
+        "<p>The score is what the balances say of a candidate beyond what they say of nothing, in nats, "
+        "before "
+        "anything is simulated; the weight compares all of them. Gaps are in noise units, of short "
+        "predictions "
+        "where these decide, else over whole runs. p is the probability that noise alone achieves as much, "
+        "corrected for the number of candidates.</p>\n" +
+        Table({"#", "candidate", "#score", "#held out", "#p", "#weight", "rejected because"}, rows);
   }
   if (!untried.empty()) {
     out += "<p>The balances of the runs gave no reason to simulate these alone: " +

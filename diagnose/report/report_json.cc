@@ -161,7 +161,7 @@ Json Candidates(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
   for (const Candidate& candidate : diagnosis.candidates) {
     candidates.push_back({{"id", candidate.id},
-                          {"fit", candidate.fit},
+                          {"score", candidate.score},
                           {"held_out", candidate.held_out},
                           {"p_value", candidate.p_value},
                           {"weight", candidate.weight},

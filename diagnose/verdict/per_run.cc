@@ -9,8 +9,9 @@
 #include "base/number_text.h"
 #include "base/parallel.h"
 #include "diagnose/data/windows.h"
+#include "diagnose/fit/held_out.h"
 #include "diagnose/fit/intervals.h"
-#include "diagnose/search/window_search.h"
+#include "diagnose/search/search_context.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -195,8 +196,10 @@ std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::M
   const size_t base = candidates.empty() ? model::BaseParameters().size() : runs.MostPromising(candidates);
   if (base == model::BaseParameters().size()) return {};
   ValueByRun value = runs.FitByRun(base);
-  const bool differs =
-      value.Spread() > kLeastSpread && Material(value.before * value.before, value.after * value.after);
+  // A quarter of the squared gap beside the noise, and a tenth of the noise.
+  const double square = value.before * value.before;
+  const bool material = square - value.after * value.after >= std::max(0.1, 0.25 * (square - 1));
+  const bool differs = value.Spread() > kLeastSpread && material;
   if (differs) values.push_back(std::move(value));
   return values;
 }
