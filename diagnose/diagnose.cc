@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "diagnose/data/alignment.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
-#include "diagnose/fit/clock_fit.h"
+#include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
@@ -111,20 +110,19 @@ struct PreparedRuns {
   std::vector<ClockDelay> clocks;
 };
 
-PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<size_t>& allowed, int jobs,
-                     std::vector<runs::MeasuredRun> runs, std::vector<runs::MeasuredRun> held_out) {
+PreparedRuns Prepare(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                     std::vector<runs::MeasuredRun> held_out) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
     HoldOutLastThird(&runs.front(), &held_out);
   }
   PreparedRuns prepared;
   for (runs::MeasuredRun& run : runs) {
-    prepared.fitted.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+    prepared.fitted.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
   }
   for (runs::MeasuredRun& run : held_out) {
-    prepared.held_out.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+    prepared.held_out.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
   }
   if (!prepared.fitted.empty()) prepared.fitted.front().angle_counts = true;
-  CorrectClocks(model, allowed, jobs, &prepared.fitted, &prepared.held_out, &prepared.clocks);
   MakeNamesUnique(&prepared.fitted);
   MakeNamesUnique(&prepared.held_out);
   return prepared;
@@ -177,7 +175,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
       CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
-  PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
+  PreparedRuns prepared = Prepare(model, std::move(runs), std::move(held_out));
   SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 
@@ -190,6 +188,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);
   Diagnosis diagnosis = Conclude(context, proof, proposed);
+  diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
     diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/word_list.h"
-#include "diagnose/data/alignment.h"
 #include "diagnose/data/contradictions.h"
 #include "diagnose/data/recording_damage.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
+#include "diagnose/evidence/clocks.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -101,7 +101,10 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
     }
   }
   std::vector<size_t> unpredicted;
-  std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
+  std::vector<runs::MeasuredRun> on_one_clock = all;
+  for (runs::MeasuredRun& run : on_one_clock) AlignClocks(model, &run);
+  std::vector<RecordingFinding> findings =
+      CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
   // What is to be mended there first may look like any other mistake.
   std::erase_if(findings, [&](const RecordingFinding& one) { return contradicts[one.run]; });
   std::erase_if(unpredicted, [&](size_t run) { return contradicts[run]; });
@@ -170,7 +173,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   std::vector<RunData> prepared;
   prepared.reserve(runs.size());
   for (runs::MeasuredRun& run : runs) {
-    prepared.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+    prepared.push_back(PrepareAligned(std::move(run), model, &clocks));
   }
   MakeNamesUnique(&prepared);
   const std::vector<const RunData*> pointers = PointersTo(prepared);

@@ -35,7 +35,7 @@ Eigen::Index Count(const RunMotion& run) {
 BalanceSeries Empty(const RunMotion& run) {
   BalanceSeries series;
   for (const BalanceKind balance : kAllBalances) {
-    if (CanForm(run, balance)) series[Place(balance)] = Eigen::VectorXd::Zero(Count(run));
+    if (IsComputed(run, balance)) series[Place(balance)] = Eigen::VectorXd::Zero(Count(run));
   }
   return series;
 }
@@ -91,14 +91,20 @@ bool CanForm(const RunMotion& run, BalanceKind balance) {
     case BalanceKind::kTorque:
       return run.speed_known && (run.options.bypass || run.pressures);
     case BalanceKind::kFlow1:
-    case BalanceKind::kFlow2:
     case BalanceKind::kLevel1:
+      return flows && !run.IsLatent(GridChannel::kP1);
+    case BalanceKind::kFlow2:
     case BalanceKind::kLevel2:
-      return flows;
+      return flows && !run.IsLatent(GridChannel::kP2);
     case BalanceKind::kArm:
       return run.pressures && run.arm_moves && run.options.shaft == model::Shaft::kFree;
   }
   return false;
+}
+
+bool IsComputed(const RunMotion& run, BalanceKind balance) {
+  const bool flow = balance == BalanceKind::kFlow1 || balance == BalanceKind::kFlow2;
+  return CanForm(run, balance) || (flow && !run.slopes.empty());
 }
 
 BaseSeries SeriesOf(const model::ModelDescription& model, const RunMotion& run) {

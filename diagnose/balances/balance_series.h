@@ -23,6 +23,8 @@ using BalanceSeries = std::array<Eigen::VectorXd, kBalanceKinds>;
 
 // Whether the run's signals suffice for the balance. One that cannot be formed is left out: what is missing never counts as 0.
 bool CanForm(const RunMotion& run, BalanceKind balance);
+// Whether its series are computed: those of a side with a marched pressure act in the torque balance (latent_pressures.h).
+bool IsComputed(const RunMotion& run, BalanceKind balance);
 
 // What the motor's torque is over time, smoothed as the signals are.
 struct Drive {

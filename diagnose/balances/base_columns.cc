@@ -70,10 +70,29 @@ void AddGivenEffects(ColumnMaker* maker) {
   }
 }
 
+// Where it is asked whether a base parameter differs by run that no hypothesis lets differ otherwise.
+void AddAskedRuns(ColumnMaker* maker, int of) {
+  const ScanColumn column = maker->table.columns[static_cast<size_t>(of)];
+  const std::vector<std::string>& asked = maker->setup->per_run;
+  ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(of)];
+  const bool differs =
+      std::any_of(maker->table.columns.begin(), maker->table.columns.end(),
+                  [&](const ScanColumn& one) { return one.name.starts_with(column.name + "["); });
+  if (meaning.kind != ColumnMeaning::Kind::kBase || meaning.run >= 0 || !column.set.empty() || differs)
+    return;
+  if (std::find(asked.begin(), asked.end(), column.name) == asked.end()) return;
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    meaning.run = static_cast<int>(r);
+    maker->AddAlias({"run." + column.name + "[" + std::to_string(r) + "]", "run." + column.name,
+                     std::max(kValueFarOff, column.sd), false},
+                    meaning, of, meaning.run);
+  }
+}
+
 }  // namespace
 
 void AddBaseColumns(ColumnMaker* maker) {
-  AddGivenEffects(maker);
+  if (!maker->setup->hold_effects) AddGivenEffects(maker);
   struct Free {
     size_t base;
     int column;
@@ -117,6 +136,7 @@ void AddValueColumns(ColumnMaker* maker) {
   for (size_t i = 0; i < columns; ++i) {
     const ColumnMeaning meaning = maker->table.meaning[i];
     const ScanColumn column = maker->table.columns[i];
+    AddAskedRuns(maker, static_cast<int>(i));
     if (meaning.kind == ColumnMeaning::Kind::kGiven)
       maker->AddAlias(
           {"wide." + column.name, "value." + column.name, std::max(kValueFarOff, 3 * column.sd), false},

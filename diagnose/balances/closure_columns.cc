@@ -39,7 +39,7 @@ void AddElement(ColumnMaker* maker, const ClosureElement& element) {
   maker->works.back().push_back([maker, element, columns](size_t run) {
     const RunMotion& motion = maker->Motion(run);
     for (const ElementPart& part : element.parts) {
-      if (!CanForm(motion, part.balance)) continue;
+      if (!IsComputed(motion, part.balance)) continue;
       const bool arm = part.variable == "arm_angle" || part.variable == "arm_speed";
       if (arm && !motion.arm_moves) continue;
       const Eigen::Index count = (*maker->base)[run].left[static_cast<size_t>(part.balance)].size();

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "diagnose/balances/column_maker.h"
+#include "diagnose/balances/latent_pressures.h"
 
 namespace hydro::diagnose {
 
@@ -154,6 +155,43 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
 
 namespace {
 
+// What flow columns do to the torque balance through pressures that were not measured.
+void FollowPressures(ColumnMaker* maker, int jobs) {
+  // Of the squared column: what rounding leaves where an effect does not act.
+  constexpr double kNothing = 1e-18;
+  const size_t runs = maker->runs->size(), count = maker->table.columns.size();
+  std::vector<std::vector<bool>> direct(runs, std::vector<bool>(count, false));
+  ParallelFor(runs, jobs, [&](size_t r) {
+    const RunMotion& motion = maker->Motion(r);
+    auto& all = maker->table.series[r];
+    for (size_t i = 0; i < count; ++i) {
+      BalanceSeries change;
+      double within = 0;
+      for (const BalanceKind balance : kAllBalances) {
+        const auto b = static_cast<size_t>(balance);
+        const auto found = all[b].find(static_cast<int>(i));
+        const bool there = found != all[b].end();
+        if (there && CanForm(motion, balance)) within = std::max(within, found->second.squaredNorm());
+        if (motion.slopes.empty()) continue;
+        change[b] = there ? found->second : Eigen::VectorXd::Zero((*maker->base)[r].left[b].size());
+        if (there) all[b].erase(found);
+      }
+      direct[r][i] = within > 0;
+      if (motion.slopes.empty()) continue;
+      change = AfterPressures(motion, std::move(change));
+      maker->Put(static_cast<int>(i), r, change);
+      double whole = 0;
+      for (const Eigen::VectorXd& series : change) whole = std::max(whole, series.squaredNorm());
+      direct[r][i] = within > kNothing * whole;
+    }
+  });
+  for (size_t i = 0; i < count; ++i) {
+    bool any = false;
+    for (size_t r = 0; r < runs; ++r) any = any || direct[r][i];
+    maker->table.direct.push_back(any);
+  }
+}
+
 ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const std::vector<BaseSeries>& base,
                  int jobs, const ColumnTable* again, const std::vector<void (*)(ColumnMaker*)>& kinds) {
   ColumnMaker maker;
@@ -171,6 +209,7 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
       for (const ColumnWork& work : stage) work(run);
     }
   });
+  FollowPressures(&maker, jobs);
   const size_t count = maker.table.columns.size();
   const bool first = setup->units.empty();
   if (first) setup->units.assign(count, 1.0);
@@ -198,8 +237,14 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
 
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again) {
+  if (setup->only_always) return Make(setup, runs, base, jobs, again, {AddBaseColumns, AddNuisanceColumns});
   return Make(setup, runs, base, jobs, again,
               {AddBaseColumns, AddEffectColumns, AddNuisanceColumns, AddClosureColumns, AddValueColumns});
+}
+
+ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
+                              const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again) {
+  return Make(setup, runs, base, jobs, again, {AddEffectColumns});
 }
 
 ColumnTable MakeWaveColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,

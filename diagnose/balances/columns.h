@@ -37,6 +37,8 @@ struct ColumnTable {
   std::vector<ColumnMeaning> meaning;
   // series[run][balance]: column -> values at every stride-th instant, for an amount of 1.
   std::vector<std::array<std::map<int, Eigen::VectorXd>, kBalanceKinds>> series;
+  // Whether some balance has the column itself, and not only through a pressure that nobody measured.
+  std::vector<bool> direct;
 
   int Add(ScanColumn column, ColumnMeaning means) {
     columns.push_back(std::move(column));
@@ -56,9 +58,12 @@ struct BalanceSizes {
 // What the columns are made from, the same for clean and noisy motion.
 struct ColumnSetup {
   model::ModelDescription given;
-  std::vector<size_t> allowed;  // base parameters that may differ
+  std::vector<size_t> allowed;       // base parameters that may differ
+  std::vector<std::string> per_run;  // those of which it is asked whether they differ by run
+  bool hold_effects = false;         // numbers of effects that the model has stay as they are
   std::vector<EffectVariant> variants;
   std::vector<int> periods;  // per turn, that waves are tried at
+  bool only_always = false;  // no columns but those of every hypothesis
   BalanceSizes sizes;
   std::vector<double> units;  // by column, set when it is first made: what an amount of 1 is
 };
@@ -70,6 +75,11 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
 // of the same runs and `again` what the first one made, keeps them. `jobs`: threads; the result does not depend on them.
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again = nullptr);
+
+// Those of `setup->variants` alone.
+ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
+                              const std::vector<BaseSeries>& base, int jobs,
+                              const ColumnTable* again = nullptr);
 
 // Those of what repeats with the shaft, at `setup->periods`.
 ColumnTable MakeWaveColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,

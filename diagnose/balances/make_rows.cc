@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "diagnose/balances/latent_pressures.h"
 #include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-// Hz: what sensors of such machines pass, and what moves them. Higher frequencies change no answer.
-constexpr double kHighest = 120;
 // Of the rate of the slowest signal of a balance.
 constexpr double kOfTheRate = 0.2;
 // The arm is slower, and its balance has a second derivative.
@@ -27,12 +26,12 @@ constexpr double kLevelNoise = 5e-4;
 constexpr double kClock = 2e-4, kClockPart = 0.1;
 constexpr uint64_t kNoiseSeed = 5;
 
-double HighestOf(const RunMotion& run, BalanceKind balance, double tile) {
+double HighestOf(const RunMotion& run, BalanceKind balance, double tile, double most) {
   double interval = run.step;
   for (const GridSignal& signal : run.signals) {
     if (signal.measured()) interval = std::max(interval, signal.interval);
   }
-  const double highest = std::min(kHighest, kOfTheRate / interval);
+  const double highest = std::min(most, kOfTheRate / interval);
   if (balance == BalanceKind::kArm) return kArmPart * highest;
   const bool level = balance == BalanceKind::kLevel1 || balance == BalanceKind::kLevel2;
   return level ? std::min(highest, kLevelTiles / tile) : highest;
@@ -50,7 +49,8 @@ double SensorVariance(const RunMotion& run, const model::Parameters& p, BalanceK
   switch (balance) {
     case BalanceKind::kTorque:
       return passed * (std::pow(p.J * omega * speed, 2) + std::pow(p.b * speed, 2) +
-                       (run.pressures ? p.D * p.D * (p1 * p1 + p2 * p2) : 0));
+                       (run.pressures ? p.D * p.D * (p1 * p1 + p2 * p2) : 0) +
+                       (run.slopes.empty() ? 0 : std::pow(p.D * p.D * speed * p.beta / (p.V_ms * omega), 2)));
     case BalanceKind::kFlow1:
     case BalanceKind::kFlow2:
       return passed * (std::pow(p.V_ms / p.beta * omega * std::max(p1, p2), 2) + std::pow(p.D * speed, 2) +
@@ -180,9 +180,12 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
 
 ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
                    const ScanOptions& options)
-    : jobs_(options.jobs) {
+    : jobs_(options.jobs), highest_(options.highest) {
   setup_.given = given;
   setup_.allowed = options.allowed;
+  setup_.only_always = options.only_always;
+  setup_.per_run = options.per_run;
+  setup_.hold_effects = options.hold_effects;
   setup_.variants = VariantsOf(options.changes, SizesOf(given, runs));
   motions_.resize(runs.size());
   noisy_.resize(runs.size());
@@ -190,6 +193,7 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   noisy_base_.resize(runs.size());
   ParallelFor(runs.size(), jobs_, [&](size_t r) {
     motions_[r] = MotionOf(*runs[r], given.parameters, options.inverted);
+    if (MayMarch(motions_[r])) MarchPressures(options.marched.value_or(given), &motions_[r]);
     noisy_[r] = WithNoiseAgain(motions_[r], given.parameters, kNoiseSeed + r);
     base_[r] = SeriesOf(given, motions_[r]);
     noisy_base_[r] = SeriesOf(given, noisy_[r]);
@@ -198,7 +202,7 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   for (const RunMotion& run : motions_) durations.push_back(run.step * static_cast<double>(run.size()));
   std::nth_element(durations.begin(), durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2),
                    durations.end());
-  tile_ = TileLength(durations[durations.size() / 2]);
+  tile_ = options.tile > 0 ? options.tile : TileLength(durations[durations.size() / 2]);
   setup_.sizes = SizesOfBalances(motions_, base_, given.parameters);
   const HeldPressure held = FindHeldPressure(motions_, given.parameters);
   for (size_t r = 0; r < motions_.size(); ++r)
@@ -215,7 +219,7 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
   std::vector<Place> places;
   for (size_t r = 0; r < motions_.size(); ++r) {
     for (const BalanceKind balance : kAllBalances) {
-      if (base_[r].left[static_cast<size_t>(balance)].size() > 0) places.push_back({r, balance});
+      if (CanForm(motions_[r], balance)) places.push_back({r, balance});
     }
   }
   std::vector<RowBlock> blocks(places.size());
@@ -241,11 +245,12 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
       all.col(half + c) =
           found == again.end() ? Eigen::VectorXd::Zero(count) : Eigen::VectorXd(found->second - values);
     }
-    all.col(half - 1) = base_[r].left[kind];
-    all.col(all.cols() - 1) = noisy_base_[r].left[kind] - base_[r].left[kind];
+    const BalanceSeries clean_left = AfterPressures(motion, base_[r].left);
+    all.col(half - 1) = clean_left[kind];
+    all.col(all.cols() - 1) = AfterPressures(motion, noisy_base_[r].left)[kind] - clean_left[kind];
     const double step = motion.step * static_cast<double>(motion.stride);
     const std::vector<TestFunctions> functions =
-        TestFunctionsOf(masks_[r][kind], step, tile_, HighestOf(motion, balance, tile_));
+        TestFunctionsOf(masks_[r][kind], step, tile_, HighestOf(motion, balance, tile_, highest_));
     Eigen::Index total = 0;
     for (const TestFunctions& one : functions) total += one.frequency.size();
     block.X.resize(total, half - 1);
@@ -274,6 +279,25 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
   for (RowBlock& block : blocks) {
     if (block.y.size() > 0) rows->blocks.push_back(std::move(block));
   }
+}
+
+bool ScanRuns::HasLatent() const {
+  return std::any_of(motions_.begin(), motions_.end(),
+                     [](const RunMotion& run) { return !run.slopes.empty(); });
+}
+
+std::set<std::string> ScanRuns::OilOnly() const {
+  std::set<std::string> oil, direct;
+  for (size_t i = 0; i < clean_.columns.size(); ++i) {
+    const bool somewhere = std::any_of(clean_.series.begin(), clean_.series.end(), [&](const auto& run) {
+      return std::any_of(run.begin(), run.end(),
+                         [&](const auto& balance) { return balance.contains(static_cast<int>(i)); });
+    });
+    if (somewhere && !clean_.columns[i].set.empty())
+      (clean_.direct[i] ? direct : oil).insert(clean_.columns[i].set);
+  }
+  for (const std::string& set : direct) oil.erase(set);
+  return oil;
 }
 
 void ScanRuns::Append(const ColumnTable& more, ColumnTable* table) {

@@ -1,6 +1,10 @@
 // From runs to rows: motions, balances, masks, columns, test functions.
 #pragma once
 
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnose/balances/columns.h"
@@ -14,6 +18,14 @@ struct ScanOptions {
   std::vector<size_t> allowed;             // base parameters that may differ, as in BaseParameters()
   std::vector<Change> changes;             // effects that may be named
   std::vector<std::string> inverted = {};  // sensors whose readings have the wrong sign
+  bool only_always = false;                // no columns but those of every hypothesis
+  double highest = 120;                    // Hz: what sensors of such machines pass, and what moves them
+  double tile = 0;                         // s; 0: as suits the runs' lengths
+  // Base parameters that may differ by run, of any kind ("J"). Friction, charge pressure and load always may.
+  std::vector<std::string> per_run = {};
+  bool hold_effects = false;  // numbers of effects that the model has stay as they are
+  // What pressures are marched with that were not measured; none: the model as given. The balances stay those of the model as given.
+  std::optional<model::ModelDescription> marched = std::nullopt;
 };
 
 // The measured runs as the scan sees them, made once.
@@ -36,14 +48,31 @@ class ScanRuns {
   // Effects that these runs cannot tell from another value of the base parameter beside them: the value stands for both.
   const std::vector<std::pair<std::string, std::string>>& doubles() const { return doubles_; }
 
+  // Whether some pressure was not measured, and is marched.
+  bool HasLatent() const;
+  // Sets of changes (ScanColumn::set) that act in no balance but through such a pressure: of those, only that there is one can be told.
+  std::set<std::string> OilOnly() const;
+
   // The same rows with the columns of waves at these periods alone.
   Rows MakeWaveRows(const std::vector<int>& periods) const;
+
+  // Columns of an effect at other shapes than its variant's: `rows` has them alone, those of the first shape first.
+  struct OtherShapes {
+    Rows rows;
+    std::vector<double> units;  // of the columns (ColumnMeaning::unit)
+  };
+  OtherShapes MakeShapeRows(size_t variant, const std::vector<model::EffectDescription>& at) const;
+  // The variant stands at this shape from now on, with these units of its columns.
+  void SetShape(size_t variant, const model::EffectDescription& at, const std::vector<double>& units);
+  // The columns of a variant, in the order of those of MakeShapeRows.
+  std::vector<int> ColumnsOf(size_t variant) const;
 
  private:
   static void Append(const ColumnTable& more, ColumnTable* table);
   void Project(const ColumnTable& clean, const ColumnTable& noisy, Rows* rows) const;
 
   int jobs_ = 1;
+  double highest_;  // Hz
   ColumnSetup setup_;
   std::vector<RunMotion> motions_, noisy_;
   std::vector<BaseSeries> base_, noisy_base_;

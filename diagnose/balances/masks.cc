@@ -108,6 +108,44 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
   return mask;
 }
 
+// Where a valve that the model lacks closes at rest: the pump stands, although the pressures would turn it against its friction and the
+// motor. What oil and arm then do is the valve's affair, and for as long again as it takes to open.
+std::vector<uint8_t> HeldAtRest(const RunMotion& run, const model::Parameters& p) {
+  // Of the largest speed, and s: a pump that only reverses is not at rest for so long.
+  constexpr double kRest = 0.05, kRestTime = 0.1;
+  // Static friction of pumps is at most about so many times that which the model has.
+  constexpr double kStatic = 2;
+  std::vector<uint8_t> held(run.size(), 0);
+  if (!run.pressures || !run.arm_moves) return held;
+  double largest = 0;
+  for (const model::KnownMotion& at : run.at) largest = std::max(largest, std::abs(at.motor_speed));
+  for (size_t i = 0; i < run.size();) {
+    size_t end = i, turned = 0;
+    for (; end < run.size() && std::abs(run.at[end].motor_speed) < kRest * largest; ++end) {
+      const model::KnownMotion& at = run.at[end];
+      const double friction = p.T_s + p.f * std::abs(at.p1 + at.p2);
+      const double motor = std::clamp(p.k_1 * at.voltage, -p.T_pmax, p.T_pmax);
+      turned += std::abs(motor - p.D * (at.p2 - at.p1)) > kStatic * friction ? 1 : 0;
+    }
+    if (end - i >= Samples(kRestTime, run) && 2 * turned > end - i)
+      std::fill(held.begin() + static_cast<std::ptrdiff_t>(i),
+                held.begin() + static_cast<std::ptrdiff_t>(end), uint8_t{1});
+    i = std::max(end, i + 1);
+  }
+  Widen(Samples(kRestTime, run), &held);
+  return held;
+}
+
+bool BothLatent(const RunMotion& run) {
+  return run.IsLatent(GridChannel::kP1) && run.IsLatent(GridChannel::kP2);
+}
+
+// Of the pressures that were measured.
+double Lower(const RunMotion& run, const model::KnownMotion& at) {
+  if (run.IsLatent(GridChannel::kP1)) return at.p2;
+  return run.IsLatent(GridChannel::kP2) ? at.p1 : std::min(at.p1, at.p2);
+}
+
 }  // namespace
 
 HeldPressure FindHeldPressure(const std::vector<RunMotion>& runs, const model::Parameters& given) {
@@ -120,9 +158,9 @@ HeldPressure FindHeldPressure(const std::vector<RunMotion>& runs, const model::P
   }
   std::vector<double> low;
   for (const RunMotion& run : runs) {
-    if (!run.pressures) continue;
+    if (!run.pressures || BothLatent(run)) continue;
     for (const model::KnownMotion& at : run.at) {
-      const double lower = std::min(at.p1, at.p2);
+      const double lower = Lower(run, at);
       if (lower < given.p_3 + kLowPart * (highest - given.p_3)) low.push_back(lower);
     }
   }
@@ -148,24 +186,26 @@ std::array<std::vector<uint8_t>, kBalanceKinds> MasksOf(const RunMotion& run, co
                                                         const model::Parameters& given) {
   std::array<std::vector<uint8_t>, kBalanceKinds> masks;
   const auto place = [](BalanceKind balance) { return static_cast<size_t>(balance); };
+  const std::vector<uint8_t> closed = HeldAtRest(run, given);
   std::vector<GridChannel> speed = {run.from_angle ? GridChannel::kAngle : GridChannel::kSpeed};
   if (CanForm(run, BalanceKind::kTorque)) {
     std::vector<GridChannel> signals = speed;
     if (run.pressures) signals.insert(signals.end(), {GridChannel::kP1, GridChannel::kP2});
-    masks[place(BalanceKind::kTorque)] = EachStride(Either(AtRest(run), Gaps(run, signals)), run.stride);
+    masks[place(BalanceKind::kTorque)] =
+        EachStride(Either(Either(AtRest(run), closed), Gaps(run, signals)), run.stride);
   }
   if (CanForm(run, BalanceKind::kArm)) {
-    masks[place(BalanceKind::kArm)] =
-        EachStride(Gaps(run, {GridChannel::kArm, GridChannel::kP1, GridChannel::kP2}), run.stride);
+    masks[place(BalanceKind::kArm)] = EachStride(
+        Either(closed, Gaps(run, {GridChannel::kArm, GridChannel::kP1, GridChannel::kP2})), run.stride);
   }
-  if (!CanForm(run, BalanceKind::kFlow1)) return masks;
   std::vector<GridChannel> signals = speed;
   signals.insert(signals.end(), {GridChannel::kP1, GridChannel::kP2});
   if (run.arm_moves) signals.push_back(GridChannel::kArm);
-  const std::vector<uint8_t> gaps = Gaps(run, signals);
+  const std::vector<uint8_t> gaps = Either(closed, Gaps(run, signals));
   const std::pair<BalanceKind, BalanceKind> sides[] = {{BalanceKind::kFlow1, BalanceKind::kLevel1},
                                                        {BalanceKind::kFlow2, BalanceKind::kLevel2}};
   for (const auto& [flow, level] : sides) {
+    if (!CanForm(run, flow)) continue;
     double model::KnownMotion::*pressure =
         flow == BalanceKind::kFlow1 ? &model::KnownMotion::p1 : &model::KnownMotion::p2;
     std::vector<uint8_t> low(run.size());

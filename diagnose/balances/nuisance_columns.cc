@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/balances/column_maker.h"
+#include "diagnose/balances/latent_pressures.h"
 
 namespace hydro::diagnose {
 
@@ -67,8 +68,7 @@ void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
     if (!CanForm(motion, BalanceKind::kTorque)) return;
     const std::vector<double> rate = Derivative((*maker->base)[run].drive.smooth, motion.step);
     Eigen::VectorXd series((*maker->base)[run].left[0].size());
-    for (Eigen::Index i = 0; i < series.size(); ++i)
-      series[i] = -rate[static_cast<size_t>(i) * motion.stride];
+    for (Eigen::Index i = 0; i < series.size(); ++i) series[i] = rate[static_cast<size_t>(i) * motion.stride];
     maker->Put(voltage, run, BalanceKind::kTorque, std::move(series));
   });
   const auto add = [&](const char* name, const std::vector<GridChannel>& signals) {
@@ -143,11 +143,15 @@ void AddFriction(ColumnMaker* maker) {
     }
   }
   if (const std::optional<int> viscous = maker->Named("b")) {
+    // Relative to the value as given; of a pump that is said to have none, in its unit.
+    const double b = maker->given().b, speed = maker->setup->sizes.speed;
+    const double part = b != 0 || !(speed > 0) ? 1 : kLeastFriction * torque / speed;
     for (size_t r = 0; r < maker->runs->size(); ++r) {
       ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*viscous)];
       meaning.run = static_cast<int>(r);
       meaning.unit = 1;
-      maker->AddAlias({OfRun("b", r), "", kFrictionByRun, false}, meaning, *viscous, static_cast<int>(r));
+      maker->AddAlias({OfRun("b", r), "", kFrictionByRun * part, false}, meaning, *viscous,
+                      static_cast<int>(r));
     }
   }
 }
@@ -164,6 +168,7 @@ void AddPressures(ColumnMaker* maker) {
                       static_cast<int>(r));
     }
     for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
+      if (maker->Motion(r).IsLatent(side)) continue;
       const std::string name = side == GridChannel::kP1 ? "p1_offset" : "p2_offset";
       const int column =
           maker->Add({OfRun(name, r), "", sd, false},
@@ -172,6 +177,22 @@ void AddPressures(ColumnMaker* maker) {
         if (run == r) maker->Put(column, run, ReadingColumn(*maker, run, Constant(maker->Motion(run), side)));
       });
     }
+  }
+}
+
+// Where a marched pressure began: nothing is known of it but how large pressures are.
+void AddStarts(ColumnMaker* maker) {
+  for (size_t r = 0; r < maker->runs->size(); ++r) {
+    if (maker->Motion(r).slopes.empty()) continue;
+    const int column = maker->Add({OfRun("start.p", r), "", maker->setup->sizes.difference, false});
+    maker->works.back().push_back([=](size_t run) {
+      if (run != r) return;
+      BalanceSeries still;
+      for (const BalanceKind balance : kAllBalances)
+        still[static_cast<size_t>(balance)] =
+            Eigen::VectorXd::Zero((*maker->base)[run].left[static_cast<size_t>(balance)].size());
+      maker->Put(column, run, AfterPressures(maker->Motion(run), still, 1));
+    });
   }
 }
 
@@ -212,6 +233,7 @@ void AddNuisanceColumns(ColumnMaker* maker) {
   AddFriction(maker);
   if (oil) AddCreep(maker);
   if (oil) AddPressures(maker);
+  AddStarts(maker);
   if (arm) AddLoads(maker);
 }
 

@@ -129,6 +129,20 @@ double OnePressure(const RunMotion& run, const model::Parameters& given, size_t 
   return count > 0 ? sum / count : given.p_3;
 }
 
+// Those that were measured.
+void SetPressures(double sigma, RunMotion* run) {
+  for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
+    if (!run->Of(side).measured()) continue;
+    const bool first = side == GridChannel::kP1;
+    const std::vector<double> smooth = Smoothed(run->Of(side).values, sigma);
+    const std::vector<double> rate = Derivative(smooth, run->step);
+    for (size_t k = 0; k < run->size(); ++k) {
+      (first ? run->at[k].p1 : run->at[k].p2) = smooth[k];
+      (first ? run->at[k].p1_rate : run->at[k].p2_rate) = rate[k];
+    }
+  }
+}
+
 // Fills `at` from the signals.
 void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   const size_t n = run->voltage.size();
@@ -173,12 +187,10 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
     set(&model::KnownMotion::arm_direction, Directions(smooth, arm.noise * RootSum(kernel)));
   }
   if (run->pressures) {
-    set(&model::KnownMotion::p1, SmoothedOf(run->Of(GridChannel::kP1), sigma, &smooth));
-    set(&model::KnownMotion::p1_rate, Derivative(smooth, run->step));
-    set(&model::KnownMotion::p2, SmoothedOf(run->Of(GridChannel::kP2), sigma, &smooth));
-    set(&model::KnownMotion::p2_rate, Derivative(smooth, run->step));
+    SetPressures(sigma, run);
   } else {
     for (size_t k = 0; k < n; ++k) run->at[k].p1 = run->at[k].p2 = OnePressure(*run, given, k);
+    if (!run->options.bypass) SetPressures(sigma, run);
   }
 }
 
@@ -314,6 +326,14 @@ RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, u
   // What decides where a term acts stays as it was: only the terms themselves are compared.
   for (size_t k = 0; k < run.size(); ++k) {
     noisy.at[k].motor_angle = run.at[k].motor_angle;
+    if (run.IsLatent(GridChannel::kP1)) {
+      noisy.at[k].p1 = run.at[k].p1;
+      noisy.at[k].p1_rate = run.at[k].p1_rate;
+    }
+    if (run.IsLatent(GridChannel::kP2)) {
+      noisy.at[k].p2 = run.at[k].p2;
+      noisy.at[k].p2_rate = run.at[k].p2_rate;
+    }
     noisy.at[k].pump_direction =
         std::erf(noisy.at[k].motor_speed / (sqrt2 * std::max(run.speed_noise, 1e-300)));
   }
@@ -340,11 +360,11 @@ RunMotion Without(const RunMotion& run, const SignalErrors& errors, double part)
     take(rate, &model::KnownMotion::arm_speed);
     take(Derivative(rate, run.step), &model::KnownMotion::arm_acceleration);
   }
-  if (run.pressures && !p1.empty()) {
+  if (run.pressures && !run.IsLatent(GridChannel::kP1) && !p1.empty()) {
     take(p1, &model::KnownMotion::p1);
     take(Derivative(p1, run.step), &model::KnownMotion::p1_rate);
   }
-  if (run.pressures && !p2.empty()) {
+  if (run.pressures && !run.IsLatent(GridChannel::kP2) && !p2.empty()) {
     take(p2, &model::KnownMotion::p2);
     take(Derivative(p2, run.step), &model::KnownMotion::p2_rate);
   }

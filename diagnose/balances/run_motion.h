@@ -27,6 +27,14 @@ struct GridSignal {
   bool measured() const { return !values.empty(); }
 };
 
+// How balances move with the pressures, at one instant of a run of which one or both pressures were not measured.
+struct PressureSlopes {
+  std::array<double, 2> torque{};               // by p1, p2
+  std::array<std::array<double, 2>, 2> flow{};  // of each side, by p1, p2
+  std::array<double, 2> capacity{};             // V/beta of each side
+  std::array<bool, 2> moves{};                  // marched, and not held by its valve
+};
+
 struct RunMotion {
   std::string name;
   model::ActuatorOptions options;  // how the shaft was held
@@ -35,15 +43,19 @@ struct RunMotion {
   std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
   std::vector<double> voltage;  // held from each instant to the next
   std::array<GridSignal, kGridChannels> signals;
-  bool pressures = false;              // both were measured, and the two sides are not connected
+  bool pressures = false;              // both are known, and the two sides are not connected
   bool arm_moves = false;              // and was measured
   bool speed_known = false;            // measured, or from the angle
   bool from_angle = false;             // the speed is the angle's derivative
   double speed_noise = 0;              // rad/s, of the smoothed speed
   std::vector<model::KnownMotion> at;  // an instant each
+  // At every stride-th instant, where a pressure was not measured but follows from the flow balance (latent_pressures.h); else empty.
+  std::vector<PressureSlopes> slopes;
 
   size_t size() const { return at.size(); }
   const GridSignal& Of(GridChannel signal) const { return signals[static_cast<size_t>(signal)]; }
+  // Of a pressure: known, but not measured.
+  bool IsLatent(GridChannel signal) const { return pressures && !Of(signal).measured(); }
 };
 
 // s, of the Gaussian that smooths all signals: it passes 120 Hz, beyond which derivatives of noisy signals say little.

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/alignment.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 
@@ -18,6 +17,14 @@ enum class Verdict { kNamed, kTied, kPartly, kParameters, kUnexplained, kNothing
 inline bool IsOpen(Verdict verdict) {
   return verdict == Verdict::kUnexplained || verdict == Verdict::kPartly;
 }
+
+// A clock of a recording, relative to that of p1 and p2.
+struct ClockDelay {
+  std::string run;
+  std::vector<std::string> signals;  // recorded by that clock
+  double delay = 0;                  // s; negative: early
+  double error = 0;                  // half the width of the 95 % interval, s
+};
 
 // A number with its 95 % interval.
 struct Estimated {
@@ -41,28 +48,18 @@ struct Location {
   std::vector<Window> windows;
 };
 
-// The missing term of a balance as a function of what it depends on: one row a bin, mean and standard error.
-struct MissingTerm {
-  std::string balance, unit;          // of the term, e.g. in-lbf
-  std::string against, against_unit;  // "motor_speed", "rad/s"
-  std::vector<double> at, mean, error;
-};
-
-// The term of an effect that was found, over the variable that it depends on: what the balance lacks without
-// the effect, and the effect's own term there. Effects that act through time have none.
-struct FoundTerm {
-  std::string effect;
-  MissingTerm missing;
-  std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
-};
-
-// What one element of the machine does, as the balances measure it, over the variable where it acts: the pump's friction,
-// the leakage across its ports, the arm's load. Means over bins, and the standard errors of those measured.
+// Something of the machine over the variable that it depends on, as the balances measure it without any simulation: means
+// over bins, and their standard errors; beside them what models have at the same instants. The missing term of a balance (no
+// models), the term of an effect that was found (what the balance lacks without it, and the effect's own), or what one element
+// does: the pump's friction, the leakage across its ports, the arm's load.
 struct MeasuredCurve {
-  std::string element;  // pump_friction | cross_leakage | arm_load
-  std::string unit, against, against_unit;
-  std::vector<double> at, measured, error;
-  std::vector<double> model, found;  // the model's own as given, and with what was found
+  // pump_friction | cross_leakage | arm_load; of a term the effect; "": what is missing.
+  std::string element = {};
+  std::string balance = {}, unit = {};          // the curve's unit, e.g. in-lbf
+  std::string against = {}, against_unit = {};  // "motor_speed", "rad/s"
+  std::vector<double> at = {}, measured = {}, error = {};
+  // The model's own as given, and with what was found; empty: none.
+  std::vector<double> model = {}, found = {};
 };
 
 // A stretch of a run in which an effect that acts through time shows: one signal, in the model's unit, and what the
@@ -116,6 +113,7 @@ struct ValueByRun {
   std::vector<Estimated> values;  // named by run; NaN where the run cannot be simulated
   // The typical gap of the runs' windows that were not fitted, in noise units, with one value and with their own.
   double before = 0, after = 0;
+  bool differs = true;  // both the balances and these windows say so
 
   double Spread() const;  // relative standard deviation between runs
 };
@@ -187,6 +185,12 @@ struct WeightedSet {
   double weight = 0;  // how probable it is among all that were compared; they add to 1
 };
 
+// Effects that the runs cannot show, whatever they do, and why: "p1 and p2 were not recorded".
+struct Unjudged {
+  std::vector<std::string> effects;
+  std::string because;
+};
+
 struct NextExperiment {
   std::string why;
   std::string config;              // TOML of a stack that runs it, "" when none is needed
@@ -200,8 +204,8 @@ struct Diagnosis {
   // What is suspect in the recordings, what could not be tried, and noise unlike the stated noise.
   std::vector<std::string> remarks;
   std::vector<Location> location;
-  std::vector<MissingTerm> missing;
-  std::vector<FoundTerm> terms;
+  std::vector<MeasuredCurve> missing;
+  std::vector<MeasuredCurve> terms;     // of effects, where they act at an instant
   std::vector<MeasuredCurve> measured;  // of what balances could be formed for
   std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;
@@ -215,6 +219,7 @@ struct Diagnosis {
   std::vector<Candidate> candidates;
   std::vector<WeightedSet> explanations;  // the likeliest first
   size_t set_90 = 0;                      // so many of the first hold the truth nine times in ten
+  std::vector<Unjudged> unjudged;         // effects that the runs say nothing of, neither for nor against
   std::vector<RunCurves> curves;
   model::ModelDescription model;  // with the changes found
   // When held_out_runs is empty, the runs were held out in turn.

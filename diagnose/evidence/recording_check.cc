@@ -18,7 +18,7 @@ using Mistakes = std::vector<RecordingMistake>;
 // Of the log evidence, beyond the odds: ten to one, after a thousand to one.
 const double kClear = std::log(10.0);
 // Two sets this near to each other explain a run alike.
-constexpr double kAlike = 2;
+constexpr double kAlikeMistakes = 2;
 // A share of a balance's terms, squared: a model that leaves more of every balance predicts nothing.
 constexpr double kPredictsNothing = 0.5;
 constexpr size_t kOfEachRun = 3;  // sets that the other runs are asked about
@@ -74,7 +74,7 @@ class Recorder {
       const MistakeTrial* own = own_[r].empty() ? nullptr : &own_[r].front();
       const MistakeTrial* shared = common ? &trials_[r][*common] : nullptr;
       // The recorder has paid for its mistake; one of its own a run has to pay for.
-      const bool follows = shared != nullptr && !shared->mistakes.empty() && shared->gain > -kAlike &&
+      const bool follows = shared != nullptr && !shared->mistakes.empty() && shared->gain > -kAlikeMistakes &&
                            own->Merit() <= shared->gain;
       if (follows) {
         findings.push_back({r, shared->mistakes, shared->gain, TiedWith(r, *common)});
@@ -108,7 +108,8 @@ class Recorder {
     if (time_is_up_()) return findings;
     const std::optional<size_t> best = ClearBest(trials);
     for (size_t r = 0; best && r < runs_.size(); ++r) {
-      if (trials[r][*best].gain > -kAlike) findings.push_back({r, factors[*best], trials[r][*best].gain});
+      if (trials[r][*best].gain > -kAlikeMistakes)
+        findings.push_back({r, factors[*best], trials[r][*best].gain});
     }
     return findings;
   }
@@ -147,7 +148,7 @@ class Recorder {
     for (size_t s = 0; s < sets_.size(); ++s) {
       const bool larger = sets_[s].size() > sets_[set].size() + 1 || Includes(sets_[s], sets_[set]);
       const bool alike = std::all_of(trials_.begin(), trials_.end(), [&](const auto& trials) {
-        return trials[set].gain - trials[s].gain < kAlike;
+        return trials[set].gain - trials[s].gain < kAlikeMistakes;
       });
       if (s != set && !larger && alike && trials_[run][s].mistakes != trials_[run][set].mistakes)
         tied.push_back(trials_[run][s].mistakes);

@@ -154,19 +154,6 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
   return sizes;
 }
 
-std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
-  Hypothesis held = hypothesis.Held();
-  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
-    const bool is_free =
-        std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
-    if (!is_free) held.base.push_back(place);
-  }
-  std::vector<FreeParameter> parameters = held.Free();
-  std::erase_if(parameters, [](const FreeParameter& parameter) { return !(parameter.value > 0); });
-  for (FreeParameter& parameter : parameters) parameter.logarithmic = true;
-  return parameters;
-}
-
 namespace {
 
 // Where fits of the effect's parameter begin.

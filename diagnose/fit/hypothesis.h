@@ -74,9 +74,6 @@ struct Sizes {
 };
 Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
-// The base parameters that the hypothesis holds, as if they were free: those above 0, as logarithms.
-std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
-
 // The hypothesis with an effect added, once for each of its starting points, or with a base parameter freed.
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes);
 // The hypothesis with the change undone; base parameters return to their values in `given`.

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <utility>
 
+#include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"
 #include "diagnose/evidence/estimated_model.h"
+#include "diagnose/evidence/refined_shapes.h"
+#include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
+#include "diagnose/prove/blind_changes.h"
 
 namespace hydro::diagnose {
 
@@ -16,12 +22,135 @@ constexpr size_t kMostExplanations = 5;
 // What a set gains over a smaller one that is no explanation of its own; simulation decides between the two.
 constexpr size_t kMostProposals = 8;
 
+// Pressures that were not measured are marched again with the values that the balances then show; the second time hardly moves them.
+constexpr int kMarchesAgain = 2;
+
+constexpr char kSomeOil[] = "some effect of the oil";
+
+bool NamesARun(const ChangeSet& set) {
+  return std::any_of(set.begin(), set.end(),
+                     [](const std::string& name) { return name.starts_with("run."); });
+}
+
+// Effects that act only in the oil's balances cannot be told apart where no pressure was measured: the likely sets without them. What the
+// balances do not hold likely is not tried: it might take the place of what they cannot name.
+std::vector<ChangeSet> SetsWithout(const std::set<std::string>& oil, const ExplanationWeights& weights) {
+  std::vector<ChangeSet> sets = {{}};
+  for (size_t i = 0; i < std::min(weights.in_90, weights.explanations.size()); ++i) {
+    ChangeSet set = weights.explanations[i].set;
+    std::erase_if(set, [&](const std::string& name) { return oil.contains(name); });
+    if (!NamesARun(set) && std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
+  }
+  return sets;
+}
+
+// The same explanations, with one name for all effects of the oil.
+ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeights weights) {
+  if (oil.empty()) return weights;
+  ExplanationWeights merged;
+  for (WeighedExplanation& one : weights.explanations) {
+    const size_t before = one.set.size();
+    ChangeSet others = one.set;
+    std::erase_if(others, [&](const std::string& name) { return oil.contains(name); });
+    if (others.size() < before) {
+      one.changes = ChangesOf(others);
+      one.changes.emplace_back(kSomeOil);
+    }
+    const auto same =
+        std::find_if(merged.explanations.begin(), merged.explanations.end(),
+                     [&](const WeighedExplanation& other) { return other.changes == one.changes; });
+    if (same == merged.explanations.end())
+      merged.explanations.push_back(std::move(one));
+    else
+      same->weight += one.weight;
+  }
+  std::stable_sort(merged.explanations.begin(), merged.explanations.end(),
+                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  double sum = 0;
+  while (merged.in_90 < merged.explanations.size() && sum < 0.9)
+    sum += merged.explanations[merged.in_90++].weight;
+  return merged;
+}
+
+// The model with each predicted run's own values of what differs by run, as the balances of that run say.
+std::vector<model::ModelDescription> ModelsOfRuns(const SearchContext& context,
+                                                  const std::vector<size_t>& allowed,
+                                                  const model::ModelDescription& model,
+                                                  const ChangeSet& set) {
+  std::vector<model::ModelDescription> models(context.predicted().size(), model);
+  for (const size_t place : ValuesOfADay(allowed)) {
+    const model::BaseParameter& base = model::BaseParameters()[place];
+    if (std::find(set.begin(), set.end(), "run." + base.info.name) == set.end()) continue;
+    const std::optional<RunValues> values = ValuesOfRuns(model, context.predicted(), place, context.jobs);
+    for (size_t r = 0; r < models.size() && values; ++r) models[r].parameters.*base.member = values->value[r];
+  }
+  return models;
+}
+
+// Signals that no run has in which a balance needs them.
+std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
+  bool p1 = true, p2 = true, speed = true, arm = true, oil = false, moves = false;
+  for (const RunMotion& run : runs) {
+    speed = speed && !run.speed_known;
+    if (run.options.bypass) continue;
+    oil = true;
+    p1 = p1 && !run.Of(GridChannel::kP1).measured();
+    p2 = p2 && !run.Of(GridChannel::kP2).measured();
+    moves = moves || run.options.shaft != model::Shaft::kClamped;
+    arm = arm && !run.arm_moves;
+  }
+  std::vector<std::string> missing;
+  if (oil && p1) missing.emplace_back("p1");
+  if (oil && p2) missing.emplace_back("p2");
+  if (speed) missing.emplace_back("motor_speed");
+  if (moves && arm) missing.emplace_back("arm_angle");
+  return missing;
+}
+
+// Effects of which the runs have no column of their own, although a simulation might show them, and why.
+std::vector<Unjudged> UnjudgedOf(const SearchContext& context, const ScanRuns& runs,
+                                 const std::vector<std::string>& names) {
+  const std::vector<std::string> missing = MissingSignals(runs.motions());
+  if (missing.empty()) return {};
+  const std::set<std::string> oil = runs.OilOnly();
+  std::set<std::string> judged, some_oil, all;
+  for (const std::string& name : names) {
+    const std::string id(name.substr(0, name.find_first_of("|(")));
+    (oil.contains(name) ? some_oil : judged).insert(id);
+  }
+  for (const Change& change : BlindChanges(context)) judged.insert(change.effect);
+  const bool torque = std::any_of(runs.motions().begin(), runs.motions().end(),
+                                  [](const RunMotion& run) { return CanForm(run, BalanceKind::kTorque); });
+  for (const EffectVariant& variant : runs.setup().variants) {
+    // A sensor that was not recorded cannot be wrong.
+    if (variant.change.effect.starts_with("sensor.")) continue;
+    // What repeats with the shaft is in no row before its period is known.
+    if (variant.kind == EffectVariant::Kind::kWave && torque) judged.insert(variant.change.effect);
+    all.insert(variant.change.effect);
+  }
+  const std::string because = Enumerated(missing) + (missing.size() > 1 ? " were" : " was") + " not recorded";
+  Unjudged gone{{}, because}, one_class{{}, because + ", and without them they cannot be told apart"};
+  for (const std::string& id : all) {
+    if (judged.contains(id)) continue;
+    (some_oil.contains(id) ? one_class : gone).effects.push_back(id);
+  }
+  std::vector<Unjudged> unjudged;
+  for (const Unjudged& one : {gone, one_class}) {
+    if (!one.effects.empty()) unjudged.push_back(one);
+  }
+  return unjudged;
+}
+
 // The sets that may be proposed, in the order in which they are: nothing, the likeliest explanations, the best set by score, those
 // with one change less than the first, and each change alone at its best shape.
 std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
                                      const std::vector<ScoredSet>& scores) {
   std::vector<ChangeSet> sets = {{}};
+  // Values of its own for each run are seen in the runs that they predict, so no simulation can compare them with what all runs
+  // share: the balances decide whether they are tried.
+  const bool runs_first = !weights.explanations.empty() && NamesARun(weights.explanations.front().set);
   const auto add = [&](const ChangeSet& set) {
+    if (NamesARun(set) && !(runs_first && set == weights.explanations.front().set)) return;
     if (std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
   };
   for (size_t i = 0; i < std::min(kMostExplanations, weights.explanations.size()); ++i)
@@ -170,7 +299,16 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   ScanRuns runs(context.given, context.runs, options);
   Rows rows = runs.MakeRows({});
   Proposed proposed;
-  if (rows.blocks.empty()) return proposed;
+  if (rows.blocks.empty()) {
+    proposed.unjudged = UnjudgedOf(context, runs, {});
+    return proposed;
+  }
+  for (int again = 0; again < kMarchesAgain && runs.HasLatent(); ++again) {
+    const std::optional<EstimatedModel> values = ModelOf(runs, rows, {}, SetEvidence(rows).Fit({}));
+    options.marched = values->model;
+    runs = ScanRuns(context.given, context.runs, options);
+    rows = runs.MakeRows({});
+  }
   const std::vector<int> periods = LikelyPeriods(runs, rows, SetEvidence(rows), context.jobs);
   if (!periods.empty()) rows = runs.MakeRows(periods);
   proposed.remarks = RemarksOn(runs);
@@ -185,35 +323,43 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
   proposed.said.likely = LikelyEffects(proposed.scores);
-  for (const ChangeSet& set : SetsToPropose(proposed.weights, proposed.scores)) {
+  proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
+  const std::set<std::string> oil = runs.OilOnly();
+  for (const ChangeSet& set :
+       oil.empty() ? SetsToPropose(proposed.weights, proposed.scores) : SetsWithout(oil, proposed.weights)) {
     if (proposed.proposals.size() >= kMostProposals) break;
-    const SetFit fit = evidence.Fit(set);
-    const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
-    if (!estimated || IsImpossible(rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
+    const RefinedShapes shaped(&runs, rows, set);
+    const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;
+    const Rows& own_rows = shaped.any() ? shaped.rows() : rows;
+    const SetFit fit = own.Fit(set);
+    const std::optional<EstimatedModel> estimated = ModelOf(runs, own_rows, set, fit);
+    if (!estimated || IsImpossible(own_rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,
                       {},
-                      scores.Score(set) - nothing,
+                      fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
                       WeightOf(proposed.weights, set)};
     if (context.held_out.empty() && context.runs.size() > 1) {
       for (size_t r = 0; r < context.runs.size(); ++r) {
-        const SetEvidence others = evidence.Without({r});
+        const SetEvidence others = own.Without({r});
         const std::vector<std::string>& names = others.names();
         const bool shown = std::all_of(set.begin(), set.end(), [&](const std::string& name) {
           return std::find(names.begin(), names.end(), name) != names.end();
         });
         const ChangeSet left = shown ? set : ChangeSet{};
-        const std::optional<EstimatedModel> without = ModelOf(runs, rows, left, others.Fit(left));
+        const std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }
+    if (NamesARun(set)) proposal.without = ModelsOfRuns(context, allowed, proposal.model, set);
     for (const std::string& sensor : inverted) Invert(sensor, &proposal);
     if (const std::optional<Proposal> alone = OneValueAlone(context.given, set, proposal))
       proposed.proposals.push_back(*alone);
     proposed.proposals.push_back(std::move(proposal));
   }
+  proposed.weights = AsOneClass(oil, std::move(proposed.weights));
   return proposed;
 }
 

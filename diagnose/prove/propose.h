@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/proposal.h"
 #include "diagnose/search/search_context.h"
@@ -20,6 +21,8 @@ struct Proposed {
   SaidByBalances said;
   std::vector<std::string>
       remarks;  // on signals that contradict each other, and effects that are doubles of values
+  std::vector<Unjudged>
+      unjudged;  // effects whose balances cannot be formed, because signals were not recorded
 };
 
 // `allowed`: base parameters that may differ, as in BaseParameters(). Nothing is simulated. Without a balance that can be formed there

@@ -1,5 +1,4 @@
-#include "diagnose/report/report_html.h"
-
+// report.html.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,13 +7,9 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
-#include "diagnose/report/answer_sections.h"
-#include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/html_parts.h"
-#include "diagnose/report/measured_section.h"
-#include "diagnose/report/per_run_section.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/page_sections.h"
+#include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
@@ -24,6 +19,11 @@
 
 namespace hydro::diagnose {
 namespace {
+
+// Nothing without content.
+std::string Section(const std::string& heading, const std::string& content) {
+  return content.empty() ? "" : "<h2>" + heading + "</h2>\n" + content;
+}
 
 std::string Plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -115,11 +115,6 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
   return out;
 }
 
-std::string Dependence(const Diagnosis& diagnosis, bool si) {
-  const std::optional<page::Figure> figure = DependenceFigure(diagnosis, si);
-  return figure ? page::HtmlFigure(*figure, "residuals against what they may depend on") : "";
-}
-
 // Whether no simulation had the candidate, because the balances did not propose it.
 bool IsUntried(const Candidate& candidate) {
   return std::isnan(candidate.held_out) && candidate.weight == 0 &&
@@ -161,6 +156,8 @@ std::string Ranking(const Diagnosis& diagnosis) {
 
 std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
+  for (const Unjudged& one : diagnosis.unjudged)
+    items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
   for (const std::string& remark : diagnosis.remarks) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }
@@ -172,7 +169,7 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
   return page::HtmlPage(
       "Gap report: " + diagnosis.model.name,
       Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
-          Section("Friction, leakage and load as the balances measure them", MeasuredSection(diagnosis, si)) +
+          Section("What the balances measure of the machine", MeasuredSection(diagnosis)) +
           Section("How sure that is", HowSure(diagnosis)) +
           Section("What may explain the runs", WhatMayExplain(diagnosis)) +
           Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
@@ -183,7 +180,6 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
           Section("Remarks on the recordings", Remarks(diagnosis)) +
           Section("The gap by signal", GapTable(diagnosis, si)) +
           Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
-          Section("Residuals against what they may depend on", Dependence(diagnosis, si)) +
           Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
           Section("The model with what was found",
                   "<p>As <code>model.toml</code>:</p>\n<pre>" +

@@ -1,5 +1,4 @@
-#include "diagnose/report/terminal_summary.h"
-
+// A diagnosis as plain text: for a terminal, and in model.toml.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +9,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 #include "diagnose/verdict/sentence.h"
 #include "model/terms/parameter_info.h"
 #include "settings/command_line.h"
@@ -152,6 +151,11 @@ std::string InWords(const WeightedSet& explanation) {
   return Joined(parts, " + ");
 }
 
+std::string UnjudgedText(const Unjudged& unjudged) {
+  return "Cannot be judged from these runs: " + Enumerated(unjudged.effects) + ", because " +
+         unjudged.because;
+}
+
 std::string CommentedModel(const Diagnosis& diagnosis, const model::ModelDescription& given) {
   Comments comments;
   CommentOnValues(diagnosis, given, &comments);
@@ -202,6 +206,7 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
     out += "where:      " + first.balance + ", " + Percent(first.share) + " of the disagreement" +
            (first.where.empty() ? "" : ": " + first.where) + "\n";
   }
+  for (const Unjudged& one : diagnosis.unjudged) out += UnjudgedText(one) + "\n";
   if (!diagnosis.next.why.empty()) out += "next:       " + diagnosis.next.why + "\n";
   if (!diagnosis.remarks.empty()) {
     out += "remarks:    " + diagnosis.remarks.front();

@@ -8,10 +8,8 @@
 
 #include "base/number_text.h"
 #include "diagnose/closure/closure.h"
-#include "diagnose/say/effect_term.h"
 #include "diagnose/say/locate.h"
 #include "diagnose/say/measured_curves.h"
-#include "diagnose/say/worst_signal.h"
 #include "diagnose/verdict/candidates.h"
 #include "diagnose/verdict/found.h"
 #include "diagnose/verdict/gaps.h"
@@ -31,19 +29,6 @@ void NameRuns(const SearchContext& context, Diagnosis* d) {
     d->samples += run->samples();
   }
   for (const RunData* run : context.held_out) d->held_out_runs.push_back(run->name);
-}
-
-// Says of values that were found which effects do as well.
-void RemarkOnRivals(Diagnosis* d) {
-  constexpr double kWorthAWord = 0.2;
-  for (const Candidate& candidate : d->candidates) {
-    // Values of an effect that the model has are values too.
-    const bool rival =
-        candidate.id.find('.') != std::string::npos && !candidate.id.starts_with("parameters of ");
-    if (d->verdict != Verdict::kParameters || !rival || candidate.weight < kWorthAWord) continue;
-    d->remarks.push_back(candidate.id + " explains the runs about as well as other values (weight " +
-                         ShortNumber(candidate.weight, 2) + ")");
-  }
 }
 
 // Says of the user's own effects (--effect) which were never simulated, so that nobody takes them to be ruled out.
@@ -78,7 +63,7 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks
 // Where each effect that was found acts, or shows.
 void ShowEffects(const SearchContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
-    if (std::optional<FoundTerm> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
+    if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
       d->terms.push_back(std::move(*term));
     } else if (std::optional<FoundStretch> stretch = StretchOf(context, proof, whole, effect.id)) {
       d->stretches.push_back(std::move(*stretch));
@@ -116,7 +101,6 @@ Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Propo
   }
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
-  RemarkOnRivals(&d);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);
   context.Report("where the gap is", 0.97);

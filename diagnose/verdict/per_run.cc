@@ -1,166 +1,95 @@
 #include "diagnose/verdict/per_run.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/number_text.h"
-#include "base/parallel.h"
 #include "diagnose/data/windows.h"
-#include "diagnose/fit/held_out.h"
-#include "diagnose/fit/intervals.h"
-#include "diagnose/search/search_context.h"
-#include "model/terms/parameter_info.h"
+#include "diagnose/evidence/run_values.h"
+#include "diagnose/prove/proved_set.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-// Windows of a run that are fitted, and as many that are predicted.
-constexpr size_t kMostPerRun = 8;
-// A spread below this part of the value is within what any rig repeats.
-constexpr double kLeastSpread = 0.01;
+// Each fourth window of a run judges, and the balances do not see it; with eight of each run, a difference of 5 % shows in a few runs.
+constexpr size_t kEach = 4, kJudgingOfARun = 8;
 
-struct RunWindows {
-  std::vector<RunData> all;
-  std::vector<const RunData*> fitted, choosing;  // among `all`
-};
-
-Hypothesis Holding(const model::ModelDescription& model, const std::vector<size_t>& free) {
-  Hypothesis hypothesis;
-  hypothesis.model = model;
-  hypothesis.base = free;
-  return hypothesis;
+// The run with everything taken out that was measured during the windows.
+RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& windows) {
+  RunData rest;
+  rest.name = run.name;
+  rest.measured = run.measured;
+  rest.stimulus = run.stimulus;
+  rest.signals = run.signals;
+  const auto take = [&](std::vector<double>* values) {
+    for (size_t i = 0; i < values->size(); ++i) {
+      const double time = run.stimulus.time[i];
+      const bool within = std::any_of(windows.begin(), windows.end(), [time](const RunData* window) {
+        return time >= window->stimulus.time.front() && time <= window->stimulus.time.back();
+      });
+      if (within) (*values)[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  for (SignalData& signal : rest.signals) take(&signal.values);
+  return rest;
 }
 
-// What the parameters would gain with a value for each run, to first order: the fall of the sum of squares.
-std::vector<double> GainsOfRuns(const std::vector<Fitted>& runs, size_t parameters) {
-  std::vector<double> gains(parameters, 0);
-  const auto p = static_cast<Eigen::Index>(parameters);
-  for (size_t i = 0; i < parameters; ++i) {
-    double information = 0, gradient = 0;
-    for (const Fitted& run : runs) {
-      double own_information = 0, own_gradient = 0;
-      for (const RunFit& window : run.runs) {
-        const auto at = static_cast<Eigen::Index>(i);
-        own_information += Eigen::Map<const Eigen::MatrixXd>(window.information.data(), p, p)(at, at);
-        own_gradient += window.gradient[i];
+// All runs, cut into what is estimated from and what judges.
+struct CutRuns {
+  std::vector<const RunData*> runs;
+  std::vector<RunData> windows, rest;
+  JudgingWindows judging;
+  bool possible = false;  // each run has a window that judges
+
+  explicit CutRuns(const SearchContext& context) : runs(context.runs) {
+    runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
+    judging.seconds = ProofWindowsOf(context).near.seconds;
+    possible = runs.size() > 1;
+    std::vector<std::pair<size_t, size_t>> chosen;  // places among `windows`, and their runs
+    for (size_t r = 0; r < runs.size(); ++r) {
+      std::vector<RunData> all = WindowsOf(*runs[r], judging.seconds, context.given.parameters);
+      const std::vector<const RunData*> judge = EvenlySpread(all, kJudgingOfARun, 1, kEach);
+      possible = possible && !judge.empty();
+      rest.push_back(WithoutWindows(*runs[r], judge));
+      for (RunData& window : all) {
+        if (std::find(judge.begin(), judge.end(), &window) == judge.end()) continue;
+        chosen.emplace_back(windows.size(), r);
+        windows.push_back(std::move(window));
       }
-      if (own_information > 0) gains[i] += own_gradient * own_gradient / own_information;
-      information += own_information;
-      gradient += own_gradient;
     }
-    if (information > 0) gains[i] -= gradient * gradient / information;
-  }
-  return gains;
-}
-
-class ByRun {
- public:
-  ByRun(const SearchContext& context, const model::ModelDescription& model)
-      : context_(context), model_(model), runs_(context.runs) {
-    runs_.insert(runs_.end(), context.held_out.begin(), context.held_out.end());
-    const double seconds = SearchHorizon(context.runs);
-    for (const RunData* run : runs_) {
-      RunWindows windows;
-      windows.all = WindowsOf(*run, seconds, model.parameters);
-      windows.fitted = EvenlySpread(windows.all, kMostPerRun, 0, 2);
-      windows.choosing = EvenlySpread(windows.all, kMostPerRun, 1, 2);
-      windows_.push_back(std::move(windows));
+    for (const auto& [place, run] : chosen) {
+      judging.windows.push_back(&windows[place]);
+      judging.runs.push_back(run);
     }
   }
-
-  // Whether each run has windows to fit and to predict.
-  bool Possible() const {
-    return runs_.size() > 1 && std::all_of(windows_.begin(), windows_.end(), [](const RunWindows& windows) {
-             return !windows.fitted.empty() && !windows.choosing.empty();
-           });
-  }
-
-  // The parameter whose own values would gain most; BaseParameters().size() where none can be tried.
-  size_t MostPromising(const std::vector<size_t>& allowed) const {
-    FitOptions once;
-    once.most_iterations = 0;
-    std::vector<Fitted> fits(runs_.size());
-    ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
-      // The starts first: a wrong start looks like a wrong value.
-      const Fitted starts =
-          Fit(Holding(model_, {}), windows_[r].fitted, MeasuredStarts(windows_[r].fitted), {});
-      if (starts.ok()) fits[r] = Fit(Holding(model_, allowed), windows_[r].fitted, StartsOf(starts), once);
-    });
-    std::erase_if(fits, [](const Fitted& fit) { return !fit.ok() || fit.runs.empty(); });
-    const std::vector<double> gains = GainsOfRuns(fits, allowed.size());
-    const auto best = std::max_element(gains.begin(), gains.end());
-    return best == gains.end() || !(*best > 0) ? model::BaseParameters().size()
-                                               : allowed[static_cast<size_t>(best - gains.begin())];
-  }
-
-  // The parameter fitted in each run.
-  ValueByRun FitByRun(size_t base) const {
-    ValueByRun value;
-    value.name = model::BaseParameters()[base].info.name;
-    value.unit = model::BaseParameters()[base].info.UnitIn(model_.units);
-    value.values.resize(runs_.size());
-    std::vector<HeldOut> common(runs_.size()), own(runs_.size());
-    ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
-      const RunWindows& windows = windows_[r];
-      const std::vector<model::StartState> starts = MeasuredStarts(windows.fitted);
-      const Fitted as_given = Fit(Holding(model_, {}), windows.fitted, starts, {});
-      const Fitted fitted = Fit(Holding(model_, {base}), windows.fitted,
-                                as_given.ok() ? StartsOf(as_given) : starts, FitOptions{});
-      Estimated& of_run = value.values[r];
-      of_run.name = runs_[r]->name;
-      of_run.value = of_run.low = of_run.high = std::nan("");
-      if (!fitted.ok() || !as_given.ok()) return;
-      const Interval interval = Intervals(fitted, windows.fitted, 1).front();
-      of_run.value = fitted.hypothesis.Free().front().value;
-      of_run.low = interval.low;
-      of_run.high = interval.high;
-      own[r] = Predict(fitted, windows.choosing, 1);
-    });
-    Fitted
-        one;  // the best value that all runs can share: what is wrong with it in all of them is no difference
-    one.hypothesis = Holding(model_, {});
-    one.hypothesis.model.parameters.*model::BaseParameters()[base].member = Common(value.values);
-    ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
-      if (own[r].count > 0) common[r] = Predict(one, windows_[r].choosing, 1);
-    });
-    value.before = std::sqrt(Typical(common));
-    value.after = std::sqrt(Typical(own));
-    return value;
-  }
-
- private:
-  // The mean of the runs' values, each by how well its run shows it.
-  static double Common(const std::vector<Estimated>& runs) {
-    double sum = 0, weights = 0;
-    for (const Estimated& run : runs) {
-      const double width = run.high - run.low;
-      if (std::isnan(run.value) || !(width > 0) || !std::isfinite(width)) continue;
-      sum += run.value / (width * width);
-      weights += 1 / (width * width);
-    }
-    if (weights > 0) return sum / weights;
-    double mean = 0, count = 0;
-    for (const Estimated& run : runs) {
-      if (!std::isnan(run.value)) mean += run.value, count += 1;
-    }
-    return count > 0 ? mean / count : 0;
-  }
-
-  static double Typical(const std::vector<HeldOut>& runs) {
-    HeldOut all;
-    for (const HeldOut& run : runs) all.gaps.insert(all.gaps.end(), run.gaps.begin(), run.gaps.end());
-    return all.typical_squared_gap();
-  }
-
-  const SearchContext& context_;
-  const model::ModelDescription& model_;
-  std::vector<const RunData*> runs_;
-  std::vector<RunWindows> windows_;
 };
+
+// What windows say of it that the balances did not see.
+ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, const RunValues& of, int jobs) {
+  const model::BaseParameter& base = model::BaseParameters()[of.base];
+  ValueByRun value;
+  value.name = base.info.name;
+  value.unit = base.info.UnitIn(model.units);
+  model::ModelDescription shared = model;
+  shared.parameters.*base.member = of.common;
+  std::vector<model::ModelDescription> own(cut.runs.size(), model);
+  for (size_t r = 0; r < own.size(); ++r) {
+    own[r].parameters.*base.member = of.value[r];
+    value.values.push_back({cut.runs[r]->name, of.value[r], of.low[r], of.high[r], ""});
+  }
+  const std::vector<WindowGap> before =
+      GapsOfWindows([&](size_t) -> const model::ModelDescription& { return shared; }, cut.judging, jobs);
+  const std::vector<WindowGap> after = GapsOfWindows(
+      [&](size_t run) -> const model::ModelDescription& { return own[run]; }, cut.judging, jobs);
+  value.before = std::sqrt(TypicalGap(before));
+  value.after = std::sqrt(TypicalGap(after));
+  value.differs = of.gain > 0 && FallOf(before, after).Exceeds(kPartOfValues);
+  return value;
+}
 
 }  // namespace
 
@@ -182,25 +111,27 @@ double ValueByRun::Spread() const {
 std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::ModelDescription& model,
                                     const std::vector<std::string>& asked,
                                     const std::vector<size_t>& allowed) {
-  const ByRun runs(context, model);
-  if (!runs.Possible()) return {};
-  std::vector<ValueByRun> values;
-  values.reserve(asked.size());
-  for (const std::string& name : asked) values.push_back(runs.FitByRun(model::BasePlace(name)));
-  if (!asked.empty()) return values;
-  // A value of 0 has no spread, and what the model holds at 0 is an effect's business.
-  std::vector<size_t> candidates;
-  for (const size_t base : allowed) {
-    if (model.parameters.*model::BaseParameters()[base].member != 0) candidates.push_back(base);
+  const CutRuns cut(context);
+  if (!cut.possible) return {};
+  std::vector<size_t> places;
+  for (const std::string& name : asked) places.push_back(model::BasePlace(name));
+  if (asked.empty()) places = ValuesOfADay(allowed);
+  std::vector<RunValues> all;
+  for (const size_t base : places) {
+    if (const std::optional<RunValues> values = ValuesOfRuns(model, PointersTo(cut.rest), base, context.jobs))
+      all.push_back(*values);
   }
-  const size_t base = candidates.empty() ? model::BaseParameters().size() : runs.MostPromising(candidates);
-  if (base == model::BaseParameters().size()) return {};
-  ValueByRun value = runs.FitByRun(base);
-  // A quarter of the squared gap beside the noise, and a tenth of the noise.
-  const double square = value.before * value.before;
-  const bool material = square - value.after * value.after >= std::max(0.1, 0.25 * (square - 1));
-  const bool differs = value.Spread() > kLeastSpread && material;
-  if (differs) values.push_back(std::move(value));
+  std::vector<ValueByRun> values;
+  if (!asked.empty()) {
+    for (const RunValues& one : all) values.push_back(Judged(cut, model, one, context.jobs));
+    return values;
+  }
+  const auto likeliest = std::max_element(all.begin(), all.end(), [](const RunValues& a, const RunValues& b) {
+    return a.log_evidence < b.log_evidence;
+  });
+  if (likeliest == all.end() || !(likeliest->gain > 0)) return values;
+  ValueByRun value = Judged(cut, model, *likeliest, context.jobs);
+  if (value.differs) values.push_back(std::move(value));
   return values;
 }
 
@@ -208,7 +139,7 @@ std::string RemarkOn(const ValueByRun& value) {
   // A single recording was cut into a part to fit and a part to hold out.
   const bool parts = value.values.size() == 2 && value.values[1].name.starts_with(value.values[0].name + ",");
   const std::string between = parts ? "from one part of the recording to the other" : "from run to run";
-  if (!(value.Spread() > kLeastSpread)) return value.name + " does not differ " + between;
+  if (!value.differs) return value.name + " does not differ " + between;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Estimated& run : value.values) {
     if (std::isnan(run.value)) continue;

@@ -9,9 +9,10 @@
 
 namespace hydro::diagnose {
 
-// The base parameters whose values differ from run to run in `model`: those `asked` for, else the one of `allowed`
-// (indices in BaseParameters()) that differs most, if its own value for each run predicts the run materially better
-// than one value for all, by the windows of the run that were not fitted. Held-out runs have a value too.
+// The base parameters whose values differ from run to run in `model`, as the balances estimate them: those `asked` for, else the one
+// that the balances say most clearly to differ, if its own value for each run predicts windows of the run that the balances did not
+// see better than one value for all. `allowed`: those that may differ from the model, as in BaseParameters(). Held-out runs have a
+// value too. What balances are measured by (k_1, k_2) has none.
 std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::ModelDescription& model,
                                     const std::vector<std::string>& asked,
                                     const std::vector<size_t>& allowed);

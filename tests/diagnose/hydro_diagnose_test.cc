@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "diagnose/report/progress_bar.h"
-#include "diagnose/report/terminal_summary.h"
+#include "diagnose/report/report.h"
 #include "settings/model_file.h"
 #include "tests/diagnose/example_diagnosis.h"
 #include "tests/table1.h"
@@ -331,6 +331,17 @@ TEST(TerminalSummary, TenLines) {
       text,
       HasSubstr("\nlikely:     pump.stribeck 81 %, an unknown curve over motor speed in pump torque 13 %\n"));
   EXPECT_LT(text.find("effects:"), text.find("held out:")) << "what was found comes first";
+}
+
+// Tests that effects of which the runs say nothing have a line that says why.
+TEST(TerminalSummary, CannotBeJudged) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  EXPECT_THAT(TerminalSummary(diagnosis, "out", false), Not(HasSubstr("Cannot be judged")));
+  diagnosis.unjudged = {{{"line.wave", "valve.relief"}, "p1 and p2 were not recorded"}};
+  EXPECT_THAT(
+      TerminalSummary(diagnosis, "out", false),
+      HasSubstr("\nCannot be judged from these runs: line.wave and valve.relief, because p1 and p2 were "
+                "not recorded\n"));
 }
 
 // Tests that the likely explanations are as many as hold the truth nine times in ten, four at most, and that a single one has its

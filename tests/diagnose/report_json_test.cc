@@ -1,4 +1,4 @@
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 
 #include <gmock/gmock.h>
 
@@ -102,6 +102,16 @@ TEST(ReportJson, ForeignBytes) {
   Diagnosis diagnosis = testing::EmptyDiagnosis();
   diagnosis.runs = {"caf\xe9"};
   EXPECT_TRUE(Json::accept(ReportJson(diagnosis, "", 1)));
+}
+
+// Tests that what the runs say nothing of is listed with the reason.
+TEST(ReportJson, CannotJudge) {
+  Diagnosis diagnosis = testing::EmptyDiagnosis();
+  EXPECT_EQ(Json::parse(ReportJson(diagnosis, "", 1))["cannot_judge"], Json::array());
+  diagnosis.unjudged = {{{"valve.check", "valve.relief"}, "p1 and p2 were not recorded"}};
+  EXPECT_EQ(Json::parse(ReportJson(diagnosis, "", 1))["cannot_judge"],
+            Json::array({{{"effects", {"valve.check", "valve.relief"}},
+                          {"because", "p1 and p2 were not recorded"}}}));
 }
 
 // Tests that explanations are lists of changes with their weights, "nothing" the empty one, and how many hold the truth.

@@ -109,14 +109,6 @@ TEST(ScanRuns, RowsSayWhatWrongValuesLeave) {
   EXPECT_GE(judged, 11);  // 4 or 3 of three runs, 1 of the two with a bypass
 }
 
-// Tests that a clamped run without pressures has no balance at all: what is missing never counts as 0.
-TEST(ScanRuns, WithoutPressuresAClampedRunSaysNothing) {
-  const diagnose::Rows rows = RowsOf("pressed", [](runs::MeasuredRun* run) { run->p1 = run->p2 = {}; });
-  EXPECT_TRUE(rows.blocks.empty());
-  const diagnose::Rows one = RowsOf("pressed", [](runs::MeasuredRun* run) { run->p1 = {}; });
-  EXPECT_TRUE(one.blocks.empty());
-}
-
 // Tests that the bypass needs no pressures.
 TEST(ScanRuns, WithTheBypassTheTorqueNeedsNoPressures) {
   const diagnose::Rows rows = RowsOf("bypass", [](runs::MeasuredRun* run) { run->p1 = run->p2 = {}; });

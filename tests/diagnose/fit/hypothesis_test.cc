@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/fit/clock_fit.h"
 #include "diagnose/fit/residuals.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -137,50 +136,6 @@ TEST(Residuals, NoiseAndDerivatives) {
     EXPECT_GT(size, 0) << free[p].name;
     EXPECT_LT(std::sqrt(off / size), 0.02) << free[p].name;
   }
-}
-
-// Tests that runs on one clock are left alone, and so are runs of which only some were found to be off.
-TEST(ClockFit, LeavesWhatIsOnOneClock) {
-  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
-  const std::vector<double> before = runs[0].measured.voltage.values;
-  std::vector<diagnose::RunData> held_out;
-  std::vector<diagnose::ClockDelay> clocks;
-  const std::vector<size_t> base = {model::BasePlace("b")};
-  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
-  EXPECT_EQ(runs[0].measured.voltage.values, before);
-  diagnose::ClockDelay one;
-  one.run = runs[0].name;
-  one.signals = {"voltage"};
-  one.delay = 0.01;
-  clocks = {one};
-  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
-  EXPECT_EQ(clocks[0].delay, 0.01);
-  EXPECT_EQ(runs[0].measured.voltage.values, before);
-}
-
-// Tests that a command still late after its correction is moved to its place, by whole samples, together with
-// the held-out run, and that the interval allows for it.
-TEST(ClockFit, FindsWhatWasLeft) {
-  std::vector<diagnose::RunData> runs, held_out;
-  for (int which : {0, 1}) {
-    diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, which, 1);
-    runs::MeasuredRun late = run.measured;
-    constexpr size_t kLate = 4;
-    for (size_t k = late.voltage.values.size(); k-- > kLate;)
-      late.voltage.values[k] = late.voltage.values[k - kLate];
-    diagnose::RunData prepared = diagnose::PrepareRun(std::move(late), Table1());
-    (which == 0 ? runs : held_out).push_back(std::move(prepared));
-  }
-  diagnose::ClockDelay clock;
-  clock.run = runs[0].name;
-  clock.signals = {"voltage"};
-  clock.delay = 0.02;
-  clock.error = 0.001;
-  std::vector<diagnose::ClockDelay> clocks = {clock};
-  diagnose::CorrectClocks(Table1With(), {model::BasePlace("b")}, 1, &runs, &held_out, &clocks);
-  EXPECT_NEAR(clocks[0].delay, 0.024, 1e-9);
-  EXPECT_NEAR(clocks[0].error, std::hypot(0.001, 0.004), 1e-9);
-  EXPECT_LT(held_out[0].samples(), 500u);
 }
 
 // Tests that a resonance is not looked for beyond what the samples can show, and that a model's own frequency has no such limit.

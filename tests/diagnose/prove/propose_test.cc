@@ -210,10 +210,59 @@ TEST(Propose, WrongSignIsInAll) {
   EXPECT_THAT(proposed.remarks, IsEmpty());  // turned round, it agrees with the speed
 }
 
-// Tests that nothing is proposed where no balance can be formed.
+// Tests that nothing is proposed where no balance can be formed, and that nothing can be judged then.
 TEST(Propose, NoBalanceNoProposal) {
-  const std::vector<diagnose::RunData> runs = WithoutPressures(ClampedPair(Table1With(), 1, 37));
-  EXPECT_THAT(Propose(ContextOf(runs, SomeEffects()), Allowed()).proposals, IsEmpty());
+  std::vector<diagnose::RunData> free;
+  free.push_back(SmallRun(Table1With(), model::Shaft::kFree, false, 1, 2, 37));
+  const Proposed proposed = Propose(ContextOf(WithoutPressures(free), SomeEffects()), Allowed());
+  EXPECT_THAT(proposed.proposals, IsEmpty());
+  ASSERT_EQ(proposed.unjudged.size(), 1u);
+  EXPECT_EQ(proposed.unjudged[0].because, "p1 and p2 were not recorded");
+  EXPECT_THAT(proposed.unjudged[0].effects, Contains("pump.stribeck"));
+}
+
+// Tests that of clamped runs without pressures torques are proposed, and of the oil only that there is something: its effects cannot
+// be judged, those of the sensors that are not there are no question.
+TEST(Propose, TheOilIsOneClassWithoutPressures) {
+  const std::vector<diagnose::RunData> runs = WithoutPressures(
+      RunsOf(Table1With({{"pump.stribeck", {{"static_excess", 1.0}, {"speed", 8}}, {}}}), 31));
+  const Proposed proposed = Propose(ContextOf(runs, SomeEffects()), Allowed());
+  EXPECT_LT(PlaceOf(proposed, "pump.stribeck"), proposed.proposals.size());
+  for (const char* oil : {"pump.turbulent_leakage", "fluid.entrained_air"})
+    EXPECT_EQ(PlaceOf(proposed, oil), proposed.proposals.size()) << oil;
+  ASSERT_EQ(proposed.unjudged.size(), 1u);
+  EXPECT_THAT(proposed.unjudged[0].effects, ElementsAre("fluid.entrained_air", "pump.turbulent_leakage"));
+  EXPECT_THAT(proposed.unjudged[0].because, HasSubstr("p1 and p2 were not recorded"));
+  for (const auto& one : proposed.weights.explanations) {
+    for (const std::string& change : one.changes) EXPECT_FALSE(change.starts_with("fluid.")) << change;
+  }
+}
+
+// Tests that nothing is said to be out of reach where all signals were recorded.
+TEST(Propose, AllCanBeJudgedOfWholeRecordings) {
+  const std::vector<diagnose::RunData> runs = RunsOf(Table1With(), 33);
+  EXPECT_THAT(Propose(ContextOf(runs, SomeEffects()), Allowed()).unjudged, IsEmpty());
+}
+
+// Tests that friction that differs by run is proposed with each run's own value, where the balances say nothing else first.
+TEST(Propose, ValuesOfRuns) {
+  std::vector<diagnose::RunData> runs;
+  const double frictions[] = {1, 1.25, 0.75};
+  for (int i = 0; i < 3; ++i) {
+    model::ModelDescription rig = Table1With();
+    rig.parameters.T_s *= frictions[i];
+    runs.push_back(SmallRun(rig, model::Shaft::kClamped, false, 2.5, i, 7));
+  }
+  const Proposed proposed = Propose(ContextOf(runs, {"amp.lag", "pump.quadratic_drag"}), Allowed());
+  ASSERT_THAT(proposed.weights.explanations.front().changes, ElementsAre("run.T_s"));
+  const auto own =
+      std::find_if(proposed.proposals.begin(), proposed.proposals.end(), [](const Proposal& one) {
+        return one.changes.empty() && one.without.size() == 3 &&
+               one.without[0].parameters.T_s < 0.9 * one.without[1].parameters.T_s;
+      });
+  ASSERT_NE(own, proposed.proposals.end());
+  for (size_t r = 0; r < 3; ++r)
+    EXPECT_NEAR(own->without[r].parameters.T_s / Table1().T_s, frictions[r], 0.05) << r;
 }
 
 // Tests that one and two threads propose the same bits.

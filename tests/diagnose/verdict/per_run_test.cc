@@ -68,6 +68,8 @@ TEST(ValuesByRun, NoneWhereNoneDiffers) {
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].name, "J");
   EXPECT_LT(asked[0].Spread(), 0.02);
+  EXPECT_EQ(diagnose::RemarkOn(asked[0]), "J does not differ from run to run");
+  EXPECT_TRUE(same.Found({"k_1"}).empty());  // what torques are measured by
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "diagnose/data/alignment.h"
+#include "diagnose/evidence/clocks.h"
 
 #include <gmock/gmock.h>
 
@@ -23,6 +23,12 @@ using testing::NoisyRig;
 using ::testing::UnorderedElementsAre;
 
 constexpr double kStep = 0.005;
+
+model::ModelDescription Given() {
+  model::ModelDescription given;
+  given.parameters = testing::Table1();
+  return given;
+}
 
 // A recorded run: a clamped actuator at 200 Hz whose command never repeats.
 runs::MeasuredRun Recorded(double friction_per_psi = 0) {
@@ -58,7 +64,7 @@ TEST(Alignment, FindsALateClock) {
   runs::MeasuredRun run = Late(whole, {{&runs::MeasuredRun::voltage, 0.1},
                                        {&runs::MeasuredRun::motor_speed, 0.12},
                                        {&runs::MeasuredRun::motor_angle, 0.12}});
-  const std::vector<ClockDelay> clocks = AlignClocks(testing::Table1(), &run);
+  const std::vector<ClockDelay> clocks = AlignClocks(Given(), &run);
   ASSERT_EQ(clocks.size(), 2u);
   const ClockDelay* const command = Of(clocks, "voltage");
   const ClockDelay* const motor = Of(clocks, "motor_speed");
@@ -77,7 +83,7 @@ TEST(Alignment, FindsALateClock) {
 
 void ExpectLeftAlone(const runs::MeasuredRun& recorded, const char* what) {
   runs::MeasuredRun run = recorded;
-  EXPECT_THAT(AlignClocks(testing::Table1(), &run), IsEmpty()) << what;
+  EXPECT_THAT(AlignClocks(Given(), &run), IsEmpty()) << what;
   EXPECT_EQ(run.time, recorded.time) << what;
   EXPECT_EQ(run.voltage.values, recorded.voltage.values) << what;
   EXPECT_EQ(run.motor_speed.values, recorded.motor_speed.values) << what;
@@ -103,14 +109,14 @@ TEST(Alignment, LeavesTheRestToTheSearch) {
 TEST(Alignment, TimingCountsAsNoise) {
   const runs::MeasuredRun run = Recorded();
   std::vector<ClockDelay> clocks;
-  const RunData plain = PrepareAligned(run, testing::Table1(), &clocks);
+  const RunData plain = PrepareAligned(run, Given(), &clocks);
   EXPECT_THAT(clocks, IsEmpty());
   EXPECT_EQ(plain.Find(model::Channel::kP2)->noise,
             PrepareRun(run, testing::Table1()).Find(model::Channel::kP2)->noise);
   const RunData late = PrepareAligned(Late(run, {{&runs::MeasuredRun::voltage, 0.1},
                                                  {&runs::MeasuredRun::motor_speed, 0.1},
                                                  {&runs::MeasuredRun::motor_angle, 0.1}}),
-                                      testing::Table1(), &clocks);
+                                      Given(), &clocks);
   EXPECT_EQ(clocks.size(), 2u);
   EXPECT_GT(late.Find(model::Channel::kP2)->noise, 2 * plain.Find(model::Channel::kP2)->noise);
 }

@@ -1,11 +1,11 @@
-#include "diagnose/report/per_run_section.h"
-
+// Sections with tables and curves.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "diagnose/report/diagnosis_in_si.h"
+#include "diagnose/report/page_sections.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {
@@ -49,6 +49,14 @@ TEST(PerRunSection, InSi) {
   EXPECT_NEAR(si.values[1].high / 3.1, 0.112985, 1e-6);
   EXPECT_EQ(si.values[1].unit, "N m");
   EXPECT_EQ(si.before, 4);
+}
+
+// Tests that there is no section where no balance could be formed.
+TEST(MeasuredSection, OnlyWithCurves) {
+  Diagnosis diagnosis;
+  EXPECT_EQ(MeasuredSection(diagnosis), "");
+  diagnosis.measured = {{.element = "cross_leakage", .at = {-1, 1}, .measured = {-2, 2}, .error = {1, 1}}};
+  EXPECT_THAT(MeasuredSection(diagnosis), HasSubstr("cross leakage"));
 }
 
 }  // namespace
