@@ -11,7 +11,6 @@
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/evidence/clocks.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -49,27 +48,6 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
     return std::all_of(mistakes.begin(), mistakes.end(),
                        [&](const RecordingMistake& mistake) { return MayHave(mistake, possible); });
   }));
-}
-
-// Pressures that read below nothing in every run: no oil is under tension for half of the time, and the charge pressure alone holds
-// both sides above it.
-std::vector<std::string> InvertedPressures(const model::Parameters& model,
-                                           const std::vector<runs::MeasuredRun>& runs) {
-  std::vector<std::string> inverted;
-  for (const SignalOfRun side : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
-    size_t measured = 0, below = 0;
-    for (const runs::MeasuredRun& run : runs) {
-      std::vector<double> values;
-      for (const double value : (run.*side).values) {
-        if (!std::isnan(value)) values.push_back(value);
-      }
-      if (values.empty()) continue;
-      ++measured;
-      below += maths::Median(std::move(values)) < -0.5 * model.p_3 ? 1 : 0;
-    }
-    if (measured > 0 && below == measured && model.p_3 > 0) inverted.emplace_back(NameOf(side));
-  }
-  return inverted;
 }
 
 std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
@@ -142,7 +120,6 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   });
   checked.mend_first =
       !contradictions.empty() || (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
-  if (!checked.mend_first && may_name_signs) checked.inverted = InvertedPressures(model.parameters, all);
   if (!checked.mend_first && most && OnlySigns(findings)) {
     for (const RecordingFinding& finding : findings) {
       const std::string sensor = finding.mistakes[0].InvertedSensor();

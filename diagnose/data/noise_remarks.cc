@@ -13,6 +13,13 @@ namespace {
 
 constexpr double kUnlikeStated = 2;  // ratio of noises
 
+bool IsNoisierThanStated(const SignalData& signal) {
+  return signal.estimated_noise > kUnlikeStated * signal.stated_noise;
+}
+bool IsUnlikeStated(const SignalData& signal) {
+  return IsNoisierThanStated(signal) || kUnlikeStated * signal.estimated_noise < signal.stated_noise;
+}
+
 // Of several runs, one signal whose noise is unlike what they state.
 struct Unlike {
   model::Channel channel = model::Channel::kP1;
@@ -81,15 +88,6 @@ std::string RemarkOn(const Group& group, bool all) {
 }
 
 }  // namespace
-
-bool IsUnlikeStated(const SignalData& signal) {
-  const double ratio = signal.estimated_noise / signal.stated_noise;  // NaN where none is stated
-  return ratio > kUnlikeStated || ratio < 1 / kUnlikeStated;
-}
-
-bool IsNoisierThanStated(const SignalData& signal) {
-  return signal.estimated_noise > kUnlikeStated * signal.stated_noise;
-}
 
 std::vector<std::string> NoiseRemarks(const std::vector<const RunData*>& runs) {
   std::vector<Group> groups;

@@ -149,6 +149,10 @@ void AddSignals(const Run& run, MistakeList* list) {
     list->AddUnits({&Run::arm_angle});
     list->AddUnits({&Run::arm_speed});
   }
+  if (!run.bypass) {
+    list->AddSign({&Run::p1});
+    list->AddSign({&Run::p2});
+  }
   list->AddUnits({&Run::motor_speed});
   list->AddUnits({&Run::motor_angle});
   list->AddUnits({&Run::p1, &Run::p2});

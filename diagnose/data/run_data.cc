@@ -6,7 +6,6 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "diagnose/data/run_start.h"
 #include "diagnose/data/sample_interval.h"
 #include "diagnose/data/smoothed_motion.h"
 

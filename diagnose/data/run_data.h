@@ -93,6 +93,9 @@ inline constexpr size_t kFewestSamples = 100;
 // impossible values (speeds of 1e5 rad/s: another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 
+// Sets the run's start, start_free and at_rest from its first samples; the rest of `data` must be filled in.
+void SetStart(const model::Parameters& model, RunData* data);
+
 // The smallest and the largest value, ignoring NaN; low is above high when there are no values.
 struct ValueRange {
   double low = std::numeric_limits<double>::infinity();

@@ -1,10 +1,10 @@
-#include "diagnose/data/run_start.h"
-
+// Where a measured run begins.
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "diagnose/data/run_data.h"
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {

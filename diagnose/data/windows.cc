@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "diagnose/data/run_start.h"
 #include "diagnose/data/thinned.h"
 #include "model/terms/state.h"
 

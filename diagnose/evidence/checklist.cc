@@ -19,6 +19,8 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
+// Of the log evidence: ten to one.
+const double kClearSign = std::log(10.0);
 constexpr double kFarOff =
     6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
 
@@ -160,7 +162,7 @@ class RunChecklist {
     if (mistake == possible.end()) return;
     const double gain = mistakes_.Try({*mistake}).gain;
     const std::string number = " (log odds " + ShortNumber(gain, 2) + ")";
-    if (std::abs(gain) < OddsAgainstMistake()) {
+    if (std::abs(gain) < kClearSign) {
       Add(State::kLook, item,
           gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
     } else {

@@ -131,7 +131,7 @@ TEST(RecordingMistake, InvertedSensor) {
   for (const RecordingMistake& mistake : PossibleMistakes(run)) {
     if (!mistake.InvertedSensor().empty()) inverted.push_back(mistake.InvertedSensor());
   }
-  EXPECT_THAT(inverted, ElementsAre("motor_speed"));
+  EXPECT_THAT(inverted, ElementsAre("motor_speed", "p1", "p2"));
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+// Tests of what one recording says of its own mistakes: the balances of corrected signals, and the search.
+#include "diagnose/evidence/run_mistakes.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/evidence/recording_balances.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using Recording = runs::MeasuredRun;
+
+const model::ModelDescription kGiven = {"Table 1", testing::Table1(), {}};
+
+bool NeverUp() { return false; }
+
+// A rig that lacks nothing: clamped, or with a free arm, under steps of both signs.
+Recording Recorded(model::Shaft shaft) {
+  testing::NoisyRig rig;
+  rig.model = kGiven;
+  return rig.Record("run", shaft, 0.1, 2, false, [](double t) { return std::sin(9 * t) > 0 ? 3.0 : -2.0; })
+      .measured;
+}
+
+void Multiply(std::vector<double>* values, double factor) {
+  for (double& value : *values) value *= factor;
+}
+
+RecordingMistake Named(const Recording& run, const std::string& what) {
+  for (const RecordingMistake& one : PossibleMistakes(run)) {
+    if (one.what == what) return one;
+  }
+  ADD_FAILURE() << what;
+  return {};
+}
+
+// Tests that the balances close with the numbers as they are, with no other ones as well, and small numbers gain nothing.
+TEST(RecordingBalances, CloseWithTheRightNumbers) {
+  for (const model::Shaft shaft : {model::Shaft::kClamped, model::Shaft::kFree}) {
+    const Recording run = Recorded(shaft);
+    const RecordingBalances balances(kGiven, run, PossibleMistakes(run));
+    EXPECT_LT(balances.LeastLeftOpen(), 0.02);
+    const double right = balances.Evidence({});
+    for (const auto& change :
+         {+[](SignalFactors& f) { f.p1 = f.p2 = 14.5; }, +[](SignalFactors& f) { f.voltage = -1; },
+          +[](SignalFactors& f) { f.motor_speed = 0.1; }, +[](SignalFactors& f) { f.exchanged = true; },
+          +[](SignalFactors& f) { f.p1 = f.p2 = f.motor_speed = f.voltage = 1e-3; }}) {
+      SignalFactors factors;
+      change(factors);
+      EXPECT_LT(balances.Evidence(factors), right - OddsAgainstMistake());
+    }
+  }
+}
+
+// Tests that a correction gives back the evidence that the mistake took.
+TEST(RecordingBalances, UndoneMistakes) {
+  const Recording run = Recorded(model::Shaft::kClamped);
+  Recording wrong = run;
+  Multiply(&wrong.motor_speed.values, 30 / M_PI);
+  std::swap(wrong.p1, wrong.p2);
+  SignalFactors undone;
+  AddFactors(Named(wrong, "motor_speed is in rpm"), &undone);
+  AddFactors(Named(wrong, "p1 and p2 are exchanged"), &undone);
+  EXPECT_NEAR(undone.motor_speed, M_PI / 30, 1e-9);
+  EXPECT_TRUE(undone.exchanged);
+  const double right = RecordingBalances(kGiven, run, PossibleMistakes(run)).Evidence({});
+  EXPECT_NEAR(RecordingBalances(kGiven, wrong, PossibleMistakes(wrong)).Evidence(undone), right, 1);
+}
+
+// Tests that what cannot be formed says nothing.
+TEST(RecordingBalances, NothingFormed) {
+  Recording run = Recorded(model::Shaft::kClamped);
+  run.p1 = run.p2 = run.motor_angle = {};
+  const RecordingBalances balances(kGiven, run, PossibleMistakes(run));
+  EXPECT_EQ(balances.Evidence({}), 0);
+  EXPECT_EQ(balances.LeastLeftOpen(), 0);
+}
+
+// Tests what one run says by itself: nothing when it is right, and its mistake first when it is not.
+TEST(RunMistakes, OneRun) {
+  const Recording run = Recorded(model::Shaft::kClamped);
+  EXPECT_LT(RunMistakes(kGiven, run).Search(NeverUp).front().Merit(), 0);
+  Recording bar = run;
+  for (auto signal : {&Recording::p1, &Recording::p2}) Multiply(&(bar.*signal).values, 1 / 14.5037738);
+  const RunMistakes wrong(kGiven, bar);
+  const std::vector<MistakeTrial> found = wrong.Search(NeverUp);
+  ASSERT_EQ(found.front().mistakes.size(), 1u);
+  EXPECT_EQ(found.front().mistakes[0].what, "p1 and p2 are in bar");
+  EXPECT_GT(found.front().Merit(), OddsAgainstMistake());
+  EXPECT_EQ(wrong.Try(found.front().mistakes).gain, found.front().gain);
+  EXPECT_EQ(wrong.Try({}).gain, 0);
+  EXPECT_TRUE(wrong.Search([] { return true; }).empty());
+}
+
+// Tests that a factor without a unit gains where it is right, and half of it less.
+TEST(RunMistakes, FactorWithoutAUnit) {
+  Recording run = Recorded(model::Shaft::kClamped);
+  for (auto signal : {&Recording::p1, &Recording::p2}) Multiply(&(run.*signal).values, 3.1);
+  const RunMistakes mistakes(kGiven, run);
+  const auto gain = [&](double factor) {
+    return mistakes.Gain({UnknownUnit({&Recording::p1, &Recording::p2}, factor)});
+  };
+  EXPECT_GT(gain(1 / 3.1), OddsAgainstMistake());
+  EXPECT_GT(gain(1 / 3.1), gain(1 / 1.6));
+  EXPECT_GT(gain(1 / 3.1), gain(1 / 6.2));
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
