@@ -230,7 +230,7 @@ TEST(Propose, TheOilIsOneClassWithoutPressures) {
   EXPECT_LT(PlaceOf(proposed, "pump.stribeck"), proposed.proposals.size());
   for (const char* oil : {"pump.turbulent_leakage", "fluid.entrained_air"})
     EXPECT_EQ(PlaceOf(proposed, oil), proposed.proposals.size()) << oil;
-  ASSERT_EQ(proposed.unjudged.size(), 1u);
+  ASSERT_EQ(proposed.unjudged.size(), 1u) << ::testing::PrintToString(proposed.unjudged[0].effects);
   EXPECT_THAT(proposed.unjudged[0].effects, ElementsAre("fluid.entrained_air", "pump.turbulent_leakage"));
   EXPECT_THAT(proposed.unjudged[0].because, HasSubstr("p1 and p2 were not recorded"));
   for (const auto& one : proposed.weights.explanations) {
