@@ -6,17 +6,16 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "diagnose/data/alignment.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
-#include "diagnose/fit/clock_fit.h"
+#include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
 #include "diagnose/recording_first.h"
-#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
+#include "diagnose/verdict/sentence.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -111,20 +110,19 @@ struct PreparedRuns {
   std::vector<ClockDelay> clocks;
 };
 
-PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<size_t>& allowed, int jobs,
-                     std::vector<runs::MeasuredRun> runs, std::vector<runs::MeasuredRun> held_out) {
+PreparedRuns Prepare(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                     std::vector<runs::MeasuredRun> held_out) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
     HoldOutLastThird(&runs.front(), &held_out);
   }
   PreparedRuns prepared;
   for (runs::MeasuredRun& run : runs) {
-    prepared.fitted.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+    prepared.fitted.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
   }
   for (runs::MeasuredRun& run : held_out) {
-    prepared.held_out.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+    prepared.held_out.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
   }
   if (!prepared.fitted.empty()) prepared.fitted.front().angle_counts = true;
-  CorrectClocks(model, allowed, jobs, &prepared.fitted, &prepared.held_out, &prepared.clocks);
   MakeNamesUnique(&prepared.fitted);
   MakeNamesUnique(&prepared.held_out);
   return prepared;
@@ -177,7 +175,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
       CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
-  PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
+  PreparedRuns prepared = Prepare(model, std::move(runs), std::move(held_out));
   SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 
@@ -186,14 +184,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
-  const WideSearch found =
+  const Proof proof =
       ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
                      proposed.proposals, BlindChanges(context), proposed.said);
-  std::vector<WeightedSet> explanations;
-  for (const WeighedExplanation& one : proposed.weights.explanations)
-    explanations.push_back({one.changes, one.weight});
-  Diagnosis diagnosis = Conclude(context, found, explanations);
-  diagnosis.set_90 = proposed.weights.in_90;
+  Diagnosis diagnosis = Conclude(context, proof, proposed);
   diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());
   if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "base/word_list.h"
-#include "diagnose/data/alignment.h"
 #include "diagnose/data/contradictions.h"
 #include "diagnose/data/recording_damage.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
-#include "diagnose/data/twin_pressures.h"
+#include "diagnose/evidence/clocks.h"
 #include "maths/median.h"
 
 namespace hydro::diagnose {
@@ -84,21 +82,6 @@ std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vect
          "look at columns, shaft, bypass and the model's units";
 }
 
-// Of the runs in which nothing else was found, which may say the same. Whether there is one that is not of a sign only.
-bool AddContradictions(const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs,
-                       const std::vector<RecordingFinding>& findings, std::vector<std::string>* mistakes) {
-  bool any = false;
-  for (size_t r = 0; r < runs.size(); ++r) {
-    if (std::any_of(findings.begin(), findings.end(), [r](const auto& one) { return one.run == r; }))
-      continue;
-    for (Contradiction& one : Contradictions(model, runs[r])) {
-      any |= !one.only_sign;
-      mistakes->push_back(std::move(one.text));
-    }
-  }
-  return any;
-}
-
 std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
@@ -131,19 +114,25 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  std::map<size_t, std::string> twins;  // by run, what is wrong
+  std::vector<std::string> contradictions;
+  std::vector<bool> contradicts(all.size(), false);
   for (size_t r = 0; r < all.size(); ++r) {
-    if (std::string wrong = TwinPressures(all[r]); !wrong.empty()) twins[r] = std::move(wrong);
+    for (std::string& one : Contradictions(model, all[r])) {
+      contradictions.push_back(std::move(one));
+      contradicts[r] = true;
+    }
   }
   std::vector<size_t> unpredicted;
-  std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
+  std::vector<runs::MeasuredRun> on_one_clock = all;
+  for (runs::MeasuredRun& run : on_one_clock) AlignClocks(model, &run);
+  std::vector<RecordingFinding> findings =
+      CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
   // What is to be mended there first may look like any other mistake.
-  std::erase_if(findings, [&](const RecordingFinding& one) { return twins.contains(one.run); });
-  std::erase_if(unpredicted, [&](size_t run) { return twins.contains(run); });
+  std::erase_if(findings, [&](const RecordingFinding& one) { return contradicts[one.run]; });
+  std::erase_if(unpredicted, [&](size_t run) { return contradicts[run]; });
   checked.unjudged = UnjudgedLine(unpredicted, all);
-  checked.mistakes = FindingRemarks(findings, all);
-  for (auto twin = twins.rbegin(); twin != twins.rend(); ++twin)
-    checked.mistakes.insert(checked.mistakes.begin(), twin->second);
+  checked.mistakes = contradictions;
+  for (std::string& remark : FindingRemarks(findings, all)) checked.mistakes.push_back(std::move(remark));
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
   // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the
@@ -151,9 +140,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
-  const bool contradicts = AddContradictions(model, all, findings, &checked.mistakes);
-  checked.mend_first = !twins.empty() || contradicts ||
-                       (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
+  checked.mend_first =
+      !contradictions.empty() || (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
   if (!checked.mend_first && may_name_signs) checked.inverted = InvertedPressures(model.parameters, all);
   if (!checked.mend_first && most && OnlySigns(findings)) {
     for (const RecordingFinding& finding : findings) {
@@ -208,7 +196,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   std::vector<RunData> prepared;
   prepared.reserve(runs.size());
   for (runs::MeasuredRun& run : runs) {
-    prepared.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+    prepared.push_back(PrepareAligned(std::move(run), model, &clocks));
   }
   MakeNamesUnique(&prepared);
   const std::vector<const RunData*> pointers = PointersTo(prepared);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/fit/recording_check.h"
+#include "diagnose/evidence/recording_check.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

@@ -237,8 +237,14 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
 
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again) {
+  if (setup->only_always) return Make(setup, runs, base, jobs, again, {AddBaseColumns, AddNuisanceColumns});
   return Make(setup, runs, base, jobs, again,
               {AddBaseColumns, AddEffectColumns, AddNuisanceColumns, AddClosureColumns, AddValueColumns});
+}
+
+ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
+                              const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again) {
+  return Make(setup, runs, base, jobs, again, {AddEffectColumns});
 }
 
 ColumnTable MakeWaveColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,

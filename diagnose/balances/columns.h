@@ -63,6 +63,7 @@ struct ColumnSetup {
   bool hold_effects = false;         // numbers of effects that the model has stay as they are
   std::vector<EffectVariant> variants;
   std::vector<int> periods;  // per turn, that waves are tried at
+  bool only_always = false;  // no columns but those of every hypothesis
   BalanceSizes sizes;
   std::vector<double> units;  // by column, set when it is first made: what an amount of 1 is
 };
@@ -74,6 +75,11 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
 // of the same runs and `again` what the first one made, keeps them. `jobs`: threads; the result does not depend on them.
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again = nullptr);
+
+// Those of `setup->variants` alone.
+ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
+                              const std::vector<BaseSeries>& base, int jobs,
+                              const ColumnTable* again = nullptr);
 
 // Those of what repeats with the shaft, at `setup->periods`.
 ColumnTable MakeWaveColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,

@@ -14,8 +14,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Hz: what sensors of such machines pass, and what moves them. Higher frequencies change no answer.
-constexpr double kHighest = 120;
 // Of the rate of the slowest signal of a balance.
 constexpr double kOfTheRate = 0.2;
 // The arm is slower, and its balance has a second derivative.
@@ -28,12 +26,12 @@ constexpr double kLevelNoise = 5e-4;
 constexpr double kClock = 2e-4, kClockPart = 0.1;
 constexpr uint64_t kNoiseSeed = 5;
 
-double HighestOf(const RunMotion& run, BalanceKind balance, double tile) {
+double HighestOf(const RunMotion& run, BalanceKind balance, double tile, double most) {
   double interval = run.step;
   for (const GridSignal& signal : run.signals) {
     if (signal.measured()) interval = std::max(interval, signal.interval);
   }
-  const double highest = std::min(kHighest, kOfTheRate / interval);
+  const double highest = std::min(most, kOfTheRate / interval);
   if (balance == BalanceKind::kArm) return kArmPart * highest;
   const bool level = balance == BalanceKind::kLevel1 || balance == BalanceKind::kLevel2;
   return level ? std::min(highest, kLevelTiles / tile) : highest;
@@ -182,9 +180,10 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
 
 ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
                    const ScanOptions& options)
-    : jobs_(options.jobs) {
+    : jobs_(options.jobs), highest_(options.highest) {
   setup_.given = given;
   setup_.allowed = options.allowed;
+  setup_.only_always = options.only_always;
   setup_.per_run = options.per_run;
   setup_.hold_effects = options.hold_effects;
   setup_.variants = VariantsOf(options.changes, SizesOf(given, runs));
@@ -203,7 +202,7 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   for (const RunMotion& run : motions_) durations.push_back(run.step * static_cast<double>(run.size()));
   std::nth_element(durations.begin(), durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2),
                    durations.end());
-  tile_ = TileLength(durations[durations.size() / 2]);
+  tile_ = options.tile > 0 ? options.tile : TileLength(durations[durations.size() / 2]);
   setup_.sizes = SizesOfBalances(motions_, base_, given.parameters);
   const HeldPressure held = FindHeldPressure(motions_, given.parameters);
   for (size_t r = 0; r < motions_.size(); ++r)
@@ -251,7 +250,7 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
     all.col(all.cols() - 1) = AfterPressures(motion, noisy_base_[r].left)[kind] - clean_left[kind];
     const double step = motion.step * static_cast<double>(motion.stride);
     const std::vector<TestFunctions> functions =
-        TestFunctionsOf(masks_[r][kind], step, tile_, HighestOf(motion, balance, tile_));
+        TestFunctionsOf(masks_[r][kind], step, tile_, HighestOf(motion, balance, tile_, highest_));
     Eigen::Index total = 0;
     for (const TestFunctions& one : functions) total += one.frequency.size();
     block.X.resize(total, half - 1);

@@ -18,6 +18,9 @@ struct ScanOptions {
   std::vector<size_t> allowed;             // base parameters that may differ, as in BaseParameters()
   std::vector<Change> changes;             // effects that may be named
   std::vector<std::string> inverted = {};  // sensors whose readings have the wrong sign
+  bool only_always = false;                // no columns but those of every hypothesis
+  double highest = 120;                    // Hz: what sensors of such machines pass, and what moves them
+  double tile = 0;                         // s; 0: as suits the runs' lengths
   // Base parameters that may differ by run, of any kind ("J"). Friction, charge pressure and load always may.
   std::vector<std::string> per_run = {};
   bool hold_effects = false;  // numbers of effects that the model has stay as they are
@@ -53,11 +56,23 @@ class ScanRuns {
   // The same rows with the columns of waves at these periods alone.
   Rows MakeWaveRows(const std::vector<int>& periods) const;
 
+  // Columns of an effect at other shapes than its variant's: `rows` has them alone, those of the first shape first.
+  struct OtherShapes {
+    Rows rows;
+    std::vector<double> units;  // of the columns (ColumnMeaning::unit)
+  };
+  OtherShapes MakeShapeRows(size_t variant, const std::vector<model::EffectDescription>& at) const;
+  // The variant stands at this shape from now on, with these units of its columns.
+  void SetShape(size_t variant, const model::EffectDescription& at, const std::vector<double>& units);
+  // The columns of a variant, in the order of those of MakeShapeRows.
+  std::vector<int> ColumnsOf(size_t variant) const;
+
  private:
   static void Append(const ColumnTable& more, ColumnTable* table);
   void Project(const ColumnTable& clean, const ColumnTable& noisy, Rows* rows) const;
 
   int jobs_ = 1;
+  double highest_;  // Hz
   ColumnSetup setup_;
   std::vector<RunMotion> motions_, noisy_;
   std::vector<BaseSeries> base_, noisy_base_;

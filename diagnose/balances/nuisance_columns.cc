@@ -68,8 +68,7 @@ void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
     if (!CanForm(motion, BalanceKind::kTorque)) return;
     const std::vector<double> rate = Derivative((*maker->base)[run].drive.smooth, motion.step);
     Eigen::VectorXd series((*maker->base)[run].left[0].size());
-    for (Eigen::Index i = 0; i < series.size(); ++i)
-      series[i] = -rate[static_cast<size_t>(i) * motion.stride];
+    for (Eigen::Index i = 0; i < series.size(); ++i) series[i] = rate[static_cast<size_t>(i) * motion.stride];
     maker->Put(voltage, run, BalanceKind::kTorque, std::move(series));
   });
   const auto add = [&](const char* name, const std::vector<GridChannel>& signals) {
@@ -144,11 +143,15 @@ void AddFriction(ColumnMaker* maker) {
     }
   }
   if (const std::optional<int> viscous = maker->Named("b")) {
+    // Relative to the value as given; of a pump that is said to have none, in its unit.
+    const double b = maker->given().b, speed = maker->setup->sizes.speed;
+    const double part = b != 0 || !(speed > 0) ? 1 : kLeastFriction * torque / speed;
     for (size_t r = 0; r < maker->runs->size(); ++r) {
       ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*viscous)];
       meaning.run = static_cast<int>(r);
       meaning.unit = 1;
-      maker->AddAlias({OfRun("b", r), "", kFrictionByRun, false}, meaning, *viscous, static_cast<int>(r));
+      maker->AddAlias({OfRun("b", r), "", kFrictionByRun * part, false}, meaning, *viscous,
+                      static_cast<int>(r));
     }
   }
 }

@@ -5,7 +5,6 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "diagnose/closure/resemblance.h"
 #include "diagnose/data/run_data.h"
 #include "model/terms/parameter_info.h"
 

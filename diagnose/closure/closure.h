@@ -18,6 +18,11 @@ bool IsClosureEffect(std::string_view effect);
 // held. Gaps are not set.
 std::vector<Closure> FoundClosures(const Hypothesis& hypothesis, const std::vector<Interval>& intervals);
 
+// Which simple law a closure looks like: "grows as the square root of |p2 - p1|", "changes sign with motor_speed (Coulomb friction)",
+// "begins above p1 = 700 psi", each beside a constant or a straight line where that is needed; "follows no simple law". Of the
+// laws that go through the values' bands, the one with the fewest numbers.
+std::string Resemblance(const Closure& closure);
+
 // What the verdict's sentence has to add; "" without closures.
 std::string ClosureSentence(const std::vector<Closure>& closures);
 

@@ -1,26 +1,22 @@
-#include "diagnose/closure/resemblance.h"
-
+// Which simple law a closure looks like.
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "base/number_text.h"
+#include "diagnose/closure/closure.h"
 #include "maths/linear_fit.h"
 
 namespace hydro::diagnose {
 namespace {
 
-// A value is not taken to be known better than to this part of the curve's range.
-constexpr double kCoarse = 0.05;
-// Few samples reach as far as the first and the last knot: their values are so many times less sure.
-constexpr double kAtEnds = 3;
-// What each number of a law has to gain, in squared standard deviations.
+// A value is not taken to be known better than to this part of the curve's range, and so many times worse at the first and the last
+// knot, which few samples reach.
+constexpr double kCoarse = 0.05, kAtEnds = 3;
+// What each number of a law has to gain, in squared standard deviations: two of them.
 constexpr double kPerNumber = 4;
 // A law has to explain this part of the curve's variation.
 constexpr double kLikeIt = 0.9;
@@ -30,105 +26,51 @@ using Function = std::function<double(double)>;
 struct Law {
   std::string says;
   std::vector<Function> parts;  // each with a coefficient
-  int numbers = 0;              // besides the coefficients
+  double numbers = 0;           // besides the coefficients
   bool odd = false;             // its sign is that of the variable
 };
 
 double SignOf(double x) { return static_cast<double>((x > 0) - (x < 0)); }
 
-// The curve's points, with what counts as a standard deviation.
-struct Points {
-  std::vector<double> x, value, error;
-  double mean = 0, variation = 0;  // sum of squares about the mean, in these deviations
-
-  explicit Points(const Closure& closure) : x(closure.knots[0]), value(closure.value) {
-    const auto [low, high] = std::minmax_element(value.begin(), value.end());
-    const double coarse = kCoarse * std::max(*high - *low, 1e-3 * std::max(std::abs(*high), std::abs(*low)));
-    double weights = 0;
-    for (size_t i = 0; i < value.size(); ++i) {
-      error.push_back(std::max(std::hypot((closure.high[i] - closure.low[i]) / 3.92, coarse), 1e-300));
-      if (i == 0 || i + 1 == value.size()) error.back() *= kAtEnds;
-      mean += value[i] / (error[i] * error[i]);
-      weights += 1 / (error[i] * error[i]);
-    }
-    mean /= weights;
-    for (size_t i = 0; i < value.size(); ++i) variation += std::pow((value[i] - mean) / error[i], 2);
-  }
-};
-
-struct LawFit {
-  double left = std::numeric_limits<double>::infinity();  // sum of squares
-  double first = 0;                                       // coefficient of its first part
-};
-
-LawFit FitLaw(const Law& law, const Points& points) {
-  std::vector<std::vector<double>> columns;
-  for (const Function& part : law.parts) {
-    std::vector<double>& column = columns.emplace_back();
-    for (size_t i = 0; i < points.x.size(); ++i) column.push_back(part(points.x[i]) / points.error[i]);
-  }
-  std::vector<double> scaled;
-  for (size_t i = 0; i < points.x.size(); ++i) scaled.push_back(points.value[i] / points.error[i]);
-  LawFit fit;
-  try {
-    const maths::LinearFit linear = maths::FitLinear(columns, scaled);
-    fit.left = 0;
-    for (size_t i = 0; i < scaled.size(); ++i) {
-      double predicted = 0;
-      for (size_t k = 0; k < columns.size(); ++k) predicted += linear.coefficients[k] * columns[k][i];
-      fit.left += std::pow(scaled[i] - predicted, 2);
-    }
-    fit.first = linear.coefficients[0];
-  } catch (const std::invalid_argument&) {
-    // The law is another one on these points.
-  }
-  return fit;
-}
-
-// Laws of a variable, by themselves.
-std::vector<Law> PlainLaws(const std::string& name, const std::string& unit, const std::vector<double>& x) {
+// Laws of a variable without a constant or a straight line beside them.
+std::vector<Law> BareLaws(const std::string& name, const std::string& unit, const std::vector<double>& x) {
   const bool both = x.front() < 0 && x.back() > 0;
   const std::string size = both ? "|" + name + "|" : name;
   std::vector<Law> laws;
-  laws.push_back({"grows as the square root of " + size,
-                  {[](double v) { return SignOf(v) * std::sqrt(std::abs(v)); }},
-                  0,
-                  both});
-  laws.push_back({"grows as the square of " + size, {[](double v) { return v * std::abs(v); }}, 0, both});
-  laws.push_back({"grows as the cube of " + size, {[](double v) { return v * v * v; }}, 0, both});
-  const double reach = std::max(std::abs(x.front()), std::abs(x.back()));
-  if (both) {
-    laws.push_back(
-        {"has a part that grows as the square of " + name, {[](double v) { return v * v; }}, 0, false});
-    const bool speed = name.ends_with("speed");
+  const std::pair<const char*, double> powers[] = {{"square root", 0.5}, {"square", 2}, {"cube", 3}};
+  for (const auto& [says, power] : powers) {
+    laws.push_back({std::string("grows as the ") + says + " of " + size,
+                    {[p = power](double v) { return SignOf(v) * std::pow(std::abs(v), p); }},
+                    0,
+                    both});
+  }
+  const bool speed = name.ends_with("speed");
+  if (both)
     laws.push_back({"changes sign with " + name + (speed ? " (Coulomb friction)" : ""), {SignOf}, 0, true});
-    for (const double part : {0.03, 0.1, 0.3}) {
-      const double fall = part * reach;
-      laws.push_back({"changes sign with " + name + " and falls with " + size + (speed ? " (Stribeck)" : ""),
-                      {SignOf, [fall](double v) { return SignOf(v) * std::exp(-std::abs(v) / fall); }},
-                      1,
-                      true});
-      laws.push_back({"grows with " + size + " up to a limit",
-                      {[fall](double v) { return SignOf(v) * (1 - std::exp(-std::abs(v) / fall)); }},
-                      1,
-                      true});
-    }
+  for (const double part : {0.03, 0.1, 0.3}) {
+    if (!both) break;
+    const Function falls = [fall = part * std::max(-x.front(), x.back())](double v) {
+      return SignOf(v) * std::exp(-std::abs(v) / fall);
+    };
+    laws.push_back({"changes sign with " + name + " and falls with " + size + (speed ? " (Stribeck)" : ""),
+                    {SignOf, falls},
+                    1,
+                    true});
+    laws.push_back({"grows with " + size + " up to a limit",
+                    {[falls](double v) { return SignOf(v) - falls(v); }},
+                    1,
+                    true});
   }
   for (size_t i = 1; i + 1 < x.size(); ++i) {
     const double from = x[i];
-    const std::string at = name + " = " + ShortNumber(from, 2) + " " + unit;
-    laws.push_back({"begins above " + at, {[from](double v) { return std::max(0.0, v - from); }}, 1, false});
-    laws.push_back({"begins below " + at, {[from](double v) { return std::max(0.0, from - v); }}, 1, false});
+    const std::string at = " = " + ShortNumber(from, 2) + " " + unit;
+    laws.push_back({"begins above " + name + at, {[from](double v) { return std::max(0.0, v - from); }}, 1});
+    laws.push_back({"begins below " + name + at, {[from](double v) { return std::max(0.0, from - v); }}, 1});
     if (!both || !(from > 0)) continue;
-    laws.push_back({"begins beyond |" + name + "| = " + ShortNumber(from, 2) + " " + unit,
+    laws.push_back({"begins beyond |" + name + "|" + at,
                     {[from](double v) { return SignOf(v) * std::max(0.0, std::abs(v) - from); }},
                     1,
                     true});
-    laws.push_back(
-        {"begins beyond |" + name + "| = " + ShortNumber(from, 2) + " " + unit + " and grows as the square",
-         {[from](double v) { return SignOf(v) * std::pow(std::max(0.0, std::abs(v) - from), 2); }},
-         1,
-         true});
   }
   return laws;
 }
@@ -138,69 +80,87 @@ std::vector<Law> LawsOf(const Closure& closure) {
   const Function one = [](double) { return 1.0; };
   const Function itself = [](double v) { return v; };
   const bool both = closure.knots[0].front() < 0 && closure.knots[0].back() > 0;
-  std::vector<Law> laws = {{"is constant", {one}, 0, false},
+  std::vector<Law> laws = {{"is constant", {one}},
                            {"is proportional to " + name, {itself}, 0, both},
                            {"is a straight line of " + name, {itself, one}, 0, both}};
-  for (const Law& plain : PlainLaws(name, closure.against_units[0], closure.knots[0])) {
-    laws.push_back(plain);
-    Law more = plain;
+  for (const Law& bare : BareLaws(name, closure.against_units[0], closure.knots[0])) {
+    Law more = bare;
+    laws.push_back(bare);
     more.parts.push_back(one);
-    more.says += ", beside a constant";
+    more.says = bare.says + ", beside a constant";
     laws.push_back(more);
     more.parts.push_back(itself);
-    more.says = plain.says + ", beside a straight line";
+    more.says = bare.says + ", beside a straight line";
     laws.push_back(more);
   }
   return laws;
 }
 
-// The part of a surface's sum of squares that is a function of one variable times the other.
-double ProductShare(const Closure& closure, size_t factor) {
-  const size_t columns = closure.knots[1].size();
-  double all = 0, explained = 0;
-  for (const double value : closure.value) all += value * value;
-  for (size_t k = 0; k < closure.knots[1 - factor].size(); ++k) {
-    double cross = 0, squares = 0;
-    for (size_t i = 0; i < closure.knots[factor].size(); ++i) {
-      const double by = closure.knots[factor][i];
-      cross += by * closure.value[factor == 0 ? i * columns + k : k * columns + i];
-      squares += by * by;
-    }
-    if (squares > 0) explained += cross * cross / squares;
-  }
-  return all > 0 ? explained / all : 0;
+// A column's values over what counts as their standard deviations.
+std::vector<double> Over(const std::vector<double>& error, const std::vector<double>& x, const Function& of) {
+  std::vector<double> column;
+  for (size_t i = 0; i < x.size(); ++i) column.push_back(of(x[i]) / error[i]);
+  return column;
 }
 
+// The sum of squares that the law leaves, and the coefficient of its first part. Infinite: it is another law on these points.
+std::pair<double, double> FitLaw(const Law& law, const std::vector<double>& x,
+                                 const std::vector<double>& error, const std::vector<double>& scaled) {
+  std::vector<std::vector<double>> columns;
+  for (const Function& part : law.parts) columns.push_back(Over(error, x, part));
+  try {
+    const maths::LinearFit linear = maths::FitLinear(columns, scaled);
+    return {std::pow(linear.residual_deviation, 2) * linear.degrees_of_freedom, linear.coefficients[0]};
+  } catch (const std::invalid_argument&) {
+    return {std::numeric_limits<double>::infinity(), 0};
+  }
+}
+
+// Of a surface: whether it is its second variable times a function of the first.
 std::string SurfaceResemblance(const Closure& closure) {
-  const size_t factor = ProductShare(closure, 1) >= ProductShare(closure, 0) ? 1 : 0;
-  if (ProductShare(closure, factor) < kLikeIt) return "depends on both";
-  return "is proportional to " + closure.against[factor] + ", by a factor that depends on " +
-         closure.against[1 - factor];
+  const size_t columns = closure.knots[1].size();
+  double all = 0, explained = 0, squares = 0;
+  for (const double by : closure.knots[1]) squares += by * by;
+  for (size_t row = 0; row < closure.knots[0].size(); ++row) {
+    double cross = 0;
+    for (size_t k = 0; k < columns; ++k) {
+      const double value = closure.value[row * columns + k];
+      cross += closure.knots[1][k] * value;
+      all += value * value;
+    }
+    explained += cross * cross / squares;
+  }
+  if (!(explained > kLikeIt * all)) return "depends on both";
+  return "is proportional to " + closure.against[1] + ", by a factor that depends on " + closure.against[0];
 }
 
 }  // namespace
 
 std::string Resemblance(const Closure& closure) {
   if (closure.against.size() == 2) return SurfaceResemblance(closure);
-  const Points points(closure);
-  const Law* best = nullptr;
-  LawFit best_fit;
-  double least = std::numeric_limits<double>::infinity();
-  const std::vector<Law> laws = LawsOf(closure);
-  for (const Law& law : laws) {
-    const size_t numbers = law.parts.size() + static_cast<size_t>(law.numbers);
-    if (numbers + 2 > points.x.size()) continue;
-    const LawFit fit = FitLaw(law, points);
-    const double cost = fit.left + kPerNumber * static_cast<double>(numbers);
-    if (!(cost < least)) continue;
-    least = cost;
-    best = &law;
-    best_fit = fit;
+  const std::vector<double>&x = closure.knots[0], &value = closure.value;
+  const auto [low, high] = std::minmax_element(value.begin(), value.end());
+  const double coarse = kCoarse * std::max(*high - *low, 1e-3 * std::max(std::abs(*high), std::abs(*low)));
+  std::vector<double> error, scaled;
+  for (size_t i = 0; i < value.size(); ++i) {
+    error.push_back(std::max(std::hypot((closure.high[i] - closure.low[i]) / 3.92, coarse), 1e-300));
+    if (i == 0 || i + 1 == value.size()) error.back() *= kAtEnds;
+    scaled.push_back(value[i] / error[i]);
   }
-  if (best == nullptr) return "follows no simple law";
-  const bool flat = best == &laws.front();
-  if (!flat && best_fit.left > (1 - kLikeIt) * points.variation) return "follows no simple law";
-  return best->says + (best->odd && best_fit.first < 0 ? ", against it" : "");
+  std::string says = "follows no simple law";
+  double least = std::numeric_limits<double>::infinity(), variation = 0;
+  for (const Law& law : LawsOf(closure)) {
+    const double numbers = static_cast<double>(law.parts.size()) + law.numbers;
+    if (numbers + 2 > static_cast<double>(x.size())) continue;
+    const auto [left, first] = FitLaw(law, x, error, scaled);
+    const bool constant = least == std::numeric_limits<double>::infinity();  // the first that is tried
+    if (constant) variation = left;
+    if (!(left + kPerNumber * numbers < least)) continue;
+    least = left + kPerNumber * numbers;
+    says = law.says + (law.odd && first < 0 ? ", against it" : "");
+    if (!constant && left > (1 - kLikeIt) * variation) says = "follows no simple law";
+  }
+  return says;
 }
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// What a recording says against itself, whatever the rig is: it takes no prediction to see.
+// What a recording says against itself, whatever the rig is: it takes no balance to see.
 #pragma once
 
 #include <string>
@@ -9,13 +9,9 @@
 
 namespace hydro::diagnose {
 
-struct Contradiction {
-  std::string text;        // one line: what was found, what mends it
-  bool only_sign = false;  // which the catalogue has as an effect too
-};
-
-// In this order: angles that jump by a turn; speeds that are not the rates of their angles, by another unit or the other sign; a bypass
-// that is said to be open while p2 - p1 takes the motor's torque, which `model` gives roughly.
-std::vector<Contradiction> Contradictions(const model::ModelDescription& model, const runs::MeasuredRun& run);
+// One line each, what was found and what mends it. In this order: pressures of both sides that are the same, by one column for both or an
+// open bypass that is not stated; angles that jump by a turn; a bypass that is said to be open while p2 - p1 takes the motor's torque,
+// which `model` gives roughly.
+std::vector<std::string> Contradictions(const model::ModelDescription& model, const runs::MeasuredRun& run);
 
 }  // namespace hydro::diagnose

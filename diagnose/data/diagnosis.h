@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/alignment.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 
@@ -18,6 +17,14 @@ enum class Verdict { kNamed, kTied, kPartly, kParameters, kUnexplained, kNothing
 inline bool IsOpen(Verdict verdict) {
   return verdict == Verdict::kUnexplained || verdict == Verdict::kPartly;
 }
+
+// A clock of a recording, relative to that of p1 and p2.
+struct ClockDelay {
+  std::string run;
+  std::vector<std::string> signals;  // recorded by that clock
+  double delay = 0;                  // s; negative: early
+  double error = 0;                  // half the width of the 95 % interval, s
+};
 
 // A number with its 95 % interval.
 struct Estimated {
@@ -41,28 +48,18 @@ struct Location {
   std::vector<Window> windows;
 };
 
-// The missing term of a balance as a function of what it depends on: one row a bin, mean and standard error.
-struct MissingTerm {
-  std::string balance, unit;          // of the term, e.g. in-lbf
-  std::string against, against_unit;  // "motor_speed", "rad/s"
-  std::vector<double> at, mean, error;
-};
-
-// The term of an effect that was found, over the variable that it depends on: what the balance lacks without
-// the effect, and the effect's own term there. Effects that act through time have none.
-struct FoundTerm {
-  std::string effect;
-  MissingTerm missing;
-  std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
-};
-
-// What one element of the machine does, as the balances measure it, over the variable where it acts: the pump's friction,
-// the leakage across its ports, the arm's load. Means over bins, and the standard errors of those measured.
+// Something of the machine over the variable that it depends on, as the balances measure it without any simulation: means
+// over bins, and their standard errors; beside them what models have at the same instants. The missing term of a balance (no
+// models), the term of an effect that was found (what the balance lacks without it, and the effect's own), or what one element
+// does: the pump's friction, the leakage across its ports, the arm's load.
 struct MeasuredCurve {
-  std::string element;  // pump_friction | cross_leakage | arm_load
-  std::string unit, against, against_unit;
-  std::vector<double> at, measured, error;
-  std::vector<double> model, found;  // the model's own as given, and with what was found
+  // pump_friction | cross_leakage | arm_load; of a term the effect; "": what is missing.
+  std::string element = {};
+  std::string balance = {}, unit = {};          // the curve's unit, e.g. in-lbf
+  std::string against = {}, against_unit = {};  // "motor_speed", "rad/s"
+  std::vector<double> at = {}, measured = {}, error = {};
+  // The model's own as given, and with what was found; empty: none.
+  std::vector<double> model = {}, found = {};
 };
 
 // A stretch of a run in which an effect that acts through time shows: one signal, in the model's unit, and what the
@@ -97,7 +94,7 @@ struct FoundEffect {
   std::vector<std::string> tied_with;
   // The part of the held-out squared gap that comes back without it, 0 to 1; NaN where it cannot be said.
   double share = std::numeric_limits<double>::quiet_NaN();
-  double weight = 0;  // of all explanations that have it
+  double weight = 0;  // of all explanations that have it; NaN where balances cannot speak for it
 };
 
 // A base parameter ("J"), or one of an effect that the model as given has ("valve.relief.set").
@@ -146,12 +143,14 @@ struct Candidate {
   // Of the effect, or "parameter k_1"; sets of them are joined with " + ". "parameters": all values refitted;
   // "as given": the model itself.
   std::string id;
-  // Gaps of windows where these decide, else of whole runs, in noise units; NaN: not tried.
-  double fit = 0, held_out = 0;
-  // Probability that chance alone improves the fit this much, allowing for the number tried.
+  // What the balances say of it, beyond what they say of nothing: nats of evidence, and of odds beforehand. NaN: nothing.
+  double score = 0;
+  // Typical gap of the held-out windows that judge, or of whole runs where these do, in noise units; NaN: not tried.
+  double held_out = 0;
+  // Probability that chance alone gives as much evidence for it, allowing for the number tried.
   double p_value = 1;
   std::string rejected_because;  // "" for those that were taken
-  // How probable the explanation is among those tried: those of all candidates add to 1.
+  // How probable the explanation is among those that the balances compared: those of all candidates add to 1.
   double weight = 0;
 };
 
@@ -205,8 +204,8 @@ struct Diagnosis {
   // What is suspect in the recordings, what could not be tried, and noise unlike the stated noise.
   std::vector<std::string> remarks;
   std::vector<Location> location;
-  std::vector<MissingTerm> missing;
-  std::vector<FoundTerm> terms;
+  std::vector<MeasuredCurve> missing;
+  std::vector<MeasuredCurve> terms;     // of effects, where they act at an instant
   std::vector<MeasuredCurve> measured;  // of what balances could be formed for
   std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;

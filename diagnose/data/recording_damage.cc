@@ -18,13 +18,13 @@ using Run = runs::MeasuredRun;
 constexpr double kByChance = 1e-3;  // how often chance may hold a value so long, a run
 constexpr size_t kShortestHold = 8;
 constexpr std::ptrdiff_t kFew = 10;
-constexpr double kAboveSteps = 1.5;  // noise over resolution, below which values repeat of themselves
-constexpr double kSpike = 8;         // noise units beyond all neighbours
-constexpr double kSpread = 2;        // and this many times what the neighbours differ by
-constexpr double kChange = 5;        // and this many times the change that 19 of 20 samples stay below
-constexpr size_t kReach = 3;         // neighbours on each side
-constexpr double kGap = 5;           // median sample intervals without a row
-constexpr double kStep = 0.05;       // of the command's range: what counts as a step
+constexpr double kAboveSteps = 1.5;        // noise over resolution, below which values repeat of themselves
+constexpr double kSpike = 8;               // noise units beyond all neighbours
+constexpr double kSpreadOfNeighbours = 2;  // and this many times what the neighbours differ by
+constexpr double kChange = 5;              // and this many times the change that 19 of 20 samples stay below
+constexpr size_t kNeighbours = 3;          // neighbours on each side
+constexpr double kGap = 5;                 // median sample intervals without a row
+constexpr double kStepOfDamage = 0.05;     // of the command's range: what counts as a step
 
 struct Stretch {
   size_t first, last;  // [first, last)
@@ -70,7 +70,7 @@ bool IsSentinel(const std::vector<double>& values, const Stretch& one, double le
   const double before = values[one.first - 1] - values[one.first];
   const double after = values[one.last] - values[one.first];
   return before * after > 0 &&
-         std::min(std::abs(before), std::abs(after)) > leap + kSpread * std::abs(after - before);
+         std::min(std::abs(before), std::abs(after)) > leap + kSpreadOfNeighbours * std::abs(after - before);
 }
 
 std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
@@ -116,16 +116,16 @@ std::vector<size_t> Spikes(const std::vector<double>& values) {
   std::vector<size_t> spikes;
   if (noise <= 0) return spikes;
   const double least = std::max(kSpike * noise, kChange * UsualChange(values));
-  for (size_t i = kReach; i + kReach < values.size(); ++i) {
+  for (size_t i = kNeighbours; i + kNeighbours < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     ValueRange beside;
-    for (size_t k = i - kReach; k <= i + kReach; ++k) {
+    for (size_t k = i - kNeighbours; k <= i + kNeighbours; ++k) {
       if (k == i || std::isnan(values[k])) continue;
       beside.low = std::min(beside.low, values[k]);
       beside.high = std::max(beside.high, values[k]);
     }
     const double beyond = std::max(values[i] - beside.high, beside.low - values[i]);
-    if (beside.size() >= 0 && beyond > least + kSpread * beside.size()) spikes.push_back(i);
+    if (beside.size() >= 0 && beyond > least + kSpreadOfNeighbours * beside.size()) spikes.push_back(i);
   }
   // Many of them are the signal's own.
   return spikes.size() * 50 > values.size() ? std::vector<size_t>() : spikes;
@@ -169,7 +169,7 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
 std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_there, size_t sensors) {
   const double usual = MedianInterval(run.time);
   const std::vector<double>& voltage = run.voltage.values;
-  const double least = kStep * RangeOfValues(voltage).size();
+  const double least = kStepOfDamage * RangeOfValues(voltage).size();
   std::vector<Stretch> lost;
   for (size_t i = 0; i + 1 < run.samples(); ++i) {
     if (run.time[i + 1] - run.time[i] > kGap * usual && std::abs(voltage[i + 1] - voltage[i]) > least) {

@@ -17,7 +17,7 @@ constexpr double kMostMissing = 0.05;    // of a signal that is present most of 
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
 constexpr double kGapTold = 5;           // median sample intervals
 constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
-constexpr double kStill = 5;             // movement of a signal, in standard deviations of the noise
+constexpr double kHardlyMoves = 5;             // movement of a signal, in standard deviations of the noise
 
 std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %"; }
 
@@ -75,12 +75,12 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
       }
     }
   }
-  if (speed && high - low < 2 * kStill * noise) {
+  if (speed && high - low < 2 * kHardlyMoves * noise) {
     remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be identified");
-  } else if (speed && (low > -kStill * noise || high < kStill * noise)) {
+  } else if (speed && (low > -kHardlyMoves * noise || high < kHardlyMoves * noise)) {
     remarks->push_back("the motor turns one way only: friction cannot be distinguished from a wrong torque");
   }
-  if (pressure && most_pressure < 2 * kStill) {
+  if (pressure && most_pressure < 2 * kHardlyMoves) {
     remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be identified");
   }
 }
@@ -182,6 +182,13 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
   RemarkOnMissingSignals(runs, &remarks);
   RemarkOnSlowSamples(model, runs, &remarks);
   return remarks;
+}
+
+std::string DelayRemark(const ClockDelay& delay) {
+  return RunNamed(delay.run) + ": " + Enumerated(delay.signals) +
+         (delay.signals.size() > 1 ? " are " : " is ") + (delay.delay < 0 ? "early" : "late") + " by " +
+         ShortNumber(std::abs(delay.delay), 3) + " +- " + ShortNumber(delay.error, 2) +
+         " s relative to p1 and p2";
 }
 
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,

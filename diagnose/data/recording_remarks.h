@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/alignment.h"
+#include "diagnose/data/diagnosis.h"
 #include "diagnose/data/run_data.h"
 
 namespace hydro::diagnose {
@@ -15,6 +15,9 @@ namespace hydro::diagnose {
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out);
+
+// "run sine: motor_speed is late by 0.334 +- 0.013 s relative to p1 and p2"
+std::string DelayRemark(const ClockDelay& delay);
 
 // How tables were read that were not plain CSV: one remark for all runs that share it. It is no fault.
 std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs);

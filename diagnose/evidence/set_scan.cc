@@ -16,7 +16,7 @@ constexpr size_t kWithAllPartners = 3;  // singles
 constexpr size_t kSinglesToPair = 8, kPartnersOfSingles = 20;
 constexpr size_t kPairsToExtend = 6, kLargerToExtend = 2, kPartnersOfLarger = 25;
 // Explanations of more changes are not worth saying.
-constexpr size_t kMostChanges = 6;
+constexpr size_t kMostOfASet = 6;
 // Where no pair comes near the best single, no third change is worth a try.
 constexpr double kWithinReach = 2;
 
@@ -27,7 +27,7 @@ class SetSearch {
   void Search() {
     const std::vector<std::string>& names = scores_.evidence().names();
     Extend({ChangeSet()}, names);
-    for (size_t changes = 1; changes < kMostChanges; ++changes) {
+    for (size_t changes = 1; changes < kMostOfASet; ++changes) {
       // Pairs are searched from every single; from then on each further change must have been a gain.
       if (changes > 2 && Best(changes) <= Best(changes - 1)) return;
       if (changes == 1)

@@ -40,7 +40,6 @@ struct FitOptions {
   double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
-  const Prior* prior = nullptr;  // instead of what the hypothesis knows
 };
 
 // `starts`: initial guesses, one a run. Never throws ModelError: a model that cannot be simulated is reported

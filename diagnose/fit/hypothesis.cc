@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace hydro::diagnose {
 
@@ -10,10 +9,6 @@ namespace {
 
 // How far a fit may go from an effect's starting points: a factor of this, up or down.
 constexpr double kReach = 300;
-
-// Factors on the value of a base parameter whose derivative alone does not show the way: in a resonance, a
-// small change of frequency is a large change of phase.
-constexpr double kElsewhere[] = {0.8, 1.25};
 
 const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
   const model::EffectInfo* info = model::FindEffect(effect);
@@ -94,25 +89,6 @@ bool Hypothesis::Has(const Change& change) const {
   return std::find(changes.begin(), changes.end(), change) != changes.end();
 }
 
-bool Hypothesis::FreesTheSame(const Hypothesis& other) const {
-  const auto of_the_model = [](const Hypothesis& one) {
-    std::set<std::string> names(one.effects.begin(), one.effects.end());
-    for (const Change& change : one.changes) names.erase(change.effect);
-    return std::pair(std::set<size_t>(one.base.begin(), one.base.end()), names);
-  };
-  return of_the_model(*this) == of_the_model(other);
-}
-
-const Change* Hypothesis::OneBeyond(const Hypothesis& other) const {
-  const Change* own = nullptr;
-  for (const Change& change : changes) {
-    if (other.Has(change)) continue;
-    if (own != nullptr) return nullptr;
-    own = &change;
-  }
-  return own;
-}
-
 Hypothesis Hypothesis::Held() const {
   Hypothesis held = *this;
   held.base.clear();
@@ -178,19 +154,6 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
   return sizes;
 }
 
-std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
-  Hypothesis held = hypothesis.Held();
-  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
-    const bool is_free =
-        std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
-    if (!is_free) held.base.push_back(place);
-  }
-  std::vector<FreeParameter> parameters = held.Free();
-  std::erase_if(parameters, [](const FreeParameter& parameter) { return !(parameter.value > 0); });
-  for (FreeParameter& parameter : parameters) parameter.logarithmic = true;
-  return parameters;
-}
-
 namespace {
 
 // Where fits of the effect's parameter begin.
@@ -203,20 +166,13 @@ std::vector<double> StartsOf(const model::ParameterInfo& parameter, const Sizes&
 
 }  // namespace
 
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
-                             bool elsewhere) {
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes) {
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
     const size_t place = model::BasePlace(change.parameter);
     if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
-    std::vector<Hypothesis> all = {more};
-    for (const double factor : kElsewhere) {
-      if (!elsewhere) break;
-      all.push_back(more);
-      all.back().model.parameters.*model::BaseParameters()[place].member *= factor;
-    }
-    return all;
+    return {more};
   }
   const model::EffectInfo& info = *model::FindEffect(change.effect);
   more.effects.push_back(change.effect);

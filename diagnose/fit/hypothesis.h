@@ -61,10 +61,6 @@ struct Hypothesis {
   // Sets the model to these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
-  // Whether both have the same values of the model as given free: base parameters, and those of effects that it has.
-  bool FreesTheSame(const Hypothesis& other) const;
-  // The one change that this hypothesis has and the other lacks; null if there is none or more than one.
-  const Change* OneBeyond(const Hypothesis& other) const;
   // The same with nothing free.
   Hypothesis Held() const;
 };
@@ -78,13 +74,8 @@ struct Sizes {
 };
 Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
-// The base parameters that the hypothesis holds, as if they were free: those above 0, as logarithms.
-std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
-
-// The hypothesis with an effect added, once for each of its starting points, or with a base parameter freed,
-// starting from its value and, when `elsewhere`, also from a somewhat smaller and a somewhat larger one.
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
-                             bool elsewhere);
+// The hypothesis with an effect added, once for each of its starting points, or with a base parameter freed.
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes);
 // The hypothesis with the change undone; base parameters return to their values in `given`.
 Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const model::ModelDescription& given);
 

@@ -11,9 +11,9 @@ struct Interval {
   double low = 0, high = 0;
 };
 
-// 95 % intervals of the fit's free parameters, in the order of Free(). They allow for residuals that are not
-// independent, from the scatter between stretches of each run and between whole runs, and for what the
-// equations idealise, in their own form and in the numbers that are held.
+// 95 % intervals of the fit's free parameters, in the order of Free(): from the fit's information, with residuals counted by what the
+// model leaves of them and by how long that lasts. They allow for what the equations idealise, in their own form and in the numbers
+// that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
 // Which of the fit's free numbers, in the order of Hypothesis::Free(), the runs do not show apart from others: without what is known

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "base/parallel.h"
-
 namespace hydro::diagnose {
 
 namespace {
@@ -29,17 +27,6 @@ Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const model::S
   begin_at(run.start);
   if (run.at_rest.has_value()) begin_at(*run.at_rest);
   return best;
-}
-
-std::vector<model::StartState> BestStarts(const Hypothesis& hypothesis,
-                                          const std::vector<const RunData*>& runs,
-                                          const std::vector<model::StartState>& from, int jobs) {
-  std::vector<model::StartState> starts = from;
-  ParallelFor(runs.size(), jobs, [&](size_t r) {
-    const Fitted best = FitStart(hypothesis, *runs[r], from[r], kStartInDoubt);
-    if (best.ok()) starts[r] = best.runs[0].start;
-  });
-  return starts;
 }
 
 }  // namespace hydro::diagnose

@@ -16,9 +16,4 @@ inline constexpr double kStartInDoubt = 1.1;
 Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const model::StartState& from,
                 double doubtful);
 
-// FitStart for each run; `from` where no simulation succeeds.
-std::vector<model::StartState> BestStarts(const Hypothesis& hypothesis,
-                                          const std::vector<const RunData*>& runs,
-                                          const std::vector<model::StartState>& from, int jobs);
-
 }  // namespace hydro::diagnose

@@ -13,9 +13,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr char kFlexure[] = "arm.flexure";
-const char* const kBlind[] = {kFlexure, "valve.relief"};
-
 // Of what an effect has to take: with less, other values beside it do not make it.
 constexpr double kWorthRefining = 0.5;
 // From the catalogue's starts, which are factors of 2 to 6 apart.
@@ -33,17 +30,17 @@ std::vector<Change> BlindChanges(const SearchContext& context) {
   });
   std::vector<Change> blind;
   for (const Change& change : context.changes) {
-    const bool is_blind = std::any_of(std::begin(kBlind), std::end(kBlind),
-                                      [&](const char* id) { return change.effect == id; });
-    const bool shows = (oil || change.effect.starts_with("pump.")) && (free || change.effect != kFlexure);
-    if (is_blind && shows) blind.push_back(change);
+    const model::EffectInfo* info = model::FindEffect(change.effect);
+    // A sensor's sign is settled before.
+    const bool is_blind = info != nullptr && info->unseen_by_balances && change.names.empty();
+    if (is_blind && oil && (free || !change.effect.starts_with("arm."))) blind.push_back(change);
   }
   return blind;
 }
 
 ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunData*>& fitted,
                     const ProofWindows& windows, const ProvedSet& set, const Change& change) {
-  const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes, false);
+  const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes);
   const std::vector<model::StartState> from = CorrectedStarts(set.hypothesis.model, fitted, context.jobs);
   FitOptions options;
   options.most_iterations = kStepsOfARace;

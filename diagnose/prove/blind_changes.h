@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
-// Among the context's changes: an arm that gives, where one is free (its own angle is not measured); valves that regulate a pressure
-// (the flow balance is an inequality there); breakaway (while the shaft sticks its balance says nothing); an accumulator whose
-// pressure moves (what it has taken in is not measured).
+// Among the context's changes those that say so in the catalogue (EffectInfo::unseen_by_balances), where runs can show them: with
+// pressures measured, and of an arm where one is free.
 std::vector<Change> BlindChanges(const SearchContext& context);
 
 // The set with the change added, fitted to `fitted` from each of the change's starts in the catalogue, with the effect's numbers

@@ -6,7 +6,7 @@
 
 #include "diagnose/data/thinned.h"
 #include "diagnose/data/windows.h"
-#include "diagnose/search/window_search.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 

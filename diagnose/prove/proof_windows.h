@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnose/data/run_data.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "diagnose/fit/hypothesis.h"
@@ -21,6 +23,12 @@ struct Proposal {
   std::vector<model::ModelDescription> without;
   double score = 0;   // log evidence + log prior
   double weight = 0;  // among all that were estimated, 0 to 1
+};
+
+// What the balances say of effects, by their ids.
+struct SaidByBalances {
+  std::map<std::string, double> weights;  // of all explanations that have the effect
+  std::vector<std::string> likely;        // by the score of the effect alone, the likeliest first
 };
 
 }  // namespace hydro::diagnose

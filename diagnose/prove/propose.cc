@@ -8,6 +8,7 @@
 #include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"
 #include "diagnose/evidence/estimated_model.h"
+#include "diagnose/evidence/refined_shapes.h"
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
 #include "diagnose/prove/blind_changes.h"
@@ -268,6 +269,17 @@ std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   return remarks;
 }
 
+// The ids of all effects that were scored alone, the likeliest first.
+std::vector<std::string> LikelyEffects(const std::vector<ScoredSet>& scores) {
+  std::vector<std::string> likely;
+  for (const ScoredSet& scored : scores) {
+    if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
+    const std::string id(scored.set[0].substr(0, scored.set[0].find_first_of("(|")));
+    if (std::find(likely.begin(), likely.end(), id) == likely.end()) likely.push_back(id);
+  }
+  return likely;
+}
+
 double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   for (const WeighedExplanation& one : weights.explanations) {
     if (one.set == set) return one.weight;
@@ -305,35 +317,39 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   proposed.weights = WeighExplanations(&scores, context.seed);
   for (const WeighedExplanation& one : proposed.weights.explanations) {
     for (const std::string& change : one.changes)
-      proposed.said[change.substr(0, change.find('('))] += one.weight;
+      proposed.said.weights[change.substr(0, change.find('('))] += one.weight;
   }
   proposed.scores = scores.BestFirst();
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
+  proposed.said.likely = LikelyEffects(proposed.scores);
   proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
   const std::set<std::string> oil = runs.OilOnly();
   for (const ChangeSet& set :
        oil.empty() ? SetsToPropose(proposed.weights, proposed.scores) : SetsWithout(oil, proposed.weights)) {
     if (proposed.proposals.size() >= kMostProposals) break;
-    const SetFit fit = evidence.Fit(set);
-    const std::optional<EstimatedModel> estimated = ModelOf(runs, rows, set, fit);
-    if (!estimated || IsImpossible(rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
+    const RefinedShapes shaped(&runs, rows, set);
+    const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;
+    const Rows& own_rows = shaped.any() ? shaped.rows() : rows;
+    const SetFit fit = own.Fit(set);
+    const std::optional<EstimatedModel> estimated = ModelOf(runs, own_rows, set, fit);
+    if (!estimated || IsImpossible(own_rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,
                       {},
-                      scores.Score(set) - nothing,
+                      fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
                       WeightOf(proposed.weights, set)};
     if (context.held_out.empty() && context.runs.size() > 1) {
       for (size_t r = 0; r < context.runs.size(); ++r) {
-        const SetEvidence others = evidence.Without({r});
+        const SetEvidence others = own.Without({r});
         const std::vector<std::string>& names = others.names();
         const bool shown = std::all_of(set.begin(), set.end(), [&](const std::string& name) {
           return std::find(names.begin(), names.end(), name) != names.end();
         });
         const ChangeSet left = shown ? set : ChangeSet{};
-        const std::optional<EstimatedModel> without = ModelOf(runs, rows, left, others.Fit(left));
+        const std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }

@@ -1,14 +1,13 @@
 // What the balances of the runs propose: the likeliest sets of changes, as models that simulation can prove.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/proposal.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -19,7 +18,7 @@ struct Proposed {
   std::vector<ScoredSet> scores;
   // Of the base parameters that may differ, those that the runs show, and those by which their balances are measured.
   std::vector<size_t> shown;
-  std::map<std::string, double> said;  // the weight of all explanations that have an effect, by its id
+  SaidByBalances said;
   std::vector<std::string>
       remarks;  // on signals that contradict each other, and effects that are doubles of values
   std::vector<Unjudged>

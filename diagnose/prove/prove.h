@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <string>
 #include <vector>
 
+#include "diagnose/prove/proof.h"
 #include "diagnose/prove/proposal.h"
-#include "diagnose/search/wide_search.h"
 
 namespace hydro::diagnose {
 
@@ -19,15 +17,12 @@ namespace hydro::diagnose {
 // - what cannot be simulated is "not tested": it is not chosen, and rules out nothing.
 // `blind`: effects that a scan of balances cannot see (BlindChanges()). Where the best proposal leaves a gap, each is added to it,
 // fitted from its starts in the catalogue, and has to gain as much.
-// `said`: the weight of all explanations that have an effect, by its id.
 // `allowed`: indices in BaseParameters() of those that may be refitted; they are where no proposal has other values alone.
 //
-// The result is as of a search: `search.best` and the explanations in `windows.tried`, all of windows, which decide. The work is
-// bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a model cannot
-// follow a whole run, its whole-run gap is infinite and its windows still count.
-WideSearch ProveProposals(const SearchContext& context, const Hypothesis& as_given,
-                          const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
-                          const std::vector<Change>& blind = {},
-                          const std::map<std::string, double>& said = {});
+// The work is bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a
+// model cannot follow a whole run, its windows still count.
+Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+                     const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
+                     const std::vector<Change>& blind = {}, const SaidByBalances& said = {});
 
 }  // namespace hydro::diagnose

@@ -67,7 +67,19 @@ std::vector<Change> ProvedSet::Effects() const {
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {
   const auto model = [set](size_t run) -> const model::ModelDescription& { return set->ModelOf(run); };
   set->near = GapsOfWindows(model, windows.near, jobs);
-  set->far = GapsOfWindows(model, windows.far, jobs);
+  set->far.clear();
+}
+
+void JudgeFar(const ProofWindows& windows, int jobs, ProvedSet* set) {
+  const auto model = [set](size_t run) -> const model::ModelDescription& { return set->ModelOf(run); };
+  if (set->far.empty()) set->far = GapsOfWindows(model, windows.far, jobs);
+}
+
+bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, ProvedSet* set) {
+  if (!PredictsBetter(*other, *set)) return false;
+  JudgeFar(windows, jobs, other);
+  JudgeFar(windows, jobs, set);
+  return PredictsBetter(*other, *set);
 }
 
 bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {

@@ -15,9 +15,10 @@ struct ProvedSet {
       {};  // with the values as the balances estimate them; no parameters: it was not proposed
   // Of runs that are held out in turn, the same without each run; empty: the hypothesis' model predicts all.
   std::vector<model::ModelDescription> without;
-  std::vector<WindowGap> near, far;
-  double weight = 0;     // of the proposal, 0 of what was not proposed
-  bool refined = false;  // as far as sets are to be compared
+  std::vector<WindowGap> near;
+  std::vector<WindowGap> far;  // empty until a comparison needs them
+  double weight = 0;           // of the proposal, 0 of what was not proposed
+  bool refined = false;        // as far as sets are to be compared
 
   bool tested() const { return IsTested(near); }
   std::vector<Change> Effects() const;  // the changes that are not values
@@ -26,12 +27,17 @@ struct ProvedSet {
   }
 };
 
-// Predicts the windows with the set's values.
+// Predicts the near windows with the set's values.
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set);
 
-// Whether `other`, the same set with other values, takes its place: it predicts the near windows better, and the far ones no worse
-// than by the error of the comparison. What cannot be tested takes no place.
+// Predicts the far windows, unless that is done.
+void JudgeFar(const ProofWindows& windows, int jobs, ProvedSet* set);
+
+// Whether `other`, the same set with other values, takes its place: it predicts the near windows better, and the far ones, as far as
+// they are predicted, no worse than by the error of the comparison. What cannot be tested takes no place.
 bool PredictsBetter(const ProvedSet& other, const ProvedSet& set);
+// The same; predicts far windows where near ones do not say no.
+bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, ProvedSet* set);
 
 // The part of the gap over the near windows that an effect has to take, given the same set without it. Measured with a prototype
 // on 11 cases: it left out further effects that were not there on 5 of 6 rigs, and both on rigs that lacked nothing.

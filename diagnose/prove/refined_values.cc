@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/parallel.h"
 #include "diagnose/data/thinned.h"
 #include "diagnose/fit/fit.h"
-#include "diagnose/search/window_search.h"
+#include "diagnose/search/search_context.h"
 #include "maths/median.h"
 
 namespace hydro::diagnose {
@@ -19,13 +18,6 @@ constexpr double kWorthARound = 0.02;
 constexpr double kStepTolerance = 1e-3;
 // Of the median window's rms: what is left of a window counts up to here.
 constexpr double kMostOfTheMedian = 3;
-
-std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
-                                  const std::vector<const RunData*>& windows, int jobs) {
-  std::vector<WindowGap> gaps(windows.size());
-  ParallelFor(windows.size(), jobs, [&](size_t w) { gaps[w] = GapOf(model, *windows[w]); });
-  return gaps;
-}
 
 // What the model leaves of each channel in the median window, at least the noise.
 std::array<double, model::kChannels> MedianSquares(const std::vector<WindowGap>& gaps) {
@@ -72,11 +64,12 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
   return scaled;
 }
 
-std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context, const Hypothesis& hypothesis,
-                                               double sum) {
+std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
+                                               const std::vector<const RunData*>& windows,
+                                               const Hypothesis& hypothesis, double sum) {
   const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
                                    [](const Change& change) { return change.effect.empty(); });
-  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context, sum) : nullptr;
+  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context.given, windows, sum) : nullptr;
 }
 
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
@@ -91,7 +84,6 @@ std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& mo
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set) {
   if (fitted.empty() || set->hypothesis.Free().empty()) return;
-  const SearchContext on_windows = OnWindows(context, fitted, windows.near.windows);
   FitOptions options;
   options.tolerance = kStepTolerance;
   options.jobs = context.jobs;
@@ -99,7 +91,7 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
   for (int round = 0; round < limits.rounds && at.ok() && !TimeIsUp(context); ++round) {
     Hypothesis from = at.hypothesis;
-    from.known = KnownOfValues(on_windows, from, at.sum);
+    from.known = KnownOfValues(context, fitted, from, at.sum);
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;
@@ -107,7 +99,7 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
     refined.hypothesis = at.hypothesis;
     refined.weight = set->weight;
     JudgeSet(windows, context.jobs, &refined);
-    if (PredictsBetter(refined, *set)) *set = std::move(refined);
+    if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;
   }
 }

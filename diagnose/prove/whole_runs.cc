@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
-#include "diagnose/fit/comparison.h"
-#include "diagnose/search/search.h"
+#include "diagnose/search/search_context.h"
 #include "maths/solve.h"
 
 namespace hydro::diagnose {
@@ -18,26 +16,43 @@ namespace {
 
 // Noise units: beyond, small errors of values that add up over a run say more than what is missing.
 constexpr double kNearEnough = 10;
+// Effects that are tested: the balances rank them too, and what is true was among their first five nearly always.
+constexpr size_t kMostTestedEffects = 8;
 // Changes that are fitted: of two that the score test expects about as much of, a fit tells.
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
 constexpr double kMost = 0.5;
 
+// What all runs say of the free numbers together.
+struct Sums {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+};
+Sums SumsOf(const Fitted& fitted) {
+  const auto p = static_cast<Eigen::Index>(fitted.hypothesis.Free().size());
+  Sums sums{Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p)};
+  for (const RunFit& run : fitted.runs) {
+    sums.information += Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
+    sums.gradient += Eigen::Map<const Eigen::VectorXd>(run.gradient.data(), p);
+  }
+  return sums;
+}
+
 // How much the sum of squares falls in a linear model of the hypothesis' free numbers; from its values, which cost nothing.
 double ExpectedFall(const Fitted& fitted) {
-  const auto p = static_cast<Eigen::Index>(fitted.hypothesis.Free().size());
-  if (!fitted.ok() || p == 0) return 0;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
-  for (const RunFit& run : fitted.runs) {
-    if (static_cast<Eigen::Index>(run.gradient.size()) != p) return 0;
-    information += Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
-    gradient += Eigen::Map<const Eigen::VectorXd>(run.gradient.data(), p);
-  }
-  const double largest = information.diagonal().cwiseAbs().maxCoeff();
+  Sums sums = SumsOf(fitted);
+  if (sums.gradient.size() == 0) return 0;
+  const double largest = sums.information.diagonal().cwiseAbs().maxCoeff();
   if (!(largest > 0)) return 0;
-  information.diagonal().array() += 1e-12 * largest;
-  return gradient.dot(maths::SolveSymmetric(information, gradient).col(0));
+  sums.information.diagonal().array() += 1e-12 * largest;
+  return sums.gradient.dot(maths::SolveSymmetric(sums.information, sums.gradient).col(0));
+}
+
+std::vector<WindowGap> OverRuns(const SearchContext& context, const ProvedSet& set) {
+  const std::vector<const RunData*>& runs = context.predicted();
+  std::vector<WindowGap> gaps(runs.size());
+  ParallelFor(runs.size(), context.jobs, [&](size_t r) { gaps[r] = GapOf(set.ModelOf(r), *runs[r]); });
+  return gaps;
 }
 
 struct Tested {
@@ -45,13 +60,22 @@ struct Tested {
   double sum = 0;  // that it may come to
 };
 
+// Values are; an effect that the balances rank far down is not, unless they cannot see it.
+bool IsWorthTesting(const Change& change, const std::vector<std::string>& likely) {
+  if (change.effect.empty() || likely.empty()) return true;
+  const auto place = std::find(likely.begin(), likely.end(), change.effect);
+  return place == likely.end() || place - likely.begin() < static_cast<std::ptrdiff_t>(kMostTestedEffects);
+}
+
 // The best start of each change, by what a score test expects, the most promising first.
-std::vector<Tested> ScoreTest(const SearchContext& context, const Explanation& from) {
+std::vector<Tested> ScoreTest(const SearchContext& context, const Hypothesis& given,
+                              const std::vector<model::StartState>& from,
+                              const std::vector<std::string>& likely) {
   std::vector<Hypothesis> starts;
   std::vector<size_t> owner;
   for (size_t c = 0; c < context.changes.size(); ++c) {
-    if (from.fitted.hypothesis.Has(context.changes[c])) continue;
-    for (Hypothesis& start : With(from.fitted.hypothesis, context.changes[c], context.sizes, false)) {
+    if (!IsWorthTesting(context.changes[c], likely)) continue;
+    for (Hypothesis& start : With(given, context.changes[c], context.sizes)) {
       starts.push_back(std::move(start));
       owner.push_back(c);
     }
@@ -60,7 +84,7 @@ std::vector<Tested> ScoreTest(const SearchContext& context, const Explanation& f
   once.most_iterations = 0;
   std::vector<double> sums(starts.size(), std::numeric_limits<double>::infinity());
   ParallelFor(starts.size(), context.jobs, [&](size_t i) {
-    const Fitted fitted = Fit(starts[i], context.runs, StartsOf(from.fitted), once);
+    const Fitted fitted = Fit(starts[i], context.runs, from, once);
     if (fitted.ok()) sums[i] = fitted.sum - ExpectedFall(fitted);
   });
   std::vector<Tested> best;
@@ -78,47 +102,91 @@ std::vector<Tested> ScoreTest(const SearchContext& context, const Explanation& f
   return best;
 }
 
-bool LeavesNothing(const Explanation& one) { return one.held_out_gap() < kCloseEnough; }
+// The fit's model without what each run says of its numbers: a Gauss-Newton step from the common fit with the others' information.
+std::vector<model::ModelDescription> WithoutEachRun(const Fitted& fitted) {
+  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  const auto p = static_cast<Eigen::Index>(free.size());
+  const Sums all = SumsOf(fitted);
+  std::vector<model::ModelDescription> models;
+  for (const RunFit& run : fitted.runs) {
+    Hypothesis others = fitted.hypothesis;
+    if (p > 0) {
+      Eigen::MatrixXd left =
+          all.information - Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
+      const Eigen::VectorXd right = all.gradient - Eigen::Map<const Eigen::VectorXd>(run.gradient.data(), p);
+      // What no other run tells stays where it is.
+      left.diagonal() += 1e-6 * all.information.diagonal();
+      const Eigen::VectorXd scale = (left.diagonal().array() + 1e-300).sqrt().inverse();
+      const Eigen::MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
+      const Eigen::VectorXd move =
+          -(scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * right));
+      std::vector<double> values;
+      for (size_t i = 0; i < free.size(); ++i) {
+        const double moved = free[i].Moved(move(static_cast<Eigen::Index>(i)));
+        values.push_back(std::clamp(moved, free[i].low, free[i].high));
+      }
+      others.Set(values);
+    }
+    models.push_back(others.model);
+  }
+  return models;
+}
+
+// The set with the fit's values, judged by the held-out runs.
+ProvedSet SetOf(const SearchContext& context, const Fitted& fitted) {
+  ProvedSet set;
+  set.hypothesis = fitted.hypothesis;
+  if (context.held_out.empty()) set.without = WithoutEachRun(fitted);
+  set.near = OverRuns(context, set);
+  return set;
+}
 
 bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1); }
 
 }  // namespace
 
-WideSearch ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, WideSearch near,
-                             bool at_the_noise) {
-  if (!at_the_noise) return near;
-  const Explanation given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
-  const auto near_enough = [](const Explanation& one) {
-    return one.held_out_gap() < kNearEnough * kNearEnough;
-  };
-  const bool far = !given.fitted.ok() || !(near_enough(given) || near_enough(near.search.best));
-  if (far || LeavesNothing(given)) return near;
-  if (context.report_progress) context.report_progress({"what only whole runs show", 0.94});
-  WideSearch whole;
-  whole.refit = near.refit;
-  whole.search.given = given;
-  whole.search.rated = near.search.rated;
-  whole.search.best = given;
-  std::optional<Explanation> better;
-  for (const Tested& tested : ScoreTest(context, given)) {
-    Explanation one = Explain(context, tested.hypothesis, StartsOf(given.fitted), FitToCompare(context.jobs));
-    if (!one.fitted.ok()) continue;
-    whole.search.tried.push_back(one);
-    const auto cost = [](const Explanation& of) {
-      return Cost(of.held_out_gap(), NumbersFactor(of.fitted.hypothesis));
-    };
-    if (!better || cost(one) < cost(*better)) better = std::move(one);
+double MeanSquare(const std::vector<WindowGap>& runs) {
+  double sum = 0, count = 0;
+  for (const WindowGap& gap : runs) {
+    if (!gap.tested) return std::numeric_limits<double>::infinity();
+    sum += gap.sum;
+    count += static_cast<double>(gap.count);
   }
-  if (better && TakesMost(given.held_out_gap(), better->held_out_gap()))
-    whole.search.best = std::move(*better);
+  return count > 0 ? sum / count : 0;
+}
+
+Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
+                        bool at_the_noise, const std::vector<std::string>& likely) {
+  if (!at_the_noise) return near;
+  const std::vector<WindowGap> found = OverRuns(context, near.Best());
+  Proof whole;
+  for (const RunData* run : context.predicted()) whole.runs.push_back(run->name);
+  whole.sets = {near.Given(), near.Values()};
+  for (ProvedSet& set : whole.sets) {
+    set.near = OverRuns(context, set);
+    set.far.clear();
+  }
+  whole.values = 1;
+  const double given = MeanSquare(whole.Given().near);
+  const bool far = !(std::min(given, MeanSquare(found)) < kNearEnough * kNearEnough);
+  if (far || !std::isfinite(given) || given < kCloseEnough) return near;
+  context.Report("what only whole runs show", 0.94);
+  const Fitted start = Fit(as_given, context.runs, MeasuredStarts(context.runs), FineFit(context.jobs));
+  if (!start.ok()) return near;
+  for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start), likely)) {
+    const Fitted fitted = Fit(tested.hypothesis, context.runs, StartsOf(start), FitToCompare(context.jobs));
+    if (fitted.ok()) whole.sets.push_back(SetOf(context, fitted));
+  }
+  for (size_t i = 2; i < whole.sets.size(); ++i) {
+    const double square = MeanSquare(whole.sets[i].near);
+    if (!TakesMost(given, square)) continue;
+    if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
+  }
   // Windows may have found as much with values that whole runs confirm.
-  const bool found = !whole.search.best.changes().empty();
-  if (!found || !Material(near.search.best.held_out_gap(), whole.search.best.held_out_gap())) return near;
-  whole.search.tried.push_back(whole.refit);
-  const Explanation settled = Explain(context, whole.search.best.fitted.hypothesis,
-                                      StartsOf(whole.search.best.fitted), FineFit(context.jobs));
-  if (settled.fitted.ok() && settled.squared_gap() <= whole.search.best.squared_gap())
-    whole.search.best = settled;
+  if (whole.best == whole.given || !FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect)) return near;
+  whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
+  whole.told_runs = context.runs;
+  if (whole.told.ok()) whole.sets[whole.best] = SetOf(context, whole.told);
   return whole;
 }
 

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 
 #include "base/parallel.h"
-#include "diagnose/data/thinned.h"
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/residuals.h"
-#include "diagnose/fit/run_cost.h"
 #include "diagnose/fit/turn.h"
 #include "maths/median.h"
 #include "maths/solve.h"
@@ -19,67 +17,111 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A start is mended by so many steps of least squares, while each takes a part of the squared gap.
-constexpr int kPlainSteps = 2, kStartSteps = 2;
+// A start is mended by so many simulations, while each takes a part of the squared gap.
+constexpr int kStartSteps = 3;
 constexpr double kStartGain = 0.9;
+// What a start leaves of each signal and how each signal weighs take turns in a linear model, which is nearly free.
+constexpr int kWeighings = 6;
 // Two predictions whose gaps differ by less than this part are the same; so many others have to be left.
 constexpr double kAlike = 0.005;
 constexpr size_t kFewestThatDiffer = 2;
 
+using Eigen::Index;
+using Eigen::Map;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 // Of the gap. Beyond it a window has diverged, and how far is chance.
 constexpr double kMostOfAWindow = 4;
 // Squared, in noise units: a median below it is the noise.
 constexpr double kAtTheNoise = 1.25;
 
-// The start after one Gauss-Newton step; none where the window cannot be simulated.
-std::optional<model::StartState> BetterStart(const Hypothesis& held, const RunData& window,
-                                             const model::StartState& from) {
-  RunCost cost(held, window, from);
-  model::StartState start = from;
-  if (cost.starts().empty()) return start;
-  const auto n = static_cast<Eigen::Index>(cost.starts().size());
-  std::vector<double> values;
-  for (const model::Unknown& unknown : cost.starts()) values.push_back(from[unknown.index]);
-  const MatrixXd* normal = cost.Normal(nullptr, values.data());
-  if (normal == nullptr) return std::nullopt;
-  MatrixXd information = normal->topLeftCorner(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-300;
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-9;  // numbers that the window cannot show stay where they are
-  const MatrixXd step =
-      scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * normal->topRightCorner(n, 1));
-  for (Eigen::Index i = 0; i < n; ++i) start[cost.starts()[static_cast<size_t>(i)].index] -= step(i, 0);
-  return start;
+// What the residuals leave of the window.
+WindowGap GapFrom(const Residuals& residuals, const RunData& window, const model::StartState& start) {
+  WindowGap gap;
+  gap.squared.fill(std::numeric_limits<double>::quiet_NaN());
+  gap.count = residuals.values.size();
+  gap.start = start;
+  for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    const size_t first = residuals.first[s], count = residuals.first[s + 1] - first;
+    if (count == 0) continue;
+    const double sum = Map<const VectorXd>(&residuals.values[first], static_cast<Index>(count)).squaredNorm();
+    gap.squared[static_cast<size_t>(window.signals[s].channel)] = sum / static_cast<double>(count);
+    gap.sum += sum;
+  }
+  gap.tested = gap.count > 0 && std::isfinite(gap.sum);
+  return gap;
 }
 
-// False where it cannot be simulated.
-bool SetResiduals(const model::ModelDescription& model, const RunData& window, const model::StartState& start,
-                  WindowGap* gap) {
-  Residuals residuals;
-  try {
-    residuals = ResidualsOf(model, window, start);
-  } catch (const model::ModelError&) {
-    return false;
+// How a window's residuals depend on its start, linearly.
+class StartFit {
+ public:
+  StartFit(const RunData& window, std::vector<model::Unknown> starts, const Residuals& at)
+      : window_(window), starts_(std::move(starts)), first_(at.first) {
+    const auto rows = static_cast<Index>(at.values.size());
+    jacobian_ = Map<const MatrixXd>(at.jacobian.data(), rows, static_cast<Index>(starts_.size()));
+    for (size_t s = 0; s + 1 < first_.size(); ++s) {
+      const MatrixXd part = Rows(jacobian_, s);
+      normals_.emplace_back(part.transpose() * part);
+    }
   }
-  gap->squared.fill(std::numeric_limits<double>::quiet_NaN());
-  gap->sum = 0;
-  gap->count = residuals.values.size();
-  gap->start = start;
-  for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
-    double sum = 0;
-    for (size_t i = residuals.first[s]; i < residuals.first[s + 1]; ++i)
-      sum += residuals.values[i] * residuals.values[i];
-    const size_t count = residuals.first[s + 1] - residuals.first[s];
-    if (count == 0) continue;
-    gap->squared[static_cast<size_t>(window.signals[s].channel)] = sum / static_cast<double>(count);
-    gap->sum += sum;
+
+  // The best start near `from`, where the residuals are these. Signals weigh by what is left of them: a start that had to mend
+  // the signal with the finest sensor would spoil the others. First as the sensors' noise has it.
+  model::StartState Best(const model::StartState& from, const Residuals& at) const {
+    const VectorXd residual = Map<const VectorXd>(at.values.data(), static_cast<Index>(at.values.size()));
+    std::vector<double> left(normals_.size(), 1);
+    VectorXd step;
+    for (int k = 0; k < kWeighings; ++k) {
+      step = Step(from, residual, left);
+      const VectorXd then = residual + jacobian_ * step;
+      const std::vector<double> before = left;
+      for (size_t s = 0; s < left.size(); ++s) {
+        const auto part = then.segment(Row(s), Row(s + 1) - Row(s));
+        if (part.size() > 0) left[s] = std::max(1.0, part.squaredNorm() / static_cast<double>(part.size()));
+      }
+      if (left == before) break;
+    }
+    model::StartState best = from;
+    for (size_t i = 0; i < starts_.size(); ++i) best[starts_[i].index] += step(static_cast<Index>(i));
+    return best;
   }
-  gap->tested = gap->count > 0 && std::isfinite(gap->sum);
-  return gap->tested;
-}
+
+ private:
+  Index Row(size_t signal) const { return static_cast<Index>(first_[signal]); }
+  MatrixXd Rows(const MatrixXd& of, size_t signal) const {
+    return of.middleRows(Row(signal), Row(signal + 1) - Row(signal));
+  }
+
+  // Least squares with what is known of the start.
+  VectorXd Step(const model::StartState& from, const VectorXd& residual,
+                const std::vector<double>& left) const {
+    const auto n = static_cast<Index>(starts_.size());
+    MatrixXd information = MatrixXd::Zero(n, n);
+    VectorXd gradient = VectorXd::Zero(n);
+    for (size_t s = 0; s < left.size(); ++s) {
+      const Index rows = Row(s + 1) - Row(s);
+      information += normals_[s] / left[s];
+      gradient += jacobian_.middleRows(Row(s), rows).transpose() * residual.segment(Row(s), rows) / left[s];
+    }
+    for (Index i = 0; i < n; ++i) {
+      const size_t state = starts_[static_cast<size_t>(i)].index;
+      const double weight = std::pow(window_.start_error[state], -2);
+      information(i, i) += weight + 1e-300;
+      gradient(i) += weight * (from[state] - window_.start[state]);
+    }
+    const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+    MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    scaled.diagonal().array() += 1e-9;  // numbers that the window cannot show stay where they are
+    return -(scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * gradient));
+  }
+
+  const RunData& window_;
+  std::vector<model::Unknown> starts_;
+  std::vector<size_t> first_;
+  MatrixXd jacobian_;
+  std::vector<MatrixXd> normals_;  // of each signal
+};
 
 // Whether the channel's median window is at the noise.
 bool IsAtTheNoise(const std::vector<WindowGap>& gaps, size_t channel) {
@@ -106,45 +148,35 @@ double WindowGap::Typical() const {
   return channels > 0 ? std::exp(logarithms / channels) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The window as a start should be fitted to it: what the model leaves of a channel is not the sensor's noise, and a start that had to
-// mend the channel with the finest sensor would spoil the others.
-RunData WithWhatIsLeft(const RunData& window, const WindowGap& gap) {
-  RunData weighed = ThinnedCopy(window);
-  for (SignalData& signal : weighed.signals) {
-    const double left = gap.squared[static_cast<size_t>(signal.channel)];
-    if (left > 1) signal.noise *= std::sqrt(left);
-  }
-  return weighed;
-}
-
 WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
-  Hypothesis held;
-  held.model = model;
-  WindowGap best;
   model::StartState from = AtBestTurn(model, window, window.start);
-  if (!SetResiduals(model, window, from, &best)) {
-    const std::optional<model::StartState> start = BetterStart(held, window, from);
-    if (start.has_value()) SetResiduals(model, window, *start, &best);
-    return best;
-  }
-  for (int step = 0; step < kPlainSteps + kStartSteps; ++step) {
-    // First as the sensors' noise has it. What that leaves beyond the noise is the model's, and weighs the next step.
-    const bool plain = step < kPlainSteps;
-    if (!plain && best.sum < kAtTheNoise * kAtTheNoise * static_cast<double>(best.count)) break;
-    const std::optional<model::StartState> start =
-        BetterStart(held, plain ? ThinnedCopy(window) : WithWhatIsLeft(window, best), from);
-    if (!start.has_value() || *start == from) break;
-    WindowGap corrected;
-    if (!SetResiduals(model, window, *start, &corrected)) break;
-    const bool better = plain ? corrected.sum < best.sum : corrected.Typical() < best.Typical();
-    if (plain && !better) continue;
-    if (!better) break;
-    const bool enough = !plain && corrected.Typical() > kStartGain * best.Typical();
-    best = corrected;
-    from = *start;
-    if (enough) break;
+  WindowGap best;
+  try {
+    const std::vector<model::Unknown> starts = StartUnknowns(model, window);
+    Residuals at = ResidualsOf(model, window, from, {}, starts);
+    best = GapFrom(at, window, from);
+    if (starts.empty() || !best.tested) return best;
+    const StartFit fit(window, starts, at);
+    for (int step = 0; step < kStartSteps; ++step) {
+      from = fit.Best(from, at);
+      at = ResidualsOf(model, window, from);
+      const WindowGap corrected = GapFrom(at, window, from);
+      if (!corrected.tested || corrected.Typical() >= best.Typical()) break;
+      const bool enough = corrected.Typical() > kStartGain * best.Typical();
+      best = corrected;
+      if (enough) break;
+    }
+  } catch (const model::ModelError&) {
+    // A start that cannot be simulated is no better one; without any the window is not tested.
   }
   return best;
+}
+
+std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
+                                  const std::vector<const RunData*>& windows, int jobs) {
+  std::vector<WindowGap> gaps(windows.size());
+  ParallelFor(windows.size(), jobs, [&](size_t w) { gaps[w] = GapOf(model, *windows[w]); });
+  return gaps;
 }
 
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs) {
@@ -167,7 +199,7 @@ GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap
   }
   const double most = std::log(kMostOfAWindow);
   std::vector<double> falls;
-  for (size_t w = 0; w < before.size(); ++w) {
+  for (size_t w = 0; w < std::min(before.size(), after.size()); ++w) {
     if (!before[w].tested || !after[w].tested) continue;
     double sum = 0, channels = 0;
     for (size_t c = 0; c < model::kChannels; ++c) {

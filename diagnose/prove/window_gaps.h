@@ -29,6 +29,8 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window);
 
 // Which model predicts the run at this place.
 using ModelOfRun = std::function<const model::ModelDescription&(size_t run)>;
+std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
+                                  const std::vector<const RunData*>& windows, int jobs);
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs);
 
 // The mean of log(gap before / gap after) over the windows that both can be tested on.

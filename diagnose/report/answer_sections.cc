@@ -1,15 +1,13 @@
-#include "diagnose/report/answer_sections.h"
-
+// Sections that answer: what was found, how sure that is, what remains, what to measure next.
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "diagnose/report/html_parts.h"
+#include "diagnose/report/page_sections.h"
+#include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
-#include "diagnose/report/terminal_summary.h"
-#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
@@ -19,10 +17,10 @@ namespace {
 
 // The effect's term over its own variable or, where it acts through time, a stretch in which it shows.
 std::string PictureOf(const Diagnosis& diagnosis, const FoundEffect& effect, bool si) {
-  for (const FoundTerm& term : diagnosis.terms) {
-    if (term.effect != effect.id) continue;
+  for (const MeasuredCurve& term : diagnosis.terms) {
+    if (term.element != effect.id) continue;
     return "<p class=\"lead\">What the runs lack without it, with 95 % intervals, and its own term:</p>\n" +
-           page::HtmlFigure(FoundTermFigure(term), "the term of " + effect.id);
+           page::HtmlFigure(CurveFigure(term), "the term of " + effect.id);
   }
   for (const FoundStretch& stretch : diagnosis.stretches) {
     if (stretch.effect != effect.id) continue;
@@ -92,13 +90,9 @@ std::string Places(const Diagnosis& diagnosis) {
 
 std::string MissingTerms(const Diagnosis& diagnosis) {
   if (diagnosis.missing.empty()) return "";
-  std::string figures;
-  for (const MissingTerm& term : diagnosis.missing) {
-    figures += page::HtmlFigure(MissingTermFigure(term), "the missing term");
-  }
   return "<p class=\"lead\">What the balance lacks, with 95 % intervals (<code>missing_terms</code> of "
-         "report.json):</p>\n<div class=\"plots\">\n" +
-         figures + "</div>\n";
+         "report.json):</p>\n" +
+         Curves(diagnosis.missing, "the missing term");
 }
 
 std::string GapCells(const BeforeAfter& gap) {
@@ -153,8 +147,9 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   if (effects.empty()) return "";
   return Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow") +
-         "<p>The weight says how likely an effect is among all that was simulated: how often a model with it "
-         "predicts best when the runs, and parts of them, count more or less at random. The share says how "
+         "<p>The weight says how likely an effect is by what the balances of torque and flow say; it has "
+         "none "
+         "where these cannot speak for it, and simulation alone does. The share says how "
          "much it does: the part of the held-out squared gap that comes back without it. An effect may be "
          "certain and do little.</p>\n";
 }

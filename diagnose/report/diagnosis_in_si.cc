@@ -2,90 +2,75 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <regex>
 #include <string>
 #include <utility>
 
 #include "base/units.h"
-#include "diagnose/closure/resemblance.h"
+#include "diagnose/closure/closure.h"
 #include "diagnose/data/run_data.h"
 
 namespace hydro::diagnose {
 namespace {
 
-double Largest(const std::vector<double>& values) {
+// Converts all lists by one unit, that of the largest of the first's values, and names it.
+void Convert(std::string* unit, const std::vector<std::vector<double>*>& lists) {
   double largest = 0;
-  for (const double value : values) {
-    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  for (const double value : *lists.front()) largest = std::fmax(largest, std::abs(value));
+  const std::optional<SiUnit> to = FindSiUnit(*unit, largest);
+  if (!to.has_value()) return;
+  for (std::vector<double>* values : lists) {
+    for (double& value : *values) value *= to->factor;
   }
-  return largest;
+  *unit = to->to;
 }
 
-void Scale(double factor, std::vector<double>* values) {
-  for (double& value : *values) value *= factor;
+// The same of values with intervals; returns the factor.
+double Convert(std::vector<Estimated>* estimated, std::string* unit) {
+  double largest = 0;
+  for (const Estimated& one : *estimated) largest = std::fmax(largest, std::abs(one.value));
+  const std::optional<SiUnit> to = FindSiUnit(*unit, largest);
+  if (!to.has_value()) return 1;
+  for (Estimated& one : *estimated) {
+    for (double* value : {&one.value, &one.low, &one.high}) *value *= to->factor;
+    one.unit = to->to;
+  }
+  *unit = to->to;
+  return to->factor;
 }
 
-// Returns the factor.
 double Convert(Estimated* estimated) {
-  const std::optional<SiUnit> unit = FindSiUnit(estimated->unit, estimated->value);
-  if (!unit.has_value()) return 1;
-  estimated->value *= unit->factor;
-  estimated->low *= unit->factor;
-  estimated->high *= unit->factor;
-  estimated->unit = unit->to;
-  return unit->factor;
+  std::vector<Estimated> one = {*estimated};
+  std::string unit = estimated->unit;
+  const double factor = Convert(&one, &unit);
+  *estimated = one.front();
+  return factor;
 }
 
-// All runs by one unit, that of the largest value.
-void Convert(ValueByRun* value) {
-  std::vector<double> values;
-  for (const Estimated& run : value->values) values.push_back(run.value);
-  const std::optional<SiUnit> unit = FindSiUnit(value->unit, Largest(values));
-  if (!unit.has_value()) return;
-  for (Estimated& run : value->values) {
-    run.value *= unit->factor;
-    run.low *= unit->factor;
-    run.high *= unit->factor;
-    run.unit = unit->to;
-  }
-  value->unit = unit->to;
-}
-
-// Returns the factors of the variable and of the term.
-std::pair<double, double> Convert(MissingTerm* term) {
-  std::pair<double, double> factors = {1, 1};
-  if (const std::optional<SiUnit> unit = FindSiUnit(term->unit, Largest(term->mean))) {
-    Scale(unit->factor, &term->mean);
-    Scale(unit->factor, &term->error);
-    term->unit = unit->to;
-    factors.second = unit->factor;
-  }
-  if (const std::optional<SiUnit> unit = FindSiUnit(term->against_unit, Largest(term->at))) {
-    Scale(unit->factor, &term->at);
-    term->against_unit = unit->to;
-    factors.first = unit->factor;
-  }
-  return factors;
+void Convert(MeasuredCurve* curve) {
+  Convert(&curve->unit, {&curve->measured, &curve->error, &curve->model, &curve->found});
+  Convert(&curve->against_unit, {&curve->at});
 }
 
 void Convert(Closure* closure) {
-  if (const std::optional<SiUnit> unit = FindSiUnit(closure->unit, Largest(closure->value))) {
-    for (std::vector<double>* values : {&closure->value, &closure->low, &closure->high})
-      Scale(unit->factor, values);
-    closure->unit = unit->to;
-  }
-  for (size_t i = 0; i < closure->knots.size(); ++i) {
-    const std::optional<SiUnit> unit = FindSiUnit(closure->against_units[i], Largest(closure->knots[i]));
-    if (!unit.has_value()) continue;
-    Scale(unit->factor, &closure->knots[i]);
-    closure->against_units[i] = unit->to;
-  }
+  Convert(&closure->unit, {&closure->value, &closure->low, &closure->high});
+  for (size_t i = 0; i < closure->knots.size(); ++i)
+    Convert(&closure->against_units[i], {&closure->knots[i]});
   closure->resembles = Resemblance(*closure);  // it may say a place
 }
 
 void Replace(const std::string& what, const std::string& with, std::string* text) {
   for (size_t at = text->find(what); at != std::string::npos; at = text->find(what, at + with.size()))
     text->replace(at, what.size(), with);
+}
+
+// Whether an effect or a parameter has no place in a motor alone.
+bool IsOfTheOil(const std::string& id) {
+  static const std::regex oil(
+      "((accumulator|actuator|arm|fluid|line|valve)[.]|closure[.](flow|arm|cross|outer)|"
+      "pump[.](flow_ripple|pressure_friction|turbulent_leakage)|sensor[.]pressure|"
+      "parameter (beta|V_ms|c|c_E|c_I|p_3|k_2|J_a|mgl|D)( |$)).*");
+  return std::regex_match(id, oil);
 }
 
 // The words of a text; ids such as pump.stribeck have no article.
@@ -104,7 +89,7 @@ void SpeakOfTheMotor(Diagnosis* diagnosis) {
   for (Candidate& candidate : diagnosis->candidates) SpeakOfTheMotor(&candidate.rejected_because);
   // There is nothing that could leak.
   std::erase_if(diagnosis->remarks, [](const std::string& remark) {
-    return remark.starts_with("leakage and valves cannot be judged");
+    return remark.starts_with("leakage and valves cannot be judged") || IsOfTheOil(remark);
   });
   for (std::string& remark : diagnosis->remarks) SpeakOfTheMotor(&remark);
 }
@@ -112,37 +97,15 @@ void SpeakOfTheMotor(Diagnosis* diagnosis) {
 void ShowTheMotorAlone(Diagnosis* diagnosis) {
   const auto name = [](std::string* balance) {
     if (*balance == "pump_torque") *balance = "motor torque";
+    if (*balance == "pump_friction") *balance = "friction";
   };
   for (Location& location : diagnosis->location) name(&location.balance);
-  for (MissingTerm& term : diagnosis->missing) name(&term.balance);
-  for (FoundTerm& term : diagnosis->terms) name(&term.missing.balance);
+  for (std::vector<MeasuredCurve>* curves : {&diagnosis->missing, &diagnosis->terms, &diagnosis->measured}) {
+    for (MeasuredCurve& curve : *curves) name(&curve.balance), name(&curve.element);
+  }
   std::erase_if(diagnosis->candidates, [](const Candidate& candidate) {
-    constexpr const char* kOfTheOil[] = {"accumulator.",
-                                         "actuator.",
-                                         "arm.",
-                                         "closure.flow",
-                                         "closure.arm",
-                                         "fluid.",
-                                         "line.",
-                                         "pump.flow_ripple",
-                                         "pump.pressure_friction",
-                                         "pump.turbulent_leakage",
-                                         "sensor.pressure",
-                                         "valve.",
-                                         "parameter beta",
-                                         "parameter V_ms",
-                                         "parameter c",
-                                         "parameter c_E",
-                                         "parameter c_I",
-                                         "parameter p_3",
-                                         "parameter k_2",
-                                         "parameter J_a",
-                                         "parameter mgl",
-                                         "parameter D"};
-    const bool tried =
-        std::isfinite(candidate.fit) || std::isfinite(candidate.held_out) || candidate.weight > 0;
-    return !tried && std::any_of(std::begin(kOfTheOil), std::end(kOfTheOil),
-                                 [&](const char* begin) { return candidate.id.starts_with(begin); });
+    const bool tried = std::isfinite(candidate.held_out) || candidate.weight > 0;
+    return !tried && IsOfTheOil(candidate.id);
   });
 }
 
@@ -159,12 +122,9 @@ Diagnosis InSi(Diagnosis diagnosis) {
   }
   for (Closure& closure : diagnosis.closures) Convert(&closure);
   for (ChangedParameter& parameter : diagnosis.parameters) parameter.model *= Convert(&parameter.fitted);
-  for (ValueByRun& value : diagnosis.per_run) Convert(&value);
-  for (MissingTerm& term : diagnosis.missing) Convert(&term);
-  for (FoundTerm& term : diagnosis.terms) {
-    const std::pair<double, double> factors = Convert(&term.missing);
-    Scale(factors.first, &term.at);
-    Scale(factors.second, &term.value);
+  for (ValueByRun& value : diagnosis.per_run) Convert(&value.values, &value.unit);
+  for (std::vector<MeasuredCurve>* curves : {&diagnosis.missing, &diagnosis.terms, &diagnosis.measured}) {
+    for (MeasuredCurve& curve : *curves) Convert(&curve);
   }
   return diagnosis;
 }

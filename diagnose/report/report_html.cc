@@ -1,5 +1,4 @@
-#include "diagnose/report/report_html.h"
-
+// report.html.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,15 +7,10 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
-#include "diagnose/report/answer_sections.h"
-#include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/html_parts.h"
-#include "diagnose/report/measured_section.h"
-#include "diagnose/report/per_run_section.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/page_sections.h"
+#include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
-#include "diagnose/report/terminal_summary.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
 #include "page/typeset.h"
@@ -25,6 +19,11 @@
 
 namespace hydro::diagnose {
 namespace {
+
+// Nothing without content.
+std::string Section(const std::string& heading, const std::string& content) {
+  return content.empty() ? "" : "<h2>" + heading + "</h2>\n" + content;
+}
 
 std::string Plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
@@ -116,14 +115,9 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
   return out;
 }
 
-std::string Dependence(const Diagnosis& diagnosis, bool si) {
-  const std::optional<page::Figure> figure = DependenceFigure(diagnosis, si);
-  return figure ? page::HtmlFigure(*figure, "residuals against what they may depend on") : "";
-}
-
 // Whether no simulation had the candidate, because the balances did not propose it.
 bool IsUntried(const Candidate& candidate) {
-  return std::isnan(candidate.fit) && std::isnan(candidate.held_out) && candidate.weight == 0 &&
+  return std::isnan(candidate.held_out) && candidate.weight == 0 &&
          candidate.rejected_because == kNotProposed;
 }
 
@@ -138,18 +132,20 @@ std::string Ranking(const Diagnosis& diagnosis) {
     }
     const bool taken = candidate.rejected_because.empty();
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
-            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.fit) +
+            std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
             NumberCell(candidate.held_out) + ShortCell(candidate.p_value) + ShortCell(candidate.weight) +
             "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   std::string out;
   if (!rows.empty()) {
     out =
-        "<p>Gaps are in noise units, of short predictions where these decide, else over whole runs, with the "
-        "candidate added and the "
-        "values fitted. p is the probability that noise alone achieves as much, corrected for the number of "
-        "candidates.</p>\n" +
-        Table({"#", "candidate", "#fitted", "#held out", "#p", "#weight", "rejected because"}, rows);
+        "<p>The score is what the balances say of a candidate beyond what they say of nothing, in nats, "
+        "before "
+        "anything is simulated; the weight compares all of them. Gaps are in noise units, of short "
+        "predictions "
+        "where these decide, else over whole runs. p is the probability that noise alone achieves as much, "
+        "corrected for the number of candidates.</p>\n" +
+        Table({"#", "candidate", "#score", "#held out", "#p", "#weight", "rejected because"}, rows);
   }
   if (!untried.empty()) {
     out += "<p>The balances of the runs gave no reason to simulate these alone: " +
@@ -173,7 +169,7 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
   return page::HtmlPage(
       "Gap report: " + diagnosis.model.name,
       Head(diagnosis) + Section("What was found", WhatWasFound(diagnosis, si)) +
-          Section("Friction, leakage and load as the balances measure them", MeasuredSection(diagnosis, si)) +
+          Section("What the balances measure of the machine", MeasuredSection(diagnosis)) +
           Section("How sure that is", HowSure(diagnosis)) +
           Section("What may explain the runs", WhatMayExplain(diagnosis)) +
           Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
@@ -184,7 +180,6 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
           Section("Remarks on the recordings", Remarks(diagnosis)) +
           Section("The gap by signal", GapTable(diagnosis, si)) +
           Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
-          Section("Residuals against what they may depend on", Dependence(diagnosis, si)) +
           Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
           Section("The model with what was found",
                   "<p>As <code>model.toml</code>:</p>\n<pre>" +

@@ -1,9 +1,8 @@
-#include "diagnose/report/report_json.h"
-
+// report.json.
 #include <nlohmann/json.hpp>
 
 #include "diagnose/data/run_data.h"
-#include "diagnose/report/closure_json.h"
+#include "diagnose/report/report.h"
 #include "settings/command_line.h"
 
 namespace hydro::diagnose {
@@ -11,83 +10,99 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Interval(const Estimated& estimated) { return Json::array({estimated.low, estimated.high}); }
-
-Json PlacesAsJson(const Diagnosis& diagnosis) {
-  Json places = Json::array();
-  for (const Location& location : diagnosis.location) {
-    Json windows = Json::array();
-    for (const Window& window : location.windows) {
-      windows.push_back({{"run", window.run}, {"from_s", window.from}, {"to_s", window.to}});
-    }
-    places.push_back({{"balance", location.balance},
-                      {"share", location.share},
-                      {"where", location.where},
-                      {"windows", std::move(windows)}});
-  }
-  return places;
+template <class Item, class Of>
+Json List(const std::vector<Item>& items, const Of& of) {
+  Json list = Json::array();
+  for (const Item& item : items) list.push_back(of(item));
+  return list;
 }
 
-Json MissingTermsAsJson(const Diagnosis& diagnosis) {
-  Json terms = Json::array();
-  for (const MissingTerm& term : diagnosis.missing) {
-    terms.push_back({{"balance", term.balance},
-                     {"unit", term.unit},
-                     {"against", term.against},
-                     {"against_unit", term.against_unit},
-                     {"at", term.at},
-                     {"mean", term.mean},
-                     {"standard_error", term.error}});
-  }
-  return terms;
+Json IntervalJson(const Estimated& estimated) { return Json::array({estimated.low, estimated.high}); }
+
+Json PlaceJson(const Location& location) {
+  const Json windows = List(location.windows, [](const Window& window) {
+    return Json{{"run", window.run}, {"from_s", window.from}, {"to_s", window.to}};
+  });
+  return {{"balance", location.balance},
+          {"share", location.share},
+          {"where", location.where},
+          {"windows", windows}};
 }
 
-Json Effects(const Diagnosis& diagnosis) {
-  Json effects = Json::array();
-  for (const FoundEffect& effect : diagnosis.effects) {
-    Json parameters = Json::object();
-    for (const Estimated& parameter : effect.parameters) {
-      parameters[parameter.name] = {
-          {"value", parameter.value}, {"ci95", Interval(parameter)}, {"unit", parameter.unit}};
-    }
-    effects.push_back({{"id", effect.id},
-                       {"says", effect.summary},
-                       {"equation", effect.equation},
-                       {"parameters", std::move(parameters)},
-                       {"share", effect.share},
-                       {"weight", effect.weight},
-                       {"names", effect.names},
-                       {"tied_with", effect.tied_with}});
-  }
-  return effects;
+Json TermJson(const MeasuredCurve& term) {
+  return {{"balance", term.balance},           {"unit", term.unit}, {"against", term.against},
+          {"against_unit", term.against_unit}, {"at", term.at},     {"mean", term.measured},
+          {"standard_error", term.error}};
 }
 
-Json Recording(const Diagnosis& diagnosis) {
-  Json clocks = Json::array();
-  for (const ClockDelay& clock : diagnosis.recording) {
-    clocks.push_back({{"run", clock.run},
-                      {"signals", clock.signals},
-                      {"late_s", clock.delay},
-                      {"ci95", {clock.delay - clock.error, clock.delay + clock.error}}});
+Json EffectJson(const FoundEffect& effect) {
+  Json parameters = Json::object();
+  for (const Estimated& parameter : effect.parameters) {
+    parameters[parameter.name] = {
+        {"value", parameter.value}, {"ci95", IntervalJson(parameter)}, {"unit", parameter.unit}};
   }
-  return clocks;
+  return {{"id", effect.id},
+          {"says", effect.summary},
+          {"equation", effect.equation},
+          {"parameters", std::move(parameters)},
+          {"share", effect.share},
+          {"weight", effect.weight},
+          {"names", effect.names},
+          {"tied_with", effect.tied_with}};
 }
 
-Json ChangedParameters(const Diagnosis& diagnosis) {
-  Json parameters = Json::array();
-  for (const ChangedParameter& parameter : diagnosis.parameters) {
-    parameters.push_back({{"name", parameter.fitted.name},
-                          {"model", parameter.model},
-                          {"fitted", parameter.fitted.value},
-                          {"ci95", Interval(parameter.fitted)},
-                          {"unit", parameter.fitted.unit},
-                          {"implausible", parameter.implausible}});
-    if (!parameter.why.empty()) parameters.back()["why"] = parameter.why;
+// A list of a closure's knots; of a surface its rows.
+Json ByKnots(const Closure& closure, const Json& list) {
+  if (closure.knots.size() == 1) return list;
+  Json rows = Json::array();
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (i % closure.knots[1].size() == 0) rows.push_back(Json::array());
+    rows.back().push_back(list[i]);
   }
-  return parameters;
+  return rows;
 }
 
-Json Gap(const BeforeAfter& gap) {
+Json ClosureJson(const Closure& closure) {
+  Json band = Json::array();
+  for (size_t i = 0; i < closure.value.size(); ++i) band.push_back({closure.low[i], closure.high[i]});
+  return {{"id", closure.id},
+          {"against", closure.against},
+          {"against_units", closure.against_units},
+          {"unit", closure.unit},
+          {"at", closure.knots.size() == 1 ? Json(closure.knots[0]) : Json(closure.knots)},
+          {"value", ByKnots(closure, closure.value)},
+          {"ci95", ByKnots(closure, band)},
+          {"held_out", {{"before", closure.before}, {"after", closure.after}}},
+          {"seconds", closure.seconds},
+          {"on", closure.on_refit ? "refit" : "found"},
+          {"resembles", closure.resembles}};
+}
+
+// The largest closure, with those of other balances that belong to it under "also"; null without any.
+Json Closures(const Diagnosis& diagnosis) {
+  Json all = List(diagnosis.closures, ClosureJson);
+  if (all.empty()) return nullptr;
+  Json first = all[0];
+  for (size_t i = 1; i < all.size(); ++i) first["also"].push_back(all[i]);
+  return first;
+}
+
+Json ClockJson(const ClockDelay& clock) {
+  return {{"run", clock.run},
+          {"signals", clock.signals},
+          {"late_s", clock.delay},
+          {"ci95", {clock.delay - clock.error, clock.delay + clock.error}}};
+}
+
+Json ParameterJson(const ChangedParameter& parameter) {
+  Json json = {{"name", parameter.fitted.name},    {"model", parameter.model},
+               {"fitted", parameter.fitted.value}, {"ci95", IntervalJson(parameter.fitted)},
+               {"unit", parameter.fitted.unit},    {"implausible", parameter.implausible}};
+  if (!parameter.why.empty()) json["why"] = parameter.why;
+  return json;
+}
+
+Json GapJson(const BeforeAfter& gap) {
   return {{"before", gap.before}, {"refit_only", gap.refit_only}, {"after", gap.after}};
 }
 
@@ -96,86 +111,61 @@ Json SignalGaps(const std::vector<SignalGap>& gaps, const UnitSystem& units) {
   for (const SignalGap& signal : gaps) {
     signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel, units)},
                                             {"noise", signal.noise},
-                                            {"fit", Gap(signal.fit)},
-                                            {"held_out", Gap(signal.held_out)}};
+                                            {"fit", GapJson(signal.fit)},
+                                            {"held_out", GapJson(signal.held_out)}};
   }
   return signals;
 }
 
-Json PerRun(const Diagnosis& diagnosis) {
-  Json all = Json::array();
-  for (const ValueByRun& value : diagnosis.per_run) {
-    Json values = Json::object(), intervals = Json::object();
-    for (const Estimated& run : value.values) {
-      values[run.name] = run.value;
-      intervals[run.name] = {run.low, run.high};
-    }
-    all.push_back({{"name", value.name},
-                   {"values", std::move(values)},
-                   {"ci95", std::move(intervals)},
-                   {"unit", value.unit},
-                   {"spread", value.Spread()},
-                   {"windows", {{"before", value.before}, {"after", value.after}}}});
+Json PerRunJson(const ValueByRun& value) {
+  Json values = Json::object(), intervals = Json::object();
+  for (const Estimated& run : value.values) {
+    values[run.name] = run.value;
+    intervals[run.name] = IntervalJson(run);
   }
-  return all;
+  return {{"name", value.name},           {"values", std::move(values)},
+          {"ci95", std::move(intervals)}, {"unit", value.unit},
+          {"spread", value.Spread()},     {"windows", {{"before", value.before}, {"after", value.after}}}};
 }
 
 Json Gaps(const Diagnosis& diagnosis) {
-  Json horizons = Json::array();
-  for (const HorizonGap& horizon : diagnosis.horizons) {
-    horizons.push_back({{"seconds", horizon.seconds},
-                        {"signals", SignalGaps(horizon.signals, diagnosis.model.units)},
-                        {"fit", Gap(horizon.fit)},
-                        {"held_out", Gap(horizon.held_out)},
-                        {"typical", Gap(horizon.typical)}});
-  }
-  return {{"signals", SignalGaps(diagnosis.signals, diagnosis.model.units)},
-          {"fit", Gap(diagnosis.fit)},
-          {"held_out", Gap(diagnosis.held_out)},
-          {"horizons", std::move(horizons)}};
+  const UnitSystem& units = diagnosis.model.units;
+  const Json horizons = List(diagnosis.horizons, [&](const HorizonGap& horizon) {
+    return Json{{"seconds", horizon.seconds},
+                {"signals", SignalGaps(horizon.signals, units)},
+                {"fit", GapJson(horizon.fit)},
+                {"held_out", GapJson(horizon.held_out)},
+                {"typical", GapJson(horizon.typical)}};
+  });
+  return {{"signals", SignalGaps(diagnosis.signals, units)},
+          {"fit", GapJson(diagnosis.fit)},
+          {"held_out", GapJson(diagnosis.held_out)},
+          {"horizons", horizons}};
 }
 
-Json NextExperimentOf(const Diagnosis& diagnosis, const std::string& next_config) {
-  const NextExperiment& next = diagnosis.next;
+Json NextExperimentOf(const NextExperiment& next, const std::string& next_config) {
   if (next.why.empty() && next_config.empty()) return nullptr;
   return {{"why", next.why},
           {"config", next_config.empty() ? Json(nullptr) : Json(next_config)},
           {"expected_separation", next.expected_separation}};
 }
 
-Json ChosenWithout(const Diagnosis& diagnosis) {
-  Json choices = Json::array();
-  for (const ChoiceWithout& choice : diagnosis.choices)
-    choices.push_back({{"run", choice.run}, {"chosen", choice.chosen}, {"same", choice.same}});
-  return choices;
+Json ChoiceJson(const ChoiceWithout& choice) {
+  return {{"run", choice.run}, {"chosen", choice.chosen}, {"same", choice.same}};
 }
 
-Json Explanations(const Diagnosis& diagnosis) {
-  Json explanations = Json::array();
-  for (const WeightedSet& one : diagnosis.explanations)
-    explanations.push_back({{"changes", one.changes}, {"weight", one.weight}});
-  return explanations;
+Json ExplanationJson(const WeightedSet& one) { return {{"changes", one.changes}, {"weight", one.weight}}; }
+
+Json CandidateJson(const Candidate& candidate) {
+  return {{"id", candidate.id},
+          {"score", candidate.score},
+          {"held_out", candidate.held_out},
+          {"p_value", candidate.p_value},
+          {"weight", candidate.weight},
+          {"rejected_because", candidate.rejected_because}};
 }
 
-Json CannotJudge(const Diagnosis& diagnosis) {
-  Json all = Json::array();
-  for (const Unjudged& one : diagnosis.unjudged)
-    all.push_back({{"effects", one.effects}, {"because", one.because}});
-  return all;
-}
-
-Json Candidates(const Diagnosis& diagnosis) {
-  Json candidates = Json::array();
-  for (const Candidate& candidate : diagnosis.candidates) {
-    candidates.push_back({{"id", candidate.id},
-                          {"fit", candidate.fit},
-                          {"held_out", candidate.held_out},
-                          {"p_value", candidate.p_value},
-                          {"weight", candidate.weight},
-                          {"rejected_because", candidate.rejected_because}});
-  }
-  return candidates;
-}
+Json UnjudgedJson(const Unjudged& one) { return {{"effects", one.effects}, {"because", one.because}}; }
 
 }  // namespace
 
@@ -188,23 +178,23 @@ const std::string& VerdictName(Verdict verdict) {
 std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_config, double elapsed_s) {
   const Json report = {{"verdict", VerdictName(diagnosis.verdict)},
                        {"sentence", diagnosis.sentence},
-                       {"recording", Recording(diagnosis)},
-                       {"location", PlacesAsJson(diagnosis)},
-                       {"missing_terms", MissingTermsAsJson(diagnosis)},
-                       {"effects", Effects(diagnosis)},
-                       {"closure", ClosureJson(diagnosis)},
-                       {"parameters", ChangedParameters(diagnosis)},
-                       {"per_run", PerRun(diagnosis)},
+                       {"recording", List(diagnosis.recording, ClockJson)},
+                       {"location", List(diagnosis.location, PlaceJson)},
+                       {"missing_terms", List(diagnosis.missing, TermJson)},
+                       {"effects", List(diagnosis.effects, EffectJson)},
+                       {"closure", Closures(diagnosis)},
+                       {"parameters", List(diagnosis.parameters, ParameterJson)},
+                       {"per_run", List(diagnosis.per_run, PerRunJson)},
                        {"gap", Gaps(diagnosis)},
-                       {"next_experiment", NextExperimentOf(diagnosis, next_config)},
-                       {"candidates", Candidates(diagnosis)},
-                       {"explanations", Explanations(diagnosis)},
+                       {"next_experiment", NextExperimentOf(diagnosis.next, next_config)},
+                       {"candidates", List(diagnosis.candidates, CandidateJson)},
+                       {"explanations", List(diagnosis.explanations, ExplanationJson)},
                        {"set_90", diagnosis.set_90},
-                       {"cannot_judge", CannotJudge(diagnosis)},
+                       {"cannot_judge", List(diagnosis.unjudged, UnjudgedJson)},
                        {"remarks", diagnosis.remarks},
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},
-                       {"chosen_without", ChosenWithout(diagnosis)},
+                       {"chosen_without", List(diagnosis.choices, ChoiceJson)},
                        {"samples", diagnosis.samples},
                        {"version", settings::ProgramVersion()},
                        {"elapsed_s", elapsed_s}};

@@ -1,5 +1,4 @@
-#include "diagnose/report/terminal_summary.h"
-
+// A diagnosis as plain text: for a terminal, and in model.toml.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +9,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 #include "diagnose/verdict/sentence.h"
 #include "model/terms/parameter_info.h"
 #include "settings/command_line.h"
@@ -42,7 +41,7 @@ std::string EffectText(const FoundEffect& effect) {
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.summary + ")";
   if (!parts.empty()) text += ": " + Joined(parts);
-  if (effect.weight > 0) text += "; weight " + Percent(effect.weight) + " of what was simulated";
+  if (effect.weight > 0) text += "; weight " + Percent(effect.weight) + " by the balances";
   if (std::isfinite(effect.share)) text += ", without it " + Percent(effect.share) + " of the gap comes back";
   if (!effect.tied_with.empty()) text += "; tied with " + Joined(InWords(effect.tied_with));
   return text;

@@ -1,12 +1,8 @@
 #include "diagnose/say/lacking.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "base/parallel.h"
 #include "diagnose/balances/masks.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 
@@ -15,30 +11,21 @@ namespace {
 constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque", "flow_1",  "flow_2",
                                                                   "arm_torque",  "level_1", "level_2"};
 constexpr uint64_t kDrawSeed = 11;
-// Of noise's variance, what it may be larger than the draws say: see EnergyOf.
-constexpr double kNoiseMargin = 1.5;
-constexpr size_t kFewestBlocks = 3;
 // Of the direction, -1 to 1: three standard deviations of the speed's noise.
 constexpr double kSure = 0.997;
 // s: as smooth as the motion that a balance sees.
 constexpr double kMaskRise = 0.008;
 constexpr size_t kNearBlocks = 16;  // blocks on either side whose noise is averaged
 
-bool AnyError(const SignalErrors& errors) {
-  return std::any_of(errors.of.begin(), errors.of.end(), [](const auto& of) { return !of.empty(); });
-}
-
 LackingRun LackingIn(const model::ModelDescription& model, const RunData& run, size_t which,
                      const PressureOffsets& offsets) {
   LackingRun lacking;
   const RunMotion read = MotionOf(run, model.parameters);
-  const SignalErrors errors = ErrorsOf(model, read);
-  lacking.motion = AnyError(errors) ? Without(read, errors, 1) : read;
+  lacking.motion = Without(read, ErrorsOf(model, read), 1);
   if (read.pressures) {
     for (model::KnownMotion& at : lacking.motion.at) at.p1 -= offsets.p1, at.p2 -= offsets.p2;
   }
   lacking.base = SeriesOf(model, lacking.motion);
-  for (size_t b = 0; b < kBalanceKinds; ++b) lacking.lacking[b] = -lacking.base.left[b];
   const BaseSeries plain = SeriesOf(model, read);
   for (size_t draw = 0; draw < kNoiseDraws; ++draw) {
     const uint64_t seed = kDrawSeed + kNoiseDraws * which + draw;
@@ -73,26 +60,18 @@ Eigen::VectorXd WeightsOf(const std::vector<uint8_t>& mask, double interval) {
   return weights;
 }
 
-// Appends the blocks of one run; their noise is that of their neighbours too.
+// Appends the blocks of one run. What noise does depends on the motion: a block's noise is that of its neighbours too.
 void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t length,
-               std::vector<Blocks::Block>* blocks) {
-  const size_t b = static_cast<size_t>(balance), before = blocks->size(), size = run.masks[b].size();
+               std::vector<Block>* blocks) {
+  const size_t before = blocks->size(), size = run.masks[static_cast<size_t>(balance)].size();
   std::vector<double> drawn = {0};  // cumulative sums of the draws' squares
   for (size_t first = 0; first + length <= size; first += length) {
-    Blocks::Block block{which, first, first + length, 0, 0};
-    double count = 0;
-    std::array<double, kNoiseDraws> noise{};
-    VisitBlock(block, run.weights[b], [&](size_t i, double weight) {
-      const auto at = static_cast<Eigen::Index>(i);
-      count += weight;
-      block.value += weight * run.lacking[b][at];
-      for (size_t draw = 0; draw < kNoiseDraws; ++draw) noise[draw] += weight * run.noise[draw][b][at];
-    });
-    if (2 * count < static_cast<double>(length)) continue;
-    block.value /= count;
-    double squares = 0;
-    for (const double value : noise) squares += value * value / (count * count);
-    drawn.push_back(drawn.back() + squares / kNoiseDraws);
+    Block block{which, first, first + length, 0, 0};
+    block.value = -MeanOver(block, run, balance, run.base.left);
+    if (std::isnan(block.value)) continue;
+    drawn.push_back(drawn.back());
+    for (const BalanceSeries& draw : run.noise)
+      drawn.back() += std::pow(MeanOver(block, run, balance, draw), 2) / kNoiseDraws;
     blocks->push_back(block);
   }
   const size_t count = blocks->size() - before;
@@ -105,13 +84,12 @@ void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t 
 }
 
 // No run counts for more because its sensors happen to be quiet: a machine repeats itself less exactly than they read.
-void LevelNoise(Blocks* blocks) {
+void LevelNoise(std::vector<Block>* blocks) {
   std::vector<double> noise;
-  for (const Blocks::Block& block : blocks->blocks) noise.push_back(block.noise);
+  for (const Block& block : *blocks) noise.push_back(block.noise);
   if (noise.empty()) return;
-  const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
-  std::nth_element(noise.begin(), middle, noise.end());
-  for (Blocks::Block& block : blocks->blocks) block.noise = std::max(block.noise, *middle);
+  const double usual = maths::Median(noise);
+  for (Block& block : *blocks) block.noise = std::max(block.noise, usual);
 }
 
 }  // namespace
@@ -119,19 +97,13 @@ void LevelNoise(Blocks* blocks) {
 std::string NameOf(BalanceKind balance) { return kBalanceNames[static_cast<size_t>(balance)]; }
 
 std::string UnitOf(BalanceKind balance, const UnitSystem& units) {
-  switch (balance) {
-    case BalanceKind::kFlow1:
-    case BalanceKind::kFlow2:
-      return units.UnitFor("in^3/s");
-    case BalanceKind::kLevel1:
-    case BalanceKind::kLevel2:
-      return units.UnitFor("psi");
-    case BalanceKind::kArm:
-      return units.UnitFor("in-lbf", -1);
-    case BalanceKind::kTorque:
-      break;
-  }
-  return units.UnitFor("in-lbf");
+  const bool flow = balance == BalanceKind::kFlow1 || balance == BalanceKind::kFlow2;
+  return flow ? units.UnitFor("in^3/s") : units.UnitFor("in-lbf", balance == BalanceKind::kArm ? -1 : 0);
+}
+
+double MeanOver(const Block& block, const LackingRun& run, BalanceKind balance, const BalanceSeries& series) {
+  const Eigen::VectorXd& values = series[static_cast<size_t>(balance)];
+  return MeanOver(block, run, balance, [&](size_t i) { return values[static_cast<Eigen::Index>(i)]; });
 }
 
 std::vector<LackingRun> LackingIn(const model::ModelDescription& model,
@@ -144,40 +116,22 @@ std::vector<LackingRun> LackingIn(const model::ModelDescription& model,
   const HeldPressure held = FindHeldPressure(motions, model.parameters);
   for (LackingRun& run : all) {
     run.masks = MasksOf(run.motion, run.base.left, held, model.parameters);
-    const double interval = run.motion.step * static_cast<double>(run.motion.stride);
     MaskReversals(&run);
+    const double interval = run.motion.step * static_cast<double>(run.motion.stride);
     for (size_t b = 0; b < kBalanceKinds; ++b) run.weights[b] = WeightsOf(run.masks[b], interval);
   }
   return all;
 }
 
-Blocks BlocksOf(const std::vector<LackingRun>& runs, BalanceKind balance, double duration) {
-  Blocks all;
-  all.duration = duration;
+std::vector<Block> BlocksOf(const std::vector<LackingRun>& runs, BalanceKind balance, double duration) {
+  std::vector<Block> blocks;
   for (size_t r = 0; r < runs.size(); ++r) {
     const RunMotion& motion = runs[r].motion;
     const double instants = duration / (motion.step * static_cast<double>(motion.stride));
-    AddBlocks(runs[r], r, balance, static_cast<size_t>(std::max(1.0, std::round(instants))), &all.blocks);
+    AddBlocks(runs[r], r, balance, static_cast<size_t>(std::max(1.0, std::round(instants))), &blocks);
   }
-  LevelNoise(&all);
-  return all;
-}
-
-double EnergyOf(const Blocks& blocks) {
-  double energy = 0;
-  for (const Blocks::Block& block : blocks.blocks)
-    energy += std::pow(block.value / block.noise, 2) - kNoiseMargin;
-  return energy;
-}
-
-Blocks LargestBlocks(const std::vector<LackingRun>& runs, BalanceKind balance) {
-  Blocks largest;
-  for (const double duration : kBlockLengths) {
-    Blocks blocks = BlocksOf(runs, balance, duration);
-    if (blocks.blocks.size() < kFewestBlocks) continue;
-    if (largest.blocks.empty() || EnergyOf(blocks) > EnergyOf(largest)) largest = std::move(blocks);
-  }
-  return largest;
+  LevelNoise(&blocks);
+  return blocks;
 }
 
 }  // namespace hydro::diagnose

@@ -1,38 +1,26 @@
 #include "diagnose/say/locate.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "base/number_text.h"
-#include "diagnose/say/dependence.h"
 #include "diagnose/say/seen.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-constexpr std::array<BalanceKind, 4> kPlaces = {BalanceKind::kTorque, BalanceKind::kFlow1,
-                                                BalanceKind::kFlow2, BalanceKind::kArm};
+constexpr BalanceKind kPlaces[] = {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2,
+                                   BalanceKind::kArm};
 
 // Of the disagreement: less is not worth a line.
 constexpr double kSmallestShare = 0.02;
-// A dependence that explains less does not count.
-constexpr double kDependence = 0.05;
-// A command or a late sensor is said to be the cause where it explains so much, and leaves less than this part of what the
-// balance's own variables leave.
-constexpr double kMostOfLack = 0.5, kFarLess = 0.4;
-constexpr double kMostlyOffsets = 0.5;
-// The least instants at which a valve passes oil that show what a transducer reads there.
-constexpr size_t kEnoughHeld = 25;
 
-using AllSeen = std::array<Seen, kBalanceKinds>;
+using AllSeen = std::array<Seen, std::size(kPlaces)>;
 
 AllSeen LookAtAll(const std::vector<LackingRun>& runs, const UnitSystem& units) {
   AllSeen seen;
-  for (const BalanceKind balance : kPlaces) seen[static_cast<size_t>(balance)] = LookAt(runs, balance, units);
+  for (size_t i = 0; i < seen.size(); ++i) seen[i] = LookAt(runs, kPlaces[i], units);
   return seen;
 }
 
@@ -42,8 +30,10 @@ double TotalOf(const AllSeen& seen) {
   return total;
 }
 
-std::string WhereOf(const Blocks& blocks, const Dependence& d) {
-  return d.explained > kDependence ? RangeOf(blocks, d.variable, d.averages) : "the same everywhere";
+// The index in kPlaces.
+size_t Largest(const AllSeen& seen) {
+  const auto less = [](const Seen& a, const Seen& b) { return a.energy < b.energy; };
+  return static_cast<size_t>(std::max_element(seen.begin(), seen.end(), less) - seen.begin());
 }
 
 // Adds up the shares of one place found in several ways; the largest says where.
@@ -65,19 +55,16 @@ std::string WithSign(double value) { return (value < 0 ? "" : "+") + ShortNumber
 PressureOffsets OffsetsOf(const std::vector<LackingRun>& runs) {
   double offset[2] = {}, noise = 0;
   for (int side = 0; side < 2; ++side) {
-    const BalanceKind level = side == 0 ? BalanceKind::kLevel1 : BalanceKind::kLevel2;
+    const auto level = static_cast<size_t>(side == 0 ? BalanceKind::kLevel1 : BalanceKind::kLevel2);
     std::vector<double> held;
     for (const LackingRun& run : runs) {
-      const Eigen::VectorXd& left = run.base.left[static_cast<size_t>(level)];
-      for (size_t i = 0; i < run.size(); ++i) {
-        if (run.Says(level, i)) held.push_back(left[static_cast<Eigen::Index>(i)]);
+      for (size_t i = 0; i < run.masks[level].size(); ++i) {
+        if (run.masks[level][i] == 0) held.push_back(run.base.left[level][static_cast<Eigen::Index>(i)]);
       }
       noise = std::max(noise, run.motion.Of(side == 0 ? GridChannel::kP1 : GridChannel::kP2).noise);
     }
-    if (held.size() < kEnoughHeld) return {};
-    const auto middle = held.begin() + static_cast<std::ptrdiff_t>(held.size() / 2);
-    std::nth_element(held.begin(), middle, held.end());
-    offset[side] = *middle;
+    if (held.empty()) return {};
+    offset[side] = maths::Median(held);
   }
   if (std::abs(offset[0] - offset[1]) < 3 * noise) return {};
   return {offset[0], offset[1]};
@@ -90,11 +77,6 @@ struct Placement {
   AllSeen seen;
   double all = 0;  // the total of `seen` before any correction
   Localisation result = {};
-
-  size_t Largest() const {
-    const auto less = [](const Seen& a, const Seen& b) { return a.energy < b.energy; };
-    return static_cast<size_t>(std::max_element(seen.begin(), seen.end(), less) - seen.begin());
-  }
 };
 
 // The sensors' share is what correcting their offsets removes, if that is most of the disagreement; what is
@@ -105,21 +87,22 @@ void CorrectOffsets(const model::ModelDescription& model, const std::vector<cons
   if (offsets.p1 == 0 && offsets.p2 == 0) return;
   std::vector<LackingRun> corrected = LackingIn(model, runs, jobs, offsets);
   AllSeen left = LookAtAll(corrected, placement->units);
-  if (TotalOf(left) >= kMostlyOffsets * placement->all) return;
+  if (TotalOf(left) >= kFarLess * placement->all) return;
   const std::string unit = " " + model.units.UnitFor("psi");
   const std::string where = "where the valves hold p_3, p1 reads " + WithSign(offsets.p1) + unit +
                             " and p2 " + WithSign(offsets.p2) + unit + " against the model";
   placement->result.location.push_back(
       {"sensor", 1 - TotalOf(left) / placement->all, where,
-       WindowsOf(placement->seen[placement->Largest()].when, placement->runs)});
+       WindowsOf(placement->seen[Largest(placement->seen)].when, placement->runs)});
   placement->runs = std::move(corrected);
   placement->seen = std::move(left);
 }
 
 // Places the disagreement of one balance: with the balance itself, with the command or with a sensor.
-void PlaceBalance(BalanceKind balance, Placement* placement) {
+void PlaceBalance(size_t place, Placement* placement) {
   const std::vector<LackingRun>& runs = placement->runs;
-  Seen& seen = placement->seen[static_cast<size_t>(balance)];
+  const BalanceKind balance = kPlaces[place];
+  Seen& seen = placement->seen[place];
   const double share = seen.energy / placement->all;
   if (share < kSmallestShare) return;
   std::vector<Location>& location = placement->result.location;
@@ -129,29 +112,54 @@ void PlaceBalance(BalanceKind balance, Placement* placement) {
   const auto move_share = [&](const char* to, std::vector<Variable> variables) {
     if (variables.empty() || own < share) return;
     const Dependence other = Ranked(seen.where, std::move(variables), runs, balance).front();
-    const double left = 1 - seen.ranked.front().explained;
-    if (other.explained < kMostOfLack || 1 - other.explained > kFarLess * left) return;
+    if (1 - other.explained > kFarLess * (1 - seen.ranked.front().explained)) return;
     const double part = share * std::min(1.0, other.explained);
     own -= part;
-    AddShare(&location, {to, part, WhereOf(seen.where, other), windows});
+    AddShare(&location, {to, part, WhereOf(other), windows});
     seen.ranked.insert(seen.ranked.begin(), other);
   };
   if (balance == BalanceKind::kTorque) move_share("command", CommandVariables(runs));
   move_share("sensor", LateVariables(runs, balance, placement->units));
   if (own < kSmallestShare) return;
-  location.push_back({NameOf(balance), own, WhereOf(seen.where, seen.ranked.front()), windows});
+  location.push_back({NameOf(balance), own, WhereOf(seen.ranked.front()), windows});
 }
 
-// Tabulates over the variable that explains most, and over the next one that explains anything.
-void Tabulate(BalanceKind balance, Placement* placement) {
-  const Seen& seen = placement->seen[static_cast<size_t>(balance)];
-  std::vector<MissingTerm>& missing = placement->result.missing;
-  for (const Dependence& d : seen.ranked) {
-    if (missing.size() == 2 || (!missing.empty() && d.explained < kDependence)) break;
-    missing.push_back(TableOf(seen.where, d.variable, d.averages));
-    missing.back().balance = NameOf(balance);
-    missing.back().unit = UnitOf(balance, placement->units);
+// Tabulates over the two variables that explain most.
+void Tabulate(size_t place, Placement* placement) {
+  const std::vector<Dependence>& ranked = placement->seen[place].ranked;
+  for (size_t i = 0; i < std::min<size_t>(2, ranked.size()); ++i) {
+    const BinnedCurve& curve = ranked[i].curve;
+    if (curve.size() == 0 || (i > 0 && ranked[i].explained == 0)) continue;
+    placement->result.missing.push_back({.balance = NameOf(kPlaces[place]),
+                                         .unit = UnitOf(kPlaces[place], placement->units),
+                                         .against = ranked[i].variable.name,
+                                         .against_unit = ranked[i].variable.unit,
+                                         .at = curve.at,
+                                         .measured = curve.measured,
+                                         .error = curve.error});
   }
+}
+
+// From the first to the last instant at which the signal's error is more than half of its largest, and that.
+std::pair<Window, double> WorstStretch(const RunCurves& run, model::Channel channel, bool after) {
+  Window window{run.run, 0, 0};
+  double largest = 0;
+  for (const RunCurves::Curve& curve : run.curves) {
+    const std::vector<double>& simulated = after ? curve.after : curve.before;
+    if (curve.channel != channel || simulated.size() != curve.measured.size()) continue;
+    const auto error = [&](size_t k) { return std::abs(curve.measured[k] - simulated[k]); };
+    for (size_t k = 0; k < simulated.size(); ++k) {
+      if (std::isfinite(error(k))) largest = std::max(largest, error(k));
+    }
+    bool inside = false;
+    for (size_t k = 0; k < simulated.size(); ++k) {
+      if (!(error(k) > 0.5 * largest)) continue;
+      if (!inside) window.from = run.time[k];
+      window.to = run.time[k];
+      inside = true;
+    }
+  }
+  return {window, largest};
 }
 
 }  // namespace
@@ -160,17 +168,42 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   Placement placement{model.units, LackingIn(model, runs, jobs), {}};
   placement.seen = LookAtAll(placement.runs, model.units);
   placement.all = TotalOf(placement.seen);
-  for (const Seen& seen : placement.seen) placement.result.judged |= !seen.when.blocks.empty();
-  if (placement.all == 0) return std::move(placement.result);
+  if (placement.all == 0) return {};
   CorrectOffsets(model, runs, jobs, &placement);
-  for (const BalanceKind balance : kPlaces) PlaceBalance(balance, &placement);
+  for (size_t place = 0; place < std::size(kPlaces); ++place) PlaceBalance(place, &placement);
   std::vector<Location>& location = placement.result.location;
   std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
-  if (!location.empty() && location.front().balance != "sensor") {
-    Tabulate(static_cast<BalanceKind>(placement.Largest()), &placement);
-  }
+  if (!location.empty() && location.front().balance != "sensor")
+    Tabulate(Largest(placement.seen), &placement);
   return std::move(placement.result);
+}
+
+std::vector<Location> WorstSignal(const std::vector<SignalGap>& signals, const std::vector<RunCurves>& curves,
+                                  bool after) {
+  double all = 0, most = 0;
+  const SignalGap* worst = nullptr;
+  for (const SignalGap& signal : signals) {
+    const double gap = after ? signal.fit.after : signal.fit.before;
+    const double energy = signal.noise > 0 ? std::pow(gap / signal.noise, 2) - 1 : 0;
+    if (!(energy > 0)) continue;
+    all += energy;
+    if (energy > most) most = energy, worst = &signal;
+  }
+  if (worst == nullptr) return {};
+  Location location{ChannelName(worst->channel),
+                    most / all,
+                    "no balance shows where; of the signals, this is predicted worst",
+                    {}};
+  double largest = 0;
+  for (const RunCurves& run : curves)
+    largest = std::max(largest, WorstStretch(run, worst->channel, after).second);
+  for (const RunCurves& run : curves) {
+    const auto [window, error] = WorstStretch(run, worst->channel, after);
+    // Runs with less are not named beside it.
+    if (error > 0.5 * largest) location.windows.push_back(window);
+  }
+  return {location};
 }
 
 }  // namespace hydro::diagnose

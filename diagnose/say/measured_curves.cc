@@ -1,13 +1,10 @@
 #include "diagnose/say/measured_curves.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "base/parallel.h"
 #include "diagnose/say/binned_curve.h"
-#include "diagnose/say/dependence.h"
+#include "diagnose/say/variables.h"
 
 namespace hydro::diagnose {
 
@@ -15,90 +12,129 @@ namespace {
 
 using model::Parameters;
 
-// s: noise of a derivative averages out, and a pump hardly changes its speed.
-constexpr double kCurveBlock = 0.016;
-constexpr size_t kFewestBins = 3;
+// s: noise of a derivative averages out, and a pump hardly changes its speed; but waves of a turn do.
+constexpr double kCurveBlock = 0.016, kWaveBlock = 0.002;
+
+// A balance, and the sign of what it leaves without the element, as the element counts.
+struct Part {
+  BalanceKind balance;
+  double sign;
+};
 
 // One element of the machine: its terms of eqs. (4), (13), (14), (15).
 struct Element {
-  const char* name;
-  const char* variable;
-  std::vector<BalanceKind> balances;
-  std::vector<double> signs;  // of what the balances leave without the element, as the element counts
+  std::string name, variable;
+  std::vector<Part> parts;
   std::vector<double Parameters::*> values;
-  std::vector<std::string> effects;
-  const char* closure;  // the beginning of the ids of closures over `variable` that belong to it
+  std::string effects;  // the beginning of the ids of effects that may belong to it
+  std::string closure;  // the same of closures over `variable`
 };
 
 std::vector<Element> AllElements() {
   using enum BalanceKind;
-  return {{"pump_friction",
-           "motor_speed",
-           {kTorque},
-           {1},
-           {&Parameters::b, &Parameters::T_s, &Parameters::f},
-           {"pump.stribeck", "pump.pressure_friction", "pump.quadratic_drag", "pump.friction_asymmetry"},
-           "closure.pump_torque"},
-          {"cross_leakage",
-           "p2 - p1",
-           {kFlow1, kFlow2},
-           {-1, 1},
-           {&Parameters::c_I},
-           {"pump.turbulent_leakage"},
-           "closure.flow_"},
-          {"arm_load", "arm_angle", {kArm}, {1}, {&Parameters::mgl}, {}, "closure.arm_torque"}};
+  return {
+      {"pump_friction",
+       "motor_speed",
+       {{kTorque, 1}},
+       {&Parameters::b, &Parameters::T_s, &Parameters::f},
+       "pump.",
+       "closure.pump_torque"},
+      {"cross_leakage", "p2 - p1", {{kFlow1, -1}, {kFlow2, 1}}, {&Parameters::c_I}, "pump.", "closure.flow_"},
+      {"arm_load", "arm_angle", {{kArm, 1}}, {&Parameters::mgl}, "arm.", "closure.arm_torque"}};
 }
 
-bool IsClosureOf(const Element& element, const model::EffectDescription& effect) {
-  if (!effect.id.starts_with(element.closure)) return false;
-  const auto against = effect.name_lists.find("against");
-  return against != effect.name_lists.end() && against->second.front() == element.variable;
-}
+bool IsWave(const model::EffectDescription& effect) { return effect.parameters.contains("periods"); }
 
-// The user's own effects on the arm, a spring, say, belong to the load.
+// The pump's and the arm's effects, the user's own too, that act at an instant: what repeats with the turn is no friction, and an arm that
+// gives is no load.
 bool Belongs(const Element& element, const model::EffectDescription& effect) {
-  const bool listed =
-      std::find(element.effects.begin(), element.effects.end(), effect.id) != element.effects.end();
-  const bool load =
-      std::string(element.name) == "arm_load" && effect.id.starts_with("arm.") && effect.id != "arm.flexure";
-  return listed || load || IsClosureOf(element, effect);
+  if (effect.id.starts_with(element.closure)) {
+    const auto against = effect.name_lists.find("against");
+    return against != effect.name_lists.end() && against->second.front() == element.variable;
+  }
+  return effect.id.starts_with(element.effects) && effect.id != "arm.flexure" && !IsWave(effect);
 }
 
-model::ModelDescription WithoutElement(model::ModelDescription model, const Element& element) {
-  for (double Parameters::*value : element.values) model.parameters.*value = 0;
-  std::erase_if(model.effects, [&](const auto& effect) { return Belongs(element, effect); });
-  return model;
-}
-
-// What the element of `model` does along the runs' motion: what the model leaves without it and not with it. `base`: what
+// What a part of `model` does along the runs' motion: what the model leaves without it and not with it. `base`: what
 // it leaves with it.
-std::vector<BalanceSeries> AlongRuns(const Element& element, const model::ModelDescription& model,
+std::vector<BalanceSeries> AlongRuns(const model::ModelDescription& without,
                                      const std::vector<LackingRun>& runs, const std::vector<BaseSeries>& base,
                                      int jobs) {
-  const model::ModelDescription without = WithoutElement(model, element);
   std::vector<BalanceSeries> all(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) { all[r] = Beyond(without, runs[r].motion, base[r]); });
   return all;
 }
 
-void AddBalance(BalanceKind balance, double sign, const Variable& variable,
-                const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& given,
-                const std::vector<BalanceSeries>& found, std::vector<CurvePoint>* points) {
-  const auto b = static_cast<size_t>(balance);
-  const Blocks blocks = BlocksOf(runs, balance, kCurveBlock);
-  const std::vector<double> at = Average(variable, blocks, runs, balance);
-  for (size_t i = 0; i < at.size(); ++i) {
-    const Blocks::Block& block = blocks.blocks[i];
-    const auto mean = [&](const std::vector<BalanceSeries>& series) {
-      return sign * MeanOver(block, runs[block.run], balance, [&](size_t instant) {
-               return series[block.run][b][static_cast<Eigen::Index>(instant)];
-             });
-    };
-    CurvePoint point{at[i], 0, block.noise, mean(given), mean(found)};
-    // What is left with the element, and the element itself.
-    point.measured = point.found - sign * block.value;
-    points->push_back(point);
+std::vector<BalanceSeries> AlongRuns(const Element& element, model::ModelDescription model,
+                                     const std::vector<LackingRun>& runs, const std::vector<BaseSeries>& base,
+                                     int jobs) {
+  for (double Parameters::*value : element.values) model.parameters.*value = 0;
+  std::erase_if(model.effects, [&](const auto& effect) { return Belongs(element, effect); });
+  return AlongRuns(model, runs, base, jobs);
+}
+
+// How points are made of blocks: s, how long one is; rad/s, beyond which speed a block sees too much of a wave to count.
+struct Sampling {
+  double block = kCurveBlock;
+  double fastest = std::numeric_limits<double>::infinity();
+};
+
+// Blocks of a wave see a quarter of it at most.
+Sampling SamplingOf(const model::EffectDescription& effect) {
+  if (!IsWave(effect)) return {};
+  return {kWaveBlock, 0.25 * 2 * std::numbers::pi / (2 * kWaveBlock * effect.parameters.at("periods"))};
+}
+
+// Blocks of one balance over the variable: what is left with the element, and the element itself. `given` may be empty.
+void AddPoints(const Part& part, const Variable& variable, const Sampling& sampling,
+               const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& given,
+               const std::vector<BalanceSeries>& found, std::vector<CurvePoint>* points) {
+  for (const Block& block : BlocksOf(runs, part.balance, sampling.block)) {
+    const LackingRun& run = runs[block.run];
+    const std::vector<double>& values = variable.values[block.run];
+    const size_t middle = (block.first + block.end) / 2;
+    if (std::abs(run.At(middle).motor_speed) > sampling.fastest) continue;
+    // A phase has no mean.
+    const bool wave = std::isfinite(sampling.fastest);
+    CurvePoint point{
+        wave ? values[middle] : MeanOver(block, run, part.balance, [&](size_t i) { return values[i]; }), 0,
+        block.noise};
+    if (!given.empty()) point.given = part.sign * MeanOver(block, run, part.balance, given[block.run]);
+    point.found = part.sign * MeanOver(block, run, part.balance, found[block.run]);
+    point.measured = point.found - part.sign * block.value;
+    if (std::isfinite(point.found)) points->push_back(point);
   }
+}
+
+MeasuredCurve CurveOf(BinnedCurve curve, const std::string& element, BalanceKind balance,
+                      const Variable& variable, const UnitSystem& units) {
+  return {element,
+          NameOf(balance),
+          UnitOf(balance, units),
+          variable.name,
+          variable.unit,
+          std::move(curve.at),
+          std::move(curve.measured),
+          std::move(curve.error),
+          std::move(curve.given),
+          std::move(curve.found)};
+}
+
+// Of the square of what the points' `found` adds, the part that is no function of the variable; and how large it is beside the noise.
+struct OverVariable {
+  double left = 1, energy = 0;
+};
+
+OverVariable LeftOver(std::vector<CurvePoint> points) {
+  double squares = 0, noise = 0;
+  for (CurvePoint& point : points) {
+    squares += point.found * point.found;
+    noise += point.noise * point.noise;
+    point.measured = point.found;
+    point.noise = 1;
+  }
+  const BinnedCurve curve = Binned(std::move(points));
+  return {squares > 0 && curve.size() > 0 ? curve.left / squares : 1, squares / noise};
 }
 
 }  // namespace
@@ -114,22 +150,52 @@ std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
   });
   std::vector<MeasuredCurve> curves;
   for (const Element& element : AllElements()) {
-    std::vector<Variable> variables = MotionVariables(lacking, element.balances.front(), found.units, false);
+    const BalanceKind balance = element.parts.front().balance;
+    const std::vector<Variable> variables = MotionVariables(lacking, balance, found.units, false);
     const auto variable = std::find_if(variables.begin(), variables.end(),
                                        [&](const Variable& one) { return one.name == element.variable; });
+    if (variable == variables.end()) continue;
     const std::vector<BalanceSeries> by_given = AlongRuns(element, given, lacking, base_given, jobs),
                                      by_found = AlongRuns(element, found, lacking, base_found, jobs);
     std::vector<CurvePoint> points;
-    for (size_t k = 0; k < element.balances.size(); ++k) {
-      AddBalance(element.balances[k], element.signs[k], *variable, lacking, by_given, by_found, &points);
-    }
+    for (const Part& part : element.parts)
+      AddPoints(part, *variable, {}, lacking, by_given, by_found, &points);
     BinnedCurve curve = Binned(std::move(points));
-    if (curve.at.size() < kFewestBins) continue;
-    curves.push_back({element.name, UnitOf(element.balances.front(), found.units), variable->name,
-                      variable->unit, std::move(curve.at), std::move(curve.measured), std::move(curve.error),
-                      std::move(curve.given), std::move(curve.found)});
+    if (curve.size() == 0) continue;
+    curves.push_back(CurveOf(std::move(curve), element.name, balance, *variable, found.units));
   }
   return curves;
+}
+
+std::optional<MeasuredCurve> TermOf(const model::ModelDescription& model, const std::string& effect,
+                                    const std::vector<const RunData*>& runs, int jobs) {
+  const auto is_it = [&](const model::EffectDescription& one) { return one.id == effect; };
+  const auto description = std::find_if(model.effects.begin(), model.effects.end(), is_it);
+  if (description == model.effects.end()) return std::nullopt;
+  const Sampling sampling = SamplingOf(*description);
+  model::ModelDescription without = model;
+  std::erase_if(without.effects, is_it);
+  const std::vector<LackingRun> lacking = LackingIn(model, runs, jobs);
+  std::vector<BaseSeries> base;
+  for (const LackingRun& run : lacking) base.push_back(run.base);
+  const std::vector<BalanceSeries> effects = AlongRuns(without, lacking, base, jobs);
+  std::optional<MeasuredCurve> best;
+  double most = 0;
+  for (const BalanceKind balance :
+       {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2, BalanceKind::kArm}) {
+    double least = kFarLess;
+    for (const Variable& variable : MotionVariables(lacking, balance, model.units, IsWave(*description))) {
+      std::vector<CurvePoint> points;
+      AddPoints({balance, -1}, variable, sampling, lacking, {}, effects, &points);
+      const OverVariable shown = LeftOver(points);
+      if (shown.left > least || shown.energy < most) continue;
+      least = kFarLess * shown.left;
+      most = shown.energy;
+      best = CurveOf(Binned(std::move(points)), effect, balance, variable, model.units);
+      best->model.clear();
+    }
+  }
+  return best;
 }
 
 }  // namespace hydro::diagnose

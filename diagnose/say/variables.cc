@@ -1,10 +1,6 @@
 #include "diagnose/say/variables.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "base/number_text.h"
 
@@ -17,89 +13,95 @@ using std::numbers::pi;
 
 constexpr int kMostTurnPeriods = 24;  // a turn
 
+constexpr unsigned Bit(BalanceKind balance) { return 1U << static_cast<unsigned>(balance); }
+constexpr unsigned kTorque = Bit(BalanceKind::kTorque), kFlow1 = Bit(BalanceKind::kFlow1),
+                   kFlow2 = Bit(BalanceKind::kFlow2), kArm = Bit(BalanceKind::kArm),
+                   kPump = kTorque | kFlow1 | kFlow2;
+
+// Whether a balance may depend on it, or names it alone, or is late by it.
+enum class Use { kMayShow, kOnlyNames, kLate };
+
 // `unit` is the paper's, `arm` the power of the arm's coordinate in it.
-struct VariableOfMotion {
+struct MotionRow {
+  unsigned balances;
+  Use use;
   const char* name;
   const char* unit;
-  std::function<double(const Known&)> of;
-  int arm = 0;
-  bool only_names = false, rate = false;
+  int arm;
+  double (*of)(const Known&);
 };
 
-Variable Along(const std::vector<LackingRun>& runs, const UnitSystem& units, const VariableOfMotion& what) {
-  Variable variable{what.name, units.UnitFor(what.unit, what.arm), {}, what.only_names, {}, what.only_names};
+// In the order of their simplicity.
+constexpr MotionRow kRows[] = {
+    {kArm, Use::kMayShow, "arm_speed", "rad/s", 1, [](const Known& at) { return at.arm_speed; }},
+    {kArm, Use::kMayShow, "arm_angle", "rad", 1, [](const Known& at) { return at.arm_angle; }},
+    {kPump, Use::kMayShow, "motor_speed", "rad/s", 0, [](const Known& at) { return at.motor_speed; }},
+    {kTorque, Use::kMayShow, "p1 + p2", "psi", 0, [](const Known& at) { return at.p1 + at.p2; }},
+    {kTorque, Use::kMayShow, "(p1 + p2) sgn(motor_speed)", "psi", 0,
+     [](const Known& at) { return std::copysign(at.p1 + at.p2, at.motor_speed); }},
+    {kFlow1, Use::kMayShow, "p1", "psi", 0, [](const Known& at) { return at.p1; }},
+    {kFlow2, Use::kMayShow, "p2", "psi", 0, [](const Known& at) { return at.p2; }},
+    {kTorque, Use::kOnlyNames, "motor_acceleration", "rad/s^2", 0,
+     [](const Known& at) { return at.motor_acceleration; }},
+    {kFlow1, Use::kOnlyNames, "p1 rate", "psi/s", 0, [](const Known& at) { return at.p1_rate; }},
+    {kFlow2, Use::kOnlyNames, "p2 rate", "psi/s", 0, [](const Known& at) { return at.p2_rate; }},
+    {kPump | kArm, Use::kOnlyNames, "p2 - p1", "psi", 0, [](const Known& at) { return at.p2 - at.p1; }},
+    {kPump, Use::kMayShow, "arm_angle", "rad", 1, [](const Known& at) { return at.arm_angle; }},
+    {kPump, Use::kOnlyNames, "arm_speed", "rad/s", 1, [](const Known& at) { return at.arm_speed; }},
+    {kPump | kArm, Use::kOnlyNames, "time", "s", 0, [](const Known& at) { return at.time; }},
+    {kTorque, Use::kLate, "p2 - p1 rate", "psi/s", 0,
+     [](const Known& at) { return at.p2_rate - at.p1_rate; }},
+    {kFlow1 | kFlow2, Use::kLate, "motor_acceleration", "rad/s^2", 0,
+     [](const Known& at) { return at.motor_acceleration; }},
+    {kFlow1 | kFlow2, Use::kLate, "arm_acceleration", "rad/s^2", 1,
+     [](const Known& at) { return at.arm_acceleration; }},
+};
+
+Variable Along(const std::vector<LackingRun>& runs, Variable variable,
+               const std::function<double(const Known&)>& of) {
   for (const LackingRun& run : runs) {
-    std::vector<double> values(run.size());
-    for (size_t i = 0; i < values.size(); ++i) values[i] = what.of(run.At(i));
-    variable.values.push_back(std::move(values));
+    std::vector<double>& values = variable.values.emplace_back(run.size());
+    for (size_t i = 0; i < values.size(); ++i) values[i] = of(run.At(i));
   }
   return variable;
 }
 
-std::vector<VariableOfMotion> ArmVariables() {
-  return {{"arm_speed", "rad/s", [](const Known& at) { return at.arm_speed; }, 1},
-          {"arm_angle", "rad", [](const Known& at) { return at.arm_angle; }, 1},
-          {"p2 - p1", "psi", [](const Known& at) { return at.p2 - at.p1; }, 0, true}};
-}
-
-// In the order of their simplicity.
-std::vector<VariableOfMotion> PlainVariables(BalanceKind balance) {
-  std::vector<VariableOfMotion> arm = ArmVariables();
-  if (balance == BalanceKind::kArm) return arm;
-  std::vector<VariableOfMotion> all = {
-      {"motor_speed", "rad/s", [](const Known& at) { return at.motor_speed; }}};
-  if (balance == BalanceKind::kTorque) {
-    all.push_back({"p1 + p2", "psi", [](const Known& at) { return at.p1 + at.p2; }});
-    all.push_back({"(p1 + p2) sgn(motor_speed)", "psi",
-                   [](const Known& at) { return std::copysign(at.p1 + at.p2, at.motor_speed); }});
-    all.push_back({"motor_acceleration", "rad/s^2", [](const Known& at) { return at.motor_acceleration; }, 0,
-                   true, true});
-  } else if (balance == BalanceKind::kFlow1) {
-    all.push_back({"p1", "psi", [](const Known& at) { return at.p1; }});
-    all.push_back({"p1 rate", "psi/s", [](const Known& at) { return at.p1_rate; }, 0, true, true});
-  } else {
-    all.push_back({"p2", "psi", [](const Known& at) { return at.p2; }});
-    all.push_back({"p2 rate", "psi/s", [](const Known& at) { return at.p2_rate; }, 0, true, true});
-  }
-  std::reverse(arm.begin(), arm.end());
-  all.insert(all.end(), arm.begin(), arm.end());
-  return all;
+bool Pressures(const std::vector<LackingRun>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const LackingRun& run) { return run.motion.pressures; });
 }
 
 // The phase of a wave that repeats so often in a turn of the motor, and such a wave in proportion to the speed or the
 // pressure difference.
 void AddTurns(const std::vector<LackingRun>& runs, BalanceKind balance, const UnitSystem& units,
               std::vector<Variable>* all) {
-  for (int n = 1; n <= kMostTurnPeriods; ++n) {
-    all->push_back(Along(runs, units, {"", "rad", [n](const Known& at) {
-                                         return std::remainder(n * at.motor_angle, 2 * pi);
-                                       }}));
-    all->back().name = "motor_angle, " + std::to_string(n) + " periods a turn";
-  }
   const bool torque = balance == BalanceKind::kTorque;
   for (int n = 1; n <= kMostTurnPeriods; ++n) {
-    all->push_back(Along(runs, units, {"", torque ? "psi" : "rad/s", [torque, n](const Known& at) {
-                                         const double carrier = torque ? at.p2 - at.p1 : at.motor_speed;
-                                         return carrier * std::cos(n * at.motor_angle);
-                                       }}));
-    all->back().name =
-        std::string(torque ? "(p2 - p1)" : "motor_speed") + " cos(" + std::to_string(n) + " motor_angle)";
-    all->back().linear_only = true;
+    all->push_back(Along(runs, {"motor_angle, " + std::to_string(n) + " periods a turn", "rad"},
+                         [n](const Known& at) { return std::remainder(n * at.motor_angle, 2 * pi); }));
+  }
+  for (int n = 1; n <= kMostTurnPeriods && (!torque || Pressures(runs)); ++n) {
+    const std::string wave = " cos(" + std::to_string(n) + " motor_angle)";
+    all->push_back(
+        Along(runs, {(torque ? "(p2 - p1)" : "motor_speed") + wave, torque ? units.UnitFor("psi") : "rad/s"},
+              [torque, n](const Known& at) {
+                return (torque ? at.p2 - at.p1 : at.motor_speed) * std::cos(n * at.motor_angle);
+              }));
+    all->back().line = true;
   }
 }
 
 // A function of the held command, smoothed as the balances are.
 template <class Of>
 Variable OfCommand(const std::vector<LackingRun>& runs, const char* name, const Of& of) {
-  Variable variable{name, "V", {}, false, {}, false};
+  Variable variable{name, "V"};
   for (const LackingRun& run : runs) {
     std::vector<double> held = of(run.motion);
     for (size_t k = held.size(); k-- > 1;) held[k] = 0.5 * (held[k - 1] + held[k]);
     const std::vector<double> smooth = Smoothed(held, SmoothingOf(run.motion.step) / run.motion.step);
-    std::vector<double> values(run.size());
+    std::vector<double>& values = variable.values.emplace_back(run.size());
     for (size_t i = 0; i < values.size(); ++i) values[i] = smooth[i * run.motion.stride];
-    variable.values.push_back(std::move(values));
   }
+  variable.line = std::string(name) != "voltage";
   return variable;
 }
 
@@ -122,17 +124,22 @@ std::vector<double> AheadOfLag(const RunMotion& motion, double lag) {
 }  // namespace
 
 std::vector<Variable> MotionVariables(const std::vector<LackingRun>& runs, BalanceKind balance,
-                                      const UnitSystem& units, bool quick) {
+                                      const UnitSystem& units, bool turns) {
+  const bool pressures = Pressures(runs);
   std::vector<Variable> all;
-  for (const VariableOfMotion& one : PlainVariables(balance)) all.push_back(Along(runs, units, one));
-  if (quick && balance != BalanceKind::kArm) AddTurns(runs, balance, units, &all);
-  all.push_back(Along(runs, units, {"time", "s", [](const Known& at) { return at.time; }, 0, true}));
+  for (const MotionRow& row : kRows) {
+    const bool of_pressure = std::string(row.unit).starts_with("psi");
+    if (row.use == Use::kLate || (row.balances & Bit(balance)) == 0 || (of_pressure && !pressures)) continue;
+    const bool names = row.use == Use::kOnlyNames;
+    all.push_back(Along(runs, {row.name, units.UnitFor(row.unit, row.arm), {}, names, names}, row.of));
+  }
+  if (turns && balance != BalanceKind::kArm) AddTurns(runs, balance, units, &all);
   return all;
 }
 
 std::vector<Variable> CommandVariables(const std::vector<LackingRun>& runs) {
-  std::vector<Variable> all;
-  all.push_back(OfCommand(runs, "voltage", [](const RunMotion& motion) { return motion.voltage; }));
+  std::vector<Variable> all = {
+      OfCommand(runs, "voltage", [](const RunMotion& motion) { return motion.voltage; })};
   double largest = 0;
   for (const LackingRun& run : runs) {
     for (const double v : run.motion.voltage) largest = std::max(largest, std::abs(v));
@@ -143,29 +150,20 @@ std::vector<Variable> CommandVariables(const std::vector<LackingRun>& runs) {
     all.push_back(OfCommand(runs, "voltage beyond a limit",
                             [limit](const RunMotion& motion) { return BeyondLimit(motion.voltage, limit); }));
     all.back().where = "|voltage| > " + ShortNumber(limit, 3) + " V";
-    all.back().linear_only = true;
   }
   for (const double lag : {0.001, 0.002, 0.004, 0.008, 0.016, 0.032}) {
     all.push_back(OfCommand(runs, "change of voltage",
                             [lag](const RunMotion& motion) { return AheadOfLag(motion, lag); }));
-    all.back().linear_only = true;
   }
   return all;
 }
 
 std::vector<Variable> LateVariables(const std::vector<LackingRun>& runs, BalanceKind balance,
                                     const UnitSystem& units) {
-  std::vector<VariableOfMotion> rates;
-  if (balance == BalanceKind::kTorque) {
-    rates = {{"p2 - p1 rate", "psi/s", [](const Known& at) { return at.p2_rate - at.p1_rate; }}};
-  } else if (balance != BalanceKind::kArm) {
-    rates = {{"motor_acceleration", "rad/s^2", [](const Known& at) { return at.motor_acceleration; }},
-             {"arm_acceleration", "rad/s^2", [](const Known& at) { return at.arm_acceleration; }, 1}};
-  }
   std::vector<Variable> all;
-  for (const VariableOfMotion& rate : rates) {
-    all.push_back(Along(runs, units, rate));
-    all.back().linear_only = true;
+  for (const MotionRow& row : kRows) {
+    if (row.use != Use::kLate || (row.balances & Bit(balance)) == 0) continue;
+    all.push_back(Along(runs, {row.name, units.UnitFor(row.unit, row.arm), {}, false, true}, row.of));
   }
   return all;
 }

@@ -1,15 +1,13 @@
-// Draws conclusions from what was tried: the verdict, ties, intervals and reasons.
+// Draws conclusions from what was proposed and proved: the verdict, ties, intervals and reasons.
 #pragma once
 
-#include <vector>
-
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/search/wide_search.h"
+#include "diagnose/prove/proof.h"
+#include "diagnose/prove/propose.h"
 
 namespace hydro::diagnose {
 
-// `found`: what was tried on windows and on whole runs. `explanations`: what the balances say of sets of changes.
-Diagnosis Conclude(const SearchContext& context, const WideSearch& found,
-                   const std::vector<WeightedSet>& explanations = {});
+// Weights come from what the balances propose, what is named from what was proved.
+Diagnosis Conclude(const SearchContext& context, const Proof& proof, const Proposed& proposed = {});
 
 }  // namespace hydro::diagnose

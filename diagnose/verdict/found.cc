@@ -1,77 +1,28 @@
 #include "diagnose/verdict/found.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/word_list.h"
 #include "diagnose/closure/closure.h"
 #include "diagnose/fit/intervals.h"
+#include "diagnose/verdict/claims.h"
 #include "diagnose/verdict/found_values.h"
-#include "diagnose/verdict/plausible.h"
-#include "diagnose/verdict/rivals.h"
-#include "diagnose/verdict/without_effect.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-// The fit that shows how well numbers are known: to windows where these decide, else to the whole runs.
-struct Basis {
-  const Fitted& fitted;
-  const std::vector<const RunData*>& runs;
-};
+constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
+// Standard errors: of a normal distribution, 95 % are within.
+constexpr double kToldApart = 2;
 
-Basis BasisOf(const SearchContext& context, const Explanation& best, const WindowTrials& windows) {
-  if (windows.decide && SameChanges(windows.best.hypothesis, best.fitted.hypothesis)) {
-    return {windows.best, windows.fitted};
-  }
-  return {best.fitted, context.runs};
-}
-
-// Around the explanation's values, as wide as its basis says.
-std::vector<Interval> IntervalsOf(const SearchContext& context, const Explanation& one,
-                                  const WindowTrials& windows) {
-  const std::vector<FreeParameter> free = one.fitted.hypothesis.Free();
-  if (free.empty()) return {};
-  const Basis basis = BasisOf(context, one, windows);
-  std::vector<Interval> intervals = Intervals(basis.fitted, basis.runs, context.jobs);
-  // Values of whole runs, with what windows say of them: the interval holds both.
-  for (size_t i = 0; i < free.size(); ++i) {
-    intervals[i].low = std::min(intervals[i].low, free[i].value);
-    intervals[i].high = std::max(intervals[i].high, free[i].value);
-  }
-  return intervals;
-}
-
-// The fit of the basis without the change; fails where windows have not tried it.
-Fitted WithoutIt(const SearchContext& context, const SearchResult& search, const WindowTrials& windows,
-                 const Change& change) {
-  const Explanation& best = search.best;
-  if (&BasisOf(context, best, windows).fitted == &best.fitted)
-    return FitWithout(context, search, change).fitted;
-  for (const Explanation& one : windows.tried) {
-    const Change* more = best.fitted.hypothesis.OneBeyond(one.fitted.hypothesis);
-    const bool less = one.changes().size() + 1 == best.changes().size() && more != nullptr && *more == change;
-    if (less && one.fitted.ok() && one.fitted.hypothesis.FreesTheSame(best.fitted.hypothesis))
-      return one.fitted;
-  }
-  Fitted none;
-  none.failure = "not tried";
-  return none;
-}
-
-// Where the interval of an effect's single amount reaches to none of it though the runs show some, the interval
-// is that of the profile on this side.
-void RaiseFromNone(const Hypothesis& hypothesis, const Change& change, double lowest,
-                   std::vector<Interval>* intervals) {
-  const std::vector<FreeParameter> free = hypothesis.Free();
-  const std::vector<std::string> amounts = Amounts(*model::FindEffect(change.effect));
-  for (size_t i = 0; i < free.size() && amounts.size() == 1; ++i) {
-    if (free[i].name != change.effect + "." + amounts.front()) continue;
-    const double end = lowest * free[i].value;
-    Interval& interval = (*intervals)[i];
-    (free[i].value > 0 ? interval.low : interval.high) =
-        free[i].value > 0 ? std::max(interval.low, end) : std::min(interval.high, end);
-  }
+std::vector<Interval> IntervalsOf(const SearchContext& context, const Proof& proof) {
+  const size_t numbers = proof.Found().Free().size();
+  if (numbers == 0) return {};
+  if (!proof.told.ok()) return std::vector<Interval>(numbers, {kUnsaid, kUnsaid});
+  return Intervals(proof.told, proof.told_runs, context.jobs);
 }
 
 FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
@@ -92,117 +43,105 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
   return found;
 }
 
-// The weight of all claims that have the change.
-double WeightOf(const Change& change, const std::map<std::string, double>& weights) {
-  const std::string label = " + " + change.Label() + " + ";
-  double sum = 0;
-  for (const auto& [claim, weight] : weights) {
-    if ((" + " + claim + " + ").find(label) != std::string::npos) sum += weight;
-  }
-  return std::min(1.0, sum);
+// The typical squared gap of the windows without these effects of the best set; NaN where no such set was proved.
+double GapWithout(const Proof& proof, const std::vector<Change>& effects) {
+  std::vector<Change> others = proof.Best().Effects();
+  for (const Change& change : effects) std::erase(others, change);
+  const size_t place = BestWithEffects(proof.sets, others);
+  return place < proof.sets.size() ? TypicalGap(proof.sets[place].near) : kUnsaid;
+}
+
+double ShareOf(const Proof& proof, const Change& change) {
+  const double with = TypicalGap(proof.Best().near), without = GapWithout(proof, {change});
+  const double of_values = GapWithout(proof, proof.Best().Effects());
+  const double to_take = std::isnan(of_values) ? without : of_values;
+  if (!(to_take > 1) || std::isnan(without)) return kUnsaid;
+  return std::clamp((without - std::max(1.0, with)) / (to_take - 1), 0.0, 1.0);
 }
 
 // The closures, with the typical gap over windows with and without them.
-std::vector<Closure> DescribeClosures(const WindowTrials& windows, const Explanation& best,
-                                      const std::vector<Interval>& intervals) {
-  std::vector<Closure> closures = FoundClosures(best.fitted.hypothesis, intervals);
-  if (closures.empty() || !windows.decide) return closures;
-  std::vector<Change> curves = EffectsOf(best);
+std::vector<Closure> DescribeClosures(const Proof& proof, const std::vector<Interval>& intervals) {
+  std::vector<Closure> closures = FoundClosures(proof.Found(), intervals);
+  std::vector<Change> curves = proof.Best().Effects();
   std::erase_if(curves, [](const Change& change) { return !IsClosureEffect(change.effect); });
   for (Closure& closure : closures) {
-    closure.before = TypicalWithout(windows, best, curves);
-    closure.after = TypicalWithout(windows, best, {});
-    closure.seconds = kHorizon;
+    closure.before = std::sqrt(GapWithout(proof, curves));
+    closure.after = std::sqrt(TypicalGap(proof.Best().near));
+    closure.seconds = proof.seconds;
   }
   return closures;
 }
 
-// Of the gap that the model's own values leave. An effect that takes less is not worth a name, whatever the scatter between windows.
-constexpr double kLeastShareOfAnEffect = 0.02;
-
-// The best explanation over whole runs without the change, with the values that it has beside it; fails where it cannot follow them.
-Explanation TakenAway(const SearchContext& context, const Explanation& best, const Change& change) {
-  FitOptions held;
-  held.most_iterations = 0;
-  held.jobs = context.jobs;
-  return Explain(context, Without(best.fitted.hypothesis, change, context.given), StartsOf(best.fitted),
-                 held);
+// What the set has in the place of the best one's effects: effects or, where it has none at all, its values. "" if nothing.
+std::string InPlace(const ProvedSet& other, const ProvedSet& best) {
+  const std::vector<Change> effects = other.Effects();
+  if (effects.empty()) {
+    const std::string claim = ClaimOf(other.hypothesis);
+    return claim == kAsGiven ? "" : claim;
+  }
+  std::vector<std::string> labels;
+  for (const Change& change : effects) {
+    if (!best.hypothesis.Has(change)) labels.push_back(change.Label());
+  }
+  return Joined(labels, " + ");
 }
 
-// Where windows decide, the proof has tried to do without each effect. What it needs for hardly any of the gap is dropped.
-Kept KeepWhatWasProved(const SearchContext& context, const SearchResult& search,
-                       const WindowTrials& windows) {
-  Kept kept{search, {}};
-  for (const Change& change : EffectsOf(search.best)) {
-    if (EffectsOf(kept.search.best).size() < 2) break;
-    if (!(ShareOf(context, kept.search, windows, change) < kLeastShareOfAnEffect)) continue;
-    Explanation without = TakenAway(context, kept.search.best, change);
-    if (without.fitted.ok()) kept.search.best = std::move(without);
+// Whether the set is an explanation that may be true. A curve of its own can draw most effects: that it does as well is no reason to
+// doubt their names.
+bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
+  const std::vector<Change> effects = set.Effects();
+  const auto any = [&](const auto& is) { return std::any_of(effects.begin(), effects.end(), is); };
+  if (any([](const Change& change) { return IsClosureEffect(change.effect); })) return false;
+  if (d.explanations.empty()) return true;
+  if (any([](const Change& change) { return IsUnseenByBalances(change.effect); })) return true;
+  const std::string claim = ClaimOf(set.hypothesis);
+  for (size_t i = 0; i < std::min(d.set_90, d.explanations.size()); ++i) {
+    const std::string said = ClaimOfSet(d.explanations[i].changes);
+    // No balance holds its values: the set without changes is that of other values too.
+    if (said == claim || (said == kAsGiven && effects.empty())) return true;
   }
-  return kept;
+  return false;
+}
+
+// The places of sets that explain as much without the change.
+std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagnosis& d) {
+  std::vector<size_t> ties;
+  for (size_t i = 0; i < proof.sets.size(); ++i) {
+    const ProvedSet& other = proof.sets[i];
+    if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
+    const GapFall fall = FallOf(other.near, proof.Best().near);
+    if (fall.windows > 0 && fall.logarithm > kToldApart * fall.error) continue;
+    if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
+  }
+  return ties;
 }
 
 }  // namespace
 
-Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search, const WindowTrials& windows) {
-  if (windows.decide) return KeepWhatWasProved(context, search, windows);
-  Kept kept{search, {}};
-  bool dropped = true;
-  while (dropped) {
-    dropped = false;
-    kept.doubts.clear();
-    const Explanation& best = kept.search.best;
-    const std::vector<Interval> intervals = IntervalsOf(context, best, windows);
-    for (const Change& change : EffectsOf(best)) {
-      if (!MayBeNone(best.fitted.hypothesis, change, intervals)) continue;
-      Explanation without = FitWithout(context, kept.search, change);
-      kept.search.tried.push_back(without);  // it is asked for again
-      if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
-        kept.search.best = std::move(without);
-        dropped = true;
-        break;
-      }
-      const bool shows =
-          without.fitted.ok() && ProfileAtNone(context.runs, best.fitted, without.fitted, change).shows;
-      if (!shows) kept.doubts.push_back("the interval of " + change.Label() + " includes none of it");
-    }
-  }
-  return kept;
-}
-
-std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const Explanation& refit,
-                                                   const WindowTrials& windows,
-                                                   const std::map<std::string, double>& weights, Kept* kept,
+std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const Proof& proof,
                                                    Diagnosis* d) {
-  const Explanation& best = kept->search.best;
-  const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
-  std::vector<Interval> intervals = IntervalsOf(context, best, windows);
-  const Basis basis = BasisOf(context, best, windows);
-  std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
-  for (const Change& change : EffectsOf(best)) {
+  const std::vector<FreeParameter> free = proof.Found().Free();
+  const std::vector<Interval> intervals = IntervalsOf(context, proof);
+  std::vector<model::ModelDescription> models = {proof.Found().model};
+  for (const Change& change : proof.Best().Effects()) {
     if (IsClosureEffect(change.effect)) continue;
-    if (MayBeNone(best.fitted.hypothesis, change, intervals)) {
-      const Fitted without = WithoutIt(context, kept->search, windows, change);
-      if (without.ok()) {
-        const Profile profile = ProfileAtNone(basis.runs, basis.fitted, without, change);
-        if (profile.shows) RaiseFromNone(best.fitted.hypothesis, change, profile.lowest, &intervals);
-      }
-    }
     FoundEffect found = Describe(change, free, intervals);
-    found.share = ShareOf(context, kept->search, windows, change);
-    found.weight = WeightOf(change, weights);
-    for (const Rival& rival : RivalsOf(change, kept->search, refit, windows, weights)) {
-      found.tied_with.push_back(rival.label);
-      rivals.push_back(rival.explanation->fitted.hypothesis.model);
+    found.share = ShareOf(proof, change);
+    found.weight = WeightOf(change, d->explanations);
+    if (found.weight == 0 && IsUnseenByBalances(change.effect)) found.weight = kUnsaid;
+    for (const size_t place : TiesOf(change, proof, *d)) {
+      const std::string label = InPlace(proof.sets[place], proof.Best());
+      const bool there =
+          std::find(found.tied_with.begin(), found.tied_with.end(), label) != found.tied_with.end();
+      if (there) continue;
+      found.tied_with.push_back(label);
+      models.push_back(proof.sets[place].hypothesis.model);
     }
     d->effects.push_back(std::move(found));
   }
-  d->closures = DescribeClosures(windows, best, intervals);
-  DescribeValues(context, best, intervals, d);
-  const std::vector<std::string> implausible =
-      Implausible(d->parameters, d->effects, context.given.parameters);
-  if (!implausible.empty()) kept->doubts.push_back("no rig is likely to have " + Enumerated(implausible));
-  return rivals;
+  d->closures = DescribeClosures(proof, intervals);
+  DescribeValues(context, proof, intervals, d);
+  return models;
 }
 
 }  // namespace hydro::diagnose

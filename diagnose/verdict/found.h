@@ -1,32 +1,21 @@
-// What a search found, as a diagnosis states it: values with intervals, shares, weights and rivals.
+// What was proved, as a diagnosis states it: effects, closures and values with intervals, shares, weights and ties.
 #pragma once
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/search/wide_search.h"
+#include "diagnose/prove/proof.h"
 
 namespace hydro::diagnose {
 
-// What is kept of the best explanation.
-struct Kept {
-  SearchResult search;
-  std::vector<std::string> doubts;  // why its effects and values cannot be called the cause
-};
-
-// Where windows decide (WindowTrials::decide), the proof has tried to do without each effect; one that takes hardly any of the gap is
-// dropped all the same. Else drops the effects of which there may be none (MayBeNone) as long as the rest explains the runs as well;
-// those that are needed though the runs do not show that there is any of them are doubts.
-Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search,
-                     const WindowTrials& windows = {});
-
-// The effects, the closures and the parameters of the best explanation. Returns it and its rivals, as models. Adds a doubt for
-// each number that no rig has.
-std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const Explanation& refit,
-                                                   const WindowTrials& windows,
-                                                   const std::map<std::string, double>& weights, Kept* kept,
+// Adds the effects, the closures and the parameters of the best set to `d`, which has the explanations and `set_90`.
+// - An effect's weight is that of all explanations that have it; NaN where the balances cannot speak for it and none does.
+// - Its share is the part of the typical held-out squared gap above the noise that comes back without it, of that which the model's
+//   own values leave: how far they were off is nothing that an effect takes. NaN where that was not proved.
+// - It is tied with what stands in its place in another set that was proved, is among the likeliest that hold the truth nine times in
+//   ten (or has an effect that balances cannot see), and predicts the windows that judge as well within the error of the comparison.
+// Returns the model that was found and those of the ties.
+std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const Proof& proof,
                                                    Diagnosis* d);
 
 }  // namespace hydro::diagnose

@@ -6,7 +6,6 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "diagnose/verdict/plausible.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -41,6 +40,15 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
   return numbers;
 }
 
+// "moves by a factor of 3" where a value moves by more than a factor of 2, which data sheets and drawings seldom miss by; "" otherwise,
+// and where it was given as 0.
+std::string WhyRemarkable(const ChangedParameter& changed) {
+  constexpr double kRemarkable = 2;
+  const double ratio = changed.fitted.value / changed.model;
+  if (changed.model == 0 || (ratio >= 1 / kRemarkable && ratio <= kRemarkable)) return "";
+  return "moves by a factor of " + ShortNumber(ratio, 3);
+}
+
 ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& interval) {
   ChangedParameter changed;
   changed.fitted = {number.name, number.found, interval.low, interval.high, number.unit};
@@ -54,11 +62,12 @@ bool LooksTheSame(const OwnNumber& number) { return ShortNumber(number.found) ==
 
 }  // namespace
 
-void DescribeValues(const SearchContext& context, const Explanation& best,
-                    const std::vector<Interval>& intervals, Diagnosis* d) {
-  const Hypothesis& hypothesis = best.fitted.hypothesis;
+void DescribeValues(const SearchContext& context, const Proof& proof, const std::vector<Interval>& intervals,
+                    Diagnosis* d) {
+  const Hypothesis& hypothesis = proof.Found();
   const std::vector<FreeParameter> free = hypothesis.Free();
-  const std::vector<bool> rests = RestOnKnown(best.fitted);
+  const std::vector<bool> rests =
+      proof.told.ok() ? RestOnKnown(proof.told) : std::vector<bool>(free.size(), false);
   std::vector<std::string> unsure, resting;
   for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
     const auto it = std::find_if(free.begin(), free.end(),

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/fit/comparison.h"
+#include "diagnose/verdict/claims.h"
 
 namespace hydro::diagnose {
 
@@ -12,9 +12,13 @@ namespace {
 // Noise units, squared: what a model leaves beside the noise is no larger than the noise itself. Less cannot be asked for: the noise is
 // known to some 10 %, and starts and values are estimates.
 constexpr double kNoiseAndAsMuchAgain = 2;
+// Noise units, over whole runs, whose residuals are many: the noise is known to some 10 %.
+constexpr double kWholeRunsAtTheNoise = 1.15;
+// Of the squared gap above the noise, where all sensors are exact.
+constexpr double kNearlyNothing = 0.01;
 
 // The horizon with a gap that is nearest to 0.4 s, by its factor; null where no horizon has one.
-const HorizonGap* NearHorizon(const Diagnosis& d) {
+const HorizonGap* DecidingHorizon(const Diagnosis& d) {
   const HorizonGap* near = nullptr;
   const auto away = [](const HorizonGap& one) { return std::abs(std::log(one.seconds / kHorizon)); };
   for (const HorizonGap& one : d.horizons) {
@@ -26,7 +30,8 @@ const HorizonGap* NearHorizon(const Diagnosis& d) {
 
 // What a gap that is not above `limit` leaves; where all sensors are exact, what is left counts beside what there was.
 bool IsClosed(const BeforeAfter& gap, double limit, bool exact) {
-  return gap.after <= limit || (exact && Closed(gap.before * gap.before, gap.after * gap.after, exact));
+  const double left = gap.after * gap.after - 1, before = gap.before * gap.before - 1;
+  return gap.after <= limit || (exact && left <= kNearlyNothing * before);
 }
 
 // Whether only noise is left on the windows. Errors of values grow at most as fast as the time: what is left beside the noise may be
@@ -39,42 +44,45 @@ bool WindowsAreClosed(const Diagnosis& d, const HorizonGap& near, bool exact) {
   });
 }
 
-// Whether whole runs are predicted to the noise, both fitted and held out.
-bool WholeRunsAreClosed(const Kept& kept, bool exact) {
-  const Explanation& given = kept.search.given;
-  const Explanation& best = kept.search.best;
-  return Closed(given.held_out_gap(), best.held_out_gap(), exact) &&
-         Closed(given.squared_gap(), best.squared_gap(), exact);
-}
-
-bool IsGapClosed(const Kept& kept, const WindowTrials& windows, const Diagnosis& d, bool exact) {
-  const HorizonGap* near = windows.decide ? NearHorizon(d) : nullptr;
-  if (near == nullptr) return WholeRunsAreClosed(kept, exact);
+bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
+  const bool whole =
+      IsClosed(d.held_out, kWholeRunsAtTheNoise, exact) && IsClosed(d.fit, kWholeRunsAtTheNoise, exact);
+  const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
+  if (near == nullptr) return whole;
   // That nothing is missing has to hold over whole runs too, where the model can follow them: what is slow shows in no window.
-  const bool found =
-      !kept.search.best.changes().empty() || !kept.search.best.fitted.hypothesis.Free().empty();
-  const bool follows = std::isfinite(kept.search.best.held_out_gap() + kept.search.best.squared_gap());
-  if (!found && follows && !WholeRunsAreClosed(kept, exact)) return false;
+  const bool found = !proof.Found().changes.empty() || !proof.Found().Free().empty();
+  const bool follows = std::isfinite(d.held_out.after + d.fit.after);
+  if (!found && follows && !whole) return false;
   return WindowsAreClosed(d, *near, exact);
 }
 
-// Whether half of the squared gap is taken. A model that cannot follow the runs has no gap to compare with: following them is
-// material.
-bool TakesHalf(const Diagnosis& d, const BeforeAfter& gap) {
-  constexpr double kPart = 0.5;
-  if (!std::isfinite(gap.after)) return false;
-  double to_beat = gap.before;
-  const bool refit_counts = !d.effects.empty() || !d.closures.empty();
-  if (refit_counts && std::isfinite(gap.refit_only) && !(to_beat < gap.refit_only)) to_beat = gap.refit_only;
-  if (!std::isfinite(to_beat)) return true;
-  const double before = to_beat * to_beat - 1;
-  return before > 0 && gap.after * gap.after - 1 < (1 - kPart) * before;
+// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
+bool HasOneWitness(const Diagnosis& d) {
+  constexpr double kAWord = 0.05;
+  if (d.effects.empty() || d.explanations.empty()) return false;
+  const auto said = [&](const std::string& id) {
+    double weight = 0;
+    for (const WeightedSet& one : d.explanations) {
+      const bool has = std::any_of(one.changes.begin(), one.changes.end(), [&](const std::string& change) {
+        return change.substr(0, change.find('(')) == id;
+      });
+      weight += has ? one.weight : 0;
+    }
+    return weight >= kAWord;
+  };
+  return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
+    if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
+    // Where other values do as well, not even the windows say that anything is missing.
+    const auto values = [](const std::string& tied) { return tied.find('.') == std::string::npos; };
+    return std::none_of(effect.tied_with.begin(), effect.tied_with.end(), values) &&
+           std::any_of(effect.tied_with.begin(), effect.tied_with.end(), said);
+  });
 }
 
 }  // namespace
 
-ComparedGap GapToCompare(const Diagnosis& d, const WindowTrials& windows) {
-  const HorizonGap* near = windows.decide ? NearHorizon(d) : nullptr;
+ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof) {
+  const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
   return near == nullptr ? ComparedGap{d.held_out, 0} : ComparedGap{near->typical, near->seconds};
 }
 
@@ -83,29 +91,26 @@ bool IsWorse(const BeforeAfter& gap) {
   return std::isfinite(gap.before) && std::isfinite(gap.after) && gap.after > kNoticeable * gap.before;
 }
 
-bool TakesMaterialPart(const Diagnosis& d, const WindowTrials& windows) {
-  if (windows.decide) return TakesHalf(d, GapToCompare(d, windows).gap);
-  size_t material = TakesHalf(d, d.held_out) ? 1 : 0, simulated = 0;
-  for (const HorizonGap& horizon : d.horizons) {
-    material += TakesHalf(d, horizon.typical) ? 1 : 0;
-    simulated += std::isfinite(horizon.typical.after) ? 1 : 0;
+bool ExactSensors(const std::vector<const RunData*>& runs) {
+  constexpr double kExact = 2e-4;
+  for (const RunData* run : runs) {
+    for (const SignalData& signal : run->signals) {
+      const double size = RangeOfValues(signal.values).size();
+      if (size > 0 && signal.noise > kExact * size) return false;
+    }
   }
-  return material >= std::max<size_t>(simulated, 1);
+  return true;
 }
 
-Verdict VerdictOn(const SearchContext& context, const Kept& kept, const WindowTrials& windows,
-                  const Diagnosis& d) {
-  const Explanation& best = kept.search.best;
+Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors) {
   // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
-  const bool values = windows.decide && !best.fitted.hypothesis.Free().empty() &&
-                      !(GapToCompare(d, windows).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
+  const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
+                      !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
   const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
-  const bool closed = IsGapClosed(kept, windows, d, ExactSensors(context.runs));
-  if (!kept.doubts.empty() || (!closed && !windows.decide))
-    return something && TakesMaterialPart(d, windows) ? Verdict::kPartly : Verdict::kUnexplained;
   // A curve is no cause: what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
-  if (!closed || !d.closures.empty()) return something ? Verdict::kPartly : Verdict::kUnexplained;
+  if (!IsGapClosed(d, proof, exact_sensors) || !d.closures.empty())
+    return something && !HasOneWitness(d) ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
   const bool tied = std::any_of(d.effects.begin(), d.effects.end(),

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/search/explanation.h"
+#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 

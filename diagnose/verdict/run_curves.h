@@ -1,20 +1,22 @@
-// Measured signals beside those of the model before and after, for tables and pictures.
+// Measured signals beside those of the model before and after, for pictures.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/search/search.h"
+#include "diagnose/verdict/gaps.h"
 
 namespace hydro::diagnose {
 
-// By signal, over all runs: root-mean-square differences in the signal's unit.
-std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanation& given,
-                                  const Explanation& refit, const Explanation& best);
+// One a run, fitted runs first; runs held out in turn are shown as predicted by the model that did not see them. Empty curves where a
+// run cannot be simulated.
+std::vector<RunCurves> CurvesOf(const SearchContext& context, const Proof& proof, const WholeRuns& whole);
 
-// One a run, fitted runs first; runs held out in turn are shown as predicted by the fit that did not see
-// them.
-std::vector<RunCurves> CurvesOf(const SearchContext& context, const Explanation& given,
-                                const Explanation& best);
+// For effects that act through time: the stretch of a run, a 25th of it, and the signal in which the model with what was found differs
+// most in noise units from the same model without `effect`. Among the fitted runs; nothing if they do not differ or one of the two
+// cannot be simulated.
+std::optional<FoundStretch> StretchOf(const SearchContext& context, const Proof& proof,
+                                      const WholeRuns& whole, const std::string& effect);
 
 }  // namespace hydro::diagnose

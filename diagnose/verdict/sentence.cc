@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/verdict/claims.h"
 
 namespace hydro::diagnose {
 
@@ -107,16 +109,9 @@ std::string Partly(const Diagnosis& d, const std::vector<std::string>& effects,
 
 }  // namespace
 
-std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts,
-                     const ComparedGap& compared) {
+std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
   const std::string gap = GapOf(compared);
   const std::vector<std::string> effects = EffectsOf(d), parameters = ParametersOf(d);
-  if (!doubts.empty() && IsOpen(d.verdict)) {
-    const std::string begin = Falls(compared.gap) ? "The gap becomes smaller with "
-                                                  : "Only the fitted runs are predicted better with ";
-    return Found(begin, begin + "other values: ", effects, parameters) +
-           ", but that is not the cause: " + Enumerated(doubts) + gap;
-  }
   switch (d.verdict) {
     case Verdict::kNothingMissing:
       return "Nothing is missing: the model as given explains the data to " +
@@ -150,6 +145,31 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
     }
   }
   return "";
+}
+
+std::string ChoiceRemark(const std::vector<ChoiceWithout>& choices) {
+  std::map<std::string, std::vector<std::string>> others;  // runs by what is chosen without them
+  std::vector<std::string> runs;
+  for (const ChoiceWithout& choice : choices) {
+    if (choice.same) continue;
+    others[choice.chosen].push_back(choice.run);
+    runs.push_back(choice.run);
+  }
+  const std::string begin = "Each run was predicted from the others, with values that were not fitted to it";
+  if (others.empty()) {
+    return begin + "; among what was tried, the others choose the same without it";
+  }
+  std::vector<std::string> said;
+  for (const auto& [chosen, without] : others) {
+    std::vector<std::string> named;
+    for (const std::string& run : without) named.push_back(RunNamed(run));
+    said.push_back("without " + Joined(named, " or ") + " the others choose " +
+                   (chosen == kAsGiven ? "the model as given" : InWords({chosen}).front()));
+  }
+  return begin + "; but " + Enumerated(said) + ": how well " + RunsNamed(runs) +
+         (runs.size() == 1 ? " is" : " are") +
+         " predicted is no proof of what was found. For one, fit two runs or more and name another with "
+         "--hold-out";
 }
 
 }  // namespace hydro::diagnose

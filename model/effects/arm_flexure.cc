@@ -67,7 +67,9 @@ class Flexure : public EffectOf<Flexure> {
                                              .arm = -2,
                                              .starts = {0.01},
                                              .scale = Scale::kArmDamping,
-                                             .example = 60}}},
+                                             .example = 60}},
+                             // The angle of the actuator's own shaft is not measured.
+                             .unseen_by_balances = true},
                     .make = MakeEffect<Flexure>});
 
 }  // namespace

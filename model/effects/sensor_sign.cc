@@ -29,7 +29,9 @@ class Sign : public EffectOf<Sign> {
                                              .unit = "name",
                                              .meaning = "the channel that is inverted",
                                              .names = SignalNames(),
-                                             .role = Role::kChannel}}},
+                                             .role = Role::kChannel}},
+                             // Signs are settled before balances are formed: these would have the wrong one.
+                             .unseen_by_balances = true},
                     .make = [](const EffectDescription& description) -> std::unique_ptr<Effect> {
                       return std::make_unique<Sign>(SignalOf(description));
                     }});

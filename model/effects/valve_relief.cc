@@ -56,7 +56,9 @@ class Relief : public EffectOf<Relief> {
                                             {.name = "conductance",
                                              .unit = "in^3/s/psi",
                                              .meaning = "flow per pressure above set",
-                                             .example = 0.001}}},
+                                             .example = 0.001}},
+                             // Where it regulates, the pressure stands and the flow is whatever is left.
+                             .unseen_by_balances = true},
                     .make = MakeEffect<Relief>});
 
 }  // namespace

@@ -131,6 +131,9 @@ struct EffectInfo {
   std::optional<ListFault> (*fault)(const EffectDescription& effect) = nullptr;
   // What flowed before a run begins shows in its states: kReturned of the start.
   bool remembers_flow = false;
+  // Balances of measured torques and flows cannot speak for it: what it acts through is not measured, or it makes an inequality of a
+  // balance, or it was settled before any was formed. Each effect that sets it says why.
+  bool unseen_by_balances = false;
   // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
   bool listed = true;
 };

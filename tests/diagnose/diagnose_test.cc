@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

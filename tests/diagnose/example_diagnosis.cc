@@ -40,13 +40,14 @@ diagnose::RunCurves Curves(const std::string& run, bool held_out, size_t samples
   return curves;
 }
 
-diagnose::MissingTerm FrictionTerm() {
-  diagnose::MissingTerm term{"pump_torque", "in-lbf", "motor_speed", "rad/s", {}, {}, {}};
+diagnose::MeasuredCurve FrictionTerm(const std::string& effect = "") {
+  diagnose::MeasuredCurve term{effect, "pump_torque", "in-lbf", "motor_speed", "rad/s", {}, {}, {}};
   for (int i = -10; i <= 10; ++i) {
     term.at.push_back(12.0 * i);
-    term.mean.push_back(2 * std::exp(-std::abs(i) / 2.5) * (i > 0 ? 1 : i < 0 ? -1 : 0));
+    term.measured.push_back(2 * std::exp(-std::abs(i) / 2.5) * (i > 0 ? 1 : i < 0 ? -1 : 0));
     term.error.push_back(0.08 + 0.01 * std::abs(i));
   }
+  if (!effect.empty()) term.found = term.measured;
   return term;
 }
 
@@ -109,7 +110,7 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
                  {{"square <wave>", 1.4, 1.75}, {"square <wave>", 3.0, 3.3}, {"sine", 1.5, 1.7}}},
                 {"flow_2", 0.05, "p2 > 700 psi", {}}};
   d.missing = {FrictionTerm()};
-  d.terms = {{"pump.stribeck", FrictionTerm(), FrictionTerm().at, FrictionTerm().mean}};
+  d.terms = {FrictionTerm("pump.stribeck")};
   d.stretches = {{"sensor.skew",
                   "sine",
                   model::Channel::kP1,

@@ -1,4 +1,4 @@
-#include "diagnose/report/report_html.h"
+#include "diagnose/report/report.h"
 
 #include <gmock/gmock.h>
 
@@ -92,7 +92,6 @@ TEST(ReportHtml, Complete) {
                            "class=\"line c0\"",
                            "class=\"line c0\"",
                            "motor speed (rad/s)",
-                           "voltage (V)",
                            "@media print"}) {
     EXPECT_TRUE(Has(page, part)) << part;
   }

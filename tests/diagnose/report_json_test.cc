@@ -1,4 +1,4 @@
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/report.h"
 
 #include <gmock/gmock.h>
 

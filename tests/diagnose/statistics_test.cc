@@ -6,7 +6,6 @@
 #include <memory>
 #include <random>
 
-#include "diagnose/fit/comparison.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/fit/prior.h"
 #include "tests/diagnose/small_runs.h"
@@ -140,86 +139,6 @@ TEST(Intervals, StayWithinPhysics) {
   EXPECT_GT(intervals[0].high, 0);
 }
 
-// Tests that p-values are uniform where there is no effect: drops by chance are chi-squared times the
-// residuals' worth.
-TEST(PValue, IsUniformWithoutAnEffect) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  for (const size_t parameters : {1, 2, 3}) {
-    constexpr int kDraws = 4000;
-    std::vector<double> p_values;
-    for (int i = 0; i < kDraws; ++i) {
-      double fall = 0;
-      for (size_t k = 0; k < parameters; ++k) fall += std::pow(normal(random), 2);
-      p_values.push_back(diagnose::PValue(1.3 * 7 * fall, 1.3, 7, parameters, 1));
-    }
-    std::sort(p_values.begin(), p_values.end());
-    double worst = 0;  // Kolmogorov-Smirnov
-    for (int i = 0; i < kDraws; ++i)
-      worst = std::max(worst, std::abs(p_values[static_cast<size_t>(i)] - (i + 0.5) / kDraws));
-    EXPECT_LT(worst, 1.63 / std::sqrt(kDraws)) << parameters;  // 1 %
-  }
-}
-
-// Tests how it allows for the number tried, and its limits.
-TEST(PValue, AllowsForWhatWasTried) {
-  EXPECT_NEAR(diagnose::PValue(3.841, 1, 1, 1, 1), 0.05, 1e-4);
-  EXPECT_NEAR(diagnose::PValue(10.828, 1, 1, 1, 40), 0.04, 1e-4);
-  EXPECT_EQ(diagnose::PValue(1, 1, 1, 1, 40), 1);
-  EXPECT_EQ(diagnose::PValue(0, 1, 1, 1, 1), 1);
-  EXPECT_EQ(diagnose::PValue(-5, 1, 1, 1, 1), 1);
-  // A fit better than the noise is no reason to believe more.
-  EXPECT_EQ(diagnose::PValue(5, 0.5, 1, 1, 1), diagnose::PValue(5, 1, 1, 1, 1));
-}
-
-// Tests the mean difference over its standard error.
-TEST(TValue, IsTheMeanOverItsError) {
-  const diagnose::BlockSums worse{{11, 22, 33}, 3}, better{{10, 20, 30}, 3};
-  EXPECT_NEAR(TValue(worse, better), 2 / std::sqrt(1.0 / 3), 1e-12);
-  EXPECT_NEAR(TValue(better, worse), -2 / std::sqrt(1.0 / 3), 1e-12);
-  EXPECT_EQ(TValue(worse, worse), 0);
-}
-
-diagnose::Fitted AtTheTruth(const ExactPair& pair) {
-  diagnose::Fitted fitted;
-  fitted.hypothesis = WithFree(Table1With(), {});
-  for (const diagnose::RunData& run : pair.runs) {
-    fitted.runs.emplace_back();
-    fitted.runs.back().start = ExactPair::Start(run);
-  }
-  return fitted;
-}
-
-// Tests that white-noise residuals count one each, and those that keep the fraction phi (1 + phi)/(1 - phi).
-TEST(CorrelationOf, CountsWhatIsIndependent) {
-  const ExactPair pair(2);
-  for (const double phi : {0.0, 0.5, 0.8}) {
-    const std::vector<diagnose::RunData> runs = pair.With(phi, 3);
-    const double expected = (1 + phi) / (1 - phi);
-    EXPECT_NEAR(CorrelationOf(PointersTo(runs), AtTheTruth(pair)), expected, 0.25 * expected) << phi;
-  }
-}
-
-// Tests that blocks add up to the whole, in the order of time.
-TEST(BlocksOf, AddUpToTheWhole) {
-  const ExactPair pair(0.5);
-  const std::vector<diagnose::RunData> runs = pair.With(0, 1);
-  diagnose::HeldOut predicted;
-  for (const diagnose::RunData& run : runs) {
-    predicted.starts.push_back(ExactPair::Start(run));
-    predicted.models.push_back(Table1With());
-  }
-  const diagnose::BlockSums blocks = diagnose::BlocksOf(PointersTo(runs), predicted);
-  double sum = 0;
-  for (const double block : blocks.sums) sum += block;
-  EXPECT_EQ(blocks.count, 2 * 3 * 500);
-  EXPECT_NEAR(sum, blocks.count, 0.1 * blocks.count);
-  predicted.models[1].parameters.k_1 *= 1.1;
-  const diagnose::BlockSums worse = diagnose::BlocksOf(PointersTo(runs), predicted);
-  for (size_t i = 0; i < blocks.sums.size() / 2; ++i) EXPECT_EQ(worse.sums[i], blocks.sums[i]);
-  EXPECT_GT(TValue(worse, blocks), 2);
-}
-
 // The given model with every base parameter free, held to what is known of it.
 diagnose::Fitted FitAll(const model::ModelDescription& given, const std::vector<diagnose::RunData>& runs) {
   diagnose::Hypothesis hypothesis = WithFree(given, {});
@@ -247,36 +166,6 @@ TEST(FitOfAllValues, LeavesWhatTheRunsDoNotTell) {
   EXPECT_NEAR(found.D, truth.D, 0.02 * truth.D);
   EXPECT_NEAR(found.T_s, truth.T_s, 0.05 * truth.T_s);
   EXPECT_NEAR(found.b, truth.b, 0.1 * truth.b);
-}
-
-// Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
-TEST(Closed, NearTheNoiseOrOfExactSensors) {
-  EXPECT_TRUE(diagnose::Closed(200, 1.15 * 1.15 - 1e-9, false));
-  EXPECT_FALSE(diagnose::Closed(200, 1.4, false));
-  EXPECT_TRUE(diagnose::Closed(200, 1.4, true));
-  EXPECT_FALSE(diagnose::Closed(200, 3.5, true));
-  const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
-  EXPECT_FALSE(ExactSensors(PointersTo(noisy)));
-  NoisyRig exact;
-  exact.model = Table1With();
-  exact.pressure_noise = exact.speed_noise = 0;
-  exact.encoder_bits = 26;
-  std::vector<diagnose::RunData> runs;
-  runs.push_back(
-      exact.Record("exact", model::Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
-  EXPECT_TRUE(ExactSensors(PointersTo(runs)));
-}
-
-// Tests how large a gain must be to count: a share of the whole and of what exceeds the noise.
-TEST(Material, AsksForAGainThatMatters) {
-  EXPECT_FALSE(diagnose::Material(1.02, 1.00));
-  EXPECT_FALSE(diagnose::Material(1.0, 1.0 - 0.5 * diagnose::kLeastGain));
-  EXPECT_TRUE(diagnose::Material(1 + 2 * diagnose::kLeastGain, 1.0));
-  EXPECT_FALSE(diagnose::Material(101, 101 - 0.5 * diagnose::kLeastShare * 100));
-  EXPECT_TRUE(diagnose::Material(101, 101 - 1.5 * diagnose::kLeastShare * 100));
-  EXPECT_FALSE(diagnose::Material(2, 3));
-  EXPECT_EQ(diagnose::LeastMaterialGain(1), diagnose::kLeastGain);
-  EXPECT_EQ(diagnose::LeastMaterialGain(101), diagnose::kLeastShare * 100);
 }
 
 }  // namespace

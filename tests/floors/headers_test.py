@@ -19,15 +19,10 @@ ROOMS = {
 }
 # From a header's path to the reason.
 EXEMPT = {
-    "diagnose/report/answer_sections.h": "parts of one page, which the tests of report_html.h read as a whole",
-    "diagnose/report/closure_json.h": "a part of report.json, which closure_report_test reads as a whole",
-    "diagnose/report/html_parts.h": "what the sections of the page share: their tests read its output",
     "diagnose/balances/column_maker.h": "what the makers of columns share: column_test reads every column",
     "diagnose/evidence/normal_equations.h": "inside of SetEvidence, which set_evidence_test compares with a dense reference",
     "diagnose/evidence/set_solution.h": "inside of SetEvidence",
     "diagnose/evidence/grams.h": "inside of SetEvidence",
-    "diagnose/prove/proof_outcome.h": "what a verdict reads: prove_test reads the whole",
-    "diagnose/search/search.h": "structures without a function",
     "diagnose/verdict/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
     "diagnose/prove/whole_runs.h": "a stage of prove.h: gap_closed_test and own_effect_test read what it finds",
     "diagnose/search/progress.h": "one struct without a function",

@@ -13,7 +13,7 @@ namespace {
 
 using diagnose::EffectVariant;
 
-// Tests columns that every hypothesis has: the command that acts late, channels that are late, by seconds, and zeros of transducers, by psi.
+// Tests columns that every hypothesis has: a command that is recorded late, channels that are late, by seconds, and zeros of transducers, by psi.
 TEST(Columns, OfRecordersMeetTheSimulation) {
   struct Case {
     std::vector<std::string> columns;
@@ -32,7 +32,7 @@ TEST(Columns, OfRecordersMeetTheSimulation) {
         {{"late.p2"}, late("p2", by), by},
         {{"late.p"}, {"sensor.pressure_lag", {{"tau", by}}, {}}, by},
         {{"late.arm_angle"}, late("arm_angle", by), by},
-        {{"late.voltage"}, {"amp.delay", {{"delay", by}}, {}}, by},
+        {{"late.voltage"}, {"amp.delay", {{"delay", by}}, {}}, -by},  // recorded early
         {offsets, {"sensor.pressure_offset", {{"p1", 50 * part}, {"p2", 0}}, {}}, 50 * part}};
     for (const Case& one : cases) {
       const CleanScan scan = ScanClean(PlainMachine(), RunsOf(PlainMachine({one.effect})), {});

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "diagnose/closure/resemblance.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::diagnose {

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/units.h"
 #include "diagnose/recording_first.h"
 #include "tests/diagnose/data/swing.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -21,11 +22,7 @@ using testing::Table1Model;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-std::vector<std::string> Found(const runs::MeasuredRun& run) {
-  std::vector<std::string> texts;
-  for (const Contradiction& one : Contradictions(Table1Model(), run)) texts.push_back(one.text);
-  return texts;
-}
+std::vector<std::string> Found(const runs::MeasuredRun& run) { return Contradictions(Table1Model(), run); }
 
 void Scale(double factor, runs::MeasuredSignal* signal) {
   for (double& value : signal->values) value *= factor;
@@ -40,26 +37,6 @@ TEST(Contradictions, None) {
   Scale(1.2, &run.arm_speed);
   for (double& angle : run.motor_angle.values) angle = std::round(angle / 0.1) * 0.1;
   EXPECT_THAT(Found(run), IsEmpty());
-}
-
-// Tests that a speed that is not the rate of its angle is named with the units that it looks like, or its sign.
-TEST(Contradictions, Rates) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
-  Scale(Degrees(1), &run.arm_speed);
-  EXPECT_THAT(
-      Found(run),
-      ElementsAre(HasSubstr("arm_speed is 57.2 times the rate of arm_angle, as degrees are to radians")));
-  run = Swing(model::Shaft::kFree);
-  Scale(1 / kTurn, &run.motor_angle);
-  EXPECT_THAT(
-      Found(run),
-      ElementsAre(HasSubstr("motor_speed is 6.28 times the rate of motor_angle, as radians are to turns")));
-  run = Swing(model::Shaft::kFree);
-  Scale(-1, &run.arm_angle);
-  const std::vector<Contradiction> turned = Contradictions(Table1Model(), run);
-  ASSERT_EQ(turned.size(), 1u);
-  EXPECT_TRUE(turned[0].only_sign);
-  EXPECT_THAT(turned[0].text, HasSubstr("arm_speed falls where arm_angle rises"));
 }
 
 // Tests that an angle that begins again after each turn is named; a single wrong sample is none.
@@ -82,6 +59,37 @@ TEST(Contradictions, Bypass) {
   runs::MeasuredRun run = Swing(model::Shaft::kClamped);
   run.bypass = true;
   EXPECT_THAT(Found(run), ElementsAre(HasSubstr("bypass = false")));
+}
+
+// A clamped run of Table 1 with sensors that have noise.
+runs::MeasuredRun Recorded(bool bypass, double volts) {
+  testing::NoisyRig rig;
+  rig.model = {"Table 1", testing::Table1(), {}};
+  rig.angle_measured = volts > 1;  // below, the motor does not turn
+  return rig
+      .Record("run", model::Shaft::kClamped, 0, 1, bypass,
+              [volts](double t) { return std::sin(9 * t) > 0 ? volts : -volts; })
+      .measured;
+}
+
+// Tests that an open bypass that is not stated is named with the line that mends it, and a stated one is not.
+TEST(TwinPressures, OpenBypass) {
+  runs::MeasuredRun run = Recorded(true, 3);
+  EXPECT_THAT(Found(run), IsEmpty());
+  run.bypass = false;
+  run.sidecar = "rig/byp.toml";
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("This in byp.toml mends it: bypass = true")));
+}
+
+// Tests that pressures that differ, and those of a motor that does not turn, say nothing; and that one column for both is named.
+TEST(TwinPressures, OthersAndOneColumn) {
+  runs::MeasuredRun run = Recorded(false, 3);
+  EXPECT_THAT(Found(run), IsEmpty());
+  EXPECT_THAT(Found(Recorded(false, 0.2)), IsEmpty());
+  run.p2.values = run.p1.values;
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("the same numbers")));
+  run.p2 = {};
+  EXPECT_THAT(Found(run), IsEmpty());
 }
 
 // Tests that --check calls such a recording wrong, where the model's predictions have nothing against it.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "diagnose/fit/start_fit.h"
-#include "diagnose/verdict/horizons.h"
+#include "diagnose/verdict/gaps.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
@@ -137,15 +137,14 @@ TEST(Horizons, ShowTheRightModel) {
   const RunData run = Simulated(model);
   SearchContext context;
   context.runs = {&run};
-  const auto explanation = [&run](const model::ModelDescription& by) {
-    Explanation one;
-    one.fitted.hypothesis.model = by;
-    one.held_out.models = {by};
-    one.held_out.starts = {run.start};
-    return one;
+  const auto gaps_of = [&](const std::vector<model::ModelDescription>& models) {
+    Proof proof;
+    for (const model::ModelDescription& by : models) proof.sets.emplace_back().hypothesis.model = by;
+    proof.values = 1;
+    proof.best = 2;
+    return HorizonGaps(context, proof);
   };
-  const std::vector<HorizonGap> gaps =
-      HorizonGaps(context, explanation(wrong), explanation(wrong), explanation(model));
+  const std::vector<HorizonGap> gaps = gaps_of({wrong, wrong, model});
   ASSERT_THAT(gaps, SizeIs(3));
   for (const HorizonGap& gap : gaps) {
     EXPECT_GT(gap.fit.before, 1.3) << gap.seconds;
@@ -159,7 +158,7 @@ TEST(Horizons, ShowTheRightModel) {
   // What one model cannot be simulated over is left out of its own gap alone.
   model::ModelDescription stiff = model;
   stiff.parameters.beta *= 1e9;
-  const HorizonGap gap = HorizonGaps(context, explanation(stiff), explanation(wrong), explanation(model))[1];
+  const HorizonGap gap = gaps_of({stiff, wrong, model})[1];
   EXPECT_TRUE(std::isnan(gap.typical.before));
   EXPECT_GT(gap.typical.refit_only, 1.3);
   EXPECT_LT(gap.typical.after, 1.15);

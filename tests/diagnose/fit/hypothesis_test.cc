@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/fit/clock_fit.h"
 #include "diagnose/fit/residuals.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -68,22 +67,16 @@ TEST(Hypothesis, ChangesThereAndBack) {
   EXPECT_EQ(drag.Label(), "pump.quadratic_drag");
   EXPECT_EQ(skew.Label(), "sensor.skew (p1)");
   EXPECT_EQ(k_1.Label(), "parameter k_1");
-  const std::vector<Hypothesis> with = diagnose::With(plain, drag, sizes, false);
+  const std::vector<Hypothesis> with = diagnose::With(plain, drag, sizes);
   ASSERT_FALSE(with.empty());
   for (const Hypothesis& one : with) {
     EXPECT_TRUE(one.Has(drag));
     EXPECT_FALSE(one.Has(k_1));
     ASSERT_EQ(one.model.effects.size(), 1u);
     EXPECT_EQ(one.model.effects[0].id, "pump.quadratic_drag");
-    ASSERT_NE(one.OneBeyond(plain), nullptr);
-    EXPECT_EQ(*one.OneBeyond(plain), drag);
-    EXPECT_EQ(plain.OneBeyond(one), nullptr);
   }
-  const std::vector<Hypothesis> elsewhere = diagnose::With(plain, k_1, sizes, true);
-  EXPECT_GT(elsewhere.size(), diagnose::With(plain, k_1, sizes, false).size());
-  Hypothesis both = diagnose::With(with[0], k_1, sizes, false).at(0);
+  Hypothesis both = diagnose::With(with[0], k_1, sizes).at(0);
   both.model.parameters.k_1 = 9;
-  EXPECT_EQ(both.OneBeyond(plain), nullptr);  // two
   const Hypothesis back = diagnose::Without(both, k_1, Table1With());
   EXPECT_EQ(back.model.parameters.k_1, Table1().k_1);
   EXPECT_TRUE(back.Has(drag));
@@ -145,48 +138,20 @@ TEST(Residuals, NoiseAndDerivatives) {
   }
 }
 
-// Tests that runs on one clock are left alone, and so are runs of which only some were found to be off.
-TEST(ClockFit, LeavesWhatIsOnOneClock) {
-  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
-  const std::vector<double> before = runs[0].measured.voltage.values;
-  std::vector<diagnose::RunData> held_out;
-  std::vector<diagnose::ClockDelay> clocks;
-  const std::vector<size_t> base = {model::BasePlace("b")};
-  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
-  EXPECT_EQ(runs[0].measured.voltage.values, before);
-  diagnose::ClockDelay one;
-  one.run = runs[0].name;
-  one.signals = {"voltage"};
-  one.delay = 0.01;
-  clocks = {one};
-  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
-  EXPECT_EQ(clocks[0].delay, 0.01);
-  EXPECT_EQ(runs[0].measured.voltage.values, before);
-}
-
-// Tests that a command still late after its correction is moved to its place, by whole samples, together with
-// the held-out run, and that the interval allows for it.
-TEST(ClockFit, FindsWhatWasLeft) {
-  std::vector<diagnose::RunData> runs, held_out;
-  for (int which : {0, 1}) {
-    diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, which, 1);
-    runs::MeasuredRun late = run.measured;
-    constexpr size_t kLate = 4;
-    for (size_t k = late.voltage.values.size(); k-- > kLate;)
-      late.voltage.values[k] = late.voltage.values[k - kLate];
-    diagnose::RunData prepared = diagnose::PrepareRun(std::move(late), Table1());
-    (which == 0 ? runs : held_out).push_back(std::move(prepared));
-  }
-  diagnose::ClockDelay clock;
-  clock.run = runs[0].name;
-  clock.signals = {"voltage"};
-  clock.delay = 0.02;
-  clock.error = 0.001;
-  std::vector<diagnose::ClockDelay> clocks = {clock};
-  diagnose::CorrectClocks(Table1With(), {model::BasePlace("b")}, 1, &runs, &held_out, &clocks);
-  EXPECT_NEAR(clocks[0].delay, 0.024, 1e-9);
-  EXPECT_NEAR(clocks[0].error, std::hypot(0.001, 0.004), 1e-9);
-  EXPECT_LT(held_out[0].samples(), 500u);
+// Tests that a resonance is not looked for beyond what the samples can show, and that a model's own frequency has no such limit.
+TEST(Hypothesis, FrequenciesBelowHalfTheSamplingRate) {
+  const model::ModelDescription wave =
+      Table1With({{"line.wave", {{"frequency", 300}, {"volume_fraction", 0.1}, {"damping", 0.1}}, {}}});
+  Hypothesis hypothesis = WithFree(wave, {});
+  const auto highest = [&] {
+    for (const FreeParameter& one : hypothesis.Free()) {
+      if (one.role == model::Role::kFrequency) return one.high;
+    }
+    return 0.0;
+  };
+  EXPECT_GT(highest(), 1000);
+  hypothesis.highest_frequency = 500;
+  EXPECT_EQ(highest(), 500);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "diagnose/data/run_data.h"
-#include "diagnose/search/window_search.h"
+#include "diagnose/search/search_context.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -14,8 +14,9 @@ namespace hydro::testing {
 namespace {
 
 using diagnose::Change;
+using diagnose::Proof;
 using diagnose::Proposal;
-using diagnose::WideSearch;
+using diagnose::ProvedSet;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -57,7 +58,7 @@ class ProveTest : public ::testing::Test {
     return proposal;
   }
 
-  WideSearch Prove(const std::vector<Proposal>& proposals, const std::vector<Change>& blind = {}) {
+  Proof Prove(const std::vector<Proposal>& proposals, const std::vector<Change>& blind = {}) {
     return diagnose::ProveProposals(context_, as_given_, allowed_, proposals, blind);
   }
 
@@ -67,16 +68,16 @@ class ProveTest : public ::testing::Test {
   std::vector<size_t> allowed_;
 };
 
-double NearGap(const WideSearch& proved, const std::vector<Change>& changes) {
+double NearGap(const Proof& proved, const std::vector<Change>& changes) {
   double least = std::numeric_limits<double>::infinity();
-  for (const diagnose::Explanation& one : proved.windows.tried) {
-    if (one.changes() == changes) least = std::min(least, one.held_out_gap());
+  for (const ProvedSet& one : proved.sets) {
+    if (one.tested() && one.hypothesis.changes == changes) least = std::min(least, TypicalGap(one.near));
   }
   return least;
 }
 
-double ValueOf(const diagnose::Explanation& one, const std::string& effect, const std::string& name) {
-  for (const model::EffectDescription& has : one.fitted.hypothesis.model.effects) {
+double ValueOf(const Proof& proved, const std::string& effect, const std::string& name) {
+  for (const model::EffectDescription& has : proved.Found().model.effects) {
     if (has.id == effect) return has.parameters.at(name);
   }
   return std::nan("");
@@ -86,13 +87,13 @@ double ValueOf(const diagnose::Explanation& one, const std::string& effect, cons
 // there, and that the verdict names it alone.
 TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
   Record(Table1With({Drag(2e-4)}));
-  const WideSearch proved =
+  const Proof proved =
       Prove({Proposed({}, {}), Proposed({kBias}, {Bias(0.5)}), Proposed({kDrag}, {Drag(1.6e-4)})});
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kDrag));
-  EXPECT_NEAR(ValueOf(proved.search.best, "pump.quadratic_drag", "k"), 2e-4, 1e-5);
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+  EXPECT_NEAR(ValueOf(proved, "pump.quadratic_drag", "k"), 2e-4, 1e-5);
   EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
   EXPECT_LT(NearGap(proved, {kDrag}), 0.8 * NearGap(proved, {}));
-  EXPECT_TRUE(proved.windows.decide);
+  EXPECT_TRUE(proved.OnWindows());
   const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1u);
@@ -104,26 +105,26 @@ TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
 // Tests that an effect that is not there is left out though it is proposed beside one that is, and no set without it was proposed.
 TEST_F(ProveTest, FurtherEffectIsVetoed) {
   Record(Table1With({Drag(2e-4)}));
-  const WideSearch proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kDrag));
+  const Proof proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
   EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
 }
 
 // Tests that both of two true effects are kept.
 TEST_F(ProveTest, BothOfTwoAreKept) {
   Record(Table1With({Drag(2e-4), Bias(0.6)}));
-  const WideSearch proved =
+  const Proof proved =
       Prove({Proposed({kDrag}, {Drag(2e-4)}), Proposed({kDrag, kBias}, {Drag(1.9e-4), Bias(0.5)})});
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kDrag, kBias));
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag, kBias));
 }
 
 // Tests that nothing is said where nothing is missing, whatever is proposed.
 TEST_F(ProveTest, NothingStaysNothing) {
   Record(Table1With());
-  const WideSearch proved = Prove({Proposed({kBias}, {Bias(0.02)}), Proposed({kDrag}, {Drag(2e-6)})},
-                                  diagnose::BlindChanges(context_));
-  EXPECT_THAT(proved.search.best.changes(), IsEmpty());
-  EXPECT_THAT(proved.search.best.fitted.hypothesis.base, IsEmpty());
+  const Proof proved = Prove({Proposed({kBias}, {Bias(0.02)}), Proposed({kDrag}, {Drag(2e-6)})},
+                             diagnose::BlindChanges(context_));
+  EXPECT_THAT(proved.Found().changes, IsEmpty());
+  EXPECT_THAT(proved.Found().base, IsEmpty());
   const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
 }
@@ -133,10 +134,9 @@ TEST_F(ProveTest, ValueIsAValue) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b *= 1.6;
   Record(truth);
-  const WideSearch proved = Prove({Proposed({kDrag}, {Drag(2e-5)})});
-  EXPECT_THAT(proved.search.best.changes(), IsEmpty());
-  EXPECT_NEAR(proved.search.best.fitted.hypothesis.model.parameters.b, truth.parameters.b,
-              0.03 * truth.parameters.b);
+  const Proof proved = Prove({Proposed({kDrag}, {Drag(2e-5)})});
+  EXPECT_THAT(proved.Found().changes, IsEmpty());
+  EXPECT_NEAR(proved.Found().model.parameters.b, truth.parameters.b, 0.03 * truth.parameters.b);
 }
 
 // Tests that an estimate far from the truth does not make the refit worse than the model as given.
@@ -145,35 +145,30 @@ TEST_F(ProveTest, RefitIsNeverWorse) {
   Proposal wrong = Proposed({}, {});
   wrong.model.parameters.J *= 3;
   wrong.model.parameters.beta *= 0.2;
-  const WideSearch proved = Prove({wrong});
-  double given = std::numeric_limits<double>::infinity();
-  for (const diagnose::Explanation& one : proved.windows.tried) {
-    if (one.fitted.hypothesis.base.empty()) given = std::min(given, one.held_out_gap());
-  }
-  EXPECT_LE(NearGap(proved, {}), given);
-  EXPECT_LE(proved.refit.held_out_gap(), 1.01 * proved.search.given.held_out_gap());
+  const Proof proved = Prove({wrong});
+  EXPECT_LE(TypicalGap(proved.Values().near), TypicalGap(proved.Given().near));
 }
 
 // Tests that a proposal that cannot be simulated is not chosen, rejects nothing, and is said to be untested.
 TEST_F(ProveTest, WhatCannotBeSimulatedIsNotTested) {
   Record(Table1With({Drag(2e-4)}));
   Proposal impossible = Proposed({kBias}, {Bias(std::nan(""))});
-  const WideSearch proved = Prove({impossible, Proposed({kDrag}, {Drag(2e-4)})});
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kDrag));
-  for (const diagnose::Explanation& one : proved.windows.tried)
-    EXPECT_TRUE(std::isfinite(one.held_out_gap()));
+  const Proof proved = Prove({impossible, Proposed({kDrag}, {Drag(2e-4)})});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   bool said = false;
-  for (const diagnose::Rated& rated : proved.search.rated)
-    said = said || (rated.change == kBias && !rated.failure.empty());
+  for (const diagnose::Candidate& candidate : d.candidates)
+    said =
+        said || (candidate.id == "amp.bias" && candidate.rejected_because.starts_with("could not be tried"));
   EXPECT_TRUE(said);
 }
 
 // Tests that an effect that no balance shows is found by racing it, once the best proposal leaves a gap.
 TEST_F(ProveTest, BlindEffectIsRaced) {
   Record(Table1With({{"valve.relief", {{"set", 700}, {"conductance", 2e-3}}, {}}}));
-  const WideSearch proved = Prove({}, diagnose::BlindChanges(context_));
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kRelief));
-  EXPECT_NEAR(ValueOf(proved.search.best, "valve.relief", "set"), 700, 20);
+  const Proof proved = Prove({}, diagnose::BlindChanges(context_));
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kRelief));
+  EXPECT_NEAR(ValueOf(proved, "valve.relief", "set"), 700, 20);
 }
 
 // Tests that a model that cannot follow a run at all does not end the diagnosis: windows judge the values that can.
@@ -182,12 +177,12 @@ TEST_F(ProveTest, GivenModelThatCannotBeSimulated) {
   const Proposal values = Proposed({}, {});
   context_.given.parameters.J *= 1e-9;
   as_given_.model = context_.given;
-  const WideSearch proved = Prove({values});
-  EXPECT_TRUE(proved.search.given.fitted.ok());
-  EXPECT_TRUE(proved.windows.decide);
-  EXPECT_THAT(proved.search.best.fitted.hypothesis.base, ::testing::Not(IsEmpty()));
-  EXPECT_NEAR(proved.search.best.held_out_gap(), 1, 0.2);
-  EXPECT_NO_THROW(diagnose::Conclude(context_, proved));
+  const Proof proved = Prove({values});
+  EXPECT_TRUE(proved.OnWindows());
+  EXPECT_THAT(proved.Found().base, ::testing::Not(IsEmpty()));
+  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
+  EXPECT_NEAR(d.held_out.after, 1, 0.1);
+  EXPECT_FALSE(std::isfinite(d.held_out.before));
 }
 
 // Tests that runs are held out in turn where none is named: every other window judges.
@@ -196,9 +191,9 @@ TEST_F(ProveTest, InTurn) {
   context_.held_out.clear();
   Proposal drag = Proposed({kDrag}, {Drag(1.8e-4)});
   drag.without.assign(3, drag.model);
-  const WideSearch proved = Prove({drag});
-  EXPECT_THAT(proved.search.best.changes(), ElementsAre(kDrag));
-  EXPECT_EQ(proved.search.best.held_out.models.size(), context_.runs.size());
+  const Proof proved = Prove({drag});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+  EXPECT_THAT(proved.runs, ::testing::Contains(runs_[0].name));
 }
 
 // Tests that one and two threads give the same bits.
@@ -208,10 +203,9 @@ TEST_F(ProveTest, SameForAnyNumberOfJobs) {
   double amounts[2] = {};
   for (const int jobs : {1, 2}) {
     context_.jobs = jobs;
-    const WideSearch proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
-    for (const diagnose::Explanation& one : proved.windows.tried)
-      gaps[jobs - 1].push_back(one.held_out_gap());
-    amounts[jobs - 1] = ValueOf(proved.search.best, "pump.quadratic_drag", "k");
+    const Proof proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
+    for (const ProvedSet& one : proved.sets) gaps[jobs - 1].push_back(TypicalGap(one.near));
+    amounts[jobs - 1] = ValueOf(proved, "pump.quadratic_drag", "k");
   }
   EXPECT_EQ(gaps[0], gaps[1]);
   EXPECT_EQ(amounts[0], amounts[1]);

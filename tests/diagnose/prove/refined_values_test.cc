@@ -105,9 +105,9 @@ TEST_F(RefinedTest, DiscrepancyIsCountedAsNoise) {
 // Tests that base values are held near what is known of them, unless the set itself says that they are others.
 TEST_F(RefinedTest, KnownOfValues) {
   diagnose::Hypothesis hypothesis = WithFree(With(1), {"b", "beta"});
-  EXPECT_NE(KnownOfValues(context_, hypothesis, 100), nullptr);
+  EXPECT_NE(KnownOfValues(context_, context_.runs, hypothesis, 100), nullptr);
   hypothesis.changes = {{"", {}, "b"}, {"", {}, "beta"}};
-  EXPECT_EQ(KnownOfValues(context_, hypothesis, 100), nullptr);
+  EXPECT_EQ(KnownOfValues(context_, context_.runs, hypothesis, 100), nullptr);
 }
 
 // Tests that windows begin where the model says, near what was measured.

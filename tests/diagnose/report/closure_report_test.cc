@@ -4,10 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
-#include "diagnose/report/report_html.h"
-#include "diagnose/report/report_json.h"
+#include "diagnose/report/page_sections.h"
+#include "diagnose/report/report.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {

@@ -50,9 +50,9 @@ TEST(InSi, ConvertsParametersAndTerms) {
   EXPECT_DOUBLE_EQ(converted.fitted.high, factor * b.fitted.high);
   EXPECT_DOUBLE_EQ(converted.model, factor * b.model);
 
-  const diagnose::MissingTerm &term = paper.missing[0], &shown = si.missing[0];
+  const diagnose::MeasuredCurve &term = paper.missing[0], &shown = si.missing[0];
   ASSERT_EQ(term.unit, "in-lbf");
-  const double torque = shown.mean[0] / term.mean[0];
+  const double torque = shown.measured[0] / term.measured[0];
   // N m, or mN m for small ones.
   const double ratio = torque / kNewtonMetrePerInchPound;
   EXPECT_TRUE(std::abs(ratio - 1) < 1e-9 || std::abs(ratio - 1000) < 1e-6) << shown.unit << " " << ratio;

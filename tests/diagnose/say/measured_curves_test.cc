@@ -1,4 +1,4 @@
-// Tests that the balances show the curves of the machine: its friction, its leakage, its load.
+// Tests that the balances show the curves of the machine (its friction, its leakage, its load) and the terms of effects.
 #include "diagnose/say/measured_curves.h"
 
 #include <gmock/gmock.h>
@@ -13,6 +13,8 @@ namespace hydro::testing {
 namespace {
 
 using diagnose::MeasuredCurve;
+using ::testing::IsEmpty;
+using ::testing::Not;
 
 const MeasuredCurve* Find(const std::vector<MeasuredCurve>& curves, const std::string& element) {
   const auto is_it = [&](const MeasuredCurve& curve) { return curve.element == element; };
@@ -107,6 +109,71 @@ TEST(MeasuredCurves, NoneWithoutTheSignals) {
   std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.5, 3);
   for (diagnose::RunData& run : runs) run.measured.p2.values.clear();
   EXPECT_TRUE(diagnose::MeasuredCurves(Table1With(), Table1With(), PointersTo(runs)).empty());
+}
+
+std::optional<MeasuredCurve> TermIn(const model::ModelDescription& truth, const std::string& effect) {
+  const std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.8, 3);
+  return diagnose::TermOf(truth, effect, PointersTo(runs), 2);
+}
+
+// Tests that a drag is drawn as pump torque over motor speed: its own term is its equation, and what the runs
+// lack without it follows that.
+TEST(TermOf, ADragOverMotorSpeed) {
+  constexpr double kDrag = 1e-3;
+  const auto term = TermIn(Table1With({{"pump.quadratic_drag", {{"k", kDrag}}, {}}}), "pump.quadratic_drag");
+  ASSERT_TRUE(term.has_value());
+  EXPECT_EQ(term->balance, "pump_torque");
+  EXPECT_EQ(term->unit, "in-lbf");
+  EXPECT_EQ(term->against, "motor_speed");
+  ASSERT_THAT(term->at, Not(IsEmpty()));
+  double largest = 0;
+  for (size_t i = 0; i < term->at.size(); ++i) {
+    const double speed = term->at[i];
+    largest = std::max(largest, std::abs(speed));
+    // A step of the curve is a sixtieth of the range wide.
+    EXPECT_NEAR(term->found[i], -kDrag * speed * std::abs(speed), 0.03 * kDrag * 1e4) << speed;
+  }
+  EXPECT_GT(largest, 50);
+  for (size_t i = 0; i < term->at.size(); ++i) {
+    const double speed = term->at[i];
+    if (std::abs(speed) < 30) continue;
+    EXPECT_LT(term->measured[i] * speed, 0) << "a drag acts against the motion";
+  }
+}
+
+// Tests that a relief valve, which has switches, is drawn over a pressure: nothing below its setting, and the
+// more flow out of that side the higher the pressure is above it.
+TEST(TermOf, AReliefValveOverPressure) {
+  const auto term =
+      TermIn(Table1With({{"valve.relief", {{"set", 200}, {"conductance", 1e-3}}, {}}}), "valve.relief");
+  ASSERT_TRUE(term.has_value());
+  const bool first = term->balance == "flow_1";
+  EXPECT_EQ(term->against, first ? "p1" : "p2");
+  EXPECT_EQ(term->against_unit, "psi");
+  for (size_t i = 0; i < term->at.size(); ++i) {
+    const double expected = -1e-3 * std::max(0.0, term->at[i] - 200);
+    EXPECT_NEAR(term->found[i], expected, 0.02) << term->at[i];
+  }
+  EXPECT_GT(term->at.back(), 250);
+}
+
+// Tests that what repeats within a turn is drawn over a wave of the motor's angle.
+TEST(TermOf, CoggingOverTheMotorsAngle) {
+  const auto term =
+      TermIn(Table1With({{"motor.cogging", {{"amplitude", 2}, {"periods", 9}, {"phase", 0.4}}, {}}}),
+             "motor.cogging");
+  ASSERT_TRUE(term.has_value());
+  EXPECT_EQ(term->against, "motor_angle, 9 periods a turn");
+  ASSERT_GE(term->at.size(), 12u);
+  const auto [low, high] = std::minmax_element(term->found.begin(), term->found.end());
+  EXPECT_NEAR(*high, 2, 0.2);
+  EXPECT_NEAR(*low, -2, 0.2);
+}
+
+// Tests that effects that act through time, and effects that the model does not have, have no term.
+TEST(TermOf, NoneWhereNothingIsAdded) {
+  EXPECT_FALSE(TermIn(Table1With({{"amp.lag", {{"tau", 0.005}}, {}}}), "amp.lag").has_value());
+  EXPECT_FALSE(TermIn(Table1With(), "pump.stribeck").has_value());
 }
 
 }  // namespace

@@ -1,51 +1,79 @@
-// From a search's results to the verdict, on a small search: a rig with a drag that its model lacks.
+// From a proof to the verdict, on a small one: a rig with a drag that its model lacks, judged by a whole run.
 #include "diagnose/verdict/conclusion.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "diagnose/verdict/evidence.h"
-#include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
-#include "tests/diagnose/verdict/small_search.h"
+#include "tests/diagnose/verdict/made_up.h"
 
 namespace hydro::testing {
 namespace {
 
-// Tests that the ranking has every candidate once: the chosen one first, without a reason, the others each
-// with one.
-TEST(Ranking, TakenFirstOthersWithAReason) {
-  SmallSearch& small = OfADrag();
-  const auto weights = diagnose::WeightsOf(small.context, small.Found(), {});
-  const std::vector<diagnose::Candidate> ranking =
-      diagnose::Ranking(small.context, small.search, weights, {});
-  ASSERT_EQ(ranking.size(), 4u);
-  EXPECT_EQ(ranking[0].id, "pump.quadratic_drag");
-  EXPECT_EQ(ranking[0].rejected_because, "");
-  EXPECT_LT(ranking[0].held_out, 1.2);
-  EXPECT_LT(ranking[0].p_value, 1e-6);
-  EXPECT_GT(ranking[0].weight, 0.9);
-  double sum = 0;
-  for (const diagnose::Candidate& candidate : ranking) sum += candidate.weight;
-  EXPECT_NEAR(sum, 1, 1e-9);
-  std::vector<std::string> others;
-  for (size_t i = 1; i < ranking.size(); ++i) {
-    EXPECT_NE(ranking[i].rejected_because, "") << ranking[i].id;
-    others.push_back(ranking[i].id);
+// A fitted run and one held out; the model as given, and a valve, a value and the drag fitted to it.
+struct SmallProof {
+  std::vector<diagnose::RunData> runs, held_out;
+  diagnose::SearchContext context;
+  diagnose::Proof proof;
+  std::vector<std::string> stages;
+
+  explicit SmallProof(const model::ModelDescription& truth) {
+    runs = ClampedPair(truth, 0.5, 5);
+    held_out.push_back(std::move(runs.back()));
+    runs.pop_back();
+    context.given = Table1With();
+    context.runs = PointersTo(runs);
+    context.held_out = PointersTo(held_out);
+    context.sizes = diagnose::SizesOf(context.given, context.runs);
+    context.changes = {kDrag, kRelief, {"", {}, "beta"}};
+    context.report_progress = [this](const diagnose::Progress& progress) {
+      stages.push_back(progress.stage);
+    };
+    proof.runs = {held_out[0].name};
+    proof.told_runs = context.runs;
+    diagnose::Hypothesis given;
+    given.model = context.given;
+    Add(given);
+    for (size_t c = context.changes.size(); c-- > 0;) {
+      for (const diagnose::Hypothesis& start : With(given, context.changes[c], context.sizes)) Add(start);
+    }
+    proof.best = proof.sets.size() - 1;
   }
-  EXPECT_THAT(others, ::testing::UnorderedElementsAre("valve.relief", "parameter beta", "as given"));
+
+  diagnose::Proof Nothing() const {
+    diagnose::Proof nothing = proof;
+    nothing.best = nothing.given;
+    return nothing;
+  }
+
+ private:
+  void Add(const diagnose::Hypothesis& start) {
+    const diagnose::Fitted fitted =
+        Fit(start, context.runs, diagnose::MeasuredStarts(context.runs), diagnose::FineFit(1));
+    if (!fitted.ok()) return;
+    diagnose::ProvedSet& set = proof.sets.emplace_back();
+    set.hypothesis = fitted.hypothesis;
+    set.near = diagnose::GapsOfEach(fitted.hypothesis.model, context.held_out, 1);
+    proof.told = fitted;
+  }
+};
+
+SmallProof& OfADrag() {
+  static SmallProof small(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}));
+  return small;
 }
 
 // Tests the conclusion: the verdict, the effect with its value in its interval, the gaps, the place, and
 // whose runs they were.
 TEST(Conclusion, NamesTheDrag) {
-  SmallSearch& small = OfADrag();
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Found());
+  SmallProof& small = OfADrag();
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.proof);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1u);
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
   EXPECT_TRUE(d.effects[0].tied_with.empty());
+  EXPECT_GT(d.effects[0].share, 0.9);
   ASSERT_EQ(d.effects[0].parameters.size(), 1u);
   EXPECT_LE(d.effects[0].parameters[0].low, 2e-4);
   EXPECT_GE(d.effects[0].parameters[0].high, 2e-4);
@@ -62,8 +90,8 @@ TEST(Conclusion, NamesTheDrag) {
 
 // Tests that a model which explains its runs is said to lack nothing, and is left as it is.
 TEST(Conclusion, NothingMissing) {
-  SmallSearch small(Table1With());
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Found());
+  SmallProof small(Table1With());
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Nothing());
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_TRUE(d.effects.empty());
   EXPECT_TRUE(d.parameters.empty());
@@ -74,10 +102,8 @@ TEST(Conclusion, NothingMissing) {
 
 // Tests that a gap that nothing tried closes is called unexplained, with its place.
 TEST(Conclusion, Unexplained) {
-  SmallSearch& small = OfADrag();
-  diagnose::WideSearch none = small.Found();
-  none.search.best = none.search.given;
-  const diagnose::Diagnosis d = diagnose::Conclude(small.context, none);
+  SmallProof& small = OfADrag();
+  const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.Nothing());
   EXPECT_EQ(d.verdict, diagnose::Verdict::kUnexplained);
   EXPECT_TRUE(d.effects.empty());
   EXPECT_DOUBLE_EQ(d.held_out.before, d.held_out.after);
@@ -85,12 +111,12 @@ TEST(Conclusion, Unexplained) {
 }
 
 // Tests that each signal's gap is in its own unit: at the noise with what was found, above it before.
-TEST(RunCurves, GapsBySignal) {
-  SmallSearch& small = OfADrag();
-  const std::vector<diagnose::SignalGap> gaps =
-      diagnose::SignalGaps(small.context, small.search.given, small.search.given, small.search.best);
-  EXPECT_EQ(gaps.size(), small.runs[0].signals.size());
-  for (const diagnose::SignalGap& gap : gaps) {
+TEST(DescribeGaps, BySignal) {
+  SmallProof& small = OfADrag();
+  diagnose::Diagnosis d;
+  DescribeGaps(small.context, OverWholeRuns(small.context, small.proof), &d);
+  EXPECT_EQ(d.signals.size(), small.runs[0].signals.size());
+  for (const diagnose::SignalGap& gap : d.signals) {
     EXPECT_NEAR(gap.noise, small.runs[0].Find(gap.channel)->noise, 0.2 * gap.noise);
     EXPECT_NEAR(gap.held_out.after, gap.noise, 0.5 * gap.noise);
     EXPECT_GT(gap.held_out.before, gap.held_out.after);
@@ -98,11 +124,26 @@ TEST(RunCurves, GapsBySignal) {
   }
 }
 
+// Tests that the gaps of windows are there for the horizons that the runs are long enough for, and closed with what was found.
+TEST(HorizonGaps, AsLongAsTheRuns) {
+  SmallProof& small = OfADrag();
+  const std::vector<diagnose::HorizonGap> horizons = HorizonGaps(small.context, small.proof);
+  ASSERT_EQ(horizons.size(), 2u);
+  EXPECT_EQ(horizons[0].seconds, 0.1);
+  EXPECT_EQ(horizons[1].seconds, 0.4);
+  for (const diagnose::HorizonGap& horizon : horizons) {
+    EXPECT_NEAR(horizon.typical.after, 1, 0.2);
+    EXPECT_NEAR(horizon.held_out.after, 1, 0.2);
+    EXPECT_GT(horizon.held_out.before, 1.2 * horizon.held_out.after);
+    EXPECT_EQ(horizon.signals.size(), small.runs[0].signals.size());
+  }
+}
+
 // Tests that there is a picture for each run, fitted ones first, with the measurement and both predictions.
 TEST(RunCurves, OneARun) {
-  SmallSearch& small = OfADrag();
+  SmallProof& small = OfADrag();
   const std::vector<diagnose::RunCurves> curves =
-      diagnose::CurvesOf(small.context, small.search.given, small.search.best);
+      CurvesOf(small.context, small.proof, OverWholeRuns(small.context, small.proof));
   ASSERT_EQ(curves.size(), 2u);
   EXPECT_EQ(curves[0].run, "clamped 0");
   EXPECT_FALSE(curves[0].held_out);
@@ -122,6 +163,26 @@ TEST(RunCurves, OneARun) {
       EXPECT_LT(after, before);
     }
   }
+}
+
+// Tests that the stretch is a 25th of the fitted run or 60 samples, with the model near the measurement with the
+// effect and away from it without, in the signal that shows the effect; an effect that the model does not have shows nowhere.
+TEST(StretchOf, ShowsWhereTheEffectMatters) {
+  SmallProof& small = OfADrag();
+  const diagnose::WholeRuns whole = OverWholeRuns(small.context, small.proof);
+  const auto stretch = StretchOf(small.context, small.proof, whole, "pump.quadratic_drag");
+  ASSERT_TRUE(stretch.has_value());
+  EXPECT_EQ(stretch->run, "clamped 0");
+  ASSERT_EQ(stretch->time.size(), 60u);
+  ASSERT_EQ(stretch->with.size(), 60u);
+  double with = 0, without = 0;
+  for (size_t i = 0; i < 60; ++i) {
+    if (std::isnan(stretch->measured[i])) continue;
+    with += std::pow(stretch->with[i] - stretch->measured[i], 2);
+    without += std::pow(stretch->without[i] - stretch->measured[i], 2);
+  }
+  EXPECT_GT(without, 4 * with);
+  EXPECT_FALSE(StretchOf(small.context, small.proof, whole, "amp.lag").has_value());
 }
 
 }  // namespace

@@ -1,68 +1,124 @@
-// What is kept of what was found, and how it is described.
+// How what was proved is described: shares, weights, ties and values.
 #include "diagnose/verdict/found.h"
 
 #include <gmock/gmock.h>
 
+#include "diagnose/verdict/claims.h"
 #include "tests/diagnose/verdict/made_up.h"
-#include "tests/diagnose/verdict/small_search.h"
 
 namespace hydro::testing {
 namespace {
 
-using ::testing::HasSubstr;
+using diagnose::Diagnosis;
+using diagnose::Proof;
+using diagnose::ProvedSet;
+using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const diagnose::Change kDrag{"pump.quadratic_drag", {}, ""};
-
-// The search with one more effect in its best explanation.
-diagnose::SearchResult WithOneMore(const SmallSearch& small, const diagnose::Change& change) {
-  diagnose::SearchResult more = small.search;
-  const diagnose::Hypothesis both =
-      diagnose::With(small.search.best.fitted.hypothesis, change, small.context.sizes, false).front();
-  more.best = diagnose::Explain(small.context, both, diagnose::StartsOf(small.search.best.fitted), {});
-  return more;
+diagnose::SearchContext OfTable1() {
+  diagnose::SearchContext context;
+  context.given = Table1With();
+  return context;
 }
 
-// Tests that an effect of which there may be none is dropped, and what is there is kept without a doubt.
-TEST(KeepWhatIsThere, DropsWhatIsNotThere) {
-  SmallSearch& small = OfADrag();
-  const diagnose::SearchResult more = WithOneMore(small, {"fluid.warming", {}, ""});
-  ASSERT_TRUE(more.best.fitted.ok());
-  ASSERT_THAT(more.best.changes(), SizeIs(2));
-  const diagnose::Kept kept = diagnose::KeepWhatIsThere(small.context, more);
-  ASSERT_THAT(kept.search.best.changes(), SizeIs(1));
-  EXPECT_TRUE(kept.search.best.changes()[0] == kDrag);
-  EXPECT_THAT(kept.doubts, IsEmpty());
+// A lag that takes nearly all of the gap, beside these other sets.
+Proof OfALag(const std::vector<ProvedSet>& others) {
+  std::vector<ProvedSet> sets = {Leaving(100, Freed({})), Leaving(81, Freed({"b", "T_s", "J", "beta"}))};
+  sets.insert(sets.end(), others.begin(), others.end());
+  sets.push_back(Leaving(1, Freed({}, {kLag}), 1.2));
+  return ProofOf(std::move(sets));
 }
 
-// Tests that an effect is described with its share, its weight and its interval, and that numbers that no rig
-// has are doubts.
-TEST(DescribeFound, SharesWeightsAndDoubts) {
-  SmallSearch& small = OfADrag();
-  diagnose::Kept kept{small.search, {}};
-  diagnose::Diagnosis d;
-  const std::map<std::string, double> weights = {
-      {"pump.quadratic_drag", 0.7}, {"pump.quadratic_drag + valve.relief", 0.2}, {"valve.relief", 0.1}};
-  const auto models = diagnose::DescribeFound(small.context, small.search.given, {}, weights, &kept, &d);
-  EXPECT_THAT(models, SizeIs(1));
+Diagnosis Described(const Proof& proof, std::vector<diagnose::WeightedSet> explanations = {},
+                    size_t set_90 = 1) {
+  Diagnosis d;
+  d.explanations = std::move(explanations);
+  d.set_90 = set_90;
+  DescribeFound(OfTable1(), proof, &d);
+  return d;
+}
+
+// Tests that the weight is that of all explanations that have the effect, and that none is said of what balances cannot see.
+TEST(DescribeFound, WeightsOfTheBalances) {
+  const Diagnosis d =
+      Described(OfALag({}), {{{"amp.lag"}, 0.5}, {{"amp.lag", "valve.relief"}, 0.2}, {{"amp.delay"}, 0.3}});
   ASSERT_THAT(d.effects, SizeIs(1));
-  EXPECT_NEAR(d.effects[0].weight, 0.9, 1e-12);
-  EXPECT_GT(d.effects[0].share, 0.95);
-  EXPECT_THAT(kept.doubts, IsEmpty());
+  EXPECT_NEAR(d.effects[0].weight, 0.7, 1e-12);
+  const Proof relief = ProofOf({Leaving(100, Freed({})), Leaving(1, Freed({}, {kRelief}))});
+  EXPECT_TRUE(std::isnan(Described(relief, {{{"amp.lag"}, 1.0}}).effects[0].weight));
+  const diagnose::Change skew{"sensor.skew", {{"signal", "p1"}}, ""};
+  EXPECT_EQ(diagnose::NameInSets(skew), "sensor.skew(p1)");
+  EXPECT_EQ(diagnose::WeightOf(skew, {{{"sensor.skew(p1)"}, 0.4}, {{"sensor.skew(p2)"}, 0.6}}), 0.4);
+}
 
-  // The same runs with a model that states a fortieth of the viscous friction.
-  diagnose::SearchContext context = small.context;
-  context.given.parameters.b /= 40;
-  diagnose::Hypothesis with_b = kept.search.best.fitted.hypothesis;
-  with_b.base.push_back(model::BasePlace("b"));
-  kept.search.best = diagnose::Explain(context, with_b, diagnose::StartsOf(small.search.best.fitted), {});
-  d = {};
-  diagnose::DescribeFound(context, small.search.given, {}, weights, &kept, &d);
-  ASSERT_THAT(d.parameters, SizeIs(1));
-  EXPECT_TRUE(d.parameters[0].implausible);
-  ASSERT_THAT(kept.doubts, SizeIs(1));
-  EXPECT_THAT(kept.doubts[0], HasSubstr("b = "));
+// Tests shares: of what was proved without the effect, as a part of the gap that the model's own values leave.
+TEST(DescribeFound, SharesOfTheTypicalGap) {
+  const Proof both =
+      ProofOf({Leaving(1000, Freed({})), Leaving(101, Freed({"b"})), Leaving(81, Freed({}, {kRelief})),
+               Leaving(11, Freed({}, {kLag})), Leaving(1, Freed({}, {kLag, kRelief}))});
+  const Diagnosis d = Described(both);
+  ASSERT_THAT(d.effects, SizeIs(2));
+  EXPECT_NEAR(d.effects[0].share, 0.8, 1e-12);
+  EXPECT_NEAR(d.effects[1].share, 0.1, 1e-12);
+  const Proof nothing = ProofOf({Leaving(0.98, Freed({})), Leaving(0.9, Freed({}, {kLag}))});
+  EXPECT_TRUE(std::isnan(Described(nothing).effects[0].share)) << "there is no gap to take";
+}
+
+// Tests that a likely explanation that predicts as well within the scatter of windows is a tie, and that one that predicts worse, one
+// that is not likely, and a part of what was found are none.
+TEST(DescribeFound, TiesThatTheProofDoesNotTellApart) {
+  const ProvedSet delay = Leaving(1.05, Freed({}, {kDelay}), 1 / 1.2), drag = Leaving(9, Freed({}, {kDrag}));
+  const Proof proof = OfALag({delay, drag});
+  const std::vector<diagnose::WeightedSet> said = {
+      {{"amp.lag"}, 0.4}, {{"amp.delay"}, 0.3}, {{"pump.quadratic_drag"}, 0.3}};
+  EXPECT_THAT(Described(proof, said, 3).effects[0].tied_with, ElementsAre("amp.delay"));
+  EXPECT_THAT(Described(proof, said, 1).effects[0].tied_with, IsEmpty());
+  EXPECT_THAT(Described(proof).effects[0].tied_with, ElementsAre("amp.delay"))
+      << "where balances say nothing";
+}
+
+// Tests that what balances cannot see may stand in an effect's place whatever they say, that other values may, and that a curve may not.
+TEST(DescribeFound, TiesWithTheUnseenAndWithValues) {
+  const ProvedSet relief = Leaving(1, Freed({}, {kRelief}), 1 / 1.2);
+  const ProvedSet curve = Leaving(1, Freed({}, {{"closure.pump_torque", {}, ""}}), 1 / 1.2);
+  const ProvedSet value = Leaving(1, Freed({"b"}, {{"", {}, "b"}}), 1 / 1.2);
+  const Proof proof = OfALag({relief, curve, value});
+  EXPECT_THAT(Described(proof, {{{"amp.lag"}, 1.0}}).effects[0].tied_with, ElementsAre("valve.relief"));
+  EXPECT_THAT(Described(proof, {{{"amp.lag"}, 0.6}, {{"value.b"}, 0.4}}, 2).effects[0].tied_with,
+              ElementsAre("valve.relief", "parameter b"));
+}
+
+// Tests each kind of claim: effects in order, whatever values are fitted beside them; few values by name; more
+// as "parameters"; none; and sets as the balances name them.
+TEST(ClaimOf, EachKind) {
+  using diagnose::ClaimOf;
+  EXPECT_EQ(ClaimOf(Freed({})), "as given");
+  EXPECT_EQ(ClaimOf(Freed({"b"}, {{"", {}, "b"}})), "parameter b");
+  EXPECT_EQ(ClaimOf(Freed({"b"})), "parameter b") << "the refit of the only value that is free";
+  EXPECT_EQ(ClaimOf(Freed({"b", "T_s", "J", "beta"})), "parameters");
+  EXPECT_EQ(ClaimOf(Freed({}, {kLag})), "amp.lag");
+  EXPECT_EQ(ClaimOf(Freed({"b", "T_s", "J", "beta"}, {kLag})), "amp.lag");
+  EXPECT_EQ(ClaimOf(Freed({}, {{"sensor.skew", {{"signal", "p1"}}, ""}, kLag})),
+            "amp.lag + sensor.skew (p1)");
+  EXPECT_EQ(diagnose::ClaimOfSet({}), "as given");
+  EXPECT_EQ(diagnose::ClaimOfSet({"sensor.skew(p1)", "amp.lag", "value.b"}), "amp.lag + sensor.skew (p1)");
+  EXPECT_EQ(diagnose::ClaimOfSet({"value.b"}), "parameter b");
+  EXPECT_EQ(diagnose::ClaimOfSet({"run.T_s"}), "run.T_s");
+}
+
+// Tests that a value that moves by more than a factor of two is called implausible, down as well as up, and nothing of what was 0.
+TEST(DescribeFound, ImplausibleValues) {
+  const auto moved = [](const std::string& name, double factor, double to = 0) {
+    diagnose::Hypothesis hypothesis = Freed({name});
+    double& value = hypothesis.model.parameters.*model::BaseParameters()[model::BasePlace(name)].member;
+    value = factor * value + to;
+    return Described(ProofOf({Leaving(100, Freed({})), Leaving(1, hypothesis)})).parameters.at(0);
+  };
+  EXPECT_FALSE(moved("b", 1.9).implausible);
+  EXPECT_EQ(moved("b", 3).why, "moves by a factor of 3");
+  EXPECT_EQ(moved("b", 0.25).why, "moves by a factor of 0.25");
+  EXPECT_FALSE(moved("mgl", 1, 25).implausible);
 }
 
 }  // namespace

@@ -1,14 +1,19 @@
-// Explanations with made-up gaps, for tests of what is concluded from them.
+// Proofs with made-up gaps, for tests of what is concluded from them.
 #pragma once
 
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "diagnose/search/explanation.h"
+#include "diagnose/prove/proof.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
+
+inline const diagnose::Change kLag{"amp.lag", {}, ""}, kDelay{"amp.delay", {}, ""},
+    kRelief{"valve.relief", {}, ""}, kDrag{"pump.quadratic_drag", {}, ""};
 
 // The model of Table 1 with these values free and these changes made.
 inline diagnose::Hypothesis Freed(const std::vector<std::string>& base,
@@ -18,33 +23,39 @@ inline diagnose::Hypothesis Freed(const std::vector<std::string>& base,
   return hypothesis;
 }
 
-// Leaves this squared gap in each of ten blocks of whole runs, or in each of ten windows.
-inline diagnose::Explanation Leaving(double gap, diagnose::Hypothesis hypothesis, bool windows) {
-  diagnose::Explanation one;
-  one.fitted.hypothesis = std::move(hypothesis);
-  one.fitted.sum = 1000 * gap;
-  one.fitted.count = 1000;
-  one.windows = windows;
-  one.held_out.gaps.assign(10, gap);
-  one.held_out.count = 1000;
-  one.held_out.sum = 1000 * gap;
-  one.blocks.sums.assign(10, windows ? std::log(gap) : 100 * gap);
-  one.blocks.count = 1000;
-  return one;
-}
-
-// The same, with gaps that scatter around it: by this factor up and down in turn.
-inline diagnose::Explanation Scattered(double gap, double by, diagnose::Hypothesis hypothesis,
-                                       bool windows = true) {
-  diagnose::Explanation one = Leaving(gap, std::move(hypothesis), windows);
-  for (size_t b = 0; b < one.blocks.sums.size(); ++b) {
-    const double factor = b % 2 == 0 ? by : 1 / by;
-    one.blocks.sums[b] = windows ? std::log(gap * factor) : 100 * gap * factor;
+// Leaves this squared gap of p1 in each of the windows, by a factor up and down in turn.
+inline diagnose::ProvedSet Leaving(const std::vector<double>& gaps, diagnose::Hypothesis hypothesis,
+                                   double by = 1) {
+  diagnose::ProvedSet set;
+  set.hypothesis = std::move(hypothesis);
+  for (size_t w = 0; w < gaps.size(); ++w) {
+    diagnose::WindowGap gap;
+    gap.tested = true;
+    gap.squared.fill(std::numeric_limits<double>::quiet_NaN());
+    gap.squared[static_cast<size_t>(model::Channel::kP1)] = gaps[w] * (w % 2 == 0 ? by : 1 / by);
+    gap.count = 100;
+    gap.sum = 100 * gaps[w];
+    set.near.push_back(gap);
   }
-  return one;
+  set.far = set.near;
+  return set;
 }
 
-inline const diagnose::Change kLag{"amp.lag", {}, ""}, kDelay{"amp.delay", {}, ""},
-    kRelief{"valve.relief", {}, ""};
+// The same in each of 12 windows.
+inline diagnose::ProvedSet Leaving(double gap, diagnose::Hypothesis hypothesis, double by = 1) {
+  return Leaving(std::vector<double>(12, gap), std::move(hypothesis), by);
+}
+
+// Windows judged: four of each of three runs. The first set is the model as given, the second has other values, the last is best.
+inline diagnose::Proof ProofOf(std::vector<diagnose::ProvedSet> sets) {
+  diagnose::Proof proof;
+  proof.sets = std::move(sets);
+  proof.values = proof.sets.size() > 1 ? 1 : 0;
+  proof.best = proof.sets.size() - 1;
+  proof.seconds = 0.4;
+  for (const char* run : {"a", "b", "c"}) proof.runs.insert(proof.runs.end(), 4, run);
+  proof.told.failure = "made up";
+  return proof;
+}
 
 }  // namespace hydro::testing

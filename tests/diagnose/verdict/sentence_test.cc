@@ -28,9 +28,7 @@ diagnose::Diagnosis With(Verdict verdict, std::vector<std::string> tied_with = {
 }
 
 // The sentence on whole runs.
-std::string Said(const diagnose::Diagnosis& d, const std::vector<std::string>& doubts = {}) {
-  return diagnose::Sentence(d, doubts, {d.held_out, 0});
-}
+std::string Said(const diagnose::Diagnosis& d) { return diagnose::Sentence(d, {d.held_out, 0}); }
 
 // Tests that rivals are named in words, other values among them.
 TEST(Sentence, RivalsInWords) {
@@ -44,15 +42,6 @@ TEST(Sentence, RivalsInWords) {
             "distinguishes amp.lag from amp.delay, other values of J and b and other values of the model's "
             "parameters");
   EXPECT_EQ(diagnose::WhyNext(With(Verdict::kNamed).effects), "");
-}
-
-// Tests that a doubt takes the place of a claim.
-TEST(Sentence, ADoubtIsSaid) {
-  EXPECT_THAT(
-      Said(With(Verdict::kPartly), {"the interval of amp.lag includes none of it"}),
-      AllOf(StartsWith(
-                "The gap becomes smaller with the amplifier lags [amp.lag], but that is not the cause: "),
-            HasSubstr("includes none of it"), Not(HasSubstr("Missing"))));
 }
 
 // Tests that values alone can explain a part.
@@ -73,8 +62,6 @@ TEST(Sentence, NoImprovementIsClaimed) {
   d.held_out = {0.9981, 0.998, 0.9979};
   EXPECT_THAT(Said(d), AllOf(HasSubstr("takes nothing of the held-out gap"),
                              HasSubstr("the held-out gap stays at 0.998 noise units")));
-  EXPECT_THAT(Said(d, {"no rig is likely to have it"}),
-              AllOf(StartsWith("Only the fitted runs are predicted better with"), Not(HasSubstr("smaller"))));
 }
 
 // Tests that a value which the runs do not show apart from others is left to its remark.
@@ -104,7 +91,7 @@ TEST(Sentence, WhatCannotBeFollowed) {
 
 // Tests that a gap of windows is said with the time that they reach.
 TEST(Sentence, AGapOverWindows) {
-  EXPECT_THAT(diagnose::Sentence(With(Verdict::kNamed), {}, {{11, 6, 1.2}, 0.4}),
+  EXPECT_THAT(diagnose::Sentence(With(Verdict::kNamed), {{11, 6, 1.2}, 0.4}),
               HasSubstr("(held-out gap over 0.4 s 11 to 1.2 noise units)"));
 }
 

@@ -1,0 +1,222 @@
+#include "diagnose/evidence/checklist.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "base/number_text.h"
+#include "base/units.h"
+#include "diagnose/data/run_data.h"
+#include "diagnose/evidence/run_mistakes.h"
+#include "runs/measured_signals.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using State = ChecklistLine::State;
+using runs::MeasuredRun;
+using runs::MeasuredSignal;
+
+constexpr double kFarOff =
+    6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  size_t missing = 0;
+};
+
+Range RangeIn(const std::vector<double>& values) {
+  Range range;
+  for (const double value : values) {
+    if (std::isnan(value)) {
+      ++range.missing;
+      continue;
+    }
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+std::string Text(const Range& range, const std::string& unit) {
+  std::string text = ShortNumber(range.low) + " to " + ShortNumber(range.high) + " " + unit;
+  if (range.missing > 0) text += ", " + std::to_string(range.missing) + " missing";
+  return text;
+}
+
+class RunChecklist {
+ public:
+  RunChecklist(const model::ModelDescription& model, const MeasuredRun& run, bool si)
+      : p_(model.parameters), units_(model.units), si_(si), run_(run), mistakes_(model, run) {}
+
+  std::vector<ChecklistLine> Lines() {
+    AddSamples();
+    for (const runs::SignalName& name : runs::kSignals) AddSignal(name);
+    AddPressures();
+    AddShaft();
+    AddSigns();
+    return std::move(lines_);
+  }
+
+ private:
+  void Add(State state, const std::string& item, const std::string& text) {
+    lines_.push_back({state, item, text});
+  }
+  std::optional<SiUnit> InSi(const std::string& unit, double size) const {
+    return si_ ? FindSiUnit(unit, size) : std::nullopt;
+  }
+
+  void AddSamples() {
+    const double seconds = run_.time.back() - run_.time.front();
+    double longest = 0;
+    for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
+    const double interval = seconds / static_cast<double>(run_.samples() - 1);
+    const bool even = longest < 1.5 * interval;
+    Add(even ? State::kGood : State::kLook, "samples",
+        std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
+            ShortNumber(1e3 * interval) + " ms" +
+            (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms"));
+  }
+
+  void AddSignal(const runs::SignalName& name) {
+    const MeasuredSignal& signal = run_.*name.signal;
+    if (!signal.measured()) {
+      if (name.signal != &MeasuredRun::pressure_ref) Add(State::kAbsent, name.ours, "not recorded");
+      return;
+    }
+    Range range = RangeIn(signal.values);
+    std::string unit = units_.UnitFor(name.unit, name.arm);
+    if (const auto shown = InSi(unit, std::max(std::abs(range.low), std::abs(range.high)))) {
+      range = {range.low * shown->factor, range.high * shown->factor};
+      unit = shown->to;
+    }
+    if (name.signal == &MeasuredRun::voltage) unit = "V (the command that k_1 takes)";
+    const bool moves = range.high > range.low;
+    Add(moves ? State::kGood : State::kLook, name.ours,
+        Text(range, unit) + (moves ? "" : ": it never changes"));
+  }
+
+  // The lowest pressure of a closed circuit is its charge pressure, whatever moves.
+  void AddPressures() {
+    if (!run_.p1.measured() || !run_.p2.measured()) return;
+    const double low1 = RangeIn(run_.p1.values).low, low2 = RangeIn(run_.p2.values).low;
+    std::string unit = units_.UnitFor("psi");
+    double factor = 1;
+    if (const auto shown = InSi(unit, std::max({low1, low2, p_.p_3}))) {
+      factor = shown->factor;
+      unit = shown->to;
+    }
+    // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
+    const double low = std::min(low1, low2);
+    const double noise = kFarOff * std::max(EstimateNoise(run_.p1.values), EstimateNoise(run_.p2.values));
+    const bool near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise;
+    const bool same = std::max(low1, low2) < 1.5 * low + noise;
+    Add(near && same && !LooksLikeCurrents() ? State::kGood : State::kLook, "charge pressure",
+        "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
+            ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +
+            " " + unit +
+            (LooksLikeCurrents()
+                 ? ": another unit, or currents of 4 to 20 mA that want a scale and an offset?"
+             : !near ? ": another unit, gauge against absolute, or another charge?"
+             : same  ? ""
+                     : ": is one side under load all the time, or its sensor's scale another?"));
+  }
+
+  // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
+  bool LooksLikeCurrents() const {
+    for (const MeasuredSignal* signal : {&run_.p1, &run_.p2}) {
+      const Range range = RangeIn(signal->values);
+      const double low = (range.low - signal->source.offset) / signal->source.scale,
+                   high = (range.high - signal->source.offset) / signal->source.scale;
+      if (!(low > 3.8 && low < 8 && high < 20.5)) return false;
+    }
+    return true;
+  }
+
+  void AddShaft() {
+    if (!run_.arm_angle.measured() || run_.shaft == model::Shaft::kDriven) return;
+    const Range range = RangeIn(run_.arm_angle.values);
+    const double travel = p_.c * (range.high - range.low) / p_.V_ms;
+    if (run_.shaft == model::Shaft::kClamped && travel > 0.02) {
+      Add(State::kLook, "shaft",
+          "clamped, as is said, but the arm moves by " + ShortNumber(range.high - range.low));
+    } else if (run_.shaft == model::Shaft::kFree && travel < 1e-4) {
+      Add(State::kLook, "shaft", "free, as is said, but the arm hardly moves");
+    }
+    const double reach = p_.c * std::max(std::abs(range.low), std::abs(range.high)) / p_.V_ms;
+    if (reach >= 1)
+      Add(State::kLook, "arm's travel",
+          "c times the arm's angle exceeds V_ms: one side would have no volume");
+  }
+
+  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
+  void AddSign(const std::string& item, const std::function<bool(const RecordingMistake&)>& is_mistake,
+               const std::string& good, const std::string& turned) {
+    const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
+    const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
+    if (mistake == possible.end()) return;
+    const double gain = mistakes_.Try({*mistake}).gain;
+    const std::string number = " (log odds " + ShortNumber(gain, 2) + ")";
+    if (std::abs(gain) < OddsAgainstMistake()) {
+      Add(State::kLook, item,
+          gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
+    } else {
+      Add(gain < 0 ? State::kGood : State::kLook, item, (gain < 0 ? good : turned) + number);
+    }
+  }
+  static bool IsSignOf(const RecordingMistake& mistake, SignalOfRun signal) {
+    return mistake.IsSign() && mistake.factors.size() == 1 && mistake.factors[0].first == signal;
+  }
+
+  void AddSigns() {
+    if (!run_.motor_speed.measured()) return;
+    const bool pressures = run_.p1.measured() && run_.p2.measured() && !run_.bypass;
+    AddSign(
+        "sign of the command",
+        [](const RecordingMistake& one) { return IsSignOf(one, &MeasuredRun::voltage); },
+        pressures ? "a positive command turns the motor forward and raises p2 over p1"
+                  : "a positive command turns the motor forward",
+        pressures ? "a positive command goes with a falling speed or p2 - p1: turn its sign, the speed's, or "
+                    "exchange p1 and p2"
+                  : "a positive command goes with a falling speed: turn the sign of one of them");
+    if (run_.bypass) return;
+    if (run_.shaft == model::Shaft::kClamped && pressures) {
+      AddSign(
+          "sign of the pressures", [](const RecordingMistake& one) { return one.pressures_exchanged; },
+          "p2 - p1 rises while the motor turns forward",
+          "p2 - p1 falls while the motor turns forward: exchange p1 and p2, or turn the sign of the speed");
+    }
+    const SignalOfRun arm = run_.arm_angle.measured() ? &MeasuredRun::arm_angle : &MeasuredRun::arm_speed;
+    AddSign(
+        "sign of the arm", [arm](const RecordingMistake& one) { return IsSignOf(one, arm); },
+        "the arm moves up while the motor turns forward",
+        "the arm moves down while the motor turns forward: turn the sign of one of them");
+  }
+
+  const model::Parameters& p_;
+  const UnitSystem& units_;
+  bool si_;
+  const MeasuredRun& run_;
+  RunMistakes mistakes_;
+  std::vector<ChecklistLine> lines_;
+};
+
+}  // namespace
+
+std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const MeasuredRun& run, bool si) {
+  return RunChecklist(model, run, si).Lines();
+}
+
+std::string Written(const ChecklistLine& line) {
+  const char* const states[] = {"ok", "look", "absent"};
+  std::string text = states[static_cast<int>(line.state)];
+  text.resize(8, ' ');
+  text += line.item;
+  text.resize(std::max<size_t>(text.size() + 1, 31), ' ');
+  return text + line.text;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,122 @@
+#include "diagnose/evidence/clocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/input_error.h"
+#include "diagnose/data/sample_interval.h"
+#include "diagnose/evidence/late_signals.h"
+#include "runs/run_delays.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+using Run = runs::MeasuredRun;
+using Signal = runs::MeasuredSignal Run::*;
+
+// s and samples: a shorter delay is what the catalogue's effects of amplifier and sensors name.
+constexpr double kLeastDelay = 0.02, kLeastSamples = 2;
+// s: a shorter run does not fill a tile of test functions.
+constexpr double kShortest = 2;
+
+bool CanBeAligned(const Run& run) {
+  return !run.bypass && run.p1.measured() && run.p2.measured() &&
+         (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
+         run.time.back() - run.time.front() >= kShortest;
+}
+
+// The signals of a device, by name.
+const std::vector<std::pair<const char*, Signal>>& SignalsOf(Late late) {
+  static const std::vector<std::pair<const char*, Signal>> kOf[] = {
+      {{"voltage", &Run::voltage}, {"pressure_ref", &Run::pressure_ref}},
+      {{"motor_speed", &Run::motor_speed}, {"motor_angle", &Run::motor_angle}},
+      {{"arm_angle", &Run::arm_angle}, {"arm_speed", &Run::arm_speed}}};
+  return kOf[static_cast<size_t>(late)];
+}
+
+// Whether command and motor are late enough to be another clock's.
+bool AreLate(const LateSignals& found, const Run& run) {
+  const double least = std::max(kLeastDelay, kLeastSamples * MedianInterval(run.time));
+  return found.delay[0] >= least && found.delay[1] >= least &&
+         std::max(found.delay[0], found.delay[1]) < LargestDelay(run);
+}
+
+// What a signal alone, or both pressures, that are late have names for.
+const std::vector<std::vector<Late>> kOthers = {
+    {Late::kCommand}, {Late::kMotor}, {Late::kPressures, Late::kP2}};
+
+// Shifts the run's signals.
+std::vector<ClockDelay> Moved(const LateSignals& found, const std::vector<Late>& late, Run* run) {
+  const double half_a_sample = 0.5 * MedianInterval(run->time);
+  std::vector<ClockDelay> clocks;
+  Delays delays{};
+  for (size_t i = 0; i < late.size(); ++i) {
+    ClockDelay clock{run->name, {}, found.delay[i], std::hypot(2 * found.error[i], half_a_sample)};
+    for (const auto& [name, signal] : SignalsOf(late[i])) {
+      if ((run->*signal).measured()) clock.signals.emplace_back(name);
+    }
+    delays[static_cast<size_t>(late[i])] = clock.delay;
+    clocks.push_back(std::move(clock));
+  }
+  if (!runs::RemoveDelays(OfSignals(delays), run)) return {};
+  return clocks;
+}
+
+}  // namespace
+
+std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, Run* run) {
+  if (!CanBeAligned(*run)) return {};
+  std::vector<Late> late = {Late::kCommand, Late::kMotor};
+  LateSignals devices;
+  try {
+    devices = FindLate(given, *run, late);
+    if (!AreLate(devices, *run)) return {};
+    double others = FindLate(given, *run, {}).score;
+    for (const std::vector<Late>& other : kOthers)
+      others = std::max(others, FindLate(given, *run, other).score);
+    if (run->shaft != model::Shaft::kClamped && run->arm_angle.measured()) {
+      const LateSignals with_arm = FindLate(given, *run, {Late::kCommand, Late::kMotor, Late::kArm});
+      if (AreLate(with_arm, *run) && with_arm.score > devices.score) {
+        devices = with_arm;
+        late.push_back(Late::kArm);
+      }
+    }
+    if (devices.score <= others) return {};
+  } catch (const InputError&) {
+    return {};  // said of the run itself, where it is prepared
+  } catch (const model::ModelError&) {
+    return {};
+  }
+  return Moved(devices, late, run);
+}
+
+RunData PrepareAligned(Run run, const model::ModelDescription& given, std::vector<ClockDelay>* delays) {
+  Run recorded = run;
+  const std::vector<ClockDelay> found = AlignClocks(given, &run);
+  if (found.empty()) return PrepareRun(std::move(run), given.parameters);
+  PrepareRun(std::move(recorded), given.parameters);  // errors then name the rows of the recording
+  RunData data = PrepareRun(std::move(run), given.parameters);
+  double error = 0;
+  for (const ClockDelay& delay : found) {
+    if (delay.signals.front().starts_with("arm")) continue;  // imposed: not compared
+    error = std::max(error, delay.error / 2);
+  }
+  for (SignalData& signal : data.signals) {
+    double square = 0, count = 0;
+    for (size_t i = 1; i < data.samples(); ++i) {
+      const double step = data.stimulus.time[i] - data.stimulus.time[i - 1];
+      const double rate = (signal.values[i] - signal.values[i - 1]) / step;
+      if (std::isnan(rate)) continue;
+      // Less the contribution of noise.
+      square += rate * rate - 2 * signal.noise * signal.noise / (step * step);
+      count += 1;
+    }
+    if (count > 0 && square > 0) signal.noise = std::hypot(signal.noise, error * std::sqrt(square / count));
+  }
+  delays->insert(delays->end(), found.begin(), found.end());
+  return data;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,34 @@
+// How late signals of a run are, by Gauss-Newton on the evidence of its balances: the inside of clocks.cc.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "model/terms/description.h"
+#include "runs/measured_run.h"
+#include "runs/run_delays.h"
+
+namespace hydro::diagnose {
+
+// What may be late: a device with all of its signals; both pressures; p2 beyond both.
+enum class Late { kCommand, kMotor, kArm, kPressures, kP2 };
+inline constexpr size_t kLates = 5;
+using Delays = std::array<double, kLates>;  // s, by Late
+
+// All signals, each with the delay of its device.
+std::vector<runs::SignalDelay> OfSignals(const Delays& delays);
+
+// s: no delay of the run is looked for beyond.
+double LargestDelay(const runs::MeasuredRun& run);
+
+struct LateSignals {
+  double score = 0;                  // log evidence of the rows up to 2 Hz, with the odds of a late signal
+  std::vector<double> delay, error;  // s, in the order of what may be late; standard errors
+};
+
+// `late`: without doubles. All values of the model are as good as free, so that a wrong one is not taken for a delay. Scores of one
+// run can be compared. Throws InputError as PrepareRun does, ModelError where the model's equations cannot be set up.
+LateSignals FindLate(const model::ModelDescription& given, const runs::MeasuredRun& run,
+                     const std::vector<Late>& late);
+
+}  // namespace hydro::diagnose

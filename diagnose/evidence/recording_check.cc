@@ -1,0 +1,183 @@
+#include "diagnose/evidence/recording_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "diagnose/data/other_side.h"
+#include "diagnose/evidence/run_mistakes.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using Run = runs::MeasuredRun;
+using Mistakes = std::vector<RecordingMistake>;
+
+// Of the log evidence, beyond the odds: ten to one, after a thousand to one.
+const double kClear = std::log(10.0);
+// Two sets this near to each other explain a run alike.
+constexpr double kAlikeMistakes = 2;
+// A share of a balance's terms, squared: a model that leaves more of every balance predicts nothing.
+constexpr double kPredictsNothing = 0.5;
+constexpr size_t kOfEachRun = 3;  // sets that the other runs are asked about
+
+// Factors without a unit, and the step between those that are tried.
+constexpr double kLeastFactor = 2, kMostFactor = 1000, kFactorStep = 1.2;
+const std::vector<SignalOfRun> kQuantities[] = {
+    {&Run::p1, &Run::p2}, {&Run::motor_speed}, {&Run::motor_angle}, {&Run::arm_angle}, {&Run::arm_speed}};
+
+// How many mistakes a set has in the run that can have most of them.
+size_t LargestOf(const std::vector<std::vector<MistakeTrial>>& trials, size_t set) {
+  size_t most = 0;
+  for (const std::vector<MistakeTrial>& run : trials) most = std::max(most, run[set].mistakes.size());
+  return most;
+}
+
+bool Includes(const Mistakes& all, const Mistakes& some) {
+  return std::all_of(some.begin(), some.end(), [&](const RecordingMistake& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+  });
+}
+
+// What all runs say of the same sets of mistakes.
+class Recorder {
+ public:
+  Recorder(const model::ModelDescription& model, const std::vector<Run>& runs, int jobs,
+           const std::function<bool()>& time_is_up)
+      : runs_(runs), time_is_up_(time_is_up), checks_(runs.size()), own_(runs.size()), trials_(runs.size()) {
+    ParallelFor(runs.size(), jobs, [&](size_t r) {
+      if (time_is_up()) return;
+      checks_[r].emplace(model, runs[r]);
+      own_[r] = checks_[r]->Search(time_is_up);
+    });
+    for (size_t r = 0; r < runs.size(); ++r) {
+      for (size_t i = 0; i < std::min(kOfEachRun, own_[r].size()); ++i) {
+        Add(own_[r][i].mistakes);
+        if (const auto twin = SeenFromTheOtherSide(own_[r][i].mistakes, runs[r])) Add(*twin);
+      }
+    }
+    ParallelFor(runs.size(), jobs, [&](size_t r) {
+      for (const Mistakes& set : sets_) {
+        if (time_is_up()) return;
+        trials_[r].push_back(checks_[r]->Try(set));
+      }
+    });
+  }
+
+  std::vector<RecordingFinding> Findings() const {
+    std::vector<RecordingFinding> findings;
+    if (time_is_up_()) return findings;
+    const std::optional<size_t> common = ClearBest(trials_);
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      const MistakeTrial* own = own_[r].empty() ? nullptr : &own_[r].front();
+      const MistakeTrial* shared = common ? &trials_[r][*common] : nullptr;
+      // The recorder has paid for its mistake; one of its own a run has to pay for.
+      const bool follows = shared != nullptr && !shared->mistakes.empty() && shared->gain > -kAlikeMistakes &&
+                           own->Merit() <= shared->gain;
+      if (follows) {
+        findings.push_back({r, shared->mistakes, shared->gain, TiedWith(r, *common)});
+      } else if (own != nullptr && own->Merit() > kClear) {
+        findings.push_back({r, own->mistakes, own->gain});
+      }
+    }
+    return findings;
+  }
+
+  // A factor of one quantity in all runs that is no known unit's.
+  std::vector<RecordingFinding> UnknownFactors(int jobs) const {
+    std::vector<Mistakes> factors;
+    for (const std::vector<SignalOfRun>& signals : kQuantities) {
+      const bool measured = std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
+        return std::all_of(signals.begin(), signals.end(),
+                           [&](SignalOfRun signal) { return (run.*signal).measured(); });
+      });
+      for (double size = kLeastFactor; measured && size < kMostFactor; size *= kFactorStep) {
+        for (const double factor : {size, 1 / size}) factors.push_back({UnknownUnit(signals, factor)});
+      }
+    }
+    std::vector<std::vector<MistakeTrial>> trials(runs_.size());
+    ParallelFor(runs_.size(), jobs, [&](size_t r) {
+      for (const Mistakes& factor : factors) {
+        if (time_is_up_()) return;
+        trials[r].push_back({factor, checks_[r]->Gain(factor)});
+      }
+    });
+    std::vector<RecordingFinding> findings;
+    if (time_is_up_()) return findings;
+    const std::optional<size_t> best = ClearBest(trials);
+    for (size_t r = 0; best && r < runs_.size(); ++r) {
+      if (trials[r][*best].gain > -kAlikeMistakes)
+        findings.push_back({r, factors[*best], trials[r][*best].gain});
+    }
+    return findings;
+  }
+
+  bool PredictsNothing(size_t run) const {
+    return checks_[run].has_value() && checks_[run]->LeastLeftOpen() > kPredictsNothing;
+  }
+
+ private:
+  void Add(const Mistakes& mistakes) {
+    if (!mistakes.empty() && std::find(sets_.begin(), sets_.end(), mistakes) == sets_.end())
+      sets_.push_back(mistakes);
+  }
+
+  // The set of mistakes that all runs together, and one at least by itself, speak for. One recorder makes one mistake: the odds
+  // count once, and runs that do not have it say nothing.
+  static std::optional<size_t> ClearBest(const std::vector<std::vector<MistakeTrial>>& trials) {
+    std::optional<size_t> best;
+    double most = kClear;
+    for (size_t s = 0; !trials.empty() && s < trials[0].size(); ++s) {
+      double merit = -OddsAgainstMistake() * static_cast<double>(LargestOf(trials, s)), alone = 0;
+      for (const std::vector<MistakeTrial>& run : trials) {
+        merit += std::max(0.0, run[s].gain);
+        alone = std::max(alone, run[s].Merit());
+      }
+      if (!(merit > most && alone > 0)) continue;
+      most = merit;
+      best = s;
+    }
+    return best;
+  }
+
+  // Sets that explain all runs as well as this one, one more mistake allowed.
+  std::vector<Mistakes> TiedWith(size_t run, size_t set) const {
+    std::vector<Mistakes> tied;
+    for (size_t s = 0; s < sets_.size(); ++s) {
+      const bool larger = sets_[s].size() > sets_[set].size() + 1 || Includes(sets_[s], sets_[set]);
+      const bool alike = std::all_of(trials_.begin(), trials_.end(), [&](const auto& trials) {
+        return trials[set].gain - trials[s].gain < kAlikeMistakes;
+      });
+      if (s != set && !larger && alike && trials_[run][s].mistakes != trials_[run][set].mistakes)
+        tied.push_back(trials_[run][s].mistakes);
+    }
+    return tied;
+  }
+
+  const std::vector<Run>& runs_;
+  const std::function<bool()>& time_is_up_;
+  std::vector<std::optional<RunMistakes>> checks_;
+  std::vector<std::vector<MistakeTrial>> own_, trials_;  // by run
+  std::vector<Mistakes> sets_;
+};
+
+}  // namespace
+
+std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
+                                              const std::vector<Run>& runs, int jobs,
+                                              const std::function<bool()>& time_is_up,
+                                              std::vector<size_t>* unpredicted) {
+  const Recorder recorder(model, runs, jobs, time_is_up);
+  std::vector<RecordingFinding> findings = recorder.Findings();
+  if (findings.empty()) findings = recorder.UnknownFactors(jobs);
+  for (size_t r = 0; unpredicted != nullptr && r < runs.size(); ++r) {
+    const bool said = std::any_of(findings.begin(), findings.end(),
+                                  [r](const RecordingFinding& one) { return one.run == r; });
+    if (!said && recorder.PredictsNothing(r)) unpredicted->push_back(r);
+  }
+  return findings;
+}
+
+}  // namespace hydro::diagnose

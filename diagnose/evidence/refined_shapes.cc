@@ -1,0 +1,220 @@
+#include "diagnose/evidence/refined_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "diagnose/evidence/estimated_model.h"
+#include "diagnose/evidence/set_evidence.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// What is between two neighbours on a grid is halved so often: to a thirtieth, which no balance shows.
+constexpr int kHalvings = 3;
+// Steps of Gauss-Newton of a whole effect, and the change of its numbers that is none.
+constexpr int kMostStepsOfAWhole = 4;
+constexpr double kSettledShape = 0.01;
+// Where a grid has one point only, and as far as a whole may go from its grid point: neighbours are no further apart.
+constexpr double kMostShapeMove = 2;
+
+bool IsOf(const ScanColumn& column, const ChangeSet& set) {
+  return std::find(set.begin(), set.end(), column.set) != set.end();
+}
+
+// The columns of every hypothesis and of the set, those of the set in every block.
+RowBlock OnlyOf(const RowBlock& block, const std::vector<ScanColumn>& columns, const ChangeSet& set) {
+  RowBlock only = block;
+  only.columns.clear();
+  std::vector<Eigen::Index> from;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const auto at = std::lower_bound(block.columns.begin(), block.columns.end(), static_cast<int>(i));
+    const bool there = at != block.columns.end() && *at == static_cast<int>(i);
+    if (!IsOf(columns[i], set) && (!columns[i].set.empty() || !there)) continue;
+    only.columns.push_back(static_cast<int>(i));
+    from.push_back(there ? at - block.columns.begin() : -1);
+  }
+  const auto width = static_cast<Eigen::Index>(from.size());
+  only.X = only.noise_X = Eigen::MatrixXd::Zero(block.X.rows(), width);
+  for (Eigen::Index c = 0; c < width; ++c) {
+    const Eigen::Index place = from[static_cast<size_t>(c)];
+    if (place < 0) continue;
+    only.X.col(c) = block.X.col(place);
+    only.noise_X.col(c) = block.noise_X.col(place);
+  }
+  return only;
+}
+
+Rows OnlyOf(const Rows& rows, const ChangeSet& set) {
+  Rows only{rows.columns, rows.prior, {}, rows.base, rows.inertia, rows.other_torques, rows.clock};
+  for (const RowBlock& block : rows.blocks) only.blocks.push_back(OnlyOf(block, rows.columns, set));
+  return only;
+}
+
+const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
+  const auto found = std::find_if(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& one) {
+    return one.run == block.run && one.balance == block.balance;
+  });
+  return found == rows.blocks.end() ? nullptr : &*found;
+}
+
+// What stands for the `which`-th of several shapes in sets of changes.
+std::string NameOf(size_t which) { return "shape|" + std::to_string(which); }
+
+// `rows` and the columns of all these shapes, each a change of its own.
+Rows WithShapes(const Rows& rows, const Rows& shapes, size_t columns_of_one) {
+  Rows with = rows;
+  const auto before = static_cast<Eigen::Index>(rows.columns.size()),
+             all = before + static_cast<Eigen::Index>(shapes.columns.size());
+  with.prior = Eigen::MatrixXd::Zero(all, all);
+  with.prior.topLeftCorner(before, before) = rows.prior;
+  for (size_t i = 0; i < shapes.columns.size(); ++i) {
+    ScanColumn column = shapes.columns[i];
+    column.set = NameOf(i / columns_of_one);
+    const auto place = before + static_cast<Eigen::Index>(i);
+    with.prior(place, place) = column.sd * column.sd;
+    with.columns.push_back(std::move(column));
+  }
+  for (RowBlock& block : with.blocks) {
+    const RowBlock* more = SameBlock(shapes, block);
+    if (more == nullptr || more->columns.empty()) continue;
+    for (const int column : more->columns) block.columns.push_back(static_cast<int>(before) + column);
+    const Eigen::Index width = block.X.cols();
+    block.X.conservativeResize(Eigen::NoChange, width + more->X.cols());
+    block.noise_X.conservativeResize(Eigen::NoChange, width + more->X.cols());
+    block.X.rightCols(more->X.cols()) = more->X;
+    block.noise_X.rightCols(more->X.cols()) = more->noise_X;
+  }
+  return with;
+}
+
+// ln of how far the next grid point of this parameter is.
+double Apart(const std::vector<EffectVariant>& variants, const EffectVariant& variant,
+             const std::string& parameter) {
+  const double at = std::log(variant.at.parameters.at(parameter));
+  double apart = 0;
+  for (const bool up : {true, false}) {
+    double nearest = 0;
+    for (const EffectVariant& other : variants) {
+      if (other.change != variant.change) continue;
+      const double far = (up ? 1 : -1) * (std::log(other.at.parameters.at(parameter)) - at);
+      if (far > kSettledShape && (nearest == 0 || far < nearest)) nearest = far;
+    }
+    apart = std::max(apart, nearest);
+  }
+  return apart > 0 ? std::min(apart, std::log(kMostShapeMove)) : std::log(kMostShapeMove);
+}
+
+// The top of a parabola through three points that are `width` apart, from the middle one.
+double Top(double before, double here, double after, double width) {
+  const double bend = before - 2 * here + after;
+  return bend < 0 ? std::clamp(0.5 * width * (before - after) / bend, -0.5 * width, 0.5 * width) : 0;
+}
+
+}  // namespace
+
+RefinedShapes::RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& set) : runs_(runs) {
+  const std::vector<EffectVariant> variants = runs->setup().variants;
+  for (size_t v = 0; v < variants.size(); ++v) {
+    const bool wanted = std::find(set.begin(), set.end(), variants[v].set) != set.end();
+    if (!wanted || variants[v].kind == EffectVariant::Kind::kWave || variants[v].shapes.empty()) continue;
+    if (before_.empty()) rows_ = OnlyOf(rows, set);
+    std::vector<double> units;
+    for (const int column : runs->ColumnsOf(v))
+      units.push_back(runs->meaning()[static_cast<size_t>(column)].unit);
+    before_.push_back({v, variants[v].at, units});
+    variants[v].kind == EffectVariant::Kind::kWhole ? MoveWhole(v, set) : MoveAmounts(v, set);
+  }
+}
+
+RefinedShapes::~RefinedShapes() {
+  for (const Before& before : before_) runs_->SetShape(before.variant, before.at, before.units);
+}
+
+// An effect of which more or less may be there: at each of some shapes the evidence is that with the likeliest amounts.
+void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
+  const EffectVariant start = runs_->setup().variants[variant];
+  const size_t columns = runs_->ColumnsOf(variant).size();
+  ChangeSet others = set;
+  std::erase(others, start.set);
+  const Rows rest = OnlyOf(rows_, others);
+  model::EffectDescription at = start.at;
+  for (const std::string& shape : start.shapes) {
+    std::map<double, double> evidence;  // by the logarithm of the shape
+    const auto look = [&](std::vector<double> places) {
+      std::erase_if(places, [&](double place) { return evidence.contains(place); });
+      std::vector<model::EffectDescription> tried(places.size(), at);
+      for (size_t i = 0; i < places.size(); ++i) tried[i].parameters[shape] = std::exp(places[i]);
+      const ScanRuns::OtherShapes shapes = runs_->MakeShapeRows(variant, tried);
+      const SetEvidence of_all(WithShapes(rest, shapes.rows, columns));
+      for (size_t i = 0; i < places.size(); ++i) {
+        const std::vector<std::string>& names = of_all.names();
+        const bool shown = std::find(names.begin(), names.end(), NameOf(i)) != names.end();
+        evidence[places[i]] = of_all.Log(shown ? WithChange(others, NameOf(i)) : others);
+      }
+      return std::max_element(evidence.begin(), evidence.end(),
+                              [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
+    };
+    const double middle = std::log(at.parameters.at(shape));
+    double width = 0.5 * Apart(runs_->setup().variants, start, shape);
+    double best = look({middle - 2 * width, middle - width, middle, middle + width, middle + 2 * width});
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      width *= 0.5;
+      best = look({best - width, best + width});
+    }
+    const auto here = evidence.find(best);
+    if (here != evidence.begin() && std::next(here) != evidence.end())
+      best += Top(std::prev(here)->second, here->second, std::next(here)->second, width);
+    at.parameters[shape] = std::exp(best);
+  }
+  Take(variant, runs_->MakeShapeRows(variant, {at}), at);
+}
+
+// An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
+void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
+  const EffectVariant start = runs_->setup().variants[variant];
+  for (int step = 0; step < kMostStepsOfAWhole; ++step) {
+    const std::optional<EstimatedModel> estimated = ModelOf(*runs_, rows_, set, SetEvidence(rows_).Fit(set));
+    if (!estimated) return;
+    model::EffectDescription at = runs_->setup().variants[variant].at;
+    double change = 0;
+    for (const model::EffectDescription& effect : estimated->model.effects) {
+      if (effect.id != at.id || effect.names != at.names) continue;
+      for (auto& [name, value] : at.parameters) {
+        const double first = start.at.parameters.at(name);
+        if (!(first > 0) || !(value > 0)) continue;
+        const double next =
+            std::clamp(effect.parameters.at(name), first / kMostShapeMove, first * kMostShapeMove);
+        change = std::max(change, std::abs(std::log(next / value)));
+        value = next;
+      }
+    }
+    if (!(change > kSettledShape)) return;
+    Take(variant, runs_->MakeShapeRows(variant, {at}), at);
+  }
+}
+
+void RefinedShapes::Take(size_t variant, const ScanRuns::OtherShapes& shape,
+                         const model::EffectDescription& at) {
+  const std::vector<int> columns = runs_->ColumnsOf(variant);
+  for (RowBlock& block : rows_.blocks) {
+    const RowBlock* from = SameBlock(shape.rows, block);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      const Eigen::Index to =
+          std::lower_bound(block.columns.begin(), block.columns.end(), columns[i]) - block.columns.begin();
+      block.X.col(to).setZero();
+      block.noise_X.col(to).setZero();
+      if (from == nullptr) continue;
+      const auto found = std::lower_bound(from->columns.begin(), from->columns.end(), static_cast<int>(i));
+      if (found == from->columns.end() || *found != static_cast<int>(i)) continue;
+      block.X.col(to) = from->X.col(found - from->columns.begin());
+      block.noise_X.col(to) = from->noise_X.col(found - from->columns.begin());
+    }
+  }
+  runs_->SetShape(variant, at, shape.units);
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,44 @@
+// Shapes of a set's effects where the evidence has them: speeds, set pressures and lags begin at a grid point and end between two.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/balances/make_rows.h"
+#include "diagnose/evidence/change_set.h"
+
+namespace hydro::diagnose {
+
+// Moves the shapes of the effects of `set` to where the evidence of the set is the largest, between the neighbours of their grid points; their
+// columns are made again there. While this exists the variants of `runs` stand at these shapes, for what is made of the set's amounts.
+// Periods of a turn are whole numbers and stay.
+class RefinedShapes {
+ public:
+  // `rows`: as `runs` made them. Nothing moves where no effect of the set has a shape.
+  RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& set);
+  ~RefinedShapes();
+  RefinedShapes(const RefinedShapes&) = delete;
+  RefinedShapes& operator=(const RefinedShapes&) = delete;
+
+  // Whether there is a shape at all.
+  bool any() const { return !before_.empty(); }
+  // Those of every hypothesis and of the set alone, numbered as before.
+  const Rows& rows() const { return rows_; }
+
+ private:
+  struct Before {
+    size_t variant;
+    model::EffectDescription at;
+    std::vector<double> units;
+  };
+
+  void MoveAmounts(size_t variant, const ChangeSet& set);
+  void MoveWhole(size_t variant, const ChangeSet& set);
+  // Puts the columns of that shape in the place of those of the variant.
+  void Take(size_t variant, const ScanRuns::OtherShapes& shape, const model::EffectDescription& at);
+
+  ScanRuns* runs_;
+  Rows rows_;
+  std::vector<Before> before_;
+};
+
+}  // namespace hydro::diagnose

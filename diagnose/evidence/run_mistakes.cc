@@ -1,0 +1,126 @@
+#include "diagnose/evidence/run_mistakes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/data/sample_interval.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using Run = runs::MeasuredRun;
+using Mistakes = std::vector<RecordingMistake>;
+
+// Sets of which each is tried with one more mistake.
+constexpr size_t kExtended = 16;
+// s between samples: no recorder of such a machine is faster, and none slower that shows its motion.
+constexpr double kFastest = 5e-6, kSlowest = 0.25;
+bool IsPossible(const Mistakes& mistakes, const RecordingMistake& one) {
+  return std::none_of(mistakes.begin(), mistakes.end(),
+                      [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
+}
+
+}  // namespace
+
+double OddsAgainstMistake() { return std::log(1000.0); }
+
+RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
+    : model_(model), run_(std::move(run)), possible_(PossibleMistakes(run_)) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    runs::MeasuredSignal& signal = run_.*one.signal;
+    if (signal.measured() && !signal.noise.has_value()) signal.noise = EstimateNoise(signal.values);
+  }
+  const double interval = MedianInterval(run_.time);
+  std::erase_if(possible_, [&](const RecordingMistake& mistake) {
+    const double step = mistake.time_factor * interval;
+    return mistake.time_factor != 1 && (step > kSlowest || step < kFastest);
+  });
+  const Mistakes shafts = OtherShafts(run_);
+  possible_.insert(possible_.end(), shafts.begin(), shafts.end());
+  const RecordingBalances* given = Read({});
+  as_recorded_ = given == nullptr ? 0 : given->Evidence({});
+}
+
+// The balances with the times and the shaft of these mistakes; null: no samples of such a machine are so far apart.
+const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
+  std::pair<double, model::Shaft> reading = {1, run_.shaft};
+  for (const RecordingMistake& one : mistakes) {
+    reading.first *= one.time_factor;
+    reading.second = one.shaft.value_or(reading.second);
+  }
+  if (reading.first * MedianInterval(run_.time) > kSlowest) return nullptr;
+  const auto known = readings_.find(reading);
+  if (known != readings_.end()) return &known->second;
+  Run run = run_;
+  for (const RecordingMistake& one : mistakes) {
+    if (one.time_factor != 1 || one.shaft.has_value()) Correct(one, &run);
+  }
+  return &readings_.emplace(reading, RecordingBalances(model_, run, possible_)).first->second;
+}
+
+double RunMistakes::Gain(const Mistakes& mistakes) const {
+  const RecordingBalances* balances = Read(mistakes);
+  if (balances == nullptr) return -as_recorded_;
+  SignalFactors factors;
+  for (const RecordingMistake& one : mistakes) AddFactors(one, &factors);
+  return balances->Evidence(factors) - as_recorded_;
+}
+
+MistakeTrial RunMistakes::Try(const Mistakes& mistakes) const {
+  Mistakes own;
+  std::copy_if(mistakes.begin(), mistakes.end(), std::back_inserter(own), [&](const RecordingMistake& one) {
+    return std::find(possible_.begin(), possible_.end(), one) != possible_.end();
+  });
+  const double gain = Gain(own);
+  return {std::move(own), gain};
+}
+
+std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_is_up) const {
+  std::vector<MistakeTrial> all;
+  std::vector<MistakeTrial> from = {{}};
+  double best = 0;
+  while (!from.empty()) {
+    std::vector<MistakeTrial> next;
+    for (const MistakeTrial& one : from) {
+      if (time_is_up()) return all;
+      for (const RecordingMistake& more : possible_) {
+        if (!IsPossible(one.mistakes, more)) continue;
+        Mistakes set;  // in the order of what is possible, so that each comes once
+        for (const RecordingMistake& other : possible_) {
+          const bool in = other == more ||
+                          std::find(one.mistakes.begin(), one.mistakes.end(), other) != one.mistakes.end();
+          if (in) set.push_back(other);
+        }
+        const bool known = std::any_of(next.begin(), next.end(),
+                                       [&](const MistakeTrial& trial) { return trial.mistakes == set; });
+        if (known) continue;
+        const double gain = Gain(set);
+        next.push_back({std::move(set), gain});
+      }
+    }
+    std::stable_sort(next.begin(), next.end(),
+                     [](const MistakeTrial& a, const MistakeTrial& b) { return a.gain > b.gain; });
+    all.insert(all.end(), next.begin(), next.end());
+    // Two mistakes may hide each other; a third has to bring something.
+    const bool brings = !next.empty() && next.front().Merit() > best;
+    if (brings) best = next.front().Merit();
+    const bool first = from.size() == 1 && from.front().mistakes.empty();
+    if (!brings && !first) break;
+    if (next.size() > kExtended) next.resize(kExtended);
+    from = std::move(next);
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const MistakeTrial& a, const MistakeTrial& b) { return a.Merit() > b.Merit(); });
+  return all;
+}
+
+double RunMistakes::LeastLeftOpen() const {
+  const RecordingBalances* given = Read({});
+  return given == nullptr ? 1 : given->LeastLeftOpen();
+}
+
+}  // namespace hydro::diagnose

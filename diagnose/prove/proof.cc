@@ -1,0 +1,55 @@
+#include "diagnose/prove/proof.h"
+
+#include <utility>
+
+#include "diagnose/fit/fit.h"
+#include "diagnose/prove/refined_values.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// The windows' fit at the best set's values, with derivatives and what is known.
+Fitted WithDerivatives(const SearchContext& context, const Hypothesis& best,
+                       const std::vector<const RunData*>& windows) {
+  FitOptions held;
+  held.most_iterations = 0;
+  held.jobs = context.jobs;
+  const std::vector<WindowGap> gaps = GapsOfEach(best.model, windows, context.jobs);
+  std::vector<model::StartState> starts;
+  double sum = 0;
+  for (const WindowGap& gap : gaps) {
+    starts.push_back(gap.start);
+    sum += gap.sum;
+  }
+  Hypothesis hypothesis = best;
+  hypothesis.known = KnownOfValues(context, windows, hypothesis, sum);
+  return Fit(hypothesis, windows, starts, held);
+}
+
+}  // namespace
+
+Proof ProofOf(const SearchContext& context, const ProofWindows& windows, std::vector<RunData> told,
+              std::vector<ProvedSet> sets, const ProofRoles& roles) {
+  Proof proof;
+  proof.sets = std::move(sets);
+  proof.given = roles.given;
+  proof.values = roles.values;
+  proof.best = roles.best;
+  for (const RunData* window : windows.near.windows) proof.runs.push_back(window->name);
+  const auto owned = std::make_shared<const std::vector<RunData>>(std::move(told));
+  const std::vector<WindowGap> gaps = GapsOfEach(proof.Found().model, PointersTo(*owned), context.jobs);
+  for (size_t w = 0; w < owned->size(); ++w) {
+    if (gaps[w].tested) proof.told_runs.push_back(&(*owned)[w]);
+  }
+  proof.windows = owned;
+  proof.told.failure = "it cannot be simulated";
+  if (!proof.told_runs.empty()) proof.told = WithDerivatives(context, proof.Found(), proof.told_runs);
+  if (proof.told.ok()) {
+    proof.seconds = windows.near.seconds;
+    proof.sets[proof.best].hypothesis.known = proof.told.hypothesis.known;
+  }
+  return proof;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,173 @@
+#include "diagnose/prove/proof_sets.h"
+
+#include <algorithm>
+
+#include "diagnose/data/thinned.h"
+#include "diagnose/fit/fit.h"
+#include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/refined_values.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// Numbers that are fitted to whole runs times their samples: some seconds of work.
+constexpr size_t kMostNumbersTimesSamples = 200000;
+// Sets without one of their effects that are made: those of two that lead with three effects, and what is left of them.
+constexpr size_t kMostMade = 10;
+
+}  // namespace
+
+ProofSets::ProofSets(const SearchContext& context, const Hypothesis& as_given,
+                     const std::vector<size_t>& allowed)
+    : context_(context), as_given_(as_given), allowed_(allowed), windows_(ProofWindowsOf(context)) {
+  sets_.emplace_back().hypothesis = as_given;
+  JudgeSet(windows_, context_.jobs, &sets_.back());
+}
+
+void ProofSets::AddProposal(const Proposal& proposal) {
+  Hypothesis hypothesis = as_given_;
+  hypothesis.model = proposal.model;
+  hypothesis.changes = proposal.changes;
+  hypothesis.base = proposal.base;
+  // Estimates hold one number of each balance, which scales all others: a fit moves it instead of them.
+  for (const size_t place : allowed_) {
+    const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
+    const bool there = std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
+    if (all && !there) hypothesis.base.push_back(place);
+  }
+  for (const Change& change : proposal.changes) {
+    if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
+  }
+  // The estimate moves the numbers of effects that the model has as it moves base values. Periods of a turn are whole numbers.
+  for (const model::EffectDescription& effect : context_.given.effects) {
+    if (!proposal.base.empty() && !model::HasRole(effect.id, model::Role::kPeriods))
+      hypothesis.effects.push_back(effect.id);
+  }
+  ProvedSet& set = sets_.emplace_back();
+  set.hypothesis = std::move(hypothesis);
+  set.proposed = proposal.model;
+  set.without = proposal.without;
+  set.weight = proposal.weight;
+}
+
+void ProofSets::Add(const std::vector<Proposal>& proposals) {
+  const size_t first = sets_.size();
+  bool values = allowed_.empty();
+  for (const Proposal& proposal : proposals) {
+    AddProposal(proposal);
+    values = values || (proposal.changes.empty() && !proposal.base.empty());
+  }
+  if (!values) {
+    Hypothesis refit = as_given_;
+    refit.base = allowed_;
+    for (const model::EffectDescription& effect : context_.given.effects) refit.effects.push_back(effect.id);
+    sets_.emplace_back().hypothesis = std::move(refit);
+  }
+  for (size_t i = first; i < sets_.size(); ++i) {
+    JudgeSet(windows_, context_.jobs, &sets_[i]);
+    BeginAtGivenValues(&sets_[i]);
+  }
+}
+
+void ProofSets::SetFitted(size_t leading) {
+  const size_t by = leading < sets_.size() ? leading : kGiven;
+  scaled_ = WithDiscrepancy(windows_.fitted, sets_[by].hypothesis.model, context_.jobs);
+  fitted_ = PointersTo(scaled_);
+}
+
+void ProofSets::BeginAtGivenValues(ProvedSet* set) const {
+  if (set->tested()) return;
+  set->hypothesis.model.parameters = context_.given.parameters;
+  set->without.clear();
+  JudgeSet(windows_, context_.jobs, set);
+}
+
+void ProofSets::Refine(size_t place) {
+  if (place == kGiven || sets_[place].refined) return;
+  RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
+  sets_[place].refined = true;
+}
+
+// Where that is affordable, and where it predicts windows better: what acts seldom or slowly moves few of the fitted windows.
+void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
+  if (set->hypothesis.Free().empty() || !set->without.empty()) return;
+  std::vector<RunData> thinned;
+  size_t samples = 0;
+  for (const RunData* run : context_.runs) {
+    thinned.push_back(ThinnedCopy(*run));
+    samples += thinned.back().samples();
+  }
+  if (set->hypothesis.Free().size() * samples > kMostNumbersTimesSamples) return;
+  FitOptions coarse = FineFit(context_.jobs);
+  coarse.tolerance = kToCompare;
+  ProvedSet whole = *set;
+  Fitted fitted = Fit(set->hypothesis, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
+  if (set->proposed.parameters.J > 0) {
+    // A fit from where the windows led may end beside what the balances saw.
+    Hypothesis as_proposed = set->hypothesis;
+    as_proposed.model = set->proposed;
+    Fitted other = Fit(as_proposed, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
+    if (other.ok() && (!fitted.ok() || other.sum < fitted.sum)) fitted = std::move(other);
+  }
+  if (!fitted.ok()) return;
+  whole.hypothesis = fitted.hypothesis;
+  JudgeSet(windows_, context_.jobs, &whole);
+  if (!whole.tested()) return;
+  JudgeFar(windows_, context_.jobs, set);
+  JudgeFar(windows_, context_.jobs, &whole);
+  const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
+  const bool near_falls = near.Exceeds(0) && far.logarithm >= -far.error;
+  const bool far_falls = far.Exceeds(0) && near.logarithm >= -near.error;
+  if (near_falls || far_falls) *set = whole;
+}
+
+size_t ProofSets::Without(size_t with, const Change& change) {
+  std::vector<Change> fewer = sets_[with].Effects();
+  std::erase(fewer, change);
+  const std::pair<size_t, Change> made{with, change};
+  if (made_.size() >= kMostMade || std::find(made_.begin(), made_.end(), made) != made_.end())
+    return BestWithEffects(sets_, fewer);
+  made_.push_back(made);
+  ProvedSet less;
+  less.hypothesis = diagnose::Without(sets_[with].hypothesis, change, context_.given);
+  for (model::ModelDescription without : sets_[with].without) {
+    std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
+    less.without.push_back(std::move(without));
+  }
+  JudgeSet(windows_, context_.jobs, &less);
+  sets_.push_back(std::move(less));
+  Refine(sets_.size() - 1);
+  return BestWithEffects(sets_, fewer);
+}
+
+void ProofSets::Race(size_t from, const Change& change) {
+  ProvedSet raced = RacedFrom(context_, fitted_, windows_, sets_[from], change);
+  sets_.push_back(std::move(raced));
+}
+
+size_t ProofSets::WithGivenValues(size_t place) {
+  ProvedSet sparse = sets_[place];
+  sparse.without.clear();
+  sparse.refined = false;
+  sparse.hypothesis.model.parameters = context_.given.parameters;
+  sparse.hypothesis.base.clear();
+  sparse.hypothesis.known = nullptr;
+  sparse.hypothesis.changes = sparse.Effects();
+  JudgeSet(windows_, context_.jobs, &sparse);
+  RefineValues(context_, fitted_, windows_, kComparedValues, &sparse);
+  sets_.push_back(std::move(sparse));
+  return sets_.size() - 1;
+}
+
+void ProofSets::RefineForReport(size_t place) {
+  RefineValues(context_, fitted_, windows_, kReportedValues, &sets_[place]);
+  RefineOnWholeRuns(&sets_[place]);
+}
+
+const ProvedSet& ProofSets::Far(size_t place) {
+  JudgeFar(windows_, context_.jobs, &sets_[place]);
+  return sets_[place];
+}
+
+}  // namespace hydro::diagnose
