@@ -106,7 +106,7 @@ TEST(Propose, WhatIsMissing) {
     EXPECT_FALSE(std::isnan(ValueOf(one, "pump.stribeck", "static_excess")));
     EXPECT_NE(one.parameters.J, with.model.parameters.J);  // other runs estimate it a little otherwise
   }
-  EXPECT_GT(proposed.said.at("pump.stribeck"), 0.5);
+  EXPECT_GT(proposed.said.weights.at("pump.stribeck"), 0.5);
   EXPECT_THAT(proposed.scores.front().set, Contains(HasSubstr("pump.stribeck|")));
 }
 
@@ -279,7 +279,8 @@ TEST(Propose, SameForAnyNumberOfJobs) {
     EXPECT_EQ(one.proposals[i].weight, two.proposals[i].weight);
     EXPECT_EQ(one.proposals[i].model.parameters.J, two.proposals[i].model.parameters.J);
   }
-  EXPECT_EQ(one.said, two.said);
+  EXPECT_EQ(one.said.weights, two.said.weights);
+  EXPECT_EQ(one.said.likely, two.said.likely);
 }
 
 }  // namespace
