@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "maths/median.h"
 
@@ -19,6 +20,8 @@ constexpr double kValveSpread = 0.004;
 // Values below this part of the range of pressures may be of a held side.
 constexpr double kLowPart = 0.15;
 constexpr size_t kEnoughLow = 200;
+// s: a pump that reverses is not at rest for so long.
+constexpr double kRestTime = 0.1;
 
 // Widens marked stretches by `by` on either side.
 void Widen(size_t by, std::vector<uint8_t>* mask) {
@@ -108,30 +111,44 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
   return mask;
 }
 
-// Where a valve that the model lacks closes at rest: the pump stands, although the pressures would turn it against its friction and the
-// motor. What oil and arm then do is the valve's affair, and for as long again as it takes to open.
+// Stretches from, to (not included) in which the pump hardly turns, and not just because it reverses.
+std::vector<std::pair<size_t, size_t>> Rests(const RunMotion& run) {
+  // Of the largest speed, and s.
+  constexpr double kRest = 0.05;
+  double largest = 0;
+  for (const model::KnownMotion& at : run.at) largest = std::max(largest, std::abs(at.motor_speed));
+  std::vector<std::pair<size_t, size_t>> rests;
+  for (size_t i = 0; i < run.size();) {
+    size_t end = i;
+    while (end < run.size() && std::abs(run.at[end].motor_speed) < kRest * largest) ++end;
+    if (end - i >= Samples(kRestTime, run)) rests.emplace_back(i, end);
+    i = std::max(end, i + 1);
+  }
+  return rests;
+}
+
+// The rests of a machine with a valve that closes at rest, which the model lacks: in most of them the pump stands although the
+// pressures would turn it against its friction and the motor. What oil and arm then do is the valve's affair, and for a while before
+// and after.
 std::vector<uint8_t> HeldAtRest(const RunMotion& run, const model::Parameters& p) {
-  // Of the largest speed, and s: a pump that only reverses is not at rest for so long.
-  constexpr double kRest = 0.05, kRestTime = 0.1;
-  // Static friction of pumps is at most about so many times that which the model has.
+  // Static friction of pumps is at most some so many times that which the model has.
   constexpr double kStatic = 2;
   std::vector<uint8_t> held(run.size(), 0);
   if (!run.pressures || !run.arm_moves) return held;
-  double largest = 0;
-  for (const model::KnownMotion& at : run.at) largest = std::max(largest, std::abs(at.motor_speed));
-  for (size_t i = 0; i < run.size();) {
-    size_t end = i, turned = 0;
-    for (; end < run.size() && std::abs(run.at[end].motor_speed) < kRest * largest; ++end) {
-      const model::KnownMotion& at = run.at[end];
-      const double friction = p.T_s + p.f * std::abs(at.p1 + at.p2);
-      const double motor = std::clamp(p.k_1 * at.voltage, -p.T_pmax, p.T_pmax);
-      turned += std::abs(motor - p.D * (at.p2 - at.p1)) > kStatic * friction ? 1 : 0;
-    }
-    if (end - i >= Samples(kRestTime, run) && 2 * turned > end - i)
-      std::fill(held.begin() + static_cast<std::ptrdiff_t>(i),
-                held.begin() + static_cast<std::ptrdiff_t>(end), uint8_t{1});
-    i = std::max(end, i + 1);
+  const auto would_turn = [&](const model::KnownMotion& at) {
+    const double motor = std::clamp(p.k_1 * at.voltage, -p.T_pmax, p.T_pmax);
+    return std::abs(motor - p.D * (at.p2 - at.p1)) > kStatic * (p.T_s + p.f * std::abs(at.p1 + at.p2));
+  };
+  const std::vector<std::pair<size_t, size_t>> rests = Rests(run);
+  size_t stand = 0;
+  for (const auto& [from, to] : rests) {
+    const auto turned = std::count_if(run.at.begin() + static_cast<std::ptrdiff_t>(from),
+                                      run.at.begin() + static_cast<std::ptrdiff_t>(to), would_turn);
+    stand += 2 * static_cast<size_t>(turned) > to - from ? 1 : 0;
+    std::fill(held.begin() + static_cast<std::ptrdiff_t>(from),
+              held.begin() + static_cast<std::ptrdiff_t>(to), uint8_t{1});
   }
+  if (2 * stand <= rests.size()) return std::vector<uint8_t>(run.size(), 0);
   Widen(Samples(kRestTime, run), &held);
   return held;
 }

@@ -5,13 +5,12 @@
 #include <set>
 #include <utility>
 
-#include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"
 #include "diagnose/evidence/estimated_model.h"
 #include "diagnose/evidence/refined_shapes.h"
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
-#include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/unrecorded.h"
 
 namespace hydro::diagnose {
 
@@ -24,53 +23,6 @@ constexpr size_t kMostProposals = 8;
 
 // Pressures that were not measured are marched again with the values that the balances then show; the second time hardly moves them.
 constexpr int kMarchesAgain = 2;
-
-constexpr char kSomeOil[] = "some effect of the oil";
-
-bool NamesARun(const ChangeSet& set) {
-  return std::any_of(set.begin(), set.end(),
-                     [](const std::string& name) { return name.starts_with("run."); });
-}
-
-// Effects that act only in the oil's balances cannot be told apart where no pressure was measured: the likely sets without them. What the
-// balances do not hold likely is not tried: it might take the place of what they cannot name.
-std::vector<ChangeSet> SetsWithout(const std::set<std::string>& oil, const ExplanationWeights& weights) {
-  std::vector<ChangeSet> sets = {{}};
-  for (size_t i = 0; i < std::min(weights.in_90, weights.explanations.size()); ++i) {
-    ChangeSet set = weights.explanations[i].set;
-    std::erase_if(set, [&](const std::string& name) { return oil.contains(name); });
-    if (!NamesARun(set) && std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
-  }
-  return sets;
-}
-
-// The same explanations, with one name for all effects of the oil.
-ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeights weights) {
-  if (oil.empty()) return weights;
-  ExplanationWeights merged;
-  for (WeighedExplanation& one : weights.explanations) {
-    const size_t before = one.set.size();
-    ChangeSet others = one.set;
-    std::erase_if(others, [&](const std::string& name) { return oil.contains(name); });
-    if (others.size() < before) {
-      one.changes = ChangesOf(others);
-      one.changes.emplace_back(kSomeOil);
-    }
-    const auto same =
-        std::find_if(merged.explanations.begin(), merged.explanations.end(),
-                     [&](const WeighedExplanation& other) { return other.changes == one.changes; });
-    if (same == merged.explanations.end())
-      merged.explanations.push_back(std::move(one));
-    else
-      same->weight += one.weight;
-  }
-  std::stable_sort(merged.explanations.begin(), merged.explanations.end(),
-                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
-  double sum = 0;
-  while (merged.in_90 < merged.explanations.size() && sum < 0.9)
-    sum += merged.explanations[merged.in_90++].weight;
-  return merged;
-}
 
 // The model with each predicted run's own values of what differs by run, as the balances of that run say.
 std::vector<model::ModelDescription> ModelsOfRuns(const SearchContext& context,
@@ -85,60 +37,6 @@ std::vector<model::ModelDescription> ModelsOfRuns(const SearchContext& context,
     for (size_t r = 0; r < models.size() && values; ++r) models[r].parameters.*base.member = values->value[r];
   }
   return models;
-}
-
-// Signals that no run has in which a balance needs them.
-std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
-  bool p1 = true, p2 = true, speed = true, arm = true, oil = false, moves = false;
-  for (const RunMotion& run : runs) {
-    speed = speed && !run.speed_known;
-    if (run.options.bypass) continue;
-    oil = true;
-    p1 = p1 && !run.Of(GridChannel::kP1).measured();
-    p2 = p2 && !run.Of(GridChannel::kP2).measured();
-    moves = moves || run.options.shaft != model::Shaft::kClamped;
-    arm = arm && !run.arm_moves;
-  }
-  std::vector<std::string> missing;
-  if (oil && p1) missing.emplace_back("p1");
-  if (oil && p2) missing.emplace_back("p2");
-  if (speed) missing.emplace_back("motor_speed");
-  if (moves && arm) missing.emplace_back("arm_angle");
-  return missing;
-}
-
-// Effects of which the runs have no column of their own, although a simulation might show them, and why.
-std::vector<Unjudged> UnjudgedOf(const SearchContext& context, const ScanRuns& runs,
-                                 const std::vector<std::string>& names) {
-  const std::vector<std::string> missing = MissingSignals(runs.motions());
-  if (missing.empty()) return {};
-  const std::set<std::string> oil = runs.OilOnly();
-  std::set<std::string> judged, some_oil, all;
-  for (const std::string& name : names) {
-    const std::string id(name.substr(0, name.find_first_of("|(")));
-    (oil.contains(name) ? some_oil : judged).insert(id);
-  }
-  for (const Change& change : BlindChanges(context)) judged.insert(change.effect);
-  const bool torque = std::any_of(runs.motions().begin(), runs.motions().end(),
-                                  [](const RunMotion& run) { return CanForm(run, BalanceKind::kTorque); });
-  for (const EffectVariant& variant : runs.setup().variants) {
-    // A sensor that was not recorded cannot be wrong.
-    if (variant.change.effect.starts_with("sensor.")) continue;
-    // What repeats with the shaft is in no row before its period is known.
-    if (variant.kind == EffectVariant::Kind::kWave && torque) judged.insert(variant.change.effect);
-    all.insert(variant.change.effect);
-  }
-  const std::string because = Enumerated(missing) + (missing.size() > 1 ? " were" : " was") + " not recorded";
-  Unjudged gone{{}, because}, one_class{{}, because + ", and without them they cannot be told apart"};
-  for (const std::string& id : all) {
-    if (judged.contains(id)) continue;
-    (some_oil.contains(id) ? one_class : gone).effects.push_back(id);
-  }
-  std::vector<Unjudged> unjudged;
-  for (const Unjudged& one : {gone, one_class}) {
-    if (!one.effects.empty()) unjudged.push_back(one);
-  }
-  return unjudged;
 }
 
 // The sets that may be proposed, in the order in which they are: nothing, the likeliest explanations, the best set by score, those

@@ -13,7 +13,7 @@ using diagnose::ChangeSet;
 using diagnose::RefinedShapes;
 using diagnose::SetEvidence;
 
-constexpr double kSeconds = 2;
+constexpr double kShapeSeconds = 2;
 
 double ShapeOf(Scanned* scanned, const ChangeSet& set, const std::string& name) {
   const RefinedShapes shaped(&scanned->runs, scanned->rows, set);
@@ -28,7 +28,7 @@ double ShapeOf(Scanned* scanned, const ChangeSet& set, const std::string& name) 
 TEST(RefinedShapes, OfAnAmount) {
   constexpr double kSpeed = 14;
   Scanned scanned(ClampedPair(Table1With({{"pump.stribeck", {{"static_excess", 8}, {"speed", kSpeed}}, {}}}),
-                              kSeconds, 3),
+                              kShapeSeconds, 3),
                   {"pump.stribeck"});
   const ChangeSet best = scanned.Best("pump.stribeck");
   EXPECT_NEAR(ShapeOf(&scanned, best, "speed"), kSpeed, 0.1 * kSpeed);
@@ -39,13 +39,13 @@ TEST(RefinedShapes, OfAnAmount) {
 // Tests an effect that is there or not: a lag.
 TEST(RefinedShapes, OfAWhole) {
   constexpr double kTau = 4.7e-3;
-  Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", kTau}}, {}}}), kSeconds, 6), {"amp.lag"});
+  Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", kTau}}, {}}}), kShapeSeconds, 6), {"amp.lag"});
   EXPECT_NEAR(ShapeOf(&scanned, scanned.Best("amp.lag"), "tau"), kTau, 0.05 * kTau);
 }
 
 // Tests that variants stand at their grid points again afterwards, and that nothing is made where no effect has a shape.
 TEST(RefinedShapes, AreTakenBack) {
-  Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", 4.7e-3}}, {}}}), kSeconds, 6),
+  Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", 4.7e-3}}, {}}}), kShapeSeconds, 6),
                   {"amp.lag", "pump.quadratic_drag"});
   const auto variants = scanned.runs.setup().variants;
   const auto units = scanned.runs.meaning();
