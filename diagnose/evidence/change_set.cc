@@ -8,8 +8,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// There are some thirty effects to choose from, and models usually lack one of them.
-constexpr double kOddsOfAChange = 1.0 / 30;
 // A curve that no known effect draws is to be said only where no effect will do: it can draw most of them.
 constexpr double kOddsOfAClosure = 1.0 / 300;
 

@@ -12,6 +12,9 @@ namespace hydro::diagnose {
 // Empty: nothing is missing.
 using ChangeSet = std::vector<std::string>;
 
+// There are some thirty effects to choose from, and models usually lack one of them.
+inline constexpr double kOddsOfAChange = 1.0 / 30;
+
 // "pump.stribeck" of "pump.stribeck|0.03": the change without its variant. Variants of one change exclude
 // each other.
 std::string_view ChangeOf(std::string_view name);

@@ -60,6 +60,27 @@ const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
   return found == rows.blocks.end() ? nullptr : &*found;
 }
 
+// Puts a column of `from`, which has it, into the block.
+void SetColumn(const RowBlock& from, int column, RowBlock* block) {
+  const auto place = [&](const RowBlock& of) {
+    return std::lower_bound(of.columns.begin(), of.columns.end(), column) - of.columns.begin();
+  };
+  const Eigen::Index to = place(*block), own = place(from);
+  const bool there = to < block->X.cols() && block->columns[static_cast<size_t>(to)] == column;
+  if (!there) {
+    if (from.X.col(own).isZero()) return;
+    block->columns.insert(block->columns.begin() + to, column);
+    for (Eigen::MatrixXd* all : {&block->X, &block->noise_X}) {
+      const Eigen::Index after = all->cols() - to;
+      Eigen::MatrixXd wider(all->rows(), all->cols() + 1);
+      wider << all->leftCols(to), Eigen::VectorXd::Zero(all->rows()), all->rightCols(after);
+      *all = std::move(wider);
+    }
+  }
+  block->X.col(to) = from.X.col(own);
+  block->noise_X.col(to) = from.noise_X.col(own);
+}
+
 // What stands for the `which`-th of several shapes in sets of changes.
 std::string NameOf(size_t which) { return "shape|" + std::to_string(which); }
 
@@ -131,6 +152,17 @@ RefinedShapes::RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& 
 
 RefinedShapes::~RefinedShapes() {
   for (const Before& before : before_) runs_->SetShape(before.variant, before.at, before.units);
+}
+
+void RefinedShapes::Keep(Rows* rows) {
+  for (RowBlock& block : rows->blocks) {
+    const RowBlock* from = SameBlock(rows_, block);
+    if (from == nullptr) continue;
+    for (const Before& before : before_) {
+      for (const int column : runs_->ColumnsOf(before.variant)) SetColumn(*from, column, &block);
+    }
+  }
+  before_.clear();
 }
 
 // An effect of which more or less may be there: at each of some shapes the evidence is that with the likeliest amounts.

@@ -23,6 +23,8 @@ class RefinedShapes {
   bool any() const { return !before_.empty(); }
   // Those of every hypothesis and of the set alone, numbered as before.
   const Rows& rows() const { return rows_; }
+  // Leaves the variants at these shapes for good, and puts their columns into `rows`, from which this was made.
+  void Keep(Rows* rows);
 
  private:
   struct Before {

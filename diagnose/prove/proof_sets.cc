@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "diagnose/data/thinned.h"
+#include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/refined_values.h"
@@ -19,10 +20,33 @@ constexpr size_t kMostMade = 10;
 }  // namespace
 
 ProofSets::ProofSets(const SearchContext& context, const Hypothesis& as_given,
-                     const std::vector<size_t>& allowed)
-    : context_(context), as_given_(as_given), allowed_(allowed), windows_(ProofWindowsOf(context)) {
+                     const std::vector<size_t>& allowed, const SaidByBalances& said)
+    : context_(context),
+      as_given_(as_given),
+      allowed_(allowed),
+      said_(said),
+      windows_(ProofWindowsOf(context)) {
   sets_.emplace_back().hypothesis = as_given;
   JudgeSet(windows_, context_.jobs, &sets_.back());
+}
+
+double ProofSets::PriceOf(const Change& effect) const {
+  if (said_.weights.empty()) return diagnose::PriceOf(0.5);
+  // A curve is said of a balance and added to both columns of oil: one weight for all.
+  const bool curve = effect.effect.starts_with("closure.");
+  double said = 0;
+  for (const auto& [id, weight] : said_.weights) {
+    if (curve ? id.starts_with("closure.") : id == effect.effect) said += weight;
+  }
+  const model::EffectInfo* info = model::FindEffect(effect.effect);
+  const bool unseen = info != nullptr && info->unseen_by_balances;
+  return diagnose::PriceOf(unseen ? std::max(kOddsOfAChange, said) : said);
+}
+
+ProvedSet& ProofSets::Push(ProvedSet set) {
+  set.price = 0;
+  for (const Change& effect : set.Effects()) set.price += PriceOf(effect);
+  return sets_.emplace_back(std::move(set));
 }
 
 void ProofSets::AddProposal(const Proposal& proposal) {
@@ -44,11 +68,12 @@ void ProofSets::AddProposal(const Proposal& proposal) {
     if (!proposal.base.empty() && !model::HasRole(effect.id, model::Role::kPeriods))
       hypothesis.effects.push_back(effect.id);
   }
-  ProvedSet& set = sets_.emplace_back();
+  ProvedSet set;
   set.hypothesis = std::move(hypothesis);
   set.proposed = proposal.model;
   set.without = proposal.without;
   set.weight = proposal.weight;
+  Push(std::move(set));
 }
 
 void ProofSets::Add(const std::vector<Proposal>& proposals) {
@@ -83,8 +108,20 @@ void ProofSets::BeginAtGivenValues(ProvedSet* set) const {
   JudgeSet(windows_, context_.jobs, set);
 }
 
+void ProofSets::BeginAtBestValues(ProvedSet* set) const {
+  const size_t values = BestWithEffects(sets_, {});
+  if (values >= sets_.size() || set->Effects().empty() || set->hypothesis.base.empty()) return;
+  ProvedSet other = *set;
+  other.hypothesis.model.parameters = sets_[values].hypothesis.model.parameters;
+  for (size_t r = 0; r < other.without.size(); ++r)
+    other.without[r].parameters = sets_[values].ModelOf(r).parameters;
+  JudgeSet(windows_, context_.jobs, &other);
+  if (PredictsBetter(windows_, context_.jobs, &other, set)) *set = std::move(other);
+}
+
 void ProofSets::Refine(size_t place) {
   if (place == kGiven || sets_[place].refined) return;
+  BeginAtBestValues(&sets_[place]);
   RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
   sets_[place].refined = true;
 }
@@ -136,14 +173,13 @@ size_t ProofSets::Without(size_t with, const Change& change) {
     less.without.push_back(std::move(without));
   }
   JudgeSet(windows_, context_.jobs, &less);
-  sets_.push_back(std::move(less));
+  Push(std::move(less));
   Refine(sets_.size() - 1);
   return BestWithEffects(sets_, fewer);
 }
 
 void ProofSets::Race(size_t from, const Change& change) {
-  ProvedSet raced = RacedFrom(context_, fitted_, windows_, sets_[from], change);
-  sets_.push_back(std::move(raced));
+  Push(RacedFrom(context_, fitted_, windows_, sets_[from], change));
 }
 
 size_t ProofSets::WithGivenValues(size_t place) {
@@ -156,7 +192,7 @@ size_t ProofSets::WithGivenValues(size_t place) {
   sparse.hypothesis.changes = sparse.Effects();
   JudgeSet(windows_, context_.jobs, &sparse);
   RefineValues(context_, fitted_, windows_, kComparedValues, &sparse);
-  sets_.push_back(std::move(sparse));
+  Push(std::move(sparse));
   return sets_.size() - 1;
 }
 

@@ -17,14 +17,15 @@ class ProofSets {
   static constexpr size_t kGiven = 0;  // the place of the model as given
 
   // `allowed`: indices in BaseParameters() of those that a refit may move. Keeps references to all.
-  ProofSets(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed);
+  ProofSets(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
+            const SaidByBalances& said);
 
   // Adds the proposals as judged with their own values, and a refit where no proposal has other values alone. Where proposed values
   // cannot be simulated, those of the model as given stand in.
   void Add(const std::vector<Proposal>& proposals);
   // The windows that are fitted from here on, with the discrepancy that the set at this place leaves.
   void SetFitted(size_t leading);
-  // A few steps of a fit, once a set.
+  // A few steps of a fit, once a set; from the values of the best set of values alone, where these suit its effects better.
   void Refine(size_t place);
   // A set fitted with a change more, from the catalogue's starts, judged.
   void Race(size_t from, const Change& change);
@@ -36,6 +37,9 @@ class ProofSets {
   // As far as it may be, with values fitted to the windows and to whole runs, where they predict better.
   void RefineForReport(size_t place);
 
+  // What the effect has to take, as the balances speak of it; of what they cannot see, at the odds of any effect; at even ones without balances.
+  double PriceOf(const Change& effect) const;
+
   const std::vector<ProvedSet>& all() const { return sets_; }
   size_t size() const { return sets_.size(); }
   const ProvedSet& operator[](size_t place) const { return sets_[place]; }
@@ -46,13 +50,16 @@ class ProofSets {
   bool has_fitted() const { return !fitted_.empty(); }
 
  private:
+  ProvedSet& Push(ProvedSet set);
   void AddProposal(const Proposal& proposal);
   void BeginAtGivenValues(ProvedSet* set) const;
+  void BeginAtBestValues(ProvedSet* set) const;
   void RefineOnWholeRuns(ProvedSet* set) const;
 
   const SearchContext& context_;
   const Hypothesis& as_given_;
   const std::vector<size_t>& allowed_;
+  const SaidByBalances& said_;
   ProofWindows windows_;
   std::vector<ProvedSet> sets_;
   std::vector<RunData> scaled_;  // the windows that are fitted

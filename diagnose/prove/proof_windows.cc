@@ -14,7 +14,7 @@ namespace {
 
 // What the work of a proof is bounded by. With 20 windows that judge, a difference of 10 % is seen where single windows scatter by
 // 40 %.
-constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 20, kMostFar = 6;
+constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 32, kMostFar = 6;
 // And those of each extreme.
 constexpr size_t kMostOfAnExtreme = 1;
 constexpr double kFarTimes = 4;

@@ -20,6 +20,8 @@ namespace {
 constexpr size_t kMostExplanations = 5;
 // What a set gains over a smaller one that is no explanation of its own; simulation decides between the two.
 constexpr size_t kMostProposals = 8;
+// Effects whose shapes are refined before sets are compared: what is true was among the first three alone nearly always.
+constexpr size_t kMostLeaders = 5;
 
 // Pressures that were not measured are marched again with the values that the balances then show; the second time hardly moves them.
 constexpr int kMarchesAgain = 2;
@@ -178,6 +180,28 @@ std::vector<std::string> LikelyEffects(const std::vector<ScoredSet>& scores) {
   return likely;
 }
 
+// Moves the shapes of the likeliest effects to where the evidence has them, so that none loses to another for lying between two points of
+// its grid.
+void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
+  std::vector<std::string> refined;
+  const std::vector<ScoredSet> scores = ScanSets(SetEvidence(*rows), {}, jobs).BestFirst();
+  const auto refine = [&](const ChangeSet& set) {
+    if (refined.size() >= kMostLeaders) return;
+    const bool fresh = std::any_of(set.begin(), set.end(), [&](const std::string& name) {
+      const std::string change(ChangeOf(name));
+      const bool has_shape = name.find('|') != std::string::npos;
+      return has_shape && std::find(refined.begin(), refined.end(), change) == refined.end();
+    });
+    if (!fresh) return;
+    for (const std::string& name : set) refined.emplace_back(ChangeOf(name));
+    RefinedShapes(runs, *rows, set).Keep(rows);
+  };
+  if (!scores.empty()) refine(scores.front().set);
+  for (const ScoredSet& one : scores) {
+    if (one.set.size() == 1) refine(one.set);
+  }
+}
+
 double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   for (const WeighedExplanation& one : weights.explanations) {
     if (one.set == set) return one.weight;
@@ -210,6 +234,7 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   const std::vector<int> periods = LikelyPeriods(runs, rows, SetEvidence(rows), context.jobs);
   if (!periods.empty()) rows = runs.MakeRows(periods);
   proposed.remarks = RemarksOn(runs);
+  RefineLeaders(&runs, &rows, context.jobs);
   const SetEvidence evidence(rows);
   SetScores scores = ScanSets(evidence, {}, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);

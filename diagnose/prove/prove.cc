@@ -41,17 +41,11 @@ bool HasACurve(const ProvedSet& set) {
 // Chooses among the sets.
 class Prover {
  public:
-  Prover(ProofSets* sets, const SaidByBalances& said) : sets_(*sets), said_(said) {}
+  explicit Prover(ProofSets* sets) : sets_(*sets) {}
 
-  // What the effect has to take of the gap.
-  double PartOf(const Change& change) const {
-    const auto weight = said_.weights.find(change.effect);
-    return weight != said_.weights.end() && weight->second >= kSaid ? kPartOfASaidEffect : kPartOfAnEffect;
-  }
-
-  bool IsKept(size_t with, size_t without, double part) {
-    return IsEffectKept(sets_[with], sets_[without], part) &&
-           IsEffectKept(sets_.Far(with), sets_.Far(without), part);
+  bool IsKept(size_t with, size_t without, double price) {
+    return IsEffectKept(sets_[with], sets_[without], price) &&
+           IsEffectKept(sets_.Far(with), sets_.Far(without), price);
   }
 
   // The best of the sets that remain when one of the effects that are not needed is left out; the set itself where all are needed.
@@ -60,8 +54,9 @@ class Prover {
     double least = 0;
     for (const Change& change : sets_[place].Effects()) {
       const size_t without = sets_.Without(place, change);
-      if (without >= sets_.size() || IsKept(place, without, PartOf(change))) continue;
-      const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm;
+      const double price = sets_.PriceOf(change);
+      if (without >= sets_.size() || IsKept(place, without, price)) continue;
+      const double lost = FallOf(sets_[without].near, sets_[place].near).logarithm - price;
       if (reduced != place && lost >= least) continue;
       reduced = without;
       least = lost;
@@ -86,16 +81,17 @@ class Prover {
     return best;
   }
 
-  // Of sets with as many effects that predict as well, the one whose effects have the fewest numbers: a bias has one, an asymmetry two.
+  // Of sets with as many effects that are worth as much, the one whose effects have the fewest numbers: a bias has one, an asymmetry two.
   size_t WithFewerNumbers(size_t place) const {
     size_t fewest = place;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() != sets_[place].Effects().size()) continue;
       if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
       const GapFall fall = FallOf(sets_[i].near, sets_[place].near);
+      const double worth = fall.logarithm + sets_[i].price - sets_[place].price;
       // A curve fits whatever is there: it has to take as much more as an effect.
       const bool curve = HasACurve(sets_[place]) && !HasACurve(sets_[i]);
-      if (!fall.Exceeds(curve ? kPartOfAnEffect : kPartOfValues)) fewest = i;
+      if (worth <= std::max(curve ? kPartOfAnEffect : kPartOfValues, fall.error)) fewest = i;
     }
     return fewest;
   }
@@ -106,9 +102,10 @@ class Prover {
     double most = kNoBetter;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() > sets_[place].Effects().size()) continue;
-      const double fall = FallOf(sets_[place].near, sets_[i].near).logarithm;
-      if (fall <= most) continue;
-      most = fall;
+      const double worth =
+          FallOf(sets_[place].near, sets_[i].near).logarithm - sets_[i].price + sets_[place].price;
+      if (worth <= most) continue;
+      most = worth;
       better = i;
     }
     return better;
@@ -149,7 +146,6 @@ class Prover {
 
  private:
   ProofSets& sets_;
-  const SaidByBalances& said_;
 };
 
 }  // namespace
@@ -158,12 +154,17 @@ Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
                      const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
                      const std::vector<Change>& blind, const SaidByBalances& said) {
   context.Report("simulating the proposals", 0.85);
-  ProofSets sets(context, as_given, allowed);
+  ProofSets sets(context, as_given, allowed, said);
   sets.Add(proposals);
   sets.SetFitted(LeadingSet(sets.all()));
   context.Report("refining their values", 0.88);
-  for (const size_t i : WorthRefining(sets.all(), kMostRefined)) sets.Refine(i);
-  Prover prover(&sets, said);
+  const std::vector<size_t> worth = WorthRefining(sets.all(), kMostRefined);
+  for (const bool values : {true, false}) {
+    for (const size_t i : worth) {
+      if (sets[i].Effects().empty() == values) sets.Refine(i);
+    }
+  }
+  Prover prover(&sets);
   size_t best = prover.Choice();
   if (prover.LeavesAGap(best)) {
     context.Report("what balances cannot show", 0.91);

@@ -21,10 +21,9 @@ double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   return maths::Median(std::move(logarithms));
 }
 
-// The fall of the gap from `reference`, less what the effects have to take.
+// The fall of the gap from `reference`, less the price of the effects.
 double WorthFrom(const ProvedSet& reference, const ProvedSet& set) {
-  const double taken = FallOf(reference.near, set.near).logarithm;
-  return taken + std::log1p(-kPartOfAnEffect) * static_cast<double>(set.Effects().size());
+  return FallOf(reference.near, set.near).logarithm - set.price;
 }
 
 // Of those admitted: first by the median, which needs nothing to compare with, then compared with the best so far, because
@@ -88,11 +87,18 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   return FallOf(set.near, other.near).Exceeds(0) && far.logarithm >= -far.error;
 }
 
-bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double part) {
+double PriceOf(double weight) {
+  constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
+  constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never have exactly one
+  const double odds = std::clamp(weight / std::max(1 - weight, 1e-9), 1 / kMostOdds, kMostOdds);
+  return kEven * (1 - std::log(odds) / std::log(kWorthIt));
+}
+
+bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price) {
   if (!with.tested() || !without.tested()) return true;
   const GapFall near = FallOf(without.near, with.near);
   if (near.windows == 0) return true;
-  return near.Exceeds(part) && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
+  return near.logarithm - near.error >= price && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
 }
 
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {

@@ -18,6 +18,7 @@ struct ProvedSet {
   std::vector<WindowGap> near;
   std::vector<WindowGap> far;  // empty until a comparison needs them
   double weight = 0;           // of the proposal, 0 of what was not proposed
+  double price = 0;            // of all its effects (PriceOf())
   bool refined = false;        // as far as sets are to be compared
 
   bool tested() const { return IsTested(near); }
@@ -39,22 +40,24 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set);
 // The same; predicts far windows where near ones do not say no.
 bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, ProvedSet* set);
 
-// The part of the gap over the near windows that an effect has to take, given the same set without it. Measured with a prototype
-// on 11 cases: it left out further effects that were not there on 5 of 6 rigs, and both on rigs that lacked nothing.
+// What an effect has to take of the logarithm of the near windows' gap, beyond the error of the comparison, where the balances of the
+// fitted runs give it this weight. Balances and held-out windows are two witnesses whose odds multiply: effects that are not there
+// take some per cent by mending what else is wrong, the less often the more, so that a twentieth of the gap is worth nine to one. Even
+// odds have to be paid with a twentieth; at nine to one, windows need only agree; where the balances are sure, they may not object.
+double PriceOf(double weight);
+
+// Of the gap: what is more than chance whatever the balances say. A further effect takes it in hardly any rig that lacks none.
 inline constexpr double kPartOfAnEffect = 0.1;
-// The same where the balances, which see all of the fitted runs, say the effect at nine to one or more: two witnesses, of whom each
-// need be half as sure.
-inline constexpr double kPartOfASaidEffect = 0.05, kSaid = 0.9;
 // Other values are likelier than a missing effect: no machine has exactly the values of its model.
 inline constexpr double kPartOfValues = 0.05;
 
-// Whether the gap without it tells against `with`, which has one effect more: that has to take its part of the near windows' gap,
-// and must not make the far ones worse by as much. True where either cannot be tested: no simulation, no veto.
-bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double part = kPartOfAnEffect);
+// Whether `with` is worth the price of the one effect that it has more than `without`, over the near windows; and does not make the far
+// ones, as far as they are predicted, worse by kPartOfAnEffect. True where either cannot be tested: no simulation, no veto.
+bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price);
 // The same of other values, against the model as given.
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given);
 
-// The place of the set that predicts the near windows best, if each of its effects has to take its part. Of equals the likelier
+// The place of the set that predicts the near windows best beyond the price of its effects. Of equals the likelier
 // proposal, then the first. The number of sets where none can be tested.
 size_t LeadingSet(const std::vector<ProvedSet>& sets);
 

@@ -95,9 +95,9 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;
-    ProvedSet refined;
+    ProvedSet refined = *set;
     refined.hypothesis = at.hypothesis;
-    refined.weight = set->weight;
+    refined.without.clear();
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

@@ -16,7 +16,7 @@ using State = ChecklistLine::State;
 using testing::Table1Model;
 
 // A recording without what can be worked out from the rest.
-runs::MeasuredRun Swing(model::Shaft shaft, bool bypass = false) {
+runs::MeasuredRun PlainSwing(model::Shaft shaft, bool bypass = false) {
   runs::MeasuredRun run = testing::Swing(shaft, bypass);
   run.motor_angle = run.arm_speed = {};
   return run;
@@ -37,7 +37,7 @@ void Negate(runs::MeasuredSignal* signal) {
 TEST(ChecklistTest, GoodRuns) {
   for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
     for (const bool bypass : {false, true}) {
-      for (const ChecklistLine& line : Checklist(Table1Model(), Swing(shaft, bypass))) {
+      for (const ChecklistLine& line : Checklist(Table1Model(), PlainSwing(shaft, bypass))) {
         if (bypass && !line.item.starts_with("sign")) continue;  // the arm rests
         EXPECT_NE(line.state, State::kLook) << Written(line);
       }
@@ -47,7 +47,7 @@ TEST(ChecklistTest, GoodRuns) {
 
 // Tests --si: ranges and pressures in the units that a reader of SI expects, one unit in a line.
 TEST(ChecklistTest, Si) {
-  const runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  const runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   EXPECT_THAT(LineOf(run, "p1"), ::testing::EndsWith(" psi"));
   EXPECT_THAT(LineOf(run, "p1", true), ::testing::ContainsRegex(" [kM]Pa$"));
   const std::string charge = LineOf(run, "charge pressure", true);
@@ -58,7 +58,7 @@ TEST(ChecklistTest, Si) {
 
 // Tests that one side whose scale is wrong is worth a look, though the other side is at the charge pressure.
 TEST(ChecklistTest, SidesDiffer) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("ok"));
   for (double& p1 : run.p1.values) p1 *= 2.5;
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("look"));
@@ -66,7 +66,7 @@ TEST(ChecklistTest, SidesDiffer) {
 
 // Tests that raw currents of sensors are seen, and still when somebody has called them a pressure.
 TEST(ChecklistTest, Currents) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value = 145.0377 * (4 + 16 * value / 5000);
   }
@@ -77,43 +77,43 @@ TEST(ChecklistTest, Currents) {
 
 // Tests that each turned sign is seen where it shows.
 TEST(ChecklistTest, TurnedSigns) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   Negate(&run.voltage);
   EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("look"));
-  run = Swing(model::Shaft::kFree);
+  run = PlainSwing(model::Shaft::kFree);
   Negate(&run.arm_angle);
   EXPECT_THAT(LineOf(run, "sign of the arm"), ::testing::ContainsRegex("^look .*the arm moves down while"));
   EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("ok"));
-  run = Swing(model::Shaft::kClamped);
+  run = PlainSwing(model::Shaft::kClamped);
   std::swap(run.p1, run.p2);
   EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
 }
 
 // Tests that other units, a shaft that is not as stated and gaps in time are seen.
 TEST(ChecklistTest, UnitsShaftAndTime) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value /= 14.5038;
   }
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*another unit"));
-  run = Swing(model::Shaft::kFree);
+  run = PlainSwing(model::Shaft::kFree);
   const double fifth = 0.2 * *std::min_element(run.p1.values.begin(), run.p1.values.end());
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value -= fifth;
   }
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*gauge against absolute"));
-  run = Swing(model::Shaft::kFree);
+  run = PlainSwing(model::Shaft::kFree);
   run.shaft = model::Shaft::kClamped;
   for (double& angle : run.arm_angle.values) angle *= 20;
   EXPECT_THAT(LineOf(run, "shaft"), ::testing::ContainsRegex("^look .*clamped, as is said"));
-  run = Swing(model::Shaft::kFree);
+  run = PlainSwing(model::Shaft::kFree);
   for (size_t i = 500; i < run.time.size(); ++i) run.time[i] += 0.05;
   EXPECT_THAT(LineOf(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
 }
 
 // Tests that what is not recorded is absent, and that a run that rests says nothing of signs.
 TEST(ChecklistTest, AbsentAndStill) {
-  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   EXPECT_THAT(LineOf(run, "motor_angle"), ::testing::StartsWith("absent"));
   for (runs::MeasuredSignal* signal : {&run.voltage, &run.motor_speed, &run.p1, &run.p2, &run.arm_angle}) {
     std::fill(signal->values.begin(), signal->values.end(), signal->values.front());

@@ -15,14 +15,14 @@ namespace {
 
 using Recording = runs::MeasuredRun;
 
-const model::ModelDescription kGiven = {"Table 1", testing::Table1(), {}};
+const model::ModelDescription kAsGiven = {"Table 1", testing::Table1(), {}};
 
 bool NeverUp() { return false; }
 
 // A rig that lacks nothing: clamped, or with a free arm, under steps of both signs.
 Recording Recorded(model::Shaft shaft) {
   testing::NoisyRig rig;
-  rig.model = kGiven;
+  rig.model = kAsGiven;
   return rig.Record("run", shaft, 0.1, 2, false, [](double t) { return std::sin(9 * t) > 0 ? 3.0 : -2.0; })
       .measured;
 }
@@ -43,7 +43,7 @@ RecordingMistake Named(const Recording& run, const std::string& what) {
 TEST(RecordingBalances, CloseWithTheRightNumbers) {
   for (const model::Shaft shaft : {model::Shaft::kClamped, model::Shaft::kFree}) {
     const Recording run = Recorded(shaft);
-    const RecordingBalances balances(kGiven, run, PossibleMistakes(run));
+    const RecordingBalances balances(kAsGiven, run, PossibleMistakes(run));
     EXPECT_LT(balances.LeastLeftOpen(), 0.02);
     const double right = balances.Evidence({});
     for (const auto& change :
@@ -68,15 +68,15 @@ TEST(RecordingBalances, UndoneMistakes) {
   AddFactors(Named(wrong, "p1 and p2 are exchanged"), &undone);
   EXPECT_NEAR(undone.motor_speed, M_PI / 30, 1e-9);
   EXPECT_TRUE(undone.exchanged);
-  const double right = RecordingBalances(kGiven, run, PossibleMistakes(run)).Evidence({});
-  EXPECT_NEAR(RecordingBalances(kGiven, wrong, PossibleMistakes(wrong)).Evidence(undone), right, 1);
+  const double right = RecordingBalances(kAsGiven, run, PossibleMistakes(run)).Evidence({});
+  EXPECT_NEAR(RecordingBalances(kAsGiven, wrong, PossibleMistakes(wrong)).Evidence(undone), right, 1);
 }
 
 // Tests that what cannot be formed says nothing.
 TEST(RecordingBalances, NothingFormed) {
   Recording run = Recorded(model::Shaft::kClamped);
   run.p1 = run.p2 = run.motor_angle = {};
-  const RecordingBalances balances(kGiven, run, PossibleMistakes(run));
+  const RecordingBalances balances(kAsGiven, run, PossibleMistakes(run));
   EXPECT_EQ(balances.Evidence({}), 0);
   EXPECT_EQ(balances.LeastLeftOpen(), 0);
 }
@@ -84,10 +84,10 @@ TEST(RecordingBalances, NothingFormed) {
 // Tests what one run says by itself: nothing when it is right, and its mistake first when it is not.
 TEST(RunMistakes, OneRun) {
   const Recording run = Recorded(model::Shaft::kClamped);
-  EXPECT_LT(RunMistakes(kGiven, run).Search(NeverUp).front().Merit(), 0);
+  EXPECT_LT(RunMistakes(kAsGiven, run).Search(NeverUp).front().Merit(), 0);
   Recording bar = run;
   for (auto signal : {&Recording::p1, &Recording::p2}) Multiply(&(bar.*signal).values, 1 / 14.5037738);
-  const RunMistakes wrong(kGiven, bar);
+  const RunMistakes wrong(kAsGiven, bar);
   const std::vector<MistakeTrial> found = wrong.Search(NeverUp);
   ASSERT_EQ(found.front().mistakes.size(), 1u);
   EXPECT_EQ(found.front().mistakes[0].what, "p1 and p2 are in bar");
@@ -101,7 +101,7 @@ TEST(RunMistakes, OneRun) {
 TEST(RunMistakes, FactorWithoutAUnit) {
   Recording run = Recorded(model::Shaft::kClamped);
   for (auto signal : {&Recording::p1, &Recording::p2}) Multiply(&(run.*signal).values, 3.1);
-  const RunMistakes mistakes(kGiven, run);
+  const RunMistakes mistakes(kAsGiven, run);
   const auto gain = [&](double factor) {
     return mistakes.Gain({UnknownUnit({&Recording::p1, &Recording::p2}, factor)});
   };

@@ -83,24 +83,37 @@ TEST(GapFall, SilentChannelsHaveNoSay) {
   EXPECT_LT(FallOf(before, worse).logarithm, 0);
 }
 
-// Tests that an effect has to take a tenth of the gap, more than the scatter of the windows, and nothing of the far ones.
-TEST(EffectIsKept, TakesATenth) {
+// Tests that an effect has to take its price beyond the scatter of the windows, and nothing of the far ones.
+TEST(EffectIsKept, TakesItsPrice) {
   const ProvedSet without = SetOf({}, Windows(5));
-  EXPECT_TRUE(IsEffectKept(SetOf({"amp.lag"}, Windows(4.4)), without));
-  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(4.6)), without));
-  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(6)), without));
-  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(4), 15), without));
+  constexpr double kPrice = 0.1;
+  EXPECT_TRUE(IsEffectKept(SetOf({"amp.lag"}, Windows(4.4)), without, kPrice));
+  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(4.6)), without, kPrice));
+  EXPECT_TRUE(IsEffectKept(SetOf({"amp.lag"}, Windows(4.6)), without, 0));
+  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(6)), without, -0.1));
+  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, Windows(4), 15), without, kPrice));
   std::vector<WindowGap> scattered = Windows(5);
   scattered[0] = Window(0.01, 0.01);
   scattered[1] = Window(0.01, 0.01);
   scattered[2] = Window(1e4, 1e4);
-  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, scattered), without));
+  EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, scattered), without, kPrice));
+}
+
+// Tests what the price is worth: a twentieth of the gap at even odds, nothing at nine to one, and no more than the balances may be sure of.
+TEST(EffectIsKept, OddsArePaidWithTheGap) {
+  EXPECT_NEAR(diagnose::PriceOf(0.5), 0.05, 1e-12);
+  EXPECT_NEAR(diagnose::PriceOf(0.9), 0, 1e-12);
+  EXPECT_NEAR(diagnose::PriceOf(0.1), 0.1, 1e-12);
+  EXPECT_EQ(diagnose::PriceOf(0), diagnose::PriceOf(1e-9));
+  EXPECT_EQ(diagnose::PriceOf(1), diagnose::PriceOf(1 - 1e-9));
+  EXPECT_GT(diagnose::PriceOf(1), -0.11);
+  EXPECT_LT(diagnose::PriceOf(0), 0.21);
 }
 
 // Tests that what cannot be tested vetoes nothing and takes no place.
 TEST(EffectIsKept, NoSimulationNoVeto) {
   const ProvedSet tested = SetOf({"amp.lag"}, Windows(5)), untested = SetOf({}, Untested());
-  EXPECT_TRUE(IsEffectKept(tested, untested));
+  EXPECT_TRUE(IsEffectKept(tested, untested, 0.1));
   EXPECT_FALSE(PredictsBetter(untested, tested));
   EXPECT_TRUE(PredictsBetter(tested, untested));
 }
@@ -118,6 +131,7 @@ TEST(LeadingSet, EachEffectTakesItsPart) {
   std::vector<ProvedSet> sets = {SetOf({}, Windows(50)), SetOf({"amp.lag"}, Windows(5)),
                                  SetOf({"amp.lag", "amp.bias"}, Windows(4.8)),
                                  SetOf({"amp.delay"}, Untested())};
+  for (ProvedSet& set : sets) set.price = 0.1 * static_cast<double>(set.Effects().size());
   EXPECT_EQ(LeadingSet(sets), 1u);
   sets[2].near = Windows(3);
   EXPECT_EQ(LeadingSet(sets), 2u);
