@@ -102,7 +102,7 @@ TEST(ProofWindows, BoundedWithTheExtremes) {
   EXPECT_LE(windows.fitted.size(), 9u + 4u);
   EXPECT_LE(windows.told.size(), 20u + 4u);
   EXPECT_GE(windows.near.windows.size(), 20u);
-  EXPECT_LE(windows.near.windows.size(), 20u + 4u);
+  EXPECT_LE(windows.near.windows.size(), 32u + 4u);
   EXPECT_LE(windows.far.windows.size(), 6u + 4u);
   for (const model::Channel channel :
        {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
