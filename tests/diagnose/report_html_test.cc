@@ -1,11 +1,10 @@
-#include "diagnose/report/report.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 #include <regex>
 
+#include "diagnose/report/report.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {

@@ -1,9 +1,8 @@
-#include "diagnose/report/report.h"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include "diagnose/report/report.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {
