@@ -11,9 +11,9 @@ namespace {
 // A curve that no known effect draws is to be said only where no effect will do: it can draw most of them.
 constexpr double kOddsOfAClosure = 1.0 / 300;
 
-bool IsClosure(std::string_view name) { return name.starts_with("closure."); }
-
 }  // namespace
+
+bool IsClosure(std::string_view name) { return name.starts_with("closure."); }
 
 std::string_view ChangeOf(std::string_view name) { return name.substr(0, name.find('|')); }
 

@@ -22,6 +22,9 @@ std::string_view ChangeOf(std::string_view name);
 // The changes of a set, sorted, without their variants.
 ChangeSet ChangesOf(const ChangeSet& set);
 
+// Is it an unknown curve?
+bool IsClosure(std::string_view name);
+
 // Is it an effect, with or without a form of its own (a closure), and not merely another value of what the
 // model has?
 bool IsMissingTerm(std::string_view name);

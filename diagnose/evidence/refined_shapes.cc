@@ -60,6 +60,14 @@ const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
   return found == rows.blocks.end() ? nullptr : &*found;
 }
 
+// Whether the rows show all changes of the set: at another shape an effect may act nowhere.
+bool Shows(const SetEvidence& evidence, const ChangeSet& set) {
+  const std::vector<std::string>& names = evidence.names();
+  return std::all_of(set.begin(), set.end(), [&](const std::string& name) {
+    return std::binary_search(names.begin(), names.end(), name);
+  });
+}
+
 // Puts a column of `from`, which has it, into the block.
 void SetColumn(const RowBlock& from, int column, RowBlock* block) {
   const auto place = [&](const RowBlock& of) {
@@ -141,7 +149,10 @@ RefinedShapes::RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& 
   for (size_t v = 0; v < variants.size(); ++v) {
     const bool wanted = std::find(set.begin(), set.end(), variants[v].set) != set.end();
     if (!wanted || variants[v].kind == EffectVariant::Kind::kWave || variants[v].shapes.empty()) continue;
-    if (before_.empty()) rows_ = OnlyOf(rows, set);
+    if (before_.empty()) {
+      rows_ = OnlyOf(rows, set);
+      if (!Shows(SetEvidence(rows_), set)) return;
+    }
     std::vector<double> units;
     for (const int column : runs->ColumnsOf(v))
       units.push_back(runs->meaning()[static_cast<size_t>(column)].unit);

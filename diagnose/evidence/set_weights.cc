@@ -18,9 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kDraws = 400;
-// What is wrong with all models here is alike in all rows, which the evidence takes for independent: measured
-// on 63 rigs, a third of a difference in scores is worth what it says.
-constexpr double kTemperature = 3;
 // Most wrong answers are the truth and something more, which repairs the truth's form a little. Each change
 // beyond the first must be worth this share of what there is to explain.
 constexpr double kPriceOfAChange = 0.05;
@@ -48,8 +45,12 @@ std::vector<ChangeSet> SubsetsOf(const ChangeSet& set) {
 
 // The best sets, all that is in the best three, the best of each named set, values, values of runs, and
 // nothing.
-std::vector<ScoredSet> Finalists(SetScores* scores) {
-  const std::vector<ScoredSet> tried = scores->BestFirst();
+std::vector<ScoredSet> Finalists(SetScores* scores, bool curves) {
+  std::vector<ScoredSet> tried = scores->BestFirst();
+  if (!curves) {
+    std::erase_if(
+        tried, [](const ScoredSet& one) { return std::any_of(one.set.begin(), one.set.end(), IsClosure); });
+  }
   std::set<ChangeSet> chosen = {ChangeSet()};
   std::set<ChangeSet> named;
   std::map<std::string, size_t> singles;
@@ -144,8 +145,8 @@ void DropAdditions(const std::vector<ScoredSet>& finalists, VectorXd* shares) {
 
 }  // namespace
 
-ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed) {
-  const std::vector<ScoredSet> finalists = Finalists(scores);
+ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed, bool curves) {
+  const std::vector<ScoredSet> finalists = Finalists(scores, curves);
   VectorXd shares = DrawnShares(*scores, finalists, seed);
   DropAdditions(finalists, &shares);
   std::map<ChangeSet, WeighedExplanation> by_changes;

@@ -1,12 +1,14 @@
 #include "diagnose/prove/proof_sets.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "diagnose/data/thinned.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/refined_values.h"
+#include "diagnose/prove/whole_runs.h"
 
 namespace hydro::diagnose {
 
@@ -156,7 +158,10 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
   const bool near_falls = near.Exceeds(0) && far.logarithm >= -far.error;
   const bool far_falls = far.Exceeds(0) && near.logarithm >= -near.error;
-  if (near_falls || far_falls) *set = whole;
+  // Where windows are too short to tell, whole held-out runs do.
+  const bool alike = std::abs(near.logarithm) <= near.error && std::abs(far.logarithm) <= far.error;
+  const auto of_runs = [this](const ProvedSet& one) { return MeanSquare(OverRuns(context_, one)); };
+  if (near_falls || far_falls || (alike && of_runs(whole) < of_runs(*set))) *set = whole;
 }
 
 size_t ProofSets::Without(size_t with, const Change& change) {

@@ -28,7 +28,7 @@ struct Proposal {
 // What the balances say of effects, by their ids.
 struct SaidByBalances {
   std::map<std::string, double> weights;  // of all explanations that have the effect
-  std::vector<std::string> likely;        // by the score of the effect alone, the likeliest first
+  std::vector<std::string> unlikely;      // those that they rule out
 };
 
 }  // namespace hydro::diagnose

@@ -1,6 +1,8 @@
 #include "diagnose/prove/propose.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -169,15 +171,20 @@ std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   return remarks;
 }
 
-// The ids of all effects that were scored alone, the likeliest first.
-std::vector<std::string> LikelyEffects(const std::vector<ScoredSet>& scores) {
-  std::vector<std::string> likely;
-  for (const ScoredSet& scored : scores) {
+// The ids of effects that alone score so far below the best one that, as scores are tempered, they are a hundred times less likely.
+std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
+  const double least = kTemperature * std::log(100.0);
+  std::vector<std::string> likely, unlikely;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const ScoredSet& scored : scores) {  // the best first
     if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
+    best = std::max(best, scored.score);
     const std::string id(scored.set[0].substr(0, scored.set[0].find_first_of("(|")));
-    if (std::find(likely.begin(), likely.end(), id) == likely.end()) likely.push_back(id);
+    std::vector<std::string>& to = scored.score > best - least ? likely : unlikely;
+    const bool known = std::find(likely.begin(), likely.end(), id) != likely.end();
+    if (!known && std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
   }
-  return likely;
+  return unlikely;
 }
 
 // Moves the shapes of the likeliest effects to where the evidence has them, so that none loses to another for lying between two points of
@@ -200,6 +207,21 @@ void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
   for (const ScoredSet& one : scores) {
     if (one.set.size() == 1) refine(one.set);
   }
+}
+
+// The weight of all explanations that have a change, by its id. An unknown curve is no rival of an effect's name, which simulation compares
+// with it: effects are weighed without curves.
+std::map<std::string, double> SaidOf(const ExplanationWeights& all,
+                                     const ExplanationWeights& without_curves) {
+  std::map<std::string, double> said;
+  for (const ExplanationWeights* weights : {&all, &without_curves}) {
+    for (const WeighedExplanation& one : weights->explanations) {
+      for (const std::string& change : one.changes) {
+        if (IsClosure(change) == (weights == &all)) said[change.substr(0, change.find('('))] += one.weight;
+      }
+    }
+  }
+  return said;
 }
 
 double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
@@ -238,14 +260,11 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
   const SetEvidence evidence(rows);
   SetScores scores = ScanSets(evidence, {}, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);
-  for (const WeighedExplanation& one : proposed.weights.explanations) {
-    for (const std::string& change : one.changes)
-      proposed.said.weights[change.substr(0, change.find('('))] += one.weight;
-  }
+  proposed.said.weights = SaidOf(proposed.weights, WeighExplanations(&scores, context.seed, false));
   proposed.scores = scores.BestFirst();
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
-  proposed.said.likely = LikelyEffects(proposed.scores);
+  proposed.said.unlikely = UnlikelyEffects(proposed.scores);
   proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
   const std::set<std::string> oil = runs.OilOnly();
   for (const ChangeSet& set :

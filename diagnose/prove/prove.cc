@@ -182,7 +182,7 @@ Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
   return ProvedOnWholeRuns(
       context, as_given,
       ProofOf(context, windows, std::move(told), sets.all(), {kGiven, prover.BestValues(), best}),
-      at_the_noise, said.likely);
+      at_the_noise, said.unlikely);
 }
 
 }  // namespace hydro::diagnose

@@ -33,11 +33,12 @@ inline constexpr Refinement kReportedValues = {2, 6};
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set);
 
-// What is known of the hypothesis' base values where a fit to these windows leaves `sum`; null where only those are free that the set
-// itself names.
+// What is known of the hypothesis' numbers where a fit to these windows leaves `sum`: of base values what the model states, unless only
+// those are free that the set itself names; of effects what the balances estimate. Null where that is nothing.
 std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
                                                const std::vector<const RunData*>& windows,
-                                               const Hypothesis& hypothesis, double sum);
+                                               const Hypothesis& hypothesis, double sum,
+                                               const std::vector<model::EffectDescription>& estimated = {});
 
 // The starts that the model's windows have: measured, corrected by a step.
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,

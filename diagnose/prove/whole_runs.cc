@@ -16,8 +16,6 @@ namespace {
 
 // Noise units: beyond, small errors of values that add up over a run say more than what is missing.
 constexpr double kNearEnough = 10;
-// Effects that are tested: the balances rank them too, and what is true was among their first five nearly always.
-constexpr size_t kMostTestedEffects = 8;
 // Changes that are fitted: of two that the score test expects about as much of, a fit tells.
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
@@ -48,33 +46,24 @@ double ExpectedFall(const Fitted& fitted) {
   return sums.gradient.dot(maths::SolveSymmetric(sums.information, sums.gradient).col(0));
 }
 
-std::vector<WindowGap> OverRuns(const SearchContext& context, const ProvedSet& set) {
-  const std::vector<const RunData*>& runs = context.predicted();
-  std::vector<WindowGap> gaps(runs.size());
-  ParallelFor(runs.size(), context.jobs, [&](size_t r) { gaps[r] = GapOf(set.ModelOf(r), *runs[r]); });
-  return gaps;
-}
-
 struct Tested {
   Hypothesis hypothesis;
   double sum = 0;  // that it may come to
 };
 
-// Values are; an effect that the balances rank far down is not, unless they cannot see it.
-bool IsWorthTesting(const Change& change, const std::vector<std::string>& likely) {
-  if (change.effect.empty() || likely.empty()) return true;
-  const auto place = std::find(likely.begin(), likely.end(), change.effect);
-  return place == likely.end() || place - likely.begin() < static_cast<std::ptrdiff_t>(kMostTestedEffects);
+// Values are, and effects that the balances do not rule out.
+bool IsWorthTesting(const Change& change, const std::vector<std::string>& unlikely) {
+  return std::find(unlikely.begin(), unlikely.end(), change.effect) == unlikely.end();
 }
 
 // The best start of each change, by what a score test expects, the most promising first.
 std::vector<Tested> ScoreTest(const SearchContext& context, const Hypothesis& given,
                               const std::vector<model::StartState>& from,
-                              const std::vector<std::string>& likely) {
+                              const std::vector<std::string>& unlikely) {
   std::vector<Hypothesis> starts;
   std::vector<size_t> owner;
   for (size_t c = 0; c < context.changes.size(); ++c) {
-    if (!IsWorthTesting(context.changes[c], likely)) continue;
+    if (!IsWorthTesting(context.changes[c], unlikely)) continue;
     for (Hypothesis& start : With(given, context.changes[c], context.sizes)) {
       starts.push_back(std::move(start));
       owner.push_back(c);
@@ -145,6 +134,13 @@ bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1
 
 }  // namespace
 
+std::vector<WindowGap> OverRuns(const SearchContext& context, const ProvedSet& set) {
+  const std::vector<const RunData*>& runs = context.predicted();
+  std::vector<WindowGap> gaps(runs.size());
+  ParallelFor(runs.size(), context.jobs, [&](size_t r) { gaps[r] = GapOf(set.ModelOf(r), *runs[r]); });
+  return gaps;
+}
+
 double MeanSquare(const std::vector<WindowGap>& runs) {
   double sum = 0, count = 0;
   for (const WindowGap& gap : runs) {
@@ -156,8 +152,10 @@ double MeanSquare(const std::vector<WindowGap>& runs) {
 }
 
 Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
-                        bool at_the_noise, const std::vector<std::string>& likely) {
-  if (!at_the_noise) return near;
+                        bool at_the_noise, const std::vector<std::string>& unlikely) {
+  // An effect that windows have found needs no score test; values alone may stand for one that is small.
+  if (!at_the_noise || !near.Best().Effects().empty()) return near;
+  const std::vector<WindowGap> found = OverRuns(context, near.Best());
   Proof whole;
   for (const RunData* run : context.predicted()) whole.runs.push_back(run->name);
   whole.sets = {near.Given(), near.Values()};
@@ -167,12 +165,12 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
   }
   whole.values = 1;
   const double given = MeanSquare(whole.Given().near);
-  const bool near_enough = given < kNearEnough * kNearEnough;
-  if (!near_enough || given < kCloseEnough) return near;
+  const bool near_enough = std::min(given, MeanSquare(found)) < kNearEnough * kNearEnough;
+  if (!near_enough || !std::isfinite(given) || given < kCloseEnough) return near;
   context.Report("what only whole runs show", 0.94);
   const Fitted start = Fit(as_given, context.runs, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!start.ok()) return near;
-  for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start), likely)) {
+  for (const Tested& tested : ScoreTest(context, as_given, StartsOf(start), unlikely)) {
     const Fitted fitted = Fit(tested.hypothesis, context.runs, StartsOf(start), FitToCompare(context.jobs));
     if (fitted.ok()) whole.sets.push_back(SetOf(context, fitted));
   }
@@ -181,7 +179,6 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
     if (!TakesMost(given, square)) continue;
     if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
   }
-  const std::vector<WindowGap> found = OverRuns(context, near.Best());
   // Windows may have found as much with values that whole runs confirm.
   if (whole.best == whole.given || !FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect)) return near;
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
