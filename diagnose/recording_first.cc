@@ -85,6 +85,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   CheckedRecordings checked;
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
+  for (const runs::MeasuredRun& run : all) CheckUsable(run);
   checked.load = LoadRemark(all);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> damage = SetAsideDamage(some);

@@ -55,14 +55,14 @@ void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std
   }
 }
 
-void CheckSignal(const runs::MeasuredRun& run, const runs::SignalName& row, const model::Parameters& model) {
+// Enough values, and not one alone.
+void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
   const std::vector<double>& values = (run.*row.signal).values;
   const size_t valid = CountValid(values);
   if (valid < kFewestOfASignal) {
     Refuse(run.file, row.ours, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
            std::to_string(kFewestOfASignal) + " values or more, or leave the signal out");
   }
-  CheckRange(run, row.ours, values, LargestPossible(row, model), run.units.UnitFor(row.unit, row.arm));
   // An arm may well stand still. And a simulation without noise reports a single number for a side on its
   // one-way valve or a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
@@ -237,11 +237,19 @@ ValueRange RangeOfValues(const std::vector<double>& values) {
   return range;
 }
 
-RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
+void CheckUsable(const runs::MeasuredRun& run) {
   if (run.samples() < kFewestSamples) {
     Refuse(run.file, "", std::to_string(run.samples()) + " samples",
            std::to_string(kFewestSamples) + " or more");
   }
+  for (size_t place = 0; place < model::kChannels; ++place) {
+    const runs::SignalName& row = SignalOf(static_cast<model::Channel>(place));
+    if ((run.*row.signal).measured()) CheckShows(run, row);
+  }
+}
+
+RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
+  CheckUsable(run);
   RunData data;
   data.name = run.name;
   data.stimulus = StimulusOf(run);
@@ -249,7 +257,11 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
   for (size_t place = 0; place < model::kChannels; ++place) {
     const auto channel = static_cast<model::Channel>(place);
-    if ((run.*SignalOf(channel).signal).measured()) CheckSignal(run, SignalOf(channel), model);
+    const runs::SignalName& row = SignalOf(channel);
+    if ((run.*row.signal).measured()) {
+      CheckRange(run, row.ours, (run.*row.signal).values, LargestPossible(row, model),
+                 run.units.UnitFor(row.unit, row.arm));
+    }
     if (!IsCompared(run, channel)) continue;
     SignalData signal = MakeSignal(run, channel);
     if (signal.valid >= kFewestOfASignal) data.signals.push_back(std::move(signal));

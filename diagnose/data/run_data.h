@@ -88,8 +88,11 @@ std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
 // A run of fewer samples cannot be used.
 inline constexpr size_t kFewestSamples = 100;
 
-// Throws InputError, with run, signal and row, for data from which nothing can be learnt: fewer than 100
-// samples, a signal that never changes or is absent, no signal that a model could be compared with, or
+// Throws InputError, with run, signal and row, for data from which nothing can be learnt in any unit: fewer than 100 samples, a signal that
+// never changes or has hardly a value.
+void CheckUsable(const runs::MeasuredRun& run);
+
+// Throws InputError as CheckUsable() does, and for no signal that a model could be compared with, or
 // impossible values (speeds of 1e5 rad/s: another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 

@@ -36,9 +36,11 @@ const std::vector<std::pair<const char*, Signal>>& SignalsOf(Late late) {
   return kOf[static_cast<size_t>(late)];
 }
 
+double LeastDelay(const Run& run) { return std::max(kLeastDelay, kLeastSamples * MedianInterval(run.time)); }
+
 // Whether command and motor are late enough to be another clock's.
 bool AreLate(const LateSignals& found, const Run& run) {
-  const double least = std::max(kLeastDelay, kLeastSamples * MedianInterval(run.time));
+  const double least = LeastDelay(run);
   return found.delay[0] >= least && found.delay[1] >= least &&
          std::max(found.delay[0], found.delay[1]) < LargestDelay(run);
 }
@@ -78,7 +80,8 @@ std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, Run* r
       others = std::max(others, FindLate(given, *run, other).score);
     if (run->shaft != model::Shaft::kClamped && run->arm_angle.measured()) {
       const LateSignals with_arm = FindLate(given, *run, {Late::kCommand, Late::kMotor, Late::kArm});
-      if (AreLate(with_arm, *run) && with_arm.score > devices.score) {
+      const bool another = std::abs(with_arm.delay[2]) >= LeastDelay(*run);
+      if (AreLate(with_arm, *run) && another && with_arm.score > devices.score) {
         devices = with_arm;
         late.push_back(Late::kArm);
       }

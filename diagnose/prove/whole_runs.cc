@@ -16,6 +16,8 @@ namespace {
 
 // Noise units: beyond, small errors of values that add up over a run say more than what is missing.
 constexpr double kNearEnough = 10;
+// Of all fitted runs: so few are fitted in seconds, and hold few windows.
+constexpr size_t kFewSamples = 10000;
 // Changes that are fitted: of two that the score test expects about as much of, a fit tells.
 constexpr size_t kMostFittedChanges = 6;
 // Of the squared gap beside the noise: what a change takes has to be most of it.
@@ -130,6 +132,11 @@ ProvedSet SetOf(const SearchContext& context, const Fitted& fitted) {
   return set;
 }
 
+bool SameEffects(const ProvedSet& a, const ProvedSet& b) {
+  const std::vector<Change> of_a = a.Effects(), of_b = b.Effects();
+  return std::is_permutation(of_a.begin(), of_a.end(), of_b.begin(), of_b.end());
+}
+
 bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1); }
 
 }  // namespace
@@ -153,8 +160,10 @@ double MeanSquare(const std::vector<WindowGap>& runs) {
 
 Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
                         bool at_the_noise, const std::vector<std::string>& unlikely) {
-  // An effect that windows have found needs no score test; values alone may stand for one that is small.
-  if (!at_the_noise || !near.Best().Effects().empty()) return near;
+  size_t samples = 0;
+  for (const RunData* run : context.runs) samples += run->samples();
+  // Windows of long recordings show an effect that they have found; values alone may always stand for one that is small.
+  if (!at_the_noise || (!near.Best().Effects().empty() && samples > kFewSamples)) return near;
   const std::vector<WindowGap> found = OverRuns(context, near.Best());
   Proof whole;
   for (const RunData* run : context.predicted()) whole.runs.push_back(run->name);
@@ -179,8 +188,11 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
     if (!TakesMost(given, square)) continue;
     if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
   }
-  // Windows may have found as much with values that whole runs confirm.
-  if (whole.best == whole.given || !FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect)) return near;
+  // Windows may have found as much with values that whole runs confirm. What both find, whole runs tell more of: what else may be.
+  const bool same = SameEffects(whole.Best(), near.Best());
+  const bool taken = same ? !FallOf(whole.Best().near, found).Exceeds(kPartOfValues)
+                          : FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect);
+  if (whole.best == whole.given || !taken) return near;
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
   whole.told_runs = context.runs;
   if (whole.told.ok()) whole.sets[whole.best] = SetOf(context, whole.told);

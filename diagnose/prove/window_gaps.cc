@@ -16,8 +16,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A start is mended by so many simulations, while each takes a part of the squared gap.
-constexpr int kStartSteps = 3;
+// A start is mended in so many linear models, each confirmed by so many simulations, while each takes a part of the squared gap.
+constexpr int kLinearModels = 3, kStartSteps = 2;
 constexpr double kStartGain = 0.9;
 // What a start leaves of each signal and how each signal weighs take turns in a linear model, which is nearly free.
 constexpr int kWeighings = 6;
@@ -154,18 +154,24 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
   WindowGap best;
   try {
     const std::vector<model::Unknown> starts = StartUnknowns(model, window);
-    Residuals at = ResidualsOf(model, window, from, {}, starts);
-    best = GapFrom(at, window, from);
-    if (starts.empty() || !best.tested) return best;
-    const StartFit fit(window, starts, at);
-    for (int step = 0; step < kStartSteps; ++step) {
-      from = fit.Best(from, at);
-      at = ResidualsOf(model, window, from);
-      const WindowGap corrected = GapFrom(at, window, from);
-      if (!corrected.tested || corrected.Typical() >= best.Typical()) break;
-      const bool enough = corrected.Typical() > kStartGain * best.Typical();
-      best = corrected;
-      if (enough) break;
+    for (int pass = 0; pass < kLinearModels; ++pass) {
+      Residuals at = ResidualsOf(model, window, from, {}, starts);
+      const WindowGap here = GapFrom(at, window, from);
+      if (pass == 0) best = here;
+      if (starts.empty() || !here.tested) return best;
+      const StartFit fit(window, starts, at);
+      const double before = best.Typical();
+      for (int step = 0; step < kStartSteps; ++step) {
+        from = fit.Best(from, at);
+        at = ResidualsOf(model, window, from);
+        const WindowGap corrected = GapFrom(at, window, from);
+        if (!corrected.tested || corrected.Typical() >= best.Typical()) break;
+        const bool enough = corrected.Typical() > kStartGain * best.Typical();
+        best = corrected;
+        if (enough) break;
+      }
+      if (best.Typical() < kAtTheNoise || best.Typical() > kStartGain * before) break;
+      from = best.start;
     }
   } catch (const model::ModelError&) {
     // A start that cannot be simulated is no better one; without any the window is not tested.

@@ -117,7 +117,9 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
     const ProvedSet& other = proof.sets[i];
     if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
     const GapFall fall = FallOf(other.near, proof.Best().near);
-    if (fall.windows > 0 && fall.logarithm > kToldApart * fall.error) continue;
+    // Both witnesses: the windows, and what the balances say for the one rather than the other.
+    const double worth = fall.logarithm + other.price - proof.Best().price;
+    if (fall.windows > 0 && worth > kToldApart * fall.error) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }
   return ties;
