@@ -1,7 +1,6 @@
 #include "diagnose/fit/prior.h"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "diagnose/fit/hypothesis.h"
@@ -23,21 +22,6 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
   return given.T_pmax;
 }
 
-// Of a logarithm. Balances find speeds and pressures to a tenth or two (measured on rigs of another form than the model's).
-constexpr double kEstimated = 0.2;
-
-// What the balances say of an effect's number; NaN if nothing.
-double EstimateOf(const Knowledge& known, const Hypothesis& hypothesis, size_t number) {
-  const model::EffectParameter parameter = model::EffectParameters(hypothesis.model)[number];
-  const model::EffectDescription& own = hypothesis.model.effects[parameter.effect];
-  for (const model::EffectDescription& effect : known.estimated) {
-    const auto value = effect.parameters.find(parameter.name);
-    if (effect.id == own.id && effect.names == own.names && value != effect.parameters.end())
-      return value->second;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 Prior KnownBefore(const Hypothesis& hypothesis) {
@@ -46,15 +30,7 @@ Prior KnownBefore(const Hypothesis& hypothesis) {
     prior.centre.push_back(parameter.ToFitted(parameter.value));
     prior.weight.push_back(0);
     const Knowledge* known = hypothesis.known.get();
-    if (known == nullptr) continue;
-    if (parameter.unknown.kind == model::Unknown::Kind::kEffect) {
-      const double estimate = EstimateOf(*known, hypothesis, parameter.unknown.index);
-      if (!parameter.logarithmic || !(estimate > 0)) continue;
-      prior.centre.back() = parameter.ToFitted(estimate);
-      prior.weight.back() = known->weight / (kEstimated * kEstimated);
-      continue;
-    }
-    if (parameter.unknown.kind != model::Unknown::Kind::kBase) continue;
+    if (known == nullptr || parameter.unknown.kind != model::Unknown::Kind::kBase) continue;
     const size_t base = parameter.unknown.index;
     const double given = known->given.parameters.*model::BaseParameters()[base].member;
     if (parameter.logarithmic && given <= 0) continue;

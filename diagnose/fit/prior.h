@@ -23,8 +23,6 @@ struct Prior {
 struct Knowledge {
   model::ModelDescription given;
   double weight = 0;
-  // Effects as the balances of whole runs estimate them: speeds, set pressures and times, which a few windows show less surely.
-  std::vector<model::EffectDescription> estimated = {};
 };
 
 // For the hypothesis' free numbers; all weights are 0 where it has no knowledge. Of a base parameter that is given as

@@ -66,15 +66,10 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
 
 std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
                                                const std::vector<const RunData*>& windows,
-                                               const Hypothesis& hypothesis, double sum,
-                                               const std::vector<model::EffectDescription>& estimated) {
+                                               const Hypothesis& hypothesis, double sum) {
   const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
                                    [](const Change& change) { return change.effect.empty(); });
-  const bool values = hypothesis.base.size() > static_cast<size_t>(named);
-  if (!values && estimated.empty()) return nullptr;
-  auto known = std::make_shared<Knowledge>(*KnownAt(context.given, windows, sum));
-  known->estimated = estimated;
-  return known;
+  return hypothesis.base.size() > static_cast<size_t>(named) ? KnownAt(context.given, windows, sum) : nullptr;
 }
 
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
@@ -96,7 +91,7 @@ void RefineValues(const SearchContext& context, const std::vector<const RunData*
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
   for (int round = 0; round < limits.rounds && at.ok() && !TimeIsUp(context); ++round) {
     Hypothesis from = at.hypothesis;
-    from.known = KnownOfValues(context, fitted, from, at.sum, set->proposed.effects);
+    from.known = KnownOfValues(context, fitted, from, at.sum);
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;

@@ -24,21 +24,20 @@ struct Refinement {
   int steps = 0;  // of a round
 };
 // To compare a set with that without an effect: estimates are near where a fit ends, and one that needs more steps is wandering off.
-inline constexpr Refinement kComparedValues = {1, 3};
+inline constexpr Refinement kComparedValues = {2, 3};
 // Of what is reported.
-inline constexpr Refinement kReportedValues = {2, 6};
+inline constexpr Refinement kReportedValues = {3, 8};
 
 // The set with its values fitted, a few steps from where they are; the fit is taken where it predicts the judging windows better.
 // `fitted`: as WithDiscrepancy() makes them. A fit that fails, or ends no lower than it began, changes nothing.
 void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set);
 
-// What is known of the hypothesis' numbers where a fit to these windows leaves `sum`: of base values what the model states, unless only
-// those are free that the set itself names; of effects what the balances estimate. Null where that is nothing.
+// What is known of the hypothesis' base values where a fit to these windows leaves `sum`; null where only those are free that the set
+// itself names.
 std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
                                                const std::vector<const RunData*>& windows,
-                                               const Hypothesis& hypothesis, double sum,
-                                               const std::vector<model::EffectDescription>& estimated = {});
+                                               const Hypothesis& hypothesis, double sum);
 
 // The starts that the model's windows have: measured, corrected by a step.
 std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& model,
