@@ -30,6 +30,6 @@ struct ExplanationWeights {
 // by their tempered scores. What a set adds to another for hardly any gain is no explanation of its own: its
 // weight is the other's. The same for any number of jobs.
 // `curves`: whether unknown curves are among them.
-ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed, bool curves = true);
+ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1, bool curves = true);
 
 }  // namespace hydro::diagnose

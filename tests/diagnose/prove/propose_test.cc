@@ -280,7 +280,7 @@ TEST(Propose, SameForAnyNumberOfJobs) {
     EXPECT_EQ(one.proposals[i].model.parameters.J, two.proposals[i].model.parameters.J);
   }
   EXPECT_EQ(one.said.weights, two.said.weights);
-  EXPECT_EQ(one.said.likely, two.said.likely);
+  EXPECT_EQ(one.said.unlikely, two.said.unlikely);
 }
 
 }  // namespace
