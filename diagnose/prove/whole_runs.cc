@@ -189,10 +189,13 @@ Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given
     if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
   }
   // Windows may have found as much with values that whole runs confirm. What both find, whole runs tell more of: what else may be.
-  const bool same = SameEffects(whole.Best(), near.Best());
+  const bool same = !near.Best().Effects().empty() && SameEffects(whole.Best(), near.Best());
   const bool taken = same ? !FallOf(whole.Best().near, found).Exceeds(kPartOfValues)
                           : FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect);
   if (whole.best == whole.given || !taken) return near;
+  for (const ProvedSet& set : near.sets) {
+    if (!set.tested()) whole.sets.push_back(set);  // what cannot be simulated over windows cannot over runs
+  }
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
   whole.told_runs = context.runs;
   if (whole.told.ok()) whole.sets[whole.best] = SetOf(context, whole.told);

@@ -93,7 +93,6 @@ TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
   EXPECT_NEAR(ValueOf(proved, "pump.quadratic_drag", "k"), 2e-4, 1e-5);
   EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
   EXPECT_LT(NearGap(proved, {kDrag}), 0.8 * NearGap(proved, {}));
-  EXPECT_TRUE(proved.OnWindows());
   const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1u);
@@ -152,6 +151,7 @@ TEST_F(ProveTest, RefitIsNeverWorse) {
 // Tests that a proposal that cannot be simulated is not chosen, rejects nothing, and is said to be untested.
 TEST_F(ProveTest, WhatCannotBeSimulatedIsNotTested) {
   Record(Table1With({Drag(2e-4)}));
+  std::erase(context_.changes, kBias);  // whole runs would try it from other starts
   Proposal impossible = Proposed({kBias}, {Bias(std::nan(""))});
   const Proof proved = Prove({impossible, Proposed({kDrag}, {Drag(2e-4)})});
   EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
