@@ -110,17 +110,19 @@ struct PreparedRuns {
   std::vector<ClockDelay> clocks;
 };
 
-PreparedRuns Prepare(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
-                     std::vector<runs::MeasuredRun> held_out) {
+// `aligned`: the fitted runs, then the held-out ones.
+PreparedRuns Prepare(const model::ModelDescription& model, int jobs, std::vector<runs::MeasuredRun> runs,
+                     std::vector<runs::MeasuredRun> held_out, std::vector<AlignedRun> aligned) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
     HoldOutLastThird(&runs.front(), &held_out);
+    aligned = AlignedRuns(model, {runs.front(), held_out.front()}, jobs);
   }
   PreparedRuns prepared;
-  for (runs::MeasuredRun& run : runs) {
-    prepared.fitted.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
-  }
-  for (runs::MeasuredRun& run : held_out) {
-    prepared.held_out.push_back(PrepareAligned(std::move(run), model, &prepared.clocks));
+  auto next = aligned.begin();
+  for (const auto& [recorded, to] :
+       {std::pair(&runs, &prepared.fitted), std::pair(&held_out, &prepared.held_out)}) {
+    for (const runs::MeasuredRun& run : *recorded)
+      to->push_back(PrepareAligned(run, std::move(*next++), model.parameters, &prepared.clocks));
   }
   if (!prepared.fitted.empty()) prepared.fitted.front().angle_counts = true;
   MakeNamesUnique(&prepared.fitted);
@@ -171,11 +173,12 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const ProgressCallback& report_progress) {
   TimeLimit limit(options.time_limit);
-  const CheckedRecordings checked =
+  CheckedRecordings checked =
       CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
-  PreparedRuns prepared = Prepare(model, std::move(runs), std::move(held_out));
+  PreparedRuns prepared =
+      Prepare(model, options.jobs, std::move(runs), std::move(held_out), std::move(checked.aligned));
   SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 

@@ -102,8 +102,10 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
     }
   }
   std::vector<size_t> unpredicted;
-  std::vector<runs::MeasuredRun> on_one_clock = all;
-  for (runs::MeasuredRun& run : on_one_clock) AlignClocks(model, &run);
+  checked.aligned = AlignedRuns(model, all, jobs);
+  std::vector<runs::MeasuredRun> on_one_clock;
+  on_one_clock.reserve(all.size());
+  for (const AlignedRun& one : checked.aligned) on_one_clock.push_back(one.run);
   std::vector<RecordingFinding> findings =
       CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
   // What is to be mended there first may look like any other mistake.
@@ -162,7 +164,7 @@ void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis) {
 RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                                    int jobs) {
   std::vector<runs::MeasuredRun> none;
-  const CheckedRecordings checked = CheckFirst(model, {}, jobs, &runs, &none);
+  CheckedRecordings checked = CheckFirst(model, {}, jobs, &runs, &none);
   RecordingReport report;
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
@@ -173,9 +175,8 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   std::vector<ClockDelay> clocks;
   std::vector<RunData> prepared;
   prepared.reserve(runs.size());
-  for (runs::MeasuredRun& run : runs) {
-    prepared.push_back(PrepareAligned(std::move(run), model, &clocks));
-  }
+  for (size_t r = 0; r < runs.size(); ++r)
+    prepared.push_back(PrepareAligned(runs[r], std::move(checked.aligned[r]), model.parameters, &clocks));
   MakeNamesUnique(&prepared);
   const std::vector<const RunData*> pointers = PointersTo(prepared);
   // As runs that are not fitted: what their motion lacks is no fault of the recording.

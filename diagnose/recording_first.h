@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
+#include "diagnose/evidence/clocks.h"
 #include "diagnose/evidence/recording_check.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
@@ -21,6 +22,8 @@ struct CheckedRecordings {
   bool mend_first = false;
   // Sensors of which only the sign is wrong, which is left to the search ("p1").
   std::vector<std::string> inverted = {};
+  // The fitted, then the held-out runs, on one clock.
+  std::vector<AlignedRun> aligned = {};
 };
 
 // Checks the fitted and the held-out runs and sets damaged samples aside. Where `sensor.sign` is among the

@@ -14,8 +14,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Of the rate of the slowest signal of a balance.
-constexpr double kOfTheRate = 0.2;
 // The arm is slower, and its balance has a second derivative.
 constexpr double kArmPart = 0.5;
 // Levels are constants: a few test functions a tile tell all.

@@ -14,6 +14,9 @@ struct TestFunctions {
   Eigen::VectorXd frequency;  // Hz
 };
 
+// Test functions end at this part of the rate of the slowest signal of a balance: samples show no more of its motion.
+inline constexpr double kOfTheRate = 0.2;
+
 // s, the length of the tiles into which pieces are cut: `duration` is that of a typical run.
 double TileLength(double duration);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "diagnose/closure/closure.h"
+
 namespace hydro::diagnose {
 
 namespace {
@@ -13,7 +15,7 @@ constexpr double kOddsOfAClosure = 1.0 / 300;
 
 }  // namespace
 
-bool IsClosure(std::string_view name) { return name.starts_with("closure."); }
+std::string EffectOf(std::string_view name) { return std::string(name.substr(0, name.find_first_of("(|"))); }
 
 std::string_view ChangeOf(std::string_view name) { return name.substr(0, name.find('|')); }
 
@@ -45,7 +47,7 @@ double ChangeOdds::LogOdds(const ChangeSet& set) const {
   double sum = 0;
   for (const std::string& name : set) {
     const auto variants = variants_.find(ChangeOf(name));
-    sum += std::log(IsClosure(name) ? kOddsOfAClosure : kOddsOfAChange);
+    sum += std::log(IsClosureEffect(name) ? kOddsOfAClosure : kOddsOfAChange);
     if (variants != variants_.end()) sum -= std::log(variants->second);
   }
   return sum;

@@ -22,8 +22,8 @@ std::string_view ChangeOf(std::string_view name);
 // The changes of a set, sorted, without their variants.
 ChangeSet ChangesOf(const ChangeSet& set);
 
-// Is it an unknown curve?
-bool IsClosure(std::string_view name);
+// The effect's id: "sensor.skew" of "sensor.skew(p1)" and of "sensor.skew(p1)|0.02"; of a closure its balance's.
+std::string EffectOf(std::string_view name);
 
 // Is it an effect, with or without a form of its own (a closure), and not merely another value of what the
 // model has?

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/parallel.h"
 #include "diagnose/data/sample_interval.h"
 #include "diagnose/evidence/late_signals.h"
 #include "runs/run_delays.h"
@@ -95,12 +96,22 @@ std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, Run* r
   return Moved(devices, late, run);
 }
 
-RunData PrepareAligned(Run run, const model::ModelDescription& given, std::vector<ClockDelay>* delays) {
-  Run recorded = run;
-  const std::vector<ClockDelay> found = AlignClocks(given, &run);
-  if (found.empty()) return PrepareRun(std::move(run), given.parameters);
-  PrepareRun(std::move(recorded), given.parameters);  // errors then name the rows of the recording
-  RunData data = PrepareRun(std::move(run), given.parameters);
+std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given, const std::vector<Run>& runs,
+                                    int jobs) {
+  std::vector<AlignedRun> aligned(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) {
+    aligned[r].run = runs[r];
+    aligned[r].clocks = AlignClocks(given, &aligned[r].run);
+  });
+  return aligned;
+}
+
+RunData PrepareAligned(const Run& recorded, AlignedRun aligned, const model::Parameters& given,
+                       std::vector<ClockDelay>* delays) {
+  const std::vector<ClockDelay>& found = aligned.clocks;
+  if (!found.empty()) PrepareRun(recorded, given);  // errors then name the rows of the recording
+  RunData data = PrepareRun(std::move(aligned.run), given);
+  if (found.empty()) return data;
   double error = 0;
   for (const ClockDelay& delay : found) {
     if (delay.signals.front().starts_with("arm")) continue;  // imposed: not compared

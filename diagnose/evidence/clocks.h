@@ -20,9 +20,18 @@ namespace hydro::diagnose {
 // unchanged to the bit and the result is empty.
 std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, runs::MeasuredRun* run);
 
-// PrepareRun with all signals on one clock; appends the clocks found to `delays`. If there are any, a signal
-// is no more certain than its timing: its change within the standard error of the delays counts as noise.
-RunData PrepareAligned(runs::MeasuredRun run, const model::ModelDescription& given,
+// A run with all signals on one clock, and the clocks that were found.
+struct AlignedRun {
+  runs::MeasuredRun run;
+  std::vector<ClockDelay> clocks;
+};
+// Of each run, by AlignClocks(); the same for any number of jobs.
+std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given,
+                                    const std::vector<runs::MeasuredRun>& runs, int jobs);
+
+// PrepareRun of the aligned run; appends its clocks to `delays`. If there are any, a signal is no more certain than its timing: its
+// change within the standard error of the delays counts as noise. `recorded`: as it was before, whose rows errors name.
+RunData PrepareAligned(const runs::MeasuredRun& recorded, AlignedRun aligned, const model::Parameters& given,
                        std::vector<ClockDelay>* delays);
 
 }  // namespace hydro::diagnose

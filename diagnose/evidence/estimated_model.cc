@@ -195,7 +195,7 @@ std::optional<EstimatedModel> ModelOf(const ScanRuns& runs, const Rows& rows, co
     if (name.starts_with("run.")) continue;
     if (name.starts_with("value.")) {
       estimated.changes.push_back({"", {}, name.substr(name.find('.') + 1)});
-    } else if (name.starts_with("closure.")) {
+    } else if (IsClosureEffect(name)) {
       const std::vector<model::EffectDescription> closures = ClosuresOf(runs, rows, name, fit);
       if (closures.empty()) return std::nullopt;
       for (const model::EffectDescription& closure : closures) {

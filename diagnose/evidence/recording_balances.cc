@@ -24,8 +24,6 @@ using Run = runs::MeasuredRun;
 
 // Hz: recorders, filters and delays of any kind pass this.
 constexpr double kHighestOfACheck = 40;
-// Of the rate of the slowest signal.
-constexpr double kOfTheRateOfACheck = 0.2;
 // Bands of frequencies up to there: a balance counts as that many numbers.
 constexpr double kNumbers = 6;
 // Of a term, squared: what a model that lacks an effect or two leaves of a balance. Smaller residuals say no more about a recording.
@@ -121,7 +119,7 @@ class BalanceMaker {
     double interval = motion_.step;
     for (const GridSignal& signal : motion_.signals) interval = std::max(interval, signal.interval);
     return known->second =
-               TestFunctionsOf(mask, step_, tile_, std::min(kHighestOfACheck, kOfTheRateOfACheck / interval));
+               TestFunctionsOf(mask, step_, tile_, std::min(kHighestOfACheck, kOfTheRate / interval));
   }
 
   void Finish(Open open, const std::vector<uint8_t>& mask) {

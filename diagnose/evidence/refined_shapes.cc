@@ -60,14 +60,6 @@ const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
   return found == rows.blocks.end() ? nullptr : &*found;
 }
 
-// Whether the rows show all changes of the set: at another shape an effect may act nowhere.
-bool Shows(const SetEvidence& evidence, const ChangeSet& set) {
-  const std::vector<std::string>& names = evidence.names();
-  return std::all_of(set.begin(), set.end(), [&](const std::string& name) {
-    return std::binary_search(names.begin(), names.end(), name);
-  });
-}
-
 // Puts a column of `from`, which has it, into the block.
 void SetColumn(const RowBlock& from, int column, RowBlock* block) {
   const auto place = [&](const RowBlock& of) {
@@ -151,25 +143,31 @@ RefinedShapes::RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& 
     if (!wanted || variants[v].kind == EffectVariant::Kind::kWave || variants[v].shapes.empty()) continue;
     if (before_.empty()) {
       rows_ = OnlyOf(rows, set);
-      if (!Shows(SetEvidence(rows_), set)) return;
+      if (!SetEvidence(rows_).Shows(set)) return;
     }
-    std::vector<double> units;
-    for (const int column : runs->ColumnsOf(v))
-      units.push_back(runs->meaning()[static_cast<size_t>(column)].unit);
-    before_.push_back({v, variants[v].at, units});
+    before_.push_back(ShapeOf(v));
     variants[v].kind == EffectVariant::Kind::kWhole ? MoveWhole(v, set) : MoveAmounts(v, set);
   }
 }
 
 RefinedShapes::~RefinedShapes() {
-  for (const Before& before : before_) runs_->SetShape(before.variant, before.at, before.units);
+  for (const Shape& before : before_) Restore(before);
 }
+
+RefinedShapes::Shape RefinedShapes::ShapeOf(size_t variant) const {
+  Shape shape{variant, runs_->setup().variants[variant].at, {}};
+  for (const int column : runs_->ColumnsOf(variant))
+    shape.units.push_back(runs_->meaning()[static_cast<size_t>(column)].unit);
+  return shape;
+}
+
+void RefinedShapes::Restore(const Shape& shape) { runs_->SetShape(shape.variant, shape.at, shape.units); }
 
 void RefinedShapes::Keep(Rows* rows) {
   for (RowBlock& block : rows->blocks) {
     const RowBlock* from = SameBlock(rows_, block);
     if (from == nullptr) continue;
-    for (const Before& before : before_) {
+    for (const Shape& before : before_) {
       for (const int column : runs_->ColumnsOf(before.variant)) SetColumn(*from, column, &block);
     }
   }
@@ -193,8 +191,7 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
       const ScanRuns::OtherShapes shapes = runs_->MakeShapeRows(variant, tried);
       const SetEvidence of_all(WithShapes(rest, shapes.rows, columns));
       for (size_t i = 0; i < places.size(); ++i) {
-        const std::vector<std::string>& names = of_all.names();
-        const bool shown = std::find(names.begin(), names.end(), NameOf(i)) != names.end();
+        const bool shown = of_all.Shows({NameOf(i)});
         evidence[places[i]] = of_all.Log(shown ? WithChange(others, NameOf(i)) : others);
       }
       return std::max_element(evidence.begin(), evidence.end(),
@@ -239,10 +236,7 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
     }
     if (!(change > kSettledShape)) return;
     const Rows before = rows_;
-    const model::EffectDescription at_before = runs_->setup().variants[variant].at;
-    std::vector<double> units;
-    for (const int column : runs_->ColumnsOf(variant))
-      units.push_back(runs_->meaning()[static_cast<size_t>(column)].unit);
+    const Shape shape_before = ShapeOf(variant);
     Take(variant, runs_->MakeShapeRows(variant, {at}), at);
     fit = SetEvidence(rows_).Fit(set);
     if (fit.log_evidence >= evidence) {
@@ -251,7 +245,7 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
     }
     // A step too far, as of a resonance, whose phase turns within a few per cent.
     rows_ = before;
-    runs_->SetShape(variant, at_before, units);
+    Restore(shape_before);
     return;
   }
 }

@@ -27,12 +27,15 @@ class RefinedShapes {
   void Keep(Rows* rows);
 
  private:
-  struct Before {
+  struct Shape {
     size_t variant;
     model::EffectDescription at;
     std::vector<double> units;
   };
 
+  // Where the variant stands now.
+  Shape ShapeOf(size_t variant) const;
+  void Restore(const Shape& shape);
   void MoveAmounts(size_t variant, const ChangeSet& set);
   void MoveWhole(size_t variant, const ChangeSet& set);
   // Puts the columns of that shape in the place of those of the variant.
@@ -40,7 +43,7 @@ class RefinedShapes {
 
   ScanRuns* runs_;
   Rows rows_;
-  std::vector<Before> before_;
+  std::vector<Shape> before_;
 };
 
 }  // namespace hydro::diagnose

@@ -38,7 +38,7 @@ std::optional<RunValues> ValuesOfRuns(const model::ModelDescription& model,
   if (rows.blocks.empty()) return std::nullopt;
   const SetEvidence evidence(rows);
   const std::string name = "run." + parameter.info.name;
-  if (!std::binary_search(evidence.names().begin(), evidence.names().end(), name)) return std::nullopt;
+  if (!evidence.Shows({name})) return std::nullopt;
   const SetFit one = evidence.Fit({}), own = evidence.Fit({name});
   RunValues values;
   values.base = base;

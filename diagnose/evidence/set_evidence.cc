@@ -101,6 +101,12 @@ std::vector<int> SetEvidence::ColumnsOf(const ChangeSet& set) const {
   return columns;
 }
 
+bool SetEvidence::Shows(const ChangeSet& set) const {
+  return std::all_of(set.begin(), set.end(), [this](const std::string& name) {
+    return std::binary_search(names_.begin(), names_.end(), name);
+  });
+}
+
 double SetEvidence::Log(const ChangeSet& set) const { return LogOf(SolveFor(set)); }
 
 SetFit SetEvidence::Fit(const ChangeSet& set) const {

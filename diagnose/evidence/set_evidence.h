@@ -49,6 +49,8 @@ class SetEvidence {
 
   // Changes that the runs can show: at least one of their columns is not zero. Sorted.
   const std::vector<std::string>& names() const { return names_; }
+  // Whether all of the set are among names(): at another shape, or without a run, an effect may act nowhere.
+  bool Shows(const ChangeSet& set) const;
 
   // How many runs there are; those left out count.
   size_t runs() const { return grams_->runs; }

@@ -92,13 +92,10 @@ SetScores::SetScores(const SetEvidence& evidence, int jobs)
 }
 
 void SetScores::Try(const std::vector<ChangeSet>& sets) {
-  const std::vector<std::string>& names = evidence_.names();
   std::set<ChangeSet> fresh;
   for (const ChangeSet& set : sets) {
     const ChangeSet changes = ChangesOf(set);
-    const bool shown = std::all_of(set.begin(), set.end(), [&](const std::string& name) {
-      return std::binary_search(names.begin(), names.end(), name);
-    });
+    const bool shown = evidence_.Shows(set);
     const bool twice = std::adjacent_find(changes.begin(), changes.end()) != changes.end();
     if (shown && !twice && !Has(set)) fresh.insert(set);
   }

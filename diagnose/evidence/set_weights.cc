@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "diagnose/closure/closure.h"
 
 namespace hydro::diagnose {
 
@@ -48,8 +49,9 @@ std::vector<ChangeSet> SubsetsOf(const ChangeSet& set) {
 std::vector<ScoredSet> Finalists(SetScores* scores, bool curves) {
   std::vector<ScoredSet> tried = scores->BestFirst();
   if (!curves) {
-    std::erase_if(
-        tried, [](const ScoredSet& one) { return std::any_of(one.set.begin(), one.set.end(), IsClosure); });
+    std::erase_if(tried, [](const ScoredSet& one) {
+      return std::any_of(one.set.begin(), one.set.end(), IsClosureEffect);
+    });
   }
   std::set<ChangeSet> chosen = {ChangeSet()};
   std::set<ChangeSet> named;
@@ -169,10 +171,15 @@ ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed, bool curv
   std::stable_sort(
       weights.explanations.begin(), weights.explanations.end(),
       [](const WeighedExplanation& a, const WeighedExplanation& b) { return a.weight > b.weight; });
-  double sum = 0;
-  while (weights.in_90 < weights.explanations.size() && sum < 0.9)
-    sum += weights.explanations[weights.in_90++].weight;
+  CountIn90(&weights);
   return weights;
+}
+
+void CountIn90(ExplanationWeights* weights) {
+  double sum = 0;
+  weights->in_90 = 0;
+  while (weights->in_90 < weights->explanations.size() && sum < 0.9)
+    sum += weights->explanations[weights->in_90++].weight;
 }
 
 }  // namespace hydro::diagnose

@@ -32,4 +32,7 @@ struct ExplanationWeights {
 // `curves`: whether unknown curves are among them.
 ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1, bool curves = true);
 
+// Sets `in_90`, of explanations that are sorted.
+void CountIn90(ExplanationWeights* weights);
+
 }  // namespace hydro::diagnose

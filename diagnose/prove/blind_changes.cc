@@ -30,9 +30,8 @@ std::vector<Change> BlindChanges(const SearchContext& context) {
   });
   std::vector<Change> blind;
   for (const Change& change : context.changes) {
-    const model::EffectInfo* info = model::FindEffect(change.effect);
     // A sensor's sign is settled before.
-    const bool is_blind = info != nullptr && info->unseen_by_balances && change.names.empty();
+    const bool is_blind = IsUnseenByBalances(change.effect) && change.names.empty();
     if (is_blind && oil && (free || !change.effect.starts_with("arm."))) blind.push_back(change);
   }
   return blind;
@@ -66,6 +65,11 @@ ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunDat
   if (fall.logarithm >= kWorthRefining * -std::log1p(-kPartOfAnEffect))
     RefineValues(context, fitted, windows, kComparedValues, &raced);
   return raced;
+}
+
+bool IsUnseenByBalances(const std::string& effect) {
+  const model::EffectInfo* info = model::FindEffect(effect);
+  return info != nullptr && info->unseen_by_balances;
 }
 
 }  // namespace hydro::diagnose

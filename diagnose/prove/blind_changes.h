@@ -17,4 +17,7 @@ std::vector<Change> BlindChanges(const SearchContext& context);
 ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunData*>& fitted,
                     const ProofWindows& windows, const ProvedSet& set, const Change& change);
 
+// Whether the balances of the runs cannot speak for the effect: simulation alone names it.
+bool IsUnseenByBalances(const std::string& effect);
+
 }  // namespace hydro::diagnose

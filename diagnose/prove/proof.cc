@@ -9,13 +9,12 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The windows' fit at the best set's values, with derivatives and what is known.
+// The windows' fit at the best set's values, which leave these gaps, with derivatives and what is known.
 Fitted WithDerivatives(const SearchContext& context, const Hypothesis& best,
-                       const std::vector<const RunData*>& windows) {
+                       const std::vector<const RunData*>& windows, const std::vector<WindowGap>& gaps) {
   FitOptions held;
   held.most_iterations = 0;
   held.jobs = context.jobs;
-  const std::vector<WindowGap> gaps = GapsOfEach(best.model, windows, context.jobs);
   std::vector<model::StartState> starts;
   double sum = 0;
   for (const WindowGap& gap : gaps) {
@@ -38,13 +37,14 @@ Proof ProofOf(const SearchContext& context, const ProofWindows& windows, std::ve
   proof.best = roles.best;
   for (const RunData* window : windows.near.windows) proof.runs.push_back(window->name);
   const auto owned = std::make_shared<const std::vector<RunData>>(std::move(told));
-  const std::vector<WindowGap> gaps = GapsOfEach(proof.Found().model, PointersTo(*owned), context.jobs);
+  std::vector<WindowGap> gaps = GapsOfEach(proof.Found().model, PointersTo(*owned), context.jobs);
   for (size_t w = 0; w < owned->size(); ++w) {
     if (gaps[w].tested) proof.told_runs.push_back(&(*owned)[w]);
   }
+  std::erase_if(gaps, [](const WindowGap& gap) { return !gap.tested; });
   proof.windows = owned;
   proof.told.failure = "it cannot be simulated";
-  if (!proof.told_runs.empty()) proof.told = WithDerivatives(context, proof.Found(), proof.told_runs);
+  if (!proof.told_runs.empty()) proof.told = WithDerivatives(context, proof.Found(), proof.told_runs, gaps);
   if (proof.told.ok()) {
     proof.seconds = windows.near.seconds;
     proof.sets[proof.best].hypothesis.known = proof.told.hypothesis.known;

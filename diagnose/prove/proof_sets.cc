@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/closure/closure.h"
 #include "diagnose/data/thinned.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/fit.h"
@@ -35,14 +36,12 @@ ProofSets::ProofSets(const SearchContext& context, const Hypothesis& as_given,
 double ProofSets::PriceOf(const Change& effect) const {
   if (said_.weights.empty()) return diagnose::PriceOf(0.5);
   // A curve is said of a balance and added to both columns of oil: one weight for all.
-  const bool curve = effect.effect.starts_with("closure.");
+  const bool curve = IsClosureEffect(effect.effect);
   double said = 0;
   for (const auto& [id, weight] : said_.weights) {
-    if (curve ? id.starts_with("closure.") : id == effect.effect) said += weight;
+    if (curve ? IsClosureEffect(id) : id == effect.effect) said += weight;
   }
-  const model::EffectInfo* info = model::FindEffect(effect.effect);
-  const bool unseen = info != nullptr && info->unseen_by_balances;
-  return diagnose::PriceOf(unseen ? std::max(kOddsOfAChange, said) : said);
+  return diagnose::PriceOf(IsUnseenByBalances(effect.effect) ? std::max(kOddsOfAChange, said) : said);
 }
 
 ProvedSet& ProofSets::Push(ProvedSet set) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "diagnose/balances/make_rows.h"
+#include "diagnose/closure/closure.h"
 #include "diagnose/evidence/estimated_model.h"
 #include "diagnose/evidence/refined_shapes.h"
 #include "diagnose/evidence/run_values.h"
@@ -74,7 +75,7 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
   }
   // So is the best curve that no effect stands for: without it the nearest effect takes its place.
   for (const ScoredSet& scored : scores) {
-    if (scored.set.size() != 1 || !scored.set[0].starts_with("closure.")) continue;
+    if (scored.set.size() != 1 || !IsClosureEffect(scored.set[0])) continue;
     add(scored.set);
     break;
   }
@@ -179,7 +180,7 @@ std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
   for (const ScoredSet& scored : scores) {  // the best first
     if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
     best = std::max(best, scored.score);
-    const std::string id(scored.set[0].substr(0, scored.set[0].find_first_of("(|")));
+    const std::string id = EffectOf(scored.set[0]);
     std::vector<std::string>& to = scored.score > best - least ? likely : unlikely;
     const bool known = std::find(likely.begin(), likely.end(), id) != likely.end();
     if (!known && std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
@@ -217,7 +218,7 @@ std::map<std::string, double> SaidOf(const ExplanationWeights& all,
   for (const ExplanationWeights* weights : {&all, &without_curves}) {
     for (const WeighedExplanation& one : weights->explanations) {
       for (const std::string& change : one.changes) {
-        if (IsClosure(change) == (weights == &all)) said[change.substr(0, change.find('('))] += one.weight;
+        if (IsClosureEffect(change) == (weights == &all)) said[EffectOf(change)] += one.weight;
       }
     }
   }
@@ -286,10 +287,7 @@ Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowe
     if (context.held_out.empty() && context.runs.size() > 1) {
       for (size_t r = 0; r < context.runs.size(); ++r) {
         const SetEvidence others = own.Without({r});
-        const std::vector<std::string>& names = others.names();
-        const bool shown = std::all_of(set.begin(), set.end(), [&](const std::string& name) {
-          return std::find(names.begin(), names.end(), name) != names.end();
-        });
+        const bool shown = others.Shows(set);
         const ChangeSet left = shown ? set : ChangeSet{};
         const std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
         proposal.without.push_back(without && shown ? without->model : estimated->model);

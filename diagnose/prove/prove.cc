@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/closure/closure.h"
 #include "diagnose/prove/proof_sets.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
@@ -35,7 +36,7 @@ size_t NumbersOf(const ProvedSet& set) {
 bool HasACurve(const ProvedSet& set) {
   const std::vector<Change> effects = set.Effects();
   return std::any_of(effects.begin(), effects.end(),
-                     [](const Change& change) { return change.effect.starts_with("closure."); });
+                     [](const Change& change) { return IsClosureEffect(change.effect); });
 }
 
 // Chooses among the sets.
@@ -87,11 +88,10 @@ class Prover {
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() != sets_[place].Effects().size()) continue;
       if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
-      const GapFall fall = FallOf(sets_[i].near, sets_[place].near);
-      const double worth = fall.logarithm + sets_[i].price - sets_[place].price;
+      const GapFall worth = WorthOf(sets_[i], sets_[place]);
       // A curve fits whatever is there: it has to take as much more as an effect.
       const bool curve = HasACurve(sets_[place]) && !HasACurve(sets_[i]);
-      if (worth <= std::max(curve ? kPartOfAnEffect : kPartOfValues, fall.error)) fewest = i;
+      if (worth.logarithm <= std::max(curve ? kPartOfAnEffect : kPartOfValues, worth.error)) fewest = i;
     }
     return fewest;
   }
@@ -102,8 +102,7 @@ class Prover {
     double most = kNoBetter;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() > sets_[place].Effects().size()) continue;
-      const double worth =
-          FallOf(sets_[place].near, sets_[i].near).logarithm - sets_[i].price + sets_[place].price;
+      const double worth = WorthOf(sets_[place], sets_[i]).logarithm;
       if (worth <= most) continue;
       most = worth;
       better = i;

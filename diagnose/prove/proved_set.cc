@@ -21,11 +21,6 @@ double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   return maths::Median(std::move(logarithms));
 }
 
-// The fall of the gap from `reference`, less the price of the effects.
-double WorthFrom(const ProvedSet& reference, const ProvedSet& set) {
-  return FallOf(reference.near, set.near).logarithm - set.price;
-}
-
 // Of those admitted: first by the median, which needs nothing to compare with, then compared with the best so far, because
 // differences count only up to a limit. `none`: when none is.
 size_t BestSet(const std::vector<ProvedSet>& sets, const std::function<bool(const ProvedSet&)>& admitted) {
@@ -39,10 +34,10 @@ size_t BestSet(const std::vector<ProvedSet>& sets, const std::function<bool(cons
   while (best != none && !was_best[best]) {
     was_best[best] = true;
     const ProvedSet& reference = sets[best];
-    double most = WorthFrom(reference, reference);
+    double most = 0;
     for (size_t i = 0; i < sets.size(); ++i) {
       if (!sets[i].tested() || !admitted(sets[i])) continue;
-      const double worth = WorthFrom(reference, sets[i]);
+      const double worth = WorthOf(reference, sets[i]).logarithm;
       const bool likelier = std::abs(worth - most) <= kEqual && sets[i].weight > sets[best].weight;
       if (worth <= most + kEqual && !likelier) continue;
       most = std::max(most, worth);
@@ -87,6 +82,12 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   return FallOf(set.near, other.near).Exceeds(0) && far.logarithm >= -far.error;
 }
 
+GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
+  GapFall worth = FallOf(from.near, to.near);
+  worth.logarithm -= to.price - from.price;
+  return worth;
+}
+
 double PriceOf(double weight) {
   constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
   constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never have exactly one
@@ -120,7 +121,7 @@ std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t mos
     (sets[i].Effects().empty() ? values : others).push_back(i);
   }
   std::stable_sort(others.begin(), others.end(), [&](size_t a, size_t b) {
-    return WorthFrom(sets[leading], sets[a]) > WorthFrom(sets[leading], sets[b]);
+    return WorthOf(sets[leading], sets[a]).logarithm > WorthOf(sets[leading], sets[b]).logarithm;
   });
   others.resize(std::min(others.size(), most));
   values.insert(values.end(), others.begin(), others.end());

@@ -46,6 +46,9 @@ bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, Pro
 // odds have to be paid with a twentieth; at nine to one, windows need only agree; where the balances are sure, they may not object.
 double PriceOf(double weight);
 
+// The fall of the near windows' gap from one set to another, less what the price rises.
+GapFall WorthOf(const ProvedSet& from, const ProvedSet& to);
+
 // Of the gap: what is more than chance whatever the balances say. A further effect takes it in hardly any rig that lacks none.
 inline constexpr double kPartOfAnEffect = 0.1;
 // Other values are likelier than a missing effect: no machine has exactly the values of its model.

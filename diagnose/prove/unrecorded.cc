@@ -47,7 +47,7 @@ std::vector<Unjudged> UnjudgedOf(const SearchContext& context, const ScanRuns& r
   const std::set<std::string> oil = runs.OilOnly();
   std::set<std::string> judged, some_oil, all;
   for (const std::string& name : names) {
-    const std::string id(name.substr(0, name.find_first_of("|(")));
+    const std::string id = EffectOf(name);
     (oil.contains(name) ? some_oil : judged).insert(id);
   }
   for (const Change& change : BlindChanges(context)) judged.insert(change.effect);
@@ -104,9 +104,7 @@ ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeigh
   }
   std::stable_sort(merged.explanations.begin(), merged.explanations.end(),
                    [](const auto& a, const auto& b) { return a.weight > b.weight; });
-  double sum = 0;
-  while (merged.in_90 < merged.explanations.size() && sum < 0.9)
-    sum += merged.explanations[merged.in_90++].weight;
+  CountIn90(&merged);
   return merged;
 }
 

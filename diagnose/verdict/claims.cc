@@ -71,9 +71,4 @@ double WeightOf(const Change& change, const std::vector<WeightedSet>& explanatio
   return std::min(1.0, sum);
 }
 
-bool IsUnseenByBalances(const std::string& effect) {
-  const model::EffectInfo* info = model::FindEffect(effect);
-  return info != nullptr && info->unseen_by_balances;
-}
-
 }  // namespace hydro::diagnose

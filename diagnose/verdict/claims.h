@@ -25,7 +25,4 @@ std::string NameInSets(const Change& change);
 // How probable the change is: the weight of all explanations that have it. 0 where none has.
 double WeightOf(const Change& change, const std::vector<WeightedSet>& explanations);
 
-// Whether the balances of the runs cannot speak for the effect: simulation alone names it.
-bool IsUnseenByBalances(const std::string& effect);
-
 }  // namespace hydro::diagnose

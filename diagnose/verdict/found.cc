@@ -7,6 +7,7 @@
 #include "base/word_list.h"
 #include "diagnose/closure/closure.h"
 #include "diagnose/fit/intervals.h"
+#include "diagnose/prove/blind_changes.h"
 #include "diagnose/verdict/claims.h"
 #include "diagnose/verdict/found_values.h"
 
@@ -116,10 +117,9 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
   for (size_t i = 0; i < proof.sets.size(); ++i) {
     const ProvedSet& other = proof.sets[i];
     if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
-    const GapFall fall = FallOf(other.near, proof.Best().near);
     // Both witnesses: the windows, and what the balances say for the one rather than the other.
-    const double worth = fall.logarithm + other.price - proof.Best().price;
-    if (fall.windows > 0 && worth > kToldApart * fall.error) continue;
+    const GapFall worth = WorthOf(other, proof.Best());
+    if (worth.windows > 0 && worth.logarithm > kToldApart * worth.error) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }
   return ties;

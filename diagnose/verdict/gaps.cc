@@ -136,7 +136,6 @@ GapsByModel GapsOver(const SpreadWindows& spread, const Proof& proof, bool held_
 
 WholeRuns OverWholeRuns(const SearchContext& context, const Proof& proof) {
   WholeRuns whole;
-  const Runs& predicted = context.predicted();
   for (size_t m = 0; m < kComparedModels; ++m) {
     const ProvedSet& set = *SetsOf(proof)[m];
     whole.fitted[m] = GapsOfEach(set.hypothesis.model, context.runs, context.jobs);
@@ -144,9 +143,7 @@ WholeRuns OverWholeRuns(const SearchContext& context, const Proof& proof) {
       whole.held_out[m] = whole.fitted[m];
       continue;
     }
-    whole.held_out[m].resize(predicted.size());
-    ParallelFor(predicted.size(), context.jobs,
-                [&](size_t r) { whole.held_out[m][r] = GapOf(set.ModelOf(r), *predicted[r]); });
+    whole.held_out[m] = OverRuns(context, set);
   }
   return whole;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/evidence/change_set.h"
+#include "diagnose/prove/blind_changes.h"
 #include "diagnose/verdict/claims.h"
 
 namespace hydro::diagnose {
@@ -63,9 +65,8 @@ bool HasOneWitness(const Diagnosis& d) {
   const auto said = [&](const std::string& id) {
     double weight = 0;
     for (const WeightedSet& one : d.explanations) {
-      const bool has = std::any_of(one.changes.begin(), one.changes.end(), [&](const std::string& change) {
-        return change.substr(0, change.find('(')) == id;
-      });
+      const bool has = std::any_of(one.changes.begin(), one.changes.end(),
+                                   [&](const std::string& change) { return EffectOf(change) == id; });
       weight += has ? one.weight : 0;
     }
     return weight >= kAWord;

@@ -105,18 +105,22 @@ TEST(Alignment, LeavesTheRestToTheSearch) {
   ExpectLeftAlone(blind, "one pressure only");
 }
 
+RunData Prepared(const runs::MeasuredRun& run, std::vector<ClockDelay>* clocks) {
+  return PrepareAligned(run, AlignedRuns(Given(), {run}, 1).front(), Given().parameters, clocks);
+}
+
 // Tests that pieces put on one clock claim no more certainty than that allows.
 TEST(Alignment, TimingCountsAsNoise) {
   const runs::MeasuredRun run = Recorded();
   std::vector<ClockDelay> clocks;
-  const RunData plain = PrepareAligned(run, Given(), &clocks);
+  const RunData plain = Prepared(run, &clocks);
   EXPECT_THAT(clocks, IsEmpty());
   EXPECT_EQ(plain.Find(model::Channel::kP2)->noise,
             PrepareRun(run, testing::Table1()).Find(model::Channel::kP2)->noise);
-  const RunData late = PrepareAligned(Late(run, {{&runs::MeasuredRun::voltage, 0.1},
-                                                 {&runs::MeasuredRun::motor_speed, 0.1},
-                                                 {&runs::MeasuredRun::motor_angle, 0.1}}),
-                                      Given(), &clocks);
+  const RunData late = Prepared(Late(run, {{&runs::MeasuredRun::voltage, 0.1},
+                                           {&runs::MeasuredRun::motor_speed, 0.1},
+                                           {&runs::MeasuredRun::motor_angle, 0.1}}),
+                                &clocks);
   EXPECT_EQ(clocks.size(), 2u);
   EXPECT_GT(late.Find(model::Channel::kP2)->noise, 2 * plain.Find(model::Channel::kP2)->noise);
 }
