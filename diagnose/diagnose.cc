@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
+#include <ctime>
 #include <utility>
 
 #include "base/number_text.h"
@@ -146,24 +146,26 @@ SearchContext MakeContext(const model::ModelDescription& model, const PreparedRu
   return context;
 }
 
-// The search's clock: asks whether its time is up, and remembers whether it ever was.
+// The search's clock: asks whether its time is up, and remembers whether it ever was. It counts the processor's time, a job's
+// share of it: a loaded machine does not end a search.
 class TimeLimit {
  public:
-  explicit TimeLimit(double seconds) : seconds_(seconds) {}
+  TimeLimit(double seconds, int jobs) : seconds_(seconds), jobs_(std::max(1, jobs)) {}
   bool IsUp() {
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
-    if (elapsed.count() > seconds_) struck_ = true;
+    const double worked = static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC;
+    if (worked > seconds_ * jobs_) struck_ = true;
     return struck_;
   }
   bool struck() const { return struck_; }
   std::string Remark() const {
-    return "The time limit of " + ShortNumber(seconds_) +
-           " s ended the search: not everything was tried (--time-limit)";
+    return "Unfinished, because the time limit of " + ShortNumber(seconds_) +
+           " s ended the search (--time-limit). ";
   }
 
  private:
   double seconds_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  int jobs_;
+  std::clock_t begin_ = std::clock();
   std::atomic<bool> struck_ = false;
 };
 
@@ -172,7 +174,7 @@ class TimeLimit {
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const ProgressCallback& report_progress) {
-  TimeLimit limit(options.time_limit);
+  TimeLimit limit(options.time_limit, options.jobs);
   CheckedRecordings checked =
       CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
@@ -208,7 +210,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);
   if (!diagnosis.choices.empty()) diagnosis.remarks.push_back(ChoiceRemark(diagnosis.choices));
-  if (limit.struck()) diagnosis.remarks.push_back(limit.Remark());
+  if (limit.struck()) diagnosis.sentence = limit.Remark() + diagnosis.sentence;
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;
 }

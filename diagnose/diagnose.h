@@ -20,7 +20,8 @@ struct DiagnoseOptions {
   // Base parameters whose values belong to a run; empty: the one that differs most, if one does.
   std::vector<std::string> per_run;
   int jobs = 1;
-  // s. The search ends then with what it has; a remark says so. Infinity: it takes all the time it needs.
+  // s of processor time a job. The search ends then with what it has, and the sentence begins with that. Infinity: it takes all the
+  // time it needs.
   double time_limit = std::numeric_limits<double>::infinity();
   uint64_t seed = 1;
 };

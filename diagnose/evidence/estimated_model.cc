@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "diagnose/closure/closure.h"
 #include "diagnose/evidence/estimated_closure.h"
 #include "model/effects/catalogue.h"
 

@@ -212,6 +212,16 @@ TEST(Diagnose, FreesOnlyWhatItMay) {
                                                       "parameter b + parameter beta"));
 }
 
+// Tests that a diagnosis that a time limit ended says so before anything else.
+TEST(Diagnose, SaysThatItIsUnfinished) {
+  diagnose::DiagnoseOptions options = Few();
+  options.time_limit = 1e-9;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {});
+  EXPECT_THAT(d.sentence, ::testing::StartsWith("Unfinished, because the time limit of 1e-09 s"));
+  const diagnose::Diagnosis whole = diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, Few(), {});
+  EXPECT_THAT(whole.sentence, ::testing::Not(::testing::HasSubstr("Unfinished")));
+}
+
 // Tests that no physics explains a run whose shaft was held otherwise than stated: a gap remains that nothing
 // closes, nothing is added to the model, and that run is among the places named.
 TEST(Diagnose, AWrongShaftModeIsNotExplainedAway) {
