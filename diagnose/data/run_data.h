@@ -50,9 +50,6 @@ struct RunData {
   // How far each of these may be from `start`, a standard deviation: noise, and what a wrong scale or a late sensor
   // makes of it. Infinite where nothing was measured.
   model::StartState start_error = kUnknownStart;
-  // The start at rest, if `start` moves but the first speed sample also allows rest: for a motor that
-  // accelerates from rest, extrapolation gives a speed.
-  std::optional<model::StartState> at_rest;
   std::vector<SignalData> signals;    // those compared with a simulation
   double most_steps_per_sample = 20;  // that a simulation of it may take
 
@@ -96,7 +93,7 @@ void CheckUsable(const runs::MeasuredRun& run);
 // impossible values (speeds of 1e5 rad/s: another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 
-// Sets the run's start, start_free and at_rest from its first samples; the rest of `data` must be filled in.
+// Sets the run's start and start_free from its first samples; the rest of `data` must be filled in.
 void SetStart(const model::Parameters& model, RunData* data);
 
 // The smallest and the largest value, ignoring NaN; low is above high when there are no values.

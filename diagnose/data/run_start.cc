@@ -140,18 +140,6 @@ void SetStart(const model::Parameters& model, RunData* data) {
   SetStartErrors(lines, data);
   // As much as the oil of a side gives up from the greatest pressure that the pump holds.
   data->start_error[model::kReturned] = model.V_ms / model.beta * model.T_pmax / model.D;
-
-  // Each speed is judged by itself; an arm speed that is not measured does not exclude rest.
-  model::StartState at_rest = data->start;
-  const auto may_rest = [&](model::Channel channel) {
-    const SignalData* speed = data->Find(channel);
-    return speed == nullptr || std::abs(speed->values.front()) < kAtRest * speed->noise;
-  };
-  if (data->Find(model::Channel::kMotorSpeed) == nullptr || !may_rest(model::Channel::kMotorSpeed)) return;
-  at_rest[model::kMotorSpeed] = 0;
-  if (data->stimulus.shaft == model::Shaft::kFree && may_rest(model::Channel::kArmSpeed))
-    at_rest[model::kArmSpeed] = 0;
-  if (at_rest != data->start) data->at_rest = at_rest;
 }
 
 }  // namespace hydro::diagnose

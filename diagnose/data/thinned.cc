@@ -54,7 +54,6 @@ RunData ThinnedCopy(const RunData& run) {
   copy.start = run.start;
   copy.start_free = run.start_free;
   copy.start_error = run.start_error;
-  copy.at_rest = run.at_rest;
   copy.signals = run.signals;
   copy.most_steps_per_sample = run.most_steps_per_sample;
   Thin(kFewestOfARun, &copy);

@@ -72,7 +72,6 @@ RunData CutWindow(const RunData& run, size_t first, size_t compared, size_t last
   if (!motor_angle.empty()) {
     window.start[model::kMotorAngle] = motor_angle[first];
     window.start_error[model::kMotorAngle] = std::numeric_limits<double>::infinity();
-    if (window.at_rest) (*window.at_rest)[model::kMotorAngle] = motor_angle[first];
     window.start_free[model::kMotorAngle] = true;
   }
   for (SignalData& signal : window.signals) {

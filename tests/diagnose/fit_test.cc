@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "diagnose/data/windows.h"
-#include "diagnose/fit/start_fit.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -52,48 +51,8 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_EQ(fitted.runs.size(), runs.size());
 }
 
-// Starts one or more cogging teeth off. Which of them hold a fit there depends on the last bits of the processor's libm: a test takes the
-// first that does.
-std::vector<model::StartState> TeethOff(const model::StartState& start) {
-  std::vector<model::StartState> teeth;
-  for (const double speed : {-60.0, -66.0, -54.0, -72.0}) {
-    for (const double angle : {0.05, 0.06, 0.04}) {
-      model::StartState& tooth = teeth.emplace_back(start);
-      tooth[model::kMotorSpeed] = speed;
-      tooth[model::kArmAngle] += angle;
-    }
-  }
-  return teeth;
-}
-
-// Tests that a run's start is also searched for at rest where the first samples allow it: the measured start
-// of a motion that accelerates from rest is already moving, and slips into another tooth of the cogging.
-TEST(FitStart, TriesRest) {
-  const model::ModelDescription truth =
-      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
-  std::vector<diagnose::RunData> runs;
-  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
-  runs[0].angle_counts = true;
-  runs[0].at_rest = runs[0].start;
-  runs[0].start_error = diagnose::kUnknownStart;
-  diagnose::Hypothesis hypothesis;
-  hypothesis.model = truth;
-  constexpr double kNoDoubt = std::numeric_limits<double>::infinity();
-  const std::vector<model::StartState> teeth = TeethOff(runs[0].start);
-  const auto held = std::find_if(teeth.begin(), teeth.end(), [&](const model::StartState& tooth) {
-    runs[0].start = tooth;
-    return FitStart(hypothesis, runs[0], tooth, kNoDoubt).squared_gap() > 1.5;
-  });
-  ASSERT_NE(held, teeth.end());
-  const model::StartState moving = *held;
-  const diagnose::Fitted fitted = diagnose::FitStart(hypothesis, runs[0], moving, 1.1);
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_LT(fitted.squared_gap(), 1.15);
-  EXPECT_EQ(fitted.hypothesis.model.effects[0].parameters, truth.effects[0].parameters);
-}
-
 // Tests that a start that has gone where the run says nothing, below p_3, comes back: what was measured holds it.
-TEST(FitStart, ComesBackFromBelowTheFloor) {
+TEST(Fit, ComesBackFromBelowTheFloor) {
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, false, 0.6, 2, 1));
   diagnose::Hypothesis hypothesis;

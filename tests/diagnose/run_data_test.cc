@@ -109,21 +109,6 @@ TEST(PrepareRun, RestIsRest) {
   }
 }
 
-// Tests that a run that accelerates from rest may start at rest, besides starting on the line through its
-// first samples, and that one moving at its first sample may not.
-TEST(PrepareRun, MayBeginAtRest) {
-  testing::NoisyRig rig;
-  rig.model = {"Table 1", testing::Table1(), {}};
-  const RunData from_rest = rig.Record("from rest", model::Shaft::kFree, -0.1, 0.5, false,
-                                       [](double t) { return t < 0.004 ? 0 : 6.0; });
-  ASSERT_NE(from_rest.start[model::kMotorSpeed], 0);
-  ASSERT_TRUE(from_rest.at_rest.has_value());
-  EXPECT_EQ((*from_rest.at_rest)[model::kMotorSpeed], 0);
-  EXPECT_EQ((*from_rest.at_rest)[model::kArmSpeed], 0);
-  EXPECT_EQ((*from_rest.at_rest)[model::kP1], from_rest.start[model::kP1]);
-  EXPECT_FALSE(PrepareRun(WithArm(model::Shaft::kFree), testing::Table1()).at_rest.has_value());
-}
-
 // Tests that a free arm is compared, and starts at a speed from the angle's slope.
 TEST(PrepareRun, Free) {
   const RunData data = PrepareRun(WithArm(model::Shaft::kFree), testing::Table1());

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "diagnose/fit/start_fit.h"
+#include "diagnose/fit/fit.h"
 #include "diagnose/verdict/gaps.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/noisy_rig.h"
@@ -56,7 +56,7 @@ TEST(Windows, TellAWrongModel) {
     const auto gap = [&window](const model::ModelDescription& by) {
       Hypothesis hypothesis;
       hypothesis.model = by;
-      const Fitted fitted = FitStart(hypothesis, window, window.start, kStartInDoubt);
+      const Fitted fitted = Fit(hypothesis, {&window}, {window.start}, {});
       return fitted.ok() ? fitted.squared_gap() : 1e9;
     };
     EXPECT_LT(gap(model), 1.3);
@@ -78,9 +78,9 @@ TEST(Windows, WavesAreUnderWay) {
   for (const size_t w : {4, 9}) {
     RunData& window = windows[w];
     EXPECT_TRUE(window.begins_within);
-    EXPECT_LT(FitStart(hypothesis, window, window.start, kStartInDoubt).squared_gap(), 1.4);
+    EXPECT_LT(Fit(hypothesis, {&window}, {window.start}, {}).squared_gap(), 1.4);
     window.begins_within = false;  // as if it began at rest
-    EXPECT_GT(FitStart(hypothesis, window, window.start, kStartInDoubt).squared_gap(), 2.5);
+    EXPECT_GT(Fit(hypothesis, {&window}, {window.start}, {}).squared_gap(), 2.5);
   }
   EXPECT_FALSE(windows[0].begins_within);
 }
@@ -98,7 +98,7 @@ TEST(Windows, GoOnWithTheTimeOfTheRun) {
   ASSERT_THAT(windows, SizeIs(4));
   for (const RunData& window : windows) {
     EXPECT_EQ(window.stimulus.begin, 1e4);
-    const Fitted fitted = FitStart({model, {}, {}, {}}, window, window.start, kStartInDoubt);
+    const Fitted fitted = Fit({model, {}, {}, {}}, {&window}, {window.start}, {});
     ASSERT_TRUE(fitted.ok()) << fitted.failure;
     EXPECT_LT(fitted.squared_gap(), 1.3);
   }
