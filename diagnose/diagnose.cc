@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "diagnose/data/recording_remarks.h"
-#include "diagnose/data/run_data.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
+#include "diagnose/recording/recording_remarks.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/recording_first.h"
-#include "diagnose/verdict/conclusion.h"
-#include "diagnose/verdict/per_run.h"
-#include "diagnose/verdict/sentence.h"
+#include "diagnose/say/conclusion.h"
+#include "diagnose/say/per_run.h"
+#include "diagnose/say/sentence.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -130,10 +130,10 @@ PreparedRuns Prepare(const model::ModelDescription& model, int jobs, std::vector
   return prepared;
 }
 
-SearchContext MakeContext(const model::ModelDescription& model, const PreparedRuns& runs,
-                          const std::vector<size_t>& allowed, const DiagnoseOptions& options,
-                          const ProgressCallback& report_progress) {
-  SearchContext context;
+ProofContext MakeContext(const model::ModelDescription& model, const PreparedRuns& runs,
+                         const std::vector<size_t>& allowed, const DiagnoseOptions& options,
+                         const ProgressCallback& report_progress) {
+  ProofContext context;
   context.given = model;
   context.runs = PointersTo(runs.fitted);
   context.held_out = PointersTo(runs.held_out);
@@ -181,7 +181,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared =
       Prepare(model, options.jobs, std::move(runs), std::move(held_out), std::move(checked.aligned));
-  SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
+  ProofContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 
   Hypothesis as_given;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
-#include "diagnose/search/progress.h"
+#include "diagnose/prove/progress.h"
+#include "diagnose/recording/diagnosis.h"
 #include "runs/measured_run.h"
 
 namespace hydro::diagnose {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/word_list.h"
-#include "diagnose/data/contradictions.h"
-#include "diagnose/data/recording_damage.h"
-#include "diagnose/data/recording_remarks.h"
-#include "diagnose/data/run_data.h"
 #include "diagnose/evidence/clocks.h"
+#include "diagnose/recording/contradictions.h"
+#include "diagnose/recording/recording_damage.h"
+#include "diagnose/recording/recording_remarks.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 namespace {

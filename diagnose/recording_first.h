@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/evidence/recording_check.h"
+#include "diagnose/recording/diagnosis.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

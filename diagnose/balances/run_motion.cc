@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/number_text.h"
-#include "diagnose/data/sample_interval.h"
+#include "diagnose/recording/sample_interval.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "diagnose/closure/closure.h"
+#include "diagnose/fit/closure.h"
 
 namespace hydro::diagnose {
 

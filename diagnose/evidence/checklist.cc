@@ -8,8 +8,8 @@
 
 #include "base/number_text.h"
 #include "base/units.h"
-#include "diagnose/data/run_data.h"
 #include "diagnose/evidence/run_mistakes.h"
+#include "diagnose/recording/run_data.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {

@@ -6,8 +6,8 @@
 
 #include "base/input_error.h"
 #include "base/parallel.h"
-#include "diagnose/data/sample_interval.h"
 #include "diagnose/evidence/late_signals.h"
+#include "diagnose/recording/sample_interval.h"
 #include "runs/run_delays.h"
 
 namespace hydro::diagnose {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/diagnosis.h"
+#include "diagnose/recording/run_data.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

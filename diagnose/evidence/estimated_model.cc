@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "diagnose/closure/closure.h"
 #include "diagnose/evidence/estimated_closure.h"
+#include "diagnose/fit/closure.h"
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {

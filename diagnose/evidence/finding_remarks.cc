@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "base/word_list.h"
-#include "diagnose/data/sidecar_lines.h"
 #include "diagnose/evidence/recording_check.h"
+#include "diagnose/recording/sidecar_lines.h"
 
 namespace hydro::diagnose {
 namespace {

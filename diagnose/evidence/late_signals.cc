@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "diagnose/balances/make_rows.h"
-#include "diagnose/data/run_data.h"
-#include "diagnose/data/sample_interval.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_evidence.h"
+#include "diagnose/recording/run_data.h"
+#include "diagnose/recording/sample_interval.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {

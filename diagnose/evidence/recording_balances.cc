@@ -10,7 +10,7 @@
 #include "diagnose/balances/masks.h"
 #include "diagnose/balances/run_motion.h"
 #include "diagnose/balances/test_functions.h"
-#include "diagnose/data/sample_interval.h"
+#include "diagnose/recording/sample_interval.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "diagnose/data/recording_mistake.h"
+#include "diagnose/recording/recording_mistake.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

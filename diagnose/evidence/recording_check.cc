@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "diagnose/data/other_side.h"
 #include "diagnose/evidence/run_mistakes.h"
+#include "diagnose/recording/other_side.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/recording_mistake.h"
+#include "diagnose/recording/recording_mistake.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

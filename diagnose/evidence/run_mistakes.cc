@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "diagnose/data/run_data.h"
-#include "diagnose/data/sample_interval.h"
+#include "diagnose/recording/run_data.h"
+#include "diagnose/recording/sample_interval.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "diagnose/data/recording_mistake.h"
 #include "diagnose/evidence/recording_balances.h"
+#include "diagnose/recording/recording_mistake.h"
 
 namespace hydro::diagnose {
 

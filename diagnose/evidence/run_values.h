@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "model/terms/description.h"
 
 namespace hydro::diagnose {

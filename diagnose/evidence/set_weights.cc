@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "diagnose/closure/closure.h"
+#include "diagnose/fit/closure.h"
 
 namespace hydro::diagnose {
 

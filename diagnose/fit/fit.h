@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
 #include "diagnose/fit/hypothesis.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

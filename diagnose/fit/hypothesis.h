@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
 #include "diagnose/fit/prior.h"
+#include "diagnose/recording/run_data.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 #include "model/terms/parameter_info.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "diagnose/data/sample_interval.h"
 #include "diagnose/fit/residuals.h"
+#include "diagnose/recording/sample_interval.h"
 #include "maths/solve.h"
 
 namespace hydro::diagnose {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
 #include "diagnose/fit/hypothesis.h"
+#include "diagnose/recording/run_data.h"
 #include "model/response.h"
 
 namespace hydro::diagnose {

@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
 #include "diagnose/fit/hypothesis.h"
 #include "diagnose/fit/residuals.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

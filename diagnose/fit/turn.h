@@ -1,7 +1,7 @@
 // The shaft's angle at a run's start, where what repeats with the shaft is modelled and no sensor shows its zero.
 #pragma once
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "model/response.h"
 
 namespace hydro::diagnose {

@@ -20,7 +20,7 @@ constexpr int kStepsOfARace = 2;
 
 }  // namespace
 
-std::vector<Change> BlindChanges(const SearchContext& context) {
+std::vector<Change> BlindChanges(const ProofContext& context) {
   const bool free = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
     return run->stimulus.shaft == model::Shaft::kFree;
   });
@@ -37,7 +37,7 @@ std::vector<Change> BlindChanges(const SearchContext& context) {
   return blind;
 }
 
-ProvedSet RacedFrom(const SearchContext& context, const std::vector<const RunData*>& fitted,
+ProvedSet RacedFrom(const ProofContext& context, const std::vector<const RunData*>& fitted,
                     const ProofWindows& windows, const ProvedSet& set, const Change& change) {
   const std::vector<Hypothesis> starts = With(set.hypothesis, change, context.sizes);
   const std::vector<model::StartState> from = CorrectedStarts(set.hypothesis.model, fitted, context.jobs);

@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 namespace {
 
 // The windows' fit at the best set's values, which leave these gaps, with derivatives and what is known.
-Fitted WithDerivatives(const SearchContext& context, const Hypothesis& best,
+Fitted WithDerivatives(const ProofContext& context, const Hypothesis& best,
                        const std::vector<const RunData*>& windows, const std::vector<WindowGap>& gaps) {
   FitOptions held;
   held.most_iterations = 0;
@@ -28,7 +28,7 @@ Fitted WithDerivatives(const SearchContext& context, const Hypothesis& best,
 
 }  // namespace
 
-Proof ProofOf(const SearchContext& context, const ProofWindows& windows, std::vector<RunData> told,
+Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vector<RunData> told,
               std::vector<ProvedSet> sets, const ProofRoles& roles) {
   Proof proof;
   proof.sets = std::move(sets);

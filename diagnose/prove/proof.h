@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -38,7 +38,7 @@ struct ProofRoles {
 };
 
 // `told`: windows as the values were fitted to them. Those that the best set cannot be simulated over are left out.
-Proof ProofOf(const SearchContext& context, const ProofWindows& windows, std::vector<RunData> told,
+Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vector<RunData> told,
               std::vector<ProvedSet> sets, const ProofRoles& roles);
 
 }  // namespace hydro::diagnose

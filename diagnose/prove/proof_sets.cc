@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/closure/closure.h"
-#include "diagnose/data/thinned.h"
 #include "diagnose/evidence/change_set.h"
+#include "diagnose/fit/closure.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
+#include "diagnose/recording/thinned.h"
 
 namespace hydro::diagnose {
 
@@ -22,7 +22,7 @@ constexpr size_t kMostMade = 10;
 
 }  // namespace
 
-ProofSets::ProofSets(const SearchContext& context, const Hypothesis& as_given,
+ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
                      const std::vector<size_t>& allowed, const SaidByBalances& said)
     : context_(context),
       as_given_(as_given),

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/proposal.h"
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -17,7 +17,7 @@ class ProofSets {
   static constexpr size_t kGiven = 0;  // the place of the model as given
 
   // `allowed`: indices in BaseParameters() of those that a refit may move. Keeps references to all.
-  ProofSets(const SearchContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
+  ProofSets(const ProofContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
             const SaidByBalances& said);
 
   // Adds the proposals as judged with their own values, and a refit where no proposal has other values alone. Where proposed values
@@ -46,7 +46,7 @@ class ProofSets {
   // The same with its far windows judged.
   const ProvedSet& Far(size_t place);
   const ProofWindows& windows() const { return windows_; }
-  const SearchContext& context() const { return context_; }
+  const ProofContext& context() const { return context_; }
   bool has_fitted() const { return !fitted_.empty(); }
 
  private:
@@ -56,7 +56,7 @@ class ProofSets {
   void BeginAtBestValues(ProvedSet* set) const;
   void RefineOnWholeRuns(ProvedSet* set) const;
 
-  const SearchContext& context_;
+  const ProofContext& context_;
   const Hypothesis& as_given_;
   const std::vector<size_t>& allowed_;
   const SaidByBalances& said_;

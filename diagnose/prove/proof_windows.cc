@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "diagnose/data/thinned.h"
-#include "diagnose/data/windows.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
+#include "diagnose/recording/thinned.h"
+#include "diagnose/recording/windows.h"
 
 namespace hydro::diagnose {
 
@@ -95,7 +95,7 @@ double NearHorizon(const std::vector<const RunData*>& runs) {
 
 }  // namespace
 
-ProofWindows ProofWindowsOf(const SearchContext& context) {
+ProofWindows ProofWindowsOf(const ProofContext& context) {
   const std::vector<const RunData*>& predicted = context.predicted();
   const model::Parameters& given = context.given.parameters;
   std::vector<const RunData*> runs = context.runs;

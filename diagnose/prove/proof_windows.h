@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 
@@ -15,7 +15,7 @@ namespace hydro::diagnose {
 struct JudgingWindows {
   double seconds = 0;
   std::vector<const RunData*> windows;
-  std::vector<size_t> runs;  // that each is from: its place in SearchContext::predicted()
+  std::vector<size_t> runs;  // that each is from: its place in ProofContext::predicted()
 };
 
 struct ProofWindows {
@@ -31,6 +31,6 @@ struct ProofWindows {
 
 // Judging windows are of the held-out runs; where there are none, of the fitted runs, in turn with those that are fitted. They are
 // spread over the runs, and those where a pressure or the speed is largest are among them: what opens or saturates acts in no others.
-ProofWindows ProofWindowsOf(const SearchContext& context);
+ProofWindows ProofWindowsOf(const ProofContext& context);
 
 }  // namespace hydro::diagnose

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "diagnose/balances/make_rows.h"
-#include "diagnose/closure/closure.h"
 #include "diagnose/evidence/estimated_model.h"
 #include "diagnose/evidence/refined_shapes.h"
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
+#include "diagnose/fit/closure.h"
 #include "diagnose/prove/unrecorded.h"
 
 namespace hydro::diagnose {
@@ -30,7 +30,7 @@ constexpr size_t kMostLeaders = 5;
 constexpr int kMarchesAgain = 2;
 
 // The model with each predicted run's own values of what differs by run, as the balances of that run say.
-std::vector<model::ModelDescription> ModelsOfRuns(const SearchContext& context,
+std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
                                                   const std::vector<size_t>& allowed,
                                                   const model::ModelDescription& model,
                                                   const ChangeSet& set) {
@@ -234,7 +234,7 @@ double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
 
 }  // namespace
 
-Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed,
+Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed,
                  const std::vector<std::string>& inverted) {
   ScanOptions options;
   options.jobs = context.jobs;

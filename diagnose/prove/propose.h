@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/set_weights.h"
+#include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proposal.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/recording/diagnosis.h"
 
 namespace hydro::diagnose {
 
@@ -28,7 +28,7 @@ struct Proposed {
 // `allowed`: base parameters that may differ, as in BaseParameters(). Nothing is simulated. Without a balance that can be formed there
 // are no proposals.
 // `inverted`: sensors whose readings have the wrong sign; every proposal then has the effect sensor.sign.
-Proposed Propose(const SearchContext& context, const std::vector<size_t>& allowed,
+Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed,
                  const std::vector<std::string>& inverted = {});
 
 }  // namespace hydro::diagnose

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/closure/closure.h"
+#include "diagnose/fit/closure.h"
+#include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proof_sets.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
-#include "diagnose/search/search_context.h"
 
 namespace hydro::diagnose {
 
@@ -149,7 +149,7 @@ class Prover {
 
 }  // namespace
 
-Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
                      const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
                      const std::vector<Change>& blind, const SaidByBalances& said) {
   context.Report("simulating the proposals", 0.85);

@@ -21,7 +21,7 @@ namespace hydro::diagnose {
 //
 // The work is bounded by the number of windows, proposals and steps, never by the clock; the same for any number of jobs. Where a
 // model cannot follow a whole run, its windows still count.
-Proof ProveProposals(const SearchContext& context, const Hypothesis& as_given,
+Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
                      const std::vector<size_t>& allowed, const std::vector<Proposal>& proposals,
                      const std::vector<Change>& blind = {}, const SaidByBalances& said = {});
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "diagnose/data/thinned.h"
 #include "diagnose/fit/fit.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
+#include "diagnose/recording/thinned.h"
 #include "maths/median.h"
 
 namespace hydro::diagnose {
@@ -64,7 +64,7 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
   return scaled;
 }
 
-std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
+std::shared_ptr<const Knowledge> KnownOfValues(const ProofContext& context,
                                                const std::vector<const RunData*>& windows,
                                                const Hypothesis& hypothesis, double sum) {
   const auto named = std::count_if(hypothesis.changes.begin(), hypothesis.changes.end(),
@@ -81,7 +81,7 @@ std::vector<model::StartState> CorrectedStarts(const model::ModelDescription& mo
   return starts;
 }
 
-void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
+void RefineValues(const ProofContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set) {
   if (fitted.empty() || set->hypothesis.Free().empty()) return;
   FitOptions options;

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proved_set.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 
@@ -30,12 +30,12 @@ inline constexpr Refinement kReportedValues = {3, 8};
 
 // The set with its values fitted, a few steps from where they are; the fit is taken where it predicts the judging windows better.
 // `fitted`: as WithDiscrepancy() makes them. A fit that fails, or ends no lower than it began, changes nothing.
-void RefineValues(const SearchContext& context, const std::vector<const RunData*>& fitted,
+void RefineValues(const ProofContext& context, const std::vector<const RunData*>& fitted,
                   const ProofWindows& windows, const Refinement& limits, ProvedSet* set);
 
 // What is known of the hypothesis' base values where a fit to these windows leaves `sum`; null where only those are free that the set
 // itself names.
-std::shared_ptr<const Knowledge> KnownOfValues(const SearchContext& context,
+std::shared_ptr<const Knowledge> KnownOfValues(const ProofContext& context,
                                                const std::vector<const RunData*>& windows,
                                                const Hypothesis& hypothesis, double sum);
 

@@ -40,7 +40,7 @@ bool NamesARun(const ChangeSet& set) {
                      [](const std::string& name) { return name.starts_with("run."); });
 }
 
-std::vector<Unjudged> UnjudgedOf(const SearchContext& context, const ScanRuns& runs,
+std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
                                  const std::vector<std::string>& names) {
   const std::vector<std::string> missing = MissingSignals(runs.motions());
   if (missing.empty()) return {};

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "diagnose/balances/make_rows.h"
-#include "diagnose/data/diagnosis.h"
 #include "diagnose/evidence/set_weights.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
+#include "diagnose/recording/diagnosis.h"
 
 namespace hydro::diagnose {
 
 // Effects of the context's changes of which the runs have no column of their own, and why; `names`: the sets that the rows show. None
 // where all signals were recorded that balances need, and none that simulation alone judges.
-std::vector<Unjudged> UnjudgedOf(const SearchContext& context, const ScanRuns& runs,
+std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
                                  const std::vector<std::string>& names);
 
 // Effects that act only in the oil's balances (ScanRuns::OilOnly) cannot be told apart: nothing, and the sets that hold the truth nine

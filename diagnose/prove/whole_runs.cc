@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
 #include "maths/solve.h"
 
 namespace hydro::diagnose {
@@ -59,7 +59,7 @@ bool IsWorthTesting(const Change& change, const std::vector<std::string>& unlike
 }
 
 // The best start of each change, by what a score test expects, the most promising first.
-std::vector<Tested> ScoreTest(const SearchContext& context, const Hypothesis& given,
+std::vector<Tested> ScoreTest(const ProofContext& context, const Hypothesis& given,
                               const std::vector<model::StartState>& from,
                               const std::vector<std::string>& unlikely) {
   std::vector<Hypothesis> starts;
@@ -124,7 +124,7 @@ std::vector<model::ModelDescription> WithoutEachRun(const Fitted& fitted) {
 }
 
 // The set with the fit's values, judged by the held-out runs.
-ProvedSet SetOf(const SearchContext& context, const Fitted& fitted) {
+ProvedSet SetOf(const ProofContext& context, const Fitted& fitted) {
   ProvedSet set;
   set.hypothesis = fitted.hypothesis;
   if (context.held_out.empty()) set.without = WithoutEachRun(fitted);
@@ -141,7 +141,7 @@ bool TakesMost(double from, double to) { return to - 1 < (1 - kMost) * (from - 1
 
 }  // namespace
 
-std::vector<WindowGap> OverRuns(const SearchContext& context, const ProvedSet& set) {
+std::vector<WindowGap> OverRuns(const ProofContext& context, const ProvedSet& set) {
   const std::vector<const RunData*>& runs = context.predicted();
   std::vector<WindowGap> gaps(runs.size());
   ParallelFor(runs.size(), context.jobs, [&](size_t r) { gaps[r] = GapOf(set.ModelOf(r), *runs[r]); });
@@ -158,7 +158,7 @@ double MeanSquare(const std::vector<WindowGap>& runs) {
   return count > 0 ? sum / count : 0;
 }
 
-Proof ProvedOnWholeRuns(const SearchContext& context, const Hypothesis& as_given, Proof near,
+Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given, Proof near,
                         bool at_the_noise, const std::vector<std::string>& unlikely) {
   size_t samples = 0;
   for (const RunData* run : context.runs) samples += run->samples();

@@ -8,7 +8,7 @@
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
-#include "diagnose/verdict/sentence.h"
+#include "diagnose/say/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
 

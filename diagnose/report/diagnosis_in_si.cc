@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/units.h"
-#include "diagnose/closure/closure.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/fit/closure.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 namespace {

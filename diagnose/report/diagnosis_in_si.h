@@ -1,7 +1,7 @@
 // A diagnosis as its reader wants it: in SI units, for --si, and in the words of the machine that was measured.
 #pragma once
 
-#include "diagnose/data/diagnosis.h"
+#include "diagnose/recording/diagnosis.h"
 
 namespace hydro::diagnose {
 

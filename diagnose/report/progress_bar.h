@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/terminal_line.h"
-#include "diagnose/search/progress.h"
+#include "diagnose/prove/progress.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "diagnose/data/diagnosis.h"
+#include "diagnose/recording/diagnosis.h"
 
 namespace hydro::diagnose {
 

@@ -6,7 +6,7 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report.h"

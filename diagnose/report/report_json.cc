@@ -1,7 +1,7 @@
 // report.json.
 #include <nlohmann/json.hpp>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/report/report.h"
 #include "settings/command_line.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "diagnose/data/diagnosis.h"
+#include "diagnose/recording/diagnosis.h"
 #include "page/plot.h"
 #include "page/range.h"
 

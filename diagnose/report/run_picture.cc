@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_pictures.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "diagnose/balances/balance_series.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

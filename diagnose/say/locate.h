@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/diagnosis.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/diagnosis.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/diagnosis.h"
+#include "diagnose/recording/diagnosis.h"
 #include "diagnose/say/binned_curve.h"
 #include "diagnose/say/variables.h"
 

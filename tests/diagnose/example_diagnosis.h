@@ -1,7 +1,7 @@
 // A made-up diagnosis, for tests of how a diagnosis is reported.
 #pragma once
 
-#include "diagnose/data/diagnosis.h"
+#include "diagnose/recording/diagnosis.h"
 
 namespace hydro::testing {
 

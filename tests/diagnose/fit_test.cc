@@ -10,7 +10,7 @@
 #include <limits>
 #include <memory>
 
-#include "diagnose/data/windows.h"
+#include "diagnose/recording/windows.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
 

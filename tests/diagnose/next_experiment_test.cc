@@ -1,4 +1,4 @@
-#include "diagnose/verdict/next_experiment.h"
+#include "diagnose/say/next_experiment.h"
 
 #include <gmock/gmock.h>
 

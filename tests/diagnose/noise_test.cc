@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "model/response.h"
 
 namespace hydro::testing {

@@ -71,7 +71,7 @@ model::ParameterInfo Any(const std::string& name, const std::string& unit, Role 
 // The numbers of the effect that the balances propose for runs of a rig that has it; empty where none does.
 std::map<std::string, double> Proposed(const model::EffectDescription& effect) {
   const std::vector<diagnose::RunData> runs = OneOfEach(Table1With({effect}), 1.0, 1);
-  diagnose::SearchContext context;
+  diagnose::ProofContext context;
   context.given = Table1With();
   context.runs = PointersTo(runs);
   context.sizes = diagnose::SizesOf(context.given, context.runs);

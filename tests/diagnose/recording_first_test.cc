@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "diagnose/data/recording_remarks.h"
+#include "diagnose/recording/recording_remarks.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

@@ -1,4 +1,4 @@
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/data/smoothed_motion.h"
+#include "diagnose/recording/smoothed_motion.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"

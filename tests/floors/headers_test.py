@@ -14,8 +14,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 ROOMS = {
     "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
     "position_ctrl/law", "logger", "process/safety", "sim", "plot", "design",
-    "experiments", "diagnose/data", "diagnose/fit", "diagnose/balances", "diagnose/search", "diagnose/evidence", "diagnose/say",
-    "diagnose/prove", "diagnose/verdict", "diagnose/report", "diagnose",
+    "experiments", "diagnose/recording", "diagnose/fit", "diagnose/balances", "diagnose/evidence", "diagnose/say",
+    "diagnose/prove", "diagnose/report", "diagnose",
 }
 # From a header's path to the reason.
 EXEMPT = {
@@ -23,13 +23,13 @@ EXEMPT = {
     "diagnose/evidence/normal_equations.h": "inside of SetEvidence, which set_evidence_test compares with a dense reference",
     "diagnose/evidence/set_solution.h": "inside of SetEvidence",
     "diagnose/evidence/grams.h": "inside of SetEvidence",
-    "diagnose/verdict/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
+    "diagnose/say/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
     "diagnose/prove/whole_runs.h": "a stage of prove.h: gap_closed_test and own_effect_test read what it finds",
     "diagnose/prove/proof_sets.h": "what prove.h chooses among: prove_test reads what comes of it",
     "diagnose/prove/unrecorded.h": "a part of propose.h: propose_test reads what is proposed without pressures",
     "diagnose/evidence/late_signals.h": "what clocks.h estimates with: clocks_test reads the clocks",
     "diagnose/evidence/run_values.h": "what per_run.h judges: per_run_test reads the values of runs",
-    "diagnose/search/progress.h": "one struct without a function",
+    "diagnose/prove/progress.h": "one struct without a function",
     "pressure_ctrl/own_pressure_loop.h": "a whole program: e2e.own_controller runs the example that stands on it",
     "model/start_from.h": "where Respond and StartedActuator begin: their tests go through it",
     "model/response_pass.h": "the inside of Respond, for two files: the tests of response.h go through it",

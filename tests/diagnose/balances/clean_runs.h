@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/data/run_data.h"
+#include "diagnose/recording/run_data.h"
 #include "model/terms/description.h"
 
 namespace hydro::testing {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/number_text.h"
-#include "tests/diagnose/data/swing.h"
+#include "tests/diagnose/recording/swing.h"
 
 namespace hydro::diagnose {
 namespace {

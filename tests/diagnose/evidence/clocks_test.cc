@@ -8,7 +8,7 @@
 #include <random>
 
 #include "base/word_list.h"
-#include "diagnose/data/recording_remarks.h"
+#include "diagnose/recording/recording_remarks.h"
 #include "runs/run_delays.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"

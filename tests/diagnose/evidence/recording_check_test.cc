@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "tests/diagnose/data/swing.h"
 #include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/recording/swing.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {

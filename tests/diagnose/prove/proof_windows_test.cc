@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/data/run_data.h"
-#include "diagnose/search/search_context.h"
+#include "diagnose/prove/proof_context.h"
+#include "diagnose/recording/run_data.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -24,8 +24,8 @@ std::vector<RunData> RunsOf(double seconds) {
 }
 
 // The first `fitted` runs are fitted, the others held out.
-diagnose::SearchContext ContextOf(const std::vector<RunData>& runs, size_t fitted) {
-  diagnose::SearchContext context;
+diagnose::ProofContext ContextOf(const std::vector<RunData>& runs, size_t fitted) {
+  diagnose::ProofContext context;
   context.given = Table1With();
   for (size_t r = 0; r < runs.size(); ++r) (r < fitted ? context.runs : context.held_out).push_back(&runs[r]);
   context.sizes = diagnose::SizesOf(context.given, context.runs);
@@ -60,7 +60,7 @@ double Highest(const RunData& run, model::Channel channel) {
 // Tests that windows of runs that are held out by name judge, each as of its run, and that those of fitted runs are fitted.
 TEST(ProofWindows, OfHeldOutRuns) {
   const std::vector<RunData> runs = RunsOf(4);
-  const diagnose::SearchContext context = ContextOf(runs, 1);
+  const diagnose::ProofContext context = ContextOf(runs, 1);
   const ProofWindows windows = ProofWindowsOf(context);
   EXPECT_DOUBLE_EQ(windows.near.seconds, 0.4);
   EXPECT_DOUBLE_EQ(windows.far.seconds, 1.6);

@@ -47,9 +47,9 @@ std::vector<diagnose::RunData> WithoutPressures(const std::vector<diagnose::RunD
   return without;
 }
 
-diagnose::SearchContext ContextOf(const std::vector<diagnose::RunData>& runs,
-                                  const std::vector<std::string>& effects) {
-  diagnose::SearchContext context;
+diagnose::ProofContext ContextOf(const std::vector<diagnose::RunData>& runs,
+                                 const std::vector<std::string>& effects) {
+  diagnose::ProofContext context;
   context.given = Table1With();
   context.runs = diagnose::PointersTo(runs);
   context.sizes = diagnose::SizesOf(context.given, context.runs);
@@ -114,7 +114,7 @@ TEST(Propose, WhatIsMissing) {
 TEST(Propose, HeldOutByName) {
   const std::vector<diagnose::RunData> runs =
       RunsOf(Table1With({{"pump.quadratic_drag", {{"k", 3e-4}}, {}}}), 32);
-  diagnose::SearchContext context = ContextOf(runs, SomeEffects());
+  diagnose::ProofContext context = ContextOf(runs, SomeEffects());
   context.held_out = {context.runs.back()};
   context.runs.pop_back();
   const Proposed proposed = Propose(context, Allowed());
@@ -268,7 +268,7 @@ TEST(Propose, ValuesOfRuns) {
 // Tests that one and two threads propose the same bits.
 TEST(Propose, SameForAnyNumberOfJobs) {
   const std::vector<diagnose::RunData> runs = RunsOf(Table1With({{"amp.bias", {{"bias", 0.6}}, {}}}), 38);
-  diagnose::SearchContext context = ContextOf(runs, SomeEffects());
+  diagnose::ProofContext context = ContextOf(runs, SomeEffects());
   const Proposed one = Propose(context, Allowed());
   context.jobs = 2;
   const Proposed two = Propose(context, Allowed());

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "diagnose/prove/blind_changes.h"
-#include "diagnose/verdict/conclusion.h"
+#include "diagnose/say/conclusion.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -63,7 +63,7 @@ class ProveTest : public ::testing::Test {
   }
 
   std::vector<diagnose::RunData> runs_;
-  diagnose::SearchContext context_;
+  diagnose::ProofContext context_;
   diagnose::Hypothesis as_given_;
   std::vector<size_t> allowed_;
 };

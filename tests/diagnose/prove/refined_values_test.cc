@@ -47,7 +47,7 @@ class RefinedTest : public ::testing::Test {
   }
 
   std::vector<RunData> runs_;
-  diagnose::SearchContext context_;
+  diagnose::ProofContext context_;
   diagnose::ProofWindows windows_;
 };
 

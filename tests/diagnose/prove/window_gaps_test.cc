@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/data/thinned.h"
-#include "diagnose/data/windows.h"
+#include "diagnose/recording/thinned.h"
+#include "diagnose/recording/windows.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
 

@@ -1,0 +1,225 @@
+// Estimates how noisy a series is from the series itself: the level of the quietest part of its upper
+// spectrum.
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include "diagnose/recording/run_data.h"
+
+namespace hydro::diagnose {
+namespace {
+
+constexpr int kSegment = 64;  // samples in one spectrum: an event spoils no more than these
+constexpr int kHop = 32;
+constexpr int kFirstBin = kSegment / 4;  // the upper half of the spectrum
+constexpr int kBins = kSegment / 2 - kFirstBin;
+constexpr int kBands = 8;
+// Fourth differences remove what is smooth before its side lobes can count.
+constexpr double kDifference[] = {1, -4, 6, -4, 1};
+constexpr int kOrder = 4;
+
+// Cells of the spectrogram above kClip times the mean are not noise: chance puts 1 in 55 there.
+constexpr double kClip = 4;
+
+// The mean of exponentially distributed powers when some of them are larger because they are not noise:
+// leaves out those far above the mean and corrects the mean for that.
+double NoisePower(std::vector<double> powers) {
+  const auto quarter = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 4);
+  std::nth_element(powers.begin(), quarter, powers.end());
+  double mean = *quarter / -std::log(0.75);
+  const double tail = std::exp(-kClip);
+  const double kept_mean = 1 - kClip * tail / (1 - tail);  // of an exponential of mean 1, cut off at kClip
+  for (int pass = 0; pass < 30; ++pass) {
+    double sum = 0;
+    size_t kept = 0;
+    for (const double power : powers) {
+      if (power > kClip * mean) continue;
+      sum += power;
+      ++kept;
+    }
+    const double next = kept == 0 ? 0 : sum / static_cast<double>(kept) / kept_mean;
+    if (std::abs(next - mean) <= 1e-6 * mean) return next;
+    mean = next;
+  }
+  return mean;
+}
+
+// Windowed cosines and sines of the upper half of the spectrum, one a row.
+Eigen::MatrixXd Basis() {
+  Eigen::MatrixXd basis(2 * kBins, kSegment);
+  for (int bin = 0; bin < kBins; ++bin) {
+    // Halfway between the usual bins, so that the last one is as complex as the others.
+    const double frequency = 2 * std::numbers::pi * (kFirstBin + bin + 0.5) / kSegment;
+    for (int i = 0; i < kSegment; ++i) {
+      const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (i + 0.5) / kSegment);  // Hann
+      basis(2 * bin, i) = window * std::cos(frequency * i);
+      basis(2 * bin + 1, i) = window * std::sin(frequency * i);
+    }
+  }
+  return basis;
+}
+
+// The power of white noise of unit variance in each bin.
+Eigen::VectorXd WhitePower(const Eigen::MatrixXd& basis) {
+  Eigen::MatrixXd response = Eigen::MatrixXd::Zero(basis.rows(), kSegment + kOrder);
+  for (int lag = 0; lag <= kOrder; ++lag) {
+    response.middleCols(lag, kSegment) += kDifference[lag] * basis;
+  }
+  const Eigen::VectorXd each = response.rowwise().squaredNorm();
+  return Eigen::Map<const Eigen::Matrix2Xd>(each.data(), 2, kBins).colwise().sum().transpose();
+}
+
+// Where segments begin whose samples are mostly present, according to `measured`; all segments when there are
+// none.
+std::vector<int> Segments(const std::vector<double>& measured) {
+  std::vector<int> all, whole;
+  for (int first = 0; first + kSegment + kOrder <= static_cast<int>(measured.size()); first += kHop) {
+    all.push_back(first);
+    const auto from = measured.begin() + first;
+    const auto missing =
+        std::count_if(from, from + kSegment + kOrder, [](double v) { return std::isnan(v); });
+    if (missing <= kSegment / 2) whole.push_back(first);
+  }
+  return whole.empty() ? all : whole;
+}
+
+// The standard deviation of the noise of a series without gaps, estimated from these segments.
+double SpectralNoise(const std::vector<double>& values, const std::vector<int>& segments) {
+  const int samples = static_cast<int>(values.size());
+  if (samples < kSegment + kOrder) return 0;
+  Eigen::VectorXd differences(samples - kOrder);
+  for (int i = 0; i < samples - kOrder; ++i) {
+    differences[i] = 0;
+    for (int lag = 0; lag <= kOrder; ++lag) {
+      differences[i] += kDifference[lag] * values[static_cast<size_t>(i) + static_cast<size_t>(lag)];
+    }
+  }
+  const Eigen::MatrixXd basis = Basis();
+  const Eigen::VectorXd white = WhitePower(basis);
+  std::vector<std::vector<double>> powers(kBands);
+  for (const int first : segments) {
+    const Eigen::VectorXd parts = basis * differences.segment(first, kSegment);
+    for (int bin = 0; bin < kBins; ++bin) {
+      powers[static_cast<size_t>(bin * kBands / kBins)].push_back(parts.segment<2>(2 * bin).squaredNorm() /
+                                                                  white[bin]);
+    }
+  }
+
+  // Pools bands from the quietest two upwards, until the next one is louder by more than chance allows.
+  std::sort(powers.begin(), powers.end(),
+            [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
+  // Independent powers in a band: over the whole spectrum, half as many as samples.
+  const double used = kHop * static_cast<double>(segments.size());
+  const double independent = std::max(2.0, used / (4.0 * kBands));
+  std::vector<double> pooled = powers.front();
+  for (size_t band = 1; band < powers.size(); ++band) {
+    const double chance = std::sqrt((1 + 1 / static_cast<double>(band)) / independent);
+    if (band > 1 && NoisePower(powers[band]) > NoisePower(pooled) * (1 + 3.5 * chance)) break;
+    pooled.insert(pooled.end(), powers[band].begin(), powers[band].end());
+  }
+  return std::sqrt(NoisePower(pooled));
+}
+
+struct Gap {
+  size_t first, last;  // missing: [first, last)
+};
+
+std::vector<Gap> Gaps(const std::vector<double>& values) {
+  std::vector<Gap> gaps;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!std::isnan(values[i])) continue;
+    if (gaps.empty() || gaps.back().last != i) gaps.push_back({i, i});
+    gaps.back().last = i + 1;
+  }
+  return gaps;
+}
+
+// The mean of the values on one side of a gap, and where that mean lies.
+std::pair<double, double> Beside(const std::vector<double>& values, std::ptrdiff_t from, int step) {
+  constexpr int kNeighbours = 2;
+  double where = 0, sum = 0;
+  int count = 0;
+  const auto end = static_cast<std::ptrdiff_t>(values.size());
+  for (std::ptrdiff_t i = from; i >= 0 && i < end && count < kNeighbours; i += step) {
+    if (std::isnan(values[static_cast<size_t>(i)])) break;
+    where += static_cast<double>(i);
+    sum += values[static_cast<size_t>(i)];
+    ++count;
+  }
+  return {where / count, sum / count};
+}
+
+}  // namespace
+
+double EstimateResolution(const std::vector<double>& values) {
+  std::vector<double> sorted;
+  for (const double value : values) {
+    if (std::isfinite(value)) sorted.push_back(value);
+  }
+  if (sorted.empty()) return 0;
+  std::sort(sorted.begin(), sorted.end());
+  // Differences within the rounding of the arithmetic are not steps.
+  const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
+  std::vector<double> steps;
+  for (size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] - sorted[i - 1] > same) steps.push_back(sorted[i] - sorted[i - 1]);
+  }
+  if (steps.empty()) return 0;
+  const double smallest = *std::min_element(steps.begin(), steps.end());
+  double single = 0;  // steps of one unit
+  size_t singles = 0, multiples = 0;
+  for (const double step : steps) {
+    const double units = std::round(step / smallest);
+    if (std::abs(step / smallest - units) > 0.1) continue;
+    ++multiples;
+    if (units == 1) {
+      single += step;
+      ++singles;
+    }
+  }
+  // One step in five is a multiple by chance.
+  return 10 * multiples >= 9 * steps.size() ? single / static_cast<double>(singles) : 0;
+}
+
+double EstimateNoise(const std::vector<double>& all) {
+  // A signal that stands in every second row or fewer has samples of its own: between them nothing is missing.
+  constexpr double kOwnSamples = 0.75;
+  std::vector<double> values = all;
+  if (static_cast<double>(CountValid(all)) < kOwnSamples * static_cast<double>(all.size()))
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return 0;
+  const double rounding = EstimateResolution(values) / std::sqrt(12.0);
+  std::vector<double> whole = values;
+  const std::vector<Gap> gaps = Gaps(values);
+  if (!gaps.empty() && gaps.front().first == 0 && gaps.front().last == values.size()) return 0;
+  for (const Gap& gap : gaps) {
+    std::pair<double, double> before = Beside(values, static_cast<std::ptrdiff_t>(gap.first) - 1, -1);
+    std::pair<double, double> after = Beside(values, static_cast<std::ptrdiff_t>(gap.last), +1);
+    // Before the first value and after the last one, hold that value.
+    if (gap.first == 0) before = {after.first - 1, after.second};
+    if (gap.last == values.size()) after = {before.first + 1, before.second};
+    const double slope = (after.second - before.second) / (after.first - before.first);
+    for (size_t i = gap.first; i < gap.last; ++i) {
+      whole[i] = before.second + slope * (static_cast<double>(i) - before.first);
+    }
+  }
+  const std::vector<int> segments = Segments(values);
+  double noise = SpectralNoise(whole, segments);
+  // The bridges over gaps are quieter than the rest: give them noise as large as was found, until the
+  // estimate agrees with it.
+  for (int pass = 0; pass < 4 && !gaps.empty(); ++pass) {
+    std::mt19937_64 random(0x9a5);
+    std::normal_distribution<double> normal;
+    std::vector<double> filled = whole;
+    for (const Gap& gap : gaps) {
+      for (size_t i = gap.first; i < gap.last; ++i) filled[i] += noise * normal(random);
+    }
+    noise = SpectralNoise(filled, segments);
+  }
+  return std::max(noise, rounding);
+}
+
+}  // namespace hydro::diagnose

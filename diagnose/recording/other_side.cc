@@ -1,0 +1,63 @@
+#include "diagnose/recording/other_side.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace hydro::diagnose {
+namespace {
+
+using Run = runs::MeasuredRun;
+using Mistakes = std::vector<RecordingMistake>;
+
+bool HasSign(const Mistakes& mistakes, SignalOfRun signal) {
+  return std::any_of(mistakes.begin(), mistakes.end(), [signal](const RecordingMistake& mistake) {
+    return mistake.IsSign() && std::any_of(mistake.factors.begin(), mistake.factors.end(),
+                                           [signal](const auto& one) { return one.first == signal; });
+  });
+}
+
+// The signals of these, of one body, that turn round: all that are measured but those that do already.
+std::vector<SignalOfRun> Turned(const Run& run, const Mistakes& mistakes,
+                                const std::vector<SignalOfRun>& signals) {
+  std::vector<SignalOfRun> turned;
+  for (const SignalOfRun signal : signals) {
+    if ((run.*signal).measured() && !HasSign(mistakes, signal)) turned.push_back(signal);
+  }
+  return turned;
+}
+
+bool IsSignOf(const RecordingMistake& mistake, const std::vector<SignalOfRun>& signals) {
+  return mistake.IsSign() &&
+         std::equal(mistake.factors.begin(), mistake.factors.end(), signals.begin(), signals.end(),
+                    [](const auto& one, SignalOfRun signal) { return one.first == signal; });
+}
+
+}  // namespace
+
+std::optional<Mistakes> SeenFromTheOtherSide(const Mistakes& mistakes, const Run& run) {
+  const bool one_pressure = run.p1.measured() != run.p2.measured();
+  // The twin's words would have to change sides too.
+  const bool of_one = std::any_of(mistakes.begin(), mistakes.end(),
+                                  [](const RecordingMistake& mistake) { return mistake.IsOfOnePressure(); });
+  if (one_pressure || of_one) return std::nullopt;
+  const bool clamped = run.shaft == model::Shaft::kClamped;
+  const std::vector<std::vector<SignalOfRun>> turned = {
+      Turned(run, mistakes, {&Run::voltage}), Turned(run, mistakes, {&Run::motor_speed, &Run::motor_angle}),
+      clamped ? std::vector<SignalOfRun>{} : Turned(run, mistakes, {&Run::arm_angle, &Run::arm_speed})};
+  const bool exchanged = std::any_of(mistakes.begin(), mistakes.end(),
+                                     [](const auto& mistake) { return mistake.pressures_exchanged; });
+  Mistakes twin;
+  for (const RecordingMistake& possible : PossibleMistakes(run)) {
+    const bool sign = std::any_of(turned.begin(), turned.end(), [&](const auto& signals) {
+      return !signals.empty() && IsSignOf(possible, signals);
+    });
+    const bool stays = !possible.IsSign() && !possible.pressures_exchanged &&
+                       std::find(mistakes.begin(), mistakes.end(), possible) != mistakes.end();
+    if (sign || stays || (possible.pressures_exchanged && !exchanged)) twin.push_back(possible);
+  }
+  std::copy_if(mistakes.begin(), mistakes.end(), std::back_inserter(twin),
+               [](const RecordingMistake& mistake) { return mistake.shaft.has_value(); });
+  return twin;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "base/word_list.h"
+#include "diagnose/recording/recording_mistake.h"
+#include "runs/measured_signals.h"
+#include "runs/signal_unit.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using Run = runs::MeasuredRun;
+
+// Units in which newcomers record, as a sidecar names them; those of another quantity than a signal's are passed over.
+constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s",
+                                  "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
+                                  "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
+constexpr const char* kTimeUnits[] = {"ms", "us", "min", "s"};
+constexpr double kSameScale = 1e-4;  // relative: scales are written with few digits
+
+bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
+
+std::string NamesOf(const std::vector<SignalOfRun>& signals) {
+  std::vector<std::string> names;
+  names.reserve(signals.size());
+  for (const SignalOfRun signal : signals) names.emplace_back(NameOf(signal));
+  return Enumerated(names) + (names.size() > 1 ? " are" : " is");
+}
+
+// The signals of these that the run has.
+std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>& signals) {
+  std::vector<SignalOfRun> measured;
+  for (const SignalOfRun signal : signals) {
+    if ((run.*signal).measured()) measured.push_back(signal);
+  }
+  return measured;
+}
+
+// The signal's unit in the model.
+std::string UnitOf(const Run& run, SignalOfRun signal) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return run.units.UnitFor(one.unit, one.arm);
+  }
+  return "";
+}
+
+// The unit that a column is said to be in: ours where nothing is said; "" where its scale is no unit's.
+template <size_t n>
+std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours,
+                       const char* const (&units)[n]) {
+  if (source.scale == 1) return ours;
+  for (const char* unit : units) {
+    const std::optional<double> factor = runs::UnitFactor(unit, ours);
+    if (factor.has_value() && IsNear(source.scale, *factor)) return unit;
+  }
+  return "";
+}
+
+// What brings a column that is in `unit`, but is said to be in `stated`, to ours; empty where both are the same.
+std::optional<double> FactorBetween(const std::string& unit, const std::string& ours,
+                                    const std::string& stated) {
+  const std::optional<double> factor = runs::UnitFactor(unit, ours);
+  if (!factor.has_value()) return std::nullopt;
+  const double said = stated.empty() ? 1 : runs::UnitFactor(stated, ours).value_or(1);
+  if (IsNear(*factor, said)) return std::nullopt;
+  return *factor / said;
+}
+
+std::string ShaftName(model::Shaft shaft) {
+  for (const auto& [name, one] : runs::kShafts) {
+    if (one == shaft) return name;
+  }
+  return "";
+}
+
+std::string NotIn(const std::string& stated, const std::string& ours) {
+  return stated.empty() || stated == ours ? "" : ", not in " + stated;
+}
+
+class MistakeList {
+ public:
+  explicit MistakeList(const Run& run) : run_(run) {}
+
+  void AddUnits(const std::vector<SignalOfRun>& signals) {
+    const std::vector<SignalOfRun> measured = Measured(run_, signals);
+    if (measured.size() < signals.size()) return;
+    const std::string ours = UnitOf(run_, measured.front());
+    const std::string stated = StatedUnit((run_.*measured.front()).source, ours, kUnits);
+    for (const char* unit : kUnits) {
+      const std::optional<double> factor = FactorBetween(unit, ours, stated);
+      if (!factor.has_value()) continue;
+      RecordingMistake mistake;
+      mistake.what = NamesOf(measured) + " in " + unit + NotIn(stated, ours);
+      // A reference is in the unit of the pressures; no simulation depends on it.
+      for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, *factor);
+      mistake.unit = unit;
+      list_.push_back(std::move(mistake));
+    }
+  }
+  void AddTimes() {
+    const std::string stated = StatedUnit(run_.time_source, "s", kTimeUnits);
+    for (const char* unit : kTimeUnits) {
+      const std::optional<double> factor = FactorBetween(unit, "s", stated);
+      if (!factor.has_value()) continue;
+      RecordingMistake mistake;
+      mistake.what = std::string("time is in ") + unit + NotIn(stated, "s");
+      mistake.time_factor = *factor;
+      mistake.unit = unit;
+      list_.push_back(std::move(mistake));
+    }
+  }
+  void AddSign(const std::vector<SignalOfRun>& signals) {
+    const std::vector<SignalOfRun> measured = Measured(run_, signals);
+    if (measured.size() < signals.size()) return;
+    RecordingMistake mistake;
+    std::vector<std::string> names;
+    for (const SignalOfRun signal : measured) {
+      names.emplace_back(NameOf(signal));
+      mistake.factors.emplace_back(signal, -1.0);
+    }
+    mistake.what = Enumerated(names) + (names.size() > 1 ? " have" : " has") + " the wrong sign";
+    list_.push_back(std::move(mistake));
+  }
+  void AddExchange() {
+    if (!run_.p1.measured() || !run_.p2.measured() || run_.bypass) return;
+    RecordingMistake mistake;
+    mistake.what = "p1 and p2 are exchanged";
+    mistake.pressures_exchanged = true;
+    list_.push_back(std::move(mistake));
+  }
+  std::vector<RecordingMistake> Take() { return std::move(list_); }
+
+ private:
+  const Run& run_;
+  std::vector<RecordingMistake> list_;
+};
+
+void AddSignals(const Run& run, MistakeList* list) {
+  list->AddSign({&Run::voltage});
+  list->AddExchange();
+  list->AddSign({&Run::motor_speed});
+  list->AddSign({&Run::motor_angle});
+  list->AddSign({&Run::motor_speed, &Run::motor_angle});
+  if (run.shaft != model::Shaft::kClamped) {
+    list->AddSign({&Run::arm_angle});
+    list->AddSign({&Run::arm_speed});
+    list->AddSign({&Run::arm_angle, &Run::arm_speed});
+    list->AddUnits({&Run::arm_angle});
+    list->AddUnits({&Run::arm_speed});
+  }
+  if (!run.bypass) {
+    list->AddSign({&Run::p1});
+    list->AddSign({&Run::p2});
+  }
+  list->AddUnits({&Run::motor_speed});
+  list->AddUnits({&Run::motor_angle});
+  list->AddUnits({&Run::p1, &Run::p2});
+  list->AddUnits({&Run::p1});
+  list->AddUnits({&Run::p2});
+  list->AddUnits({&Run::voltage});
+}
+
+}  // namespace
+
+std::vector<RecordingMistake> PossibleMistakes(const Run& run) {
+  MistakeList list(run);
+  list.AddTimes();
+  AddSignals(run, &list);
+  return list.Take();
+}
+
+std::vector<RecordingMistake> OtherShafts(const Run& run) {
+  std::vector<RecordingMistake> others;
+  for (const auto& [name, shaft] : runs::kShafts) {
+    const bool possible = shaft != model::Shaft::kDriven && run.shaft != model::Shaft::kDriven;
+    if (!possible || shaft == run.shaft || run.bypass) continue;
+    RecordingMistake mistake;
+    mistake.what = "the shaft is " + name + ", not " + ShaftName(run.shaft);
+    mistake.shaft = shaft;
+    others.push_back(std::move(mistake));
+  }
+  return others;
+}
+
+RecordingMistake UnknownUnit(const std::vector<SignalOfRun>& signals, double factor) {
+  RecordingMistake mistake;
+  mistake.what = NamesOf(signals) + " about " + ShortNumber(factor < 1 ? 1 / factor : factor, 2) +
+                 " times too " + (factor < 1 ? "large" : "small") + "; no known unit";
+  for (const SignalOfRun signal : signals) mistake.factors.emplace_back(signal, factor);
+  return mistake;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,293 @@
+#include "diagnose/recording/run_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "diagnose/recording/sample_interval.h"
+#include "diagnose/recording/smoothed_motion.h"
+
+namespace hydro::diagnose {
+namespace {
+
+constexpr size_t kFewestOfASignal = 20;  // of one signal: slower sensors leave gaps
+
+// The row of the table of signals (runs/measured_signals.h).
+constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return &one;
+  }
+  return nullptr;
+}
+
+constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
+    SignalRow(&runs::MeasuredRun::motor_angle), SignalRow(&runs::MeasuredRun::motor_speed),
+    SignalRow(&runs::MeasuredRun::arm_angle),   SignalRow(&runs::MeasuredRun::arm_speed),
+    SignalRow(&runs::MeasuredRun::p1),          SignalRow(&runs::MeasuredRun::p2)};
+
+[[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
+                         const std::string& allowed) {
+  throw InputError(place + (signal.empty() ? "" : ": " + signal) + ": found " + found + ", allowed " +
+                   allowed);
+}
+
+// Values that no actuator reaches, in the model's own units: at least twice what its equations could hold, so
+// that only a wrong unit exceeds them and a wrong parameter does not.
+double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
+  const std::string name = row.ours;
+  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
+  if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
+  if (name == "motor_angle") return 1e9;
+  if (name == "arm_angle") return 2 * stroke;
+  if (name == "arm_speed") return 1000 * stroke;
+  return model.beta / 2;  // the oil at half its volume, eq. (5)
+}
+
+void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std::vector<double>& values,
+                double limit, const std::string& unit) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i]) || std::abs(values[i]) <= limit) continue;
+    Refuse(run.Place(i), name, ShortestNumber(values[i]) + " " + unit,
+           "-" + ShortestNumber(limit) + " to " + ShortestNumber(limit) +
+               " with this model: is the column in another unit?");
+  }
+}
+
+// Enough values, and not one alone.
+void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
+  const std::vector<double>& values = (run.*row.signal).values;
+  const size_t valid = CountValid(values);
+  if (valid < kFewestOfASignal) {
+    Refuse(run.file, row.ours, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
+           std::to_string(kFewestOfASignal) + " values or more, or leave the signal out");
+  }
+  // An arm may well stand still. And a simulation without noise reports a single number for a side on its
+  // one-way valve or a pump that sticks.
+  const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
+  if (row.arm != 0 || simulated) return;
+  size_t first = 0;
+  while (std::isnan(values[first])) ++first;
+  const bool constant = std::all_of(values.begin(), values.end(), [&](double value) {
+    return std::isnan(value) || value == values[first];
+  });
+  if (!constant) return;
+  Refuse(run.Place(first), row.ours,
+         ShortestNumber(values[first]) + " " + run.units.UnitFor(row.unit, row.arm) +
+             " here and in every later row",
+         "a signal that changes, or leave it out");
+}
+
+// `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
+// differ; where many in a row equal the largest or smallest value of all, the sensor reads no further.
+std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRange& range) {
+  constexpr size_t kInARow = 8;
+  std::vector<double> rest = values;
+  for (const double end : {range.low, range.high}) {
+    size_t longest = 0, here = 0;
+    for (const double value : values) {
+      here = value == end ? here + 1 : 0;
+      longest = std::max(longest, here);
+    }
+    if (longest < kInARow) continue;
+    for (double& value : rest) {
+      if (value == end) value = runs::kMissing;
+    }
+  }
+  return rest;
+}
+
+SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
+  const runs::MeasuredSignal& measured = run.*SignalOf(channel).signal;
+  SignalData signal;
+  signal.channel = channel;
+  signal.values = measured.values;
+  signal.stated_noise = measured.noise.value_or(runs::kMissing);
+  signal.resolution = EstimateResolution(measured.values);
+  const ValueRange range = RangeOfValues(measured.values);
+  const double size = range.size();
+  if (size == 0) {
+    // For a signal that never moves, believe the stated noise.
+    signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
+  } else {
+    std::vector<double> rest = WithoutEnds(measured.values, range);
+    double noise = EstimateNoise(rest);
+    // Without noise above the rounding, saturation cannot be told: a signal that rests at an end of its
+    // motion reads the same.
+    if (noise >= 0.6 * signal.resolution && noise >= 1e-4 * size) {
+      signal.values = std::move(rest);
+    } else {
+      noise = EstimateNoise(measured.values);
+    }
+    // Below 1e-5 of the range, the simulation itself is the source of the noise.
+    signal.noise = std::max(noise, 1e-5 * size);
+  }
+  signal.estimated_noise = signal.noise;
+  if (measured.noise.has_value()) signal.noise = *measured.noise;
+  signal.valid = CountValid(signal.values);
+  signal.saturated = CountValid(measured.values) - signal.valid;
+  return signal;
+}
+
+// The imposed motion of a driven shaft.
+std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& run,
+                                                      const model::Parameters& model) {
+  const SignalData angle = MakeSignal(run, model::Channel::kArmAngle);
+  SignalData speed;
+  if (run.arm_speed.measured()) speed = MakeSignal(run, model::Channel::kArmSpeed);
+  std::unique_ptr<trajectory::Trajectory> motion =
+      SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
+  const double stroke = model.V_ms / model.c;
+  const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
+  CheckRange(run, "arm_angle", angle.values, stroke, unit);
+  if (std::max(-motion->Min(), motion->Max()) >= stroke) {
+    Refuse(run.file, "arm_angle", "a motion that reaches the end of the stroke",
+           "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) + " " + unit +
+               ", where the model's V_1 and V_2 are above 0");
+  }
+  return motion;
+}
+
+}  // namespace
+
+const runs::SignalName& SignalOf(model::Channel channel) {
+  return *kSignalRows[static_cast<size_t>(channel)];
+}
+
+bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
+  const runs::SignalName& row = SignalOf(channel);
+  return (run.*row.signal).measured() && (row.arm == 0 || run.shaft == model::Shaft::kFree);
+}
+
+size_t CountValid(const std::vector<double>& values) {
+  return static_cast<size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+}
+
+size_t CountValid(const RunData& run) {
+  size_t count = 0;
+  for (const SignalData& signal : run.signals) count += signal.valid;
+  return count;
+}
+
+double ShortestDuration(const std::vector<const RunData*>& runs) {
+  double shortest = runs.front()->duration();
+  for (const RunData* run : runs) shortest = std::min(shortest, run->duration());
+  return shortest;
+}
+
+double SampleInterval(const std::vector<const RunData*>& runs) {
+  std::vector<const std::vector<double>*> times;
+  times.reserve(runs.size());
+  for (const RunData* run : runs) times.push_back(&run->stimulus.time);
+  return MedianInterval(times);
+}
+
+model::Stimulus StimulusOf(const runs::MeasuredRun& run) {
+  model::Stimulus stimulus;
+  stimulus.shaft = run.shaft;
+  stimulus.arm_angle = run.arm_angle_rad;
+  stimulus.bypass = run.bypass;
+  stimulus.begin = run.Begin();
+  stimulus.time = run.time;
+  stimulus.voltage = run.voltage.values;
+  return stimulus;
+}
+
+std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs) {
+  std::vector<const RunData*> pointers;
+  pointers.reserve(runs.size());
+  for (const RunData& run : runs) pointers.push_back(&run);
+  return pointers;
+}
+
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<model::StartState> starts;
+  starts.reserve(runs.size());
+  for (const RunData* run : runs) starts.push_back(run->start);
+  return starts;
+}
+
+const std::string& ChannelName(model::Channel channel) {
+  static const std::array<std::string, model::kChannels> names = {kSignalRows[0]->ours, kSignalRows[1]->ours,
+                                                                  kSignalRows[2]->ours, kSignalRows[3]->ours,
+                                                                  kSignalRows[4]->ours, kSignalRows[5]->ours};
+  return names.at(static_cast<size_t>(channel));
+}
+
+std::string ChannelUnit(model::Channel channel, const UnitSystem& units) {
+  return units.UnitFor(SignalOf(channel).unit, SignalOf(channel).arm);
+}
+
+const SignalData* RunData::Find(model::Channel channel) const {
+  for (const SignalData& signal : signals) {
+    if (signal.channel == channel) return &signal;
+  }
+  return nullptr;
+}
+
+ValueRange RangeOfValues(const std::vector<double>& values) {
+  ValueRange range;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+void CheckUsable(const runs::MeasuredRun& run) {
+  if (run.samples() < kFewestSamples) {
+    Refuse(run.file, "", std::to_string(run.samples()) + " samples",
+           std::to_string(kFewestSamples) + " or more");
+  }
+  for (size_t place = 0; place < model::kChannels; ++place) {
+    const runs::SignalName& row = SignalOf(static_cast<model::Channel>(place));
+    if ((run.*row.signal).measured()) CheckShows(run, row);
+  }
+}
+
+RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
+  CheckUsable(run);
+  RunData data;
+  data.name = run.name;
+  data.stimulus = StimulusOf(run);
+  // A thousand times the voltage that saturates the amplifier, eq. (1).
+  CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
+  for (size_t place = 0; place < model::kChannels; ++place) {
+    const auto channel = static_cast<model::Channel>(place);
+    const runs::SignalName& row = SignalOf(channel);
+    if ((run.*row.signal).measured()) {
+      CheckRange(run, row.ours, (run.*row.signal).values, LargestPossible(row, model),
+                 run.units.UnitFor(row.unit, row.arm));
+    }
+    if (!IsCompared(run, channel)) continue;
+    SignalData signal = MakeSignal(run, channel);
+    if (signal.valid >= kFewestOfASignal) data.signals.push_back(std::move(signal));
+  }
+  if (data.signals.empty()) {
+    Refuse(run.file, "", "no signal to compare with a model",
+           std::string("at least one of motor_speed, motor_angle, p1, p2") +
+               (run.shaft == model::Shaft::kFree ? ", arm_angle, arm_speed" : ""));
+  }
+  if (run.shaft == model::Shaft::kDriven) {
+    data.motion = ImposedMotion(run, model);
+    data.stimulus.motion = data.motion.get();
+  }
+  SetStart(model, &data);
+  data.measured = std::move(run);
+  return data;
+}
+
+void MakeNamesUnique(std::vector<RunData>* runs) {
+  std::set<std::string> taken;
+  for (RunData& run : *runs) {
+    const std::string own = run.name;
+    for (int number = 2; !taken.insert(run.name).second; ++number) {
+      run.name = own + " (" + std::to_string(number) + ")";
+    }
+  }
+}
+
+}  // namespace hydro::diagnose

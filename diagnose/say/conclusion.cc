@@ -1,0 +1,120 @@
+#include "diagnose/say/conclusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/number_text.h"
+#include "diagnose/fit/closure.h"
+#include "diagnose/say/candidates.h"
+#include "diagnose/say/found.h"
+#include "diagnose/say/gaps.h"
+#include "diagnose/say/judgement.h"
+#include "diagnose/say/locate.h"
+#include "diagnose/say/measured_curves.h"
+#include "diagnose/say/next_experiment.h"
+#include "diagnose/say/run_curves.h"
+#include "diagnose/say/sentence.h"
+#include "model/effects/catalogue.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+void NameRuns(const ProofContext& context, Diagnosis* d) {
+  for (const RunData* run : context.runs) {
+    d->runs.push_back(run->name);
+    d->samples += run->samples();
+  }
+  for (const RunData* run : context.held_out) d->held_out_runs.push_back(run->name);
+}
+
+// Says of the user's own effects (--effect) which were never simulated, so that nobody takes them to be ruled out.
+void RemarkOnUsersOwn(Diagnosis* d) {
+  for (const Candidate& candidate : d->candidates) {
+    const std::string id = candidate.id.substr(0, candidate.id.find(' '));
+    const bool tried = std::isfinite(candidate.held_out);
+    if (tried || model::FindEffect(id) == nullptr || model::IsBuiltIn(id)) continue;
+    d->remarks.push_back(candidate.id + " was not refitted (" + candidate.rejected_because +
+                         "), so it is not ruled out: --effects with a list of it alone tries it first");
+  }
+}
+
+// Says where windows and whole runs disagree.
+void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks) {
+  if (!std::isfinite(gap.after)) {
+    remarks->push_back(
+        std::isfinite(gap.before)
+            ? "Over whole runs the model with what was found cannot be simulated; it is judged "
+              "by windows of them"
+            : "Over whole runs no model can be simulated; windows of them are compared");
+  } else if (!std::isfinite(gap.before)) {
+    remarks->push_back(
+        "Over whole runs the model as given cannot be simulated; it is judged by windows of them");
+  } else if (IsWorse(gap)) {
+    remarks->push_back("Over whole held-out runs, where every small error adds up, the gap is " +
+                       ShortNumber(gap.after, 3) + " noise units with what was found and " +
+                       ShortNumber(gap.before, 3) + " with the model as given");
+  }
+}
+
+// Where each effect that was found acts, or shows.
+void ShowEffects(const ProofContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
+  for (const FoundEffect& effect : d->effects) {
+    if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
+      d->terms.push_back(std::move(*term));
+    } else if (std::optional<FoundStretch> stretch = StretchOf(context, proof, whole, effect.id)) {
+      d->stretches.push_back(std::move(*stretch));
+    }
+  }
+}
+
+void ShowWhere(const ProofContext& context, Diagnosis* d) {
+  const bool open = IsOpen(d->verdict);
+  Localisation located = Locate(open ? d->model : context.given, context.runs, context.jobs);
+  d->location = std::move(located.location);
+  if (d->location.empty()) d->location = WorstSignal(d->signals, d->curves, open);
+  d->missing = std::move(located.missing);
+}
+
+}  // namespace
+
+Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Proposed& proposed) {
+  context.Report("intervals", 0.95);
+  Diagnosis d;
+  for (const WeighedExplanation& one : proposed.weights.explanations)
+    d.explanations.push_back({one.changes, one.weight});
+  d.set_90 = proposed.weights.in_90;
+  d.model = proof.Found().model;
+  const std::vector<model::ModelDescription> tied = DescribeFound(context, proof, &d);
+  const WholeRuns whole = OverWholeRuns(context, proof);
+  DescribeGaps(context, whole, &d);
+  d.horizons = HorizonGaps(context, proof);
+  d.verdict = VerdictOn(d, proof, ExactSensors(context.runs));
+  if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
+    // Other values that are surely no others stay as given.
+    Proof nothing = proof;
+    nothing.best = proof.given;
+    return Conclude(context, nothing, proposed);
+  }
+  if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
+  d.candidates = CandidatesOf(context, proof, d, proposed.scores);
+  RemarkOnUsersOwn(&d);
+  d.curves = CurvesOf(context, proof, whole);
+  context.Report("where the gap is", 0.97);
+  if (d.verdict != Verdict::kNothingMissing) ShowWhere(context, &d);
+  d.measured = MeasuredCurves(context.given, d.model, context.runs, context.jobs);
+  ShowEffects(context, proof, whole, &d);
+  if (tied.size() > 1 && !TimeIsUp(context)) {
+    context.Report("the next experiment", 0.98);
+    d.next = DesignNextExperiment(tied, context.runs, WhyNext(d.effects));
+  }
+  NameRuns(context, &d);
+  if (context.held_out.empty()) d.choices = ChoicesWithoutEach(proof);
+  d.sentence = Sentence(d, GapToCompare(d, proof)) + ClosureSentence(d.closures);
+  return d;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,156 @@
+#include "diagnose/say/found.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/word_list.h"
+#include "diagnose/fit/closure.h"
+#include "diagnose/fit/intervals.h"
+#include "diagnose/prove/blind_changes.h"
+#include "diagnose/say/claims.h"
+#include "diagnose/say/found_values.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
+// Standard errors: of a normal distribution, 95 % are within.
+constexpr double kToldApart = 2;
+
+std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof) {
+  const size_t numbers = proof.Found().Free().size();
+  if (numbers == 0) return {};
+  if (!proof.told.ok()) return std::vector<Interval>(numbers, {kUnsaid, kUnsaid});
+  return Intervals(proof.told, proof.told_runs, context.jobs);
+}
+
+FoundEffect Describe(const Change& change, const model::ModelDescription& model,
+                     const std::vector<FreeParameter>& free, const std::vector<Interval>& intervals) {
+  const model::EffectInfo& info = *model::FindEffect(change.effect);
+  FoundEffect found;
+  found.id = info.id;
+  found.summary = info.summary;
+  found.equation = info.equation;
+  for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
+  const auto effect = std::find_if(model.effects.begin(), model.effects.end(),
+                                   [&](const auto& one) { return one.id == info.id; });
+  for (const model::ParameterInfo& parameter : info.parameters) {
+    const auto fitted = std::find_if(free.begin(), free.end(), [&](const FreeParameter& one) {
+      return one.name == info.id + "." + parameter.name;
+    });
+    if (fitted != free.end()) {
+      const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
+      found.parameters.push_back({parameter.name, fitted->value, interval.low, interval.high, fitted->unit});
+    } else if (parameter.role == model::Role::kPeriods && effect != model.effects.end()) {
+      const double whole = effect->parameters.at(parameter.name);
+      found.parameters.push_back({parameter.name, whole, whole, whole, parameter.UnitIn(model.units)});
+    }
+  }
+  return found;
+}
+
+// The typical squared gap of the windows without these effects of the best set; NaN where no such set was proved.
+double GapWithout(const Proof& proof, const std::vector<Change>& effects) {
+  std::vector<Change> others = proof.Best().Effects();
+  for (const Change& change : effects) std::erase(others, change);
+  const size_t place = BestWithEffects(proof.sets, others);
+  return place < proof.sets.size() ? TypicalGap(proof.sets[place].near) : kUnsaid;
+}
+
+double ShareOf(const Proof& proof, const Change& change) {
+  const double with = TypicalGap(proof.Best().near), without = GapWithout(proof, {change});
+  const double of_values = GapWithout(proof, proof.Best().Effects());
+  const double to_take = std::isnan(of_values) ? without : of_values;
+  if (!(to_take > 1) || std::isnan(without)) return kUnsaid;
+  return std::clamp((without - std::max(1.0, with)) / (to_take - 1), 0.0, 1.0);
+}
+
+// The closures, with the typical gap over windows with and without them.
+std::vector<Closure> DescribeClosures(const Proof& proof, const std::vector<Interval>& intervals) {
+  std::vector<Closure> closures = FoundClosures(proof.Found(), intervals);
+  std::vector<Change> curves = proof.Best().Effects();
+  std::erase_if(curves, [](const Change& change) { return !IsClosureEffect(change.effect); });
+  for (Closure& closure : closures) {
+    closure.before = std::sqrt(GapWithout(proof, curves));
+    closure.after = std::sqrt(TypicalGap(proof.Best().near));
+    closure.seconds = proof.seconds;
+  }
+  return closures;
+}
+
+// What the set has in the place of the best one's effects: effects or, where it has none at all, its values. "" if nothing.
+std::string InPlace(const ProvedSet& other, const ProvedSet& best) {
+  const std::vector<Change> effects = other.Effects();
+  if (effects.empty()) {
+    const std::string claim = ClaimOf(other.hypothesis);
+    return claim == kAsGiven ? "" : claim;
+  }
+  std::vector<std::string> labels;
+  for (const Change& change : effects) {
+    if (!best.hypothesis.Has(change)) labels.push_back(change.Label());
+  }
+  return Joined(labels, " + ");
+}
+
+// Whether the set is an explanation that may be true. A curve of its own can draw most effects: that it does as well is no reason to
+// doubt their names.
+bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
+  const std::vector<Change> effects = set.Effects();
+  const auto any = [&](const auto& is) { return std::any_of(effects.begin(), effects.end(), is); };
+  if (any([](const Change& change) { return IsClosureEffect(change.effect); })) return false;
+  if (d.explanations.empty()) return true;
+  if (any([](const Change& change) { return IsUnseenByBalances(change.effect); })) return true;
+  const std::string claim = ClaimOf(set.hypothesis);
+  for (size_t i = 0; i < std::min(d.set_90, d.explanations.size()); ++i) {
+    const std::string said = ClaimOfSet(d.explanations[i].changes);
+    // No balance holds its values: the set without changes is that of other values too.
+    if (said == claim || (said == kAsGiven && effects.empty())) return true;
+  }
+  return false;
+}
+
+// The places of sets that explain as much without the change.
+std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagnosis& d) {
+  std::vector<size_t> ties;
+  for (size_t i = 0; i < proof.sets.size(); ++i) {
+    const ProvedSet& other = proof.sets[i];
+    if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
+    // Both witnesses: the windows, and what the balances say for the one rather than the other.
+    const GapFall worth = WorthOf(other, proof.Best());
+    if (worth.windows > 0 && worth.logarithm > kToldApart * worth.error) continue;
+    if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
+  }
+  return ties;
+}
+
+}  // namespace
+
+std::vector<model::ModelDescription> DescribeFound(const ProofContext& context, const Proof& proof,
+                                                   Diagnosis* d) {
+  const std::vector<FreeParameter> free = proof.Found().Free();
+  const std::vector<Interval> intervals = IntervalsOf(context, proof);
+  std::vector<model::ModelDescription> models = {proof.Found().model};
+  for (const Change& change : proof.Best().Effects()) {
+    if (IsClosureEffect(change.effect)) continue;
+    FoundEffect found = Describe(change, proof.Found().model, free, intervals);
+    found.share = ShareOf(proof, change);
+    found.weight = WeightOf(change, d->explanations);
+    if (found.weight == 0 && IsUnseenByBalances(change.effect)) found.weight = kUnsaid;
+    for (const size_t place : TiesOf(change, proof, *d)) {
+      const std::string label = InPlace(proof.sets[place], proof.Best());
+      const bool there =
+          std::find(found.tied_with.begin(), found.tied_with.end(), label) != found.tied_with.end();
+      if (there) continue;
+      found.tied_with.push_back(label);
+      models.push_back(proof.sets[place].hypothesis.model);
+    }
+    d->effects.push_back(std::move(found));
+  }
+  d->closures = DescribeClosures(proof, intervals);
+  DescribeValues(context, proof, intervals, d);
+  return models;
+}
+
+}  // namespace hydro::diagnose

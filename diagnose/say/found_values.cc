@@ -1,0 +1,107 @@
+#include "diagnose/say/found_values.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "base/number_text.h"
+#include "base/word_list.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// A number of the model as given, and its value in the model that was found.
+struct OwnNumber {
+  std::string name, unit;
+  double given = 0, found = 0;
+  bool is_base = false;
+};
+
+std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::ModelDescription found) {
+  std::vector<OwnNumber> numbers;
+  for (const model::BaseParameter& base : model::BaseParameters()) {
+    numbers.push_back({base.info.name, base.info.UnitIn(given.units), given.parameters.*base.member,
+                       found.parameters.*base.member, true});
+  }
+  model::ModelDescription before = given;
+  for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
+    const std::string& id = given.effects[parameter.effect].id;
+    // Effects that are added come after those that the model has.
+    if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;
+    std::string unit;
+    for (const model::ParameterInfo& info : model::FindEffect(given.effects[parameter.effect])->parameters) {
+      if (info.name == parameter.name) unit = info.UnitIn(given.units);
+    }
+    numbers.push_back(
+        {id + "." + parameter.Label(), unit, parameter.In(&before), parameter.In(&found), false});
+  }
+  return numbers;
+}
+
+// "moves by a factor of 3" where a value moves by more than a factor of 2, which data sheets and drawings seldom miss by; "" otherwise,
+// and where it was given as 0.
+std::string WhyRemarkable(const ChangedParameter& changed) {
+  constexpr double kRemarkable = 2;
+  const double ratio = changed.fitted.value / changed.model;
+  if (changed.model == 0 || (ratio >= 1 / kRemarkable && ratio <= kRemarkable)) return "";
+  return "moves by a factor of " + ShortNumber(ratio, 3);
+}
+
+ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& interval) {
+  ChangedParameter changed;
+  changed.fitted = {number.name, number.found, interval.low, interval.high, number.unit};
+  changed.model = number.given;
+  changed.why = WhyRemarkable(changed);
+  changed.implausible = !changed.why.empty();
+  return changed;
+}
+
+bool LooksTheSame(const OwnNumber& number) { return ShortNumber(number.found) == ShortNumber(number.given); }
+
+}  // namespace
+
+void DescribeValues(const ProofContext& context, const Proof& proof, const std::vector<Interval>& intervals,
+                    Diagnosis* d) {
+  const Hypothesis& hypothesis = proof.Found();
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  const std::vector<bool> rests =
+      proof.told.ok() ? RestOnKnown(proof.told) : std::vector<bool>(free.size(), false);
+  std::vector<std::string> unsure, resting;
+  for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
+    const auto it = std::find_if(free.begin(), free.end(),
+                                 [&](const FreeParameter& one) { return one.name == number.name; });
+    const auto place = static_cast<size_t>(it - free.begin());
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const bool held = it == free.end();
+    if (held && LooksTheSame(number)) continue;
+    const Interval interval = held ? Interval{kUnknown, kUnknown} : intervals[place];
+    // What is held of the base values follows from those that are free: a displacement scales all flows.
+    const bool follows = held && number.is_base;
+    const bool as_given = number.given >= interval.low && number.given <= interval.high;
+    if (follows || (hypothesis.known != nullptr && as_given)) {
+      if (!LooksTheSame(number)) {
+        unsure.push_back(number.name + " = " + ShortNumber(number.found) + " (was " +
+                         ShortNumber(number.given) + ")");
+      }
+      continue;
+    }
+    d->parameters.push_back(DescribeParameter(number, interval));
+    d->parameters.back().resting = !held && rests[place];
+    if (d->parameters.back().resting) resting.push_back(number.name);
+  }
+  if (!resting.empty()) {
+    d->remarks.push_back(
+        "These runs do not show " + Enumerated(resting) +
+        " apart from other values: what is said of them rests on how well the model's values are known "
+        "([uncertainty] in the model file; --free names those to refit)");
+  }
+  if (!unsure.empty()) {
+    d->remarks.push_back(
+        "model.toml has refitted values that these runs do not show to differ from those given: " +
+        Joined(unsure));
+  }
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,155 @@
+#include "diagnose/say/per_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/number_text.h"
+#include "diagnose/evidence/run_values.h"
+#include "diagnose/prove/proved_set.h"
+#include "diagnose/recording/windows.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// Each fourth window of a run judges, and the balances do not see it; with eight of each run, a difference of 5 % shows in a few runs.
+constexpr size_t kEach = 4, kJudgingOfARun = 8;
+
+// The run with everything taken out that was measured during the windows.
+RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& windows) {
+  RunData rest;
+  rest.name = run.name;
+  rest.measured = run.measured;
+  rest.stimulus = run.stimulus;
+  rest.signals = run.signals;
+  const auto take = [&](std::vector<double>* values) {
+    for (size_t i = 0; i < values->size(); ++i) {
+      const double time = run.stimulus.time[i];
+      const bool within = std::any_of(windows.begin(), windows.end(), [time](const RunData* window) {
+        return time >= window->stimulus.time.front() && time <= window->stimulus.time.back();
+      });
+      if (within) (*values)[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  for (SignalData& signal : rest.signals) take(&signal.values);
+  return rest;
+}
+
+// All runs, cut into what is estimated from and what judges.
+struct CutRuns {
+  std::vector<const RunData*> runs;
+  std::vector<RunData> windows, rest;
+  JudgingWindows judging;
+  bool possible = false;  // each run has a window that judges
+
+  explicit CutRuns(const ProofContext& context) : runs(context.runs) {
+    runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
+    judging.seconds = ProofWindowsOf(context).near.seconds;
+    possible = runs.size() > 1;
+    std::vector<std::pair<size_t, size_t>> chosen;  // places among `windows`, and their runs
+    for (size_t r = 0; r < runs.size(); ++r) {
+      std::vector<RunData> all = WindowsOf(*runs[r], judging.seconds, context.given.parameters);
+      const std::vector<const RunData*> judge = EvenlySpread(all, kJudgingOfARun, 1, kEach);
+      possible = possible && !judge.empty();
+      rest.push_back(WithoutWindows(*runs[r], judge));
+      for (RunData& window : all) {
+        if (std::find(judge.begin(), judge.end(), &window) == judge.end()) continue;
+        chosen.emplace_back(windows.size(), r);
+        windows.push_back(std::move(window));
+      }
+    }
+    for (const auto& [place, run] : chosen) {
+      judging.windows.push_back(&windows[place]);
+      judging.runs.push_back(run);
+    }
+  }
+};
+
+// What windows say of it that the balances did not see.
+ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, const RunValues& of, int jobs) {
+  const model::BaseParameter& base = model::BaseParameters()[of.base];
+  ValueByRun value;
+  value.name = base.info.name;
+  value.unit = base.info.UnitIn(model.units);
+  model::ModelDescription shared = model;
+  shared.parameters.*base.member = of.common;
+  std::vector<model::ModelDescription> own(cut.runs.size(), model);
+  for (size_t r = 0; r < own.size(); ++r) {
+    own[r].parameters.*base.member = of.value[r];
+    value.values.push_back({cut.runs[r]->name, of.value[r], of.low[r], of.high[r], ""});
+  }
+  const std::vector<WindowGap> before =
+      GapsOfWindows([&](size_t) -> const model::ModelDescription& { return shared; }, cut.judging, jobs);
+  const std::vector<WindowGap> after = GapsOfWindows(
+      [&](size_t run) -> const model::ModelDescription& { return own[run]; }, cut.judging, jobs);
+  value.before = std::sqrt(TypicalGap(before));
+  value.after = std::sqrt(TypicalGap(after));
+  value.differs = of.gain > 0 && FallOf(before, after).Exceeds(kPartOfValues);
+  return value;
+}
+
+}  // namespace
+
+double ValueByRun::Spread() const {
+  double mean = 0, square = 0, count = 0;
+  for (const Estimated& run : values) {
+    if (std::isnan(run.value)) continue;
+    mean += run.value;
+    count += 1;
+  }
+  if (count < 2 || mean == 0) return 0;
+  mean /= count;
+  for (const Estimated& run : values) {
+    if (!std::isnan(run.value)) square += std::pow(run.value - mean, 2);
+  }
+  return std::sqrt(square / (count - 1)) / std::abs(mean);
+}
+
+std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::ModelDescription& model,
+                                    const std::vector<std::string>& asked,
+                                    const std::vector<size_t>& allowed) {
+  const CutRuns cut(context);
+  if (!cut.possible) return {};
+  std::vector<size_t> places;
+  for (const std::string& name : asked) places.push_back(model::BasePlace(name));
+  if (asked.empty()) places = ValuesOfADay(allowed);
+  std::vector<RunValues> all;
+  for (const size_t base : places) {
+    if (const std::optional<RunValues> values = ValuesOfRuns(model, PointersTo(cut.rest), base, context.jobs))
+      all.push_back(*values);
+  }
+  std::vector<ValueByRun> values;
+  if (!asked.empty()) {
+    for (const RunValues& one : all) values.push_back(Judged(cut, model, one, context.jobs));
+    return values;
+  }
+  const auto likeliest = std::max_element(all.begin(), all.end(), [](const RunValues& a, const RunValues& b) {
+    return a.log_evidence < b.log_evidence;
+  });
+  if (likeliest == all.end() || !(likeliest->gain > 0)) return values;
+  ValueByRun value = Judged(cut, model, *likeliest, context.jobs);
+  if (value.differs) values.push_back(std::move(value));
+  return values;
+}
+
+std::string RemarkOn(const ValueByRun& value) {
+  // A single recording was cut into a part to fit and a part to hold out.
+  const bool parts = value.values.size() == 2 && value.values[1].name.starts_with(value.values[0].name + ",");
+  const std::string between = parts ? "from one part of the recording to the other" : "from run to run";
+  if (!value.differs) return value.name + " does not differ " + between;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Estimated& run : value.values) {
+    if (std::isnan(run.value)) continue;
+    low = std::min(low, run.value);
+    high = std::max(high, run.value);
+  }
+  return value.name + " differs " + between + " by " + ShortNumber(100 * value.Spread(), 2) + " % (" +
+         ShortNumber(low, 3) + " to " + ShortNumber(high, 3) + " " + value.unit +
+         "): with a value of its own for each, the typical gap of its windows is " +
+         ShortNumber(value.after, 3) + " instead of " + ShortNumber(value.before, 3) + " noise units";
+}
+
+}  // namespace hydro::diagnose

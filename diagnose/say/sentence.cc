@@ -1,0 +1,175 @@
+#include "diagnose/say/sentence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/number_text.h"
+#include "base/word_list.h"
+#include "diagnose/say/claims.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+std::string WordsFor(const std::string& rival) {
+  const std::string begin = "parameter ", between = " + " + begin;
+  if (rival == "parameters") return "other values of the model's parameters";
+  if (!rival.starts_with(begin)) return rival;
+  std::vector<std::string> names;
+  for (size_t at = begin.size(); at < rival.size();) {
+    const size_t end = std::min(rival.find(between, at), rival.size());
+    names.push_back(rival.substr(at, end - at));
+    at = end + between.size();
+  }
+  return (names.size() == 1 ? "another value of " : "other values of ") + Enumerated(names);
+}
+
+std::vector<std::string> EffectsOf(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : d.effects) {
+    std::string name = effect.summary + " [" + effect.id + "]";
+    if (!effect.tied_with.empty()) name += " (or " + Joined(InWords(effect.tied_with), ", or ") + ")";
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> ParametersOf(const Diagnosis& d) {
+  std::vector<std::string> parameters;
+  for (const ChangedParameter& changed : d.parameters) {
+    if (changed.resting) continue;
+    parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
+                         ShortNumber(changed.model));
+  }
+  if (parameters.empty() && d.effects.empty()) {
+    parameters.emplace_back("several together, none of which these runs show alone (see the remarks)");
+  }
+  return parameters;
+}
+
+// "Missing: a and b; with J = 0.02 instead of 0.01", or "Other values: J = ..." without effects.
+std::string Found(const std::string& missing, const std::string& values,
+                  const std::vector<std::string>& effects, const std::vector<std::string>& parameters) {
+  if (effects.empty()) return values + Enumerated(parameters);
+  return missing + Enumerated(effects) + (parameters.empty() ? "" : "; with " + Enumerated(parameters));
+}
+
+bool Tied(const Diagnosis& d) {
+  return std::any_of(d.effects.begin(), d.effects.end(),
+                     [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
+}
+
+// Whether the gap falls by what a reader sees in its digits. From what a model cannot follow it falls to whatever is left.
+bool Falls(const BeforeAfter& gap) {
+  if (!std::isfinite(gap.before)) return std::isfinite(gap.after);
+  return gap.after < gap.before && ShortNumber(gap.before, 3) != ShortNumber(gap.after, 3);
+}
+
+std::string GapOf(const ComparedGap& compared) {
+  const BeforeAfter& gap = compared.gap;
+  const std::string over = compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "";
+  const std::string before = ShortNumber(gap.before, 3), after = ShortNumber(gap.after, 3);
+  if (!std::isfinite(gap.after)) {
+    return " (" + std::string(std::isfinite(gap.before) ? "with it the model" : "the model") +
+           " cannot follow the held-out runs" + over + ").";
+  }
+  if (!std::isfinite(gap.before)) {
+    return " (the model as given cannot follow the held-out runs" + over + "; " + after +
+           " noise units are left).";
+  }
+  if (before == after) return " (the held-out gap" + over + " stays at " + before + " noise units).";
+  return " (held-out gap" + over + " " + before + " to " + after + " noise units).";
+}
+
+std::string Unexplained(const BeforeAfter& gap, const std::vector<std::string>& effects) {
+  std::string sentence = "Something is missing that no known effect explains";
+  if (effects.empty()) return sentence;
+  if (!Falls(gap))
+    return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the held-out gap";
+  sentence += "; the nearest is " + Enumerated(effects);
+  if (!std::isfinite(gap.before)) return sentence;
+  const double left = (gap.after * gap.after - 1) / (gap.before * gap.before - 1);
+  return sentence + ", which leaves " + ShortNumber(100 * left, 2) + " % of the squared gap";
+}
+
+std::string Partly(const Diagnosis& d, const std::vector<std::string>& effects,
+                   const std::vector<std::string>& parameters) {
+  if (effects.empty() && !d.closures.empty()) {
+    std::string sentence = Unexplained({}, {}) + "; a curve closes a part of the gap";
+    return parameters.empty() || d.parameters.empty() ? sentence
+                                                      : sentence + ", with " + Enumerated(parameters);
+  }
+  return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ", effects,
+               parameters) +
+         (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
+                  : "; nothing else that was tried takes as much of the gap") +
+         ", and a significant gap is left";
+}
+
+}  // namespace
+
+std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
+  const std::string gap = GapOf(compared);
+  const std::vector<std::string> effects = EffectsOf(d), parameters = ParametersOf(d);
+  switch (d.verdict) {
+    case Verdict::kNothingMissing:
+      return "Nothing is missing: the model as given explains the data to " +
+             ShortNumber(compared.gap.before, 3) + " noise units" +
+             (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s." : ".");
+    case Verdict::kParameters:
+      return "The equations suffice with other values: " + Enumerated(parameters) + gap;
+    case Verdict::kNamed:
+      return Found("Missing: ", "", effects, parameters) + gap;
+    case Verdict::kTied:
+      return Found("Missing, but these data cannot tell which: ", "", effects, parameters) + gap;
+    case Verdict::kPartly:
+      return Partly(d, effects, parameters) + gap;
+    case Verdict::kUnexplained:
+      return Unexplained(compared.gap, effects) + gap;
+  }
+  return "";
+}
+
+std::vector<std::string> InWords(const std::vector<std::string>& rivals) {
+  std::vector<std::string> words;
+  words.reserve(rivals.size());
+  for (const std::string& rival : rivals) words.push_back(WordsFor(rival));
+  return words;
+}
+
+std::string WhyNext(const std::vector<FoundEffect>& effects) {
+  for (const FoundEffect& effect : effects) {
+    if (!effect.tied_with.empty()) {
+      return "distinguishes " + effect.id + " from " + Enumerated(InWords(effect.tied_with));
+    }
+  }
+  return "";
+}
+
+std::string ChoiceRemark(const std::vector<ChoiceWithout>& choices) {
+  std::map<std::string, std::vector<std::string>> others;  // runs by what is chosen without them
+  std::vector<std::string> runs;
+  for (const ChoiceWithout& choice : choices) {
+    if (choice.same) continue;
+    others[choice.chosen].push_back(choice.run);
+    runs.push_back(choice.run);
+  }
+  const std::string begin = "Each run was predicted from the others, with values that were not fitted to it";
+  if (others.empty()) {
+    return begin + "; among what was tried, the others choose the same without it";
+  }
+  std::vector<std::string> said;
+  for (const auto& [chosen, without] : others) {
+    std::vector<std::string> named;
+    for (const std::string& run : without) named.push_back(RunNamed(run));
+    said.push_back("without " + Joined(named, " or ") + " the others choose " +
+                   (chosen == kAsGiven ? "the model as given" : InWords({chosen}).front()));
+  }
+  return begin + "; but " + Enumerated(said) + ": how well " + RunsNamed(runs) +
+         (runs.size() == 1 ? " is" : " are") +
+         " predicted is no proof of what was found. For one, fit two runs or more and name another with "
+         "--hold-out";
+}
+
+}  // namespace hydro::diagnose

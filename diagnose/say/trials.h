@@ -1,0 +1,45 @@
+// The experiments that a rig may be asked for next, and how each is written as a configuration.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnose/recording/run_data.h"
+#include "model/response.h"
+#include "trajectory/trajectory.h"
+
+namespace hydro::diagnose {
+
+// What the rig has been through, and how precisely its sensors measure.
+struct Rig {
+  double voltage = 0, pressure = 0, speed = 0;
+  double low_angle = std::numeric_limits<double>::infinity(), high_angle = -low_angle;
+  bool free = false, clamped = false;
+  std::array<double, model::kChannels> noise{};  // 0: not measured
+};
+
+Rig Inspect(const std::vector<const RunData*>& runs);
+
+// One experiment on voltage, with the shaft free or clamped.
+struct Trial {
+  model::Shaft shaft = model::Shaft::kClamped;
+  double arm_angle = 0;
+  bool bypass = false;
+  std::string reference;  // keys of the [reference] table
+  std::shared_ptr<const trajectory::Trajectory> voltage;
+  double separation = 0;
+};
+
+// Steps, sines and chirps of several sizes, as far as the rig has been driven, for each way to hold the
+// shaft.
+std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p);
+
+model::Stimulus StimulusOf(const Trial& trial);
+
+// The stack configuration that runs the trial on the model of model.toml.
+std::string Configuration(const Trial& trial, const Rig& rig);
+
+}  // namespace hydro::diagnose

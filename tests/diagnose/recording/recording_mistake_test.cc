@@ -1,0 +1,138 @@
+#include "diagnose/recording/recording_mistake.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "diagnose/recording/other_side.h"
+#include "diagnose/recording/sidecar_lines.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::ElementsAre;
+
+runs::MeasuredRun Bench() {
+  runs::MeasuredRun run;
+  run.shaft = model::Shaft::kClamped;
+  run.time = {0, 1, 2};
+  run.time_source = {"t"};
+  run.voltage = {{1, 2, 3}, {}, {"V"}};
+  run.p1 = {{10, 20, 30}, 0.5, {"P1"}};
+  run.p2 = {{40, 50, 60}, 0.7, {"P2", 2, 3}};
+  return run;
+}
+
+RecordingMistake Mistake(const std::string& what) {
+  const std::vector<RecordingMistake> all = PossibleMistakes(Bench());
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.what == what; });
+  EXPECT_NE(found, all.end()) << what;
+  return found == all.end() ? RecordingMistake() : *found;
+}
+
+// Tests that only mistakes in what is measured are possible, and exchanged pressures not with the bypass open.
+TEST(RecordingMistake, OfWhatIsMeasured) {
+  for (const RecordingMistake& mistake : PossibleMistakes(Bench())) {
+    EXPECT_EQ(mistake.what.find("motor"), std::string::npos) << mistake.what;
+    EXPECT_EQ(mistake.what.find("arm"), std::string::npos) << mistake.what;
+  }
+  runs::MeasuredRun bypass = Bench();
+  bypass.bypass = true;
+  for (const RecordingMistake& mistake : PossibleMistakes(bypass)) EXPECT_FALSE(mistake.pressures_exchanged);
+  Mistake("p1 and p2 are exchanged");
+}
+
+// Tests that values, noise, and the sidecar's scale and offset are corrected together.
+TEST(RecordingMistake, Correct) {
+  runs::MeasuredRun run = Bench();
+  Correct(Mistake("p1 and p2 are in bar"), &run);
+  EXPECT_NEAR(run.p1.values[1], 290.075, 1e-3);
+  EXPECT_NEAR(*run.p1.noise, 7.2519, 1e-4);
+  EXPECT_NEAR(run.p2.source.scale, 29.0075, 1e-4);
+  EXPECT_NEAR(run.p2.source.offset, 43.5113, 1e-4);
+  run = Bench();
+  Correct(Mistake("p1 and p2 are exchanged"), &run);
+  Correct(Mistake("voltage has the wrong sign"), &run);
+  EXPECT_THAT(run.p1.values, ElementsAre(40, 50, 60));
+  EXPECT_THAT(run.voltage.values, ElementsAre(-1, -2, -3));
+  run = Bench();
+  Correct(Mistake("time is in ms"), &run);
+  EXPECT_THAT(run.time, ElementsAre(0, 0.001, 0.002));
+}
+
+// Tests the lines that mend a sidecar: a unit where nothing else is said of the column, else scale and offset.
+TEST(RecordingMistake, SidecarLines) {
+  const runs::MeasuredRun run = Bench();
+  EXPECT_EQ(SidecarLines({Mistake("time is in ms")}, run), "time = { column = \"t\", unit = \"ms\" }");
+  EXPECT_EQ(SidecarLines({Mistake("voltage has the wrong sign")}, run),
+            "voltage = { column = \"V\", scale = -1 }");
+  EXPECT_EQ(SidecarLines({Mistake("p1 and p2 are in bar")}, run),
+            "p1 = { column = \"P1\", unit = \"bar\" }; "
+            "p2 = { column = \"P2\", scale = 2, offset = 3, unit = \"bar\" }");
+  EXPECT_EQ(SidecarLines({Mistake("p1 and p2 are exchanged")}, run),
+            "p1 = { column = \"P2\", scale = 2, offset = 3 }; p2 = { column = \"P1\" }");
+}
+
+// Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign, too.
+TEST(RecordingMistake, StatedUnit) {
+  runs::MeasuredRun run = Bench();
+  run.p1.source.scale = run.p2.source.scale = 14.5037738;
+  const std::vector<RecordingMistake> all = PossibleMistakes(run);
+  std::vector<std::string> pressures;
+  for (const RecordingMistake& mistake : all) {
+    if (mistake.factors.size() == 2) pressures.push_back(mistake.what);
+  }
+  EXPECT_THAT(pressures, ElementsAre("p1 and p2 are in mbar, not in bar", "p1 and p2 are in kPa, not in bar",
+                                     "p1 and p2 are in MPa, not in bar", "p1 and p2 are in Pa, not in bar",
+                                     "p1 and p2 are in psi, not in bar"));
+  const auto psi = std::find_if(
+      all.begin(), all.end(), [](const auto& one) { return one.what == "p1 and p2 are in psi, not in bar"; });
+  ASSERT_NE(psi, all.end());
+  EXPECT_NEAR(psi->factors[0].second, 1 / 14.5037738, 1e-8);
+  run = Bench();
+  run.motor_speed = {{1, 2, 3}, {}, {"N"}};
+  std::vector<RecordingMistake> both;
+  for (const RecordingMistake& mistake : PossibleMistakes(run)) {
+    if (mistake.what == "motor_speed is in rpm" || mistake.what == "motor_speed has the wrong sign") {
+      both.push_back(mistake);
+    }
+  }
+  EXPECT_EQ(SidecarLines(both, run), "motor_speed = { column = \"N\", scale = -1, unit = \"rpm\" }");
+}
+
+// Tests that every set of mistakes has a twin: the recording seen from the other side.
+TEST(RecordingMistake, SeenFromTheOtherSide) {
+  runs::MeasuredRun run = Bench();
+  run.motor_speed = {{1, 2, 3}, {}, {"N"}};
+  const auto twin = [&run](const std::vector<std::string>& what) {
+    std::vector<RecordingMistake> mistakes;
+    for (const RecordingMistake& one : PossibleMistakes(run)) {
+      if (std::find(what.begin(), what.end(), one.what) != what.end()) mistakes.push_back(one);
+    }
+    std::vector<std::string> other;
+    const auto seen = SeenFromTheOtherSide(mistakes, run);
+    if (!seen.has_value()) return other;
+    for (const RecordingMistake& one : *seen) other.push_back(one.what);
+    return other;
+  };
+  EXPECT_THAT(twin({"voltage has the wrong sign", "p1 and p2 are exchanged", "motor_speed is in rpm"}),
+              ElementsAre("motor_speed has the wrong sign", "motor_speed is in rpm"));
+  EXPECT_THAT(twin({"motor_speed has the wrong sign"}),
+              ElementsAre("voltage has the wrong sign", "p1 and p2 are exchanged"));
+  run.p2 = {};
+  EXPECT_FALSE(SeenFromTheOtherSide({}, run).has_value()) << "no sidecar can exchange one pressure";
+}
+
+// Tests which mistakes the effect sensor.sign can stand for: one sensor, never the command.
+TEST(RecordingMistake, InvertedSensor) {
+  runs::MeasuredRun run = Bench();
+  run.motor_speed.values = {1, 2, 3};
+  std::vector<std::string> inverted;
+  for (const RecordingMistake& mistake : PossibleMistakes(run)) {
+    if (!mistake.InvertedSensor().empty()) inverted.push_back(mistake.InvertedSensor());
+  }
+  EXPECT_THAT(inverted, ElementsAre("motor_speed", "p1", "p2"));
+}
+
+}  // namespace
+}  // namespace hydro::diagnose

@@ -1,0 +1,144 @@
+// The verdict by the gaps that are left, on made-up ones.
+#include "diagnose/say/judgement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/diagnose/say/made_up.h"
+
+namespace hydro::testing {
+namespace {
+
+using diagnose::Verdict;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// A lag that was found; windows judged.
+struct Judged {
+  diagnose::Proof proof = ProofOf({Leaving(400, Freed({})), Leaving(100, Freed({}, {kLag}))});
+  diagnose::Diagnosis d;
+
+  // Gaps over 0.4 s and 1.6 s: as given, with other values, with the lag.
+  Judged(diagnose::BeforeAfter near, diagnose::BeforeAfter far) {
+    d.horizons = {{0.1, {}, {}, {}, {2, 2, 1}}, {0.4, {}, {}, {}, near}, {1.6, {}, {}, {}, far}};
+    d.fit = d.held_out = {20, 15, 10};
+    d.effects.emplace_back().id = "amp.lag";
+  }
+
+  Verdict Of() const { return VerdictOn(d, proof, false); }
+  // The model as given, or other values of it, is best.
+  void FindNoEffect(const std::vector<std::string>& values) {
+    d.effects.clear();
+    proof.sets.back().hypothesis = Freed(values);
+  }
+};
+
+// Tests that windows that are left at the noise name the effect whatever whole runs add up to, and that more is a part.
+TEST(VerdictOn, WindowsDecide) {
+  EXPECT_EQ(Judged({12, 6, 1.2}, {30, 12, 2}).Of(), Verdict::kNamed);
+  EXPECT_EQ(Judged({12, 6, 1.9}, {30, 12, 2}).Of(), Verdict::kPartly);
+  EXPECT_EQ(Judged({12, 6, 1.2}, {30, 12, 9}).Of(), Verdict::kPartly)
+      << "more than errors of values add up to";
+  Judged tied({12, 6, 1.2}, {30, 12, 2});
+  tied.d.effects[0].tied_with = {"amp.delay"};
+  EXPECT_EQ(tied.Of(), Verdict::kTied);
+  Judged whole({12, 6, 1.2}, {30, 12, 2});
+  whole.proof.seconds = 0;
+  EXPECT_EQ(whole.Of(), Verdict::kPartly) << "where whole runs judge, they are far from the noise";
+}
+
+// Tests that gaps that are not finite reject nothing.
+TEST(VerdictOn, WhatCannotBeFollowedRejectsNothing) {
+  Judged one({kInfinite, std::nan(""), 1.2}, {std::nan(""), std::nan(""), std::nan("")});
+  one.d.fit = one.d.held_out = {kInfinite, kInfinite, kInfinite};
+  EXPECT_EQ(one.Of(), Verdict::kNamed);
+  EXPECT_FALSE(diagnose::IsWorse({kInfinite, 1, kInfinite}));
+  EXPECT_FALSE(diagnose::IsWorse({2, 1, kInfinite}));
+  EXPECT_TRUE(diagnose::IsWorse({2, 1, 3}));
+}
+
+// Tests that a gap that is left beside an effect of which the balances say nothing is unexplained, unless they cannot see it or say
+// what it is tied with.
+TEST(VerdictOn, AGapBesideASingleWitness) {
+  Judged one({12, 6, 3}, {30, 12, 9});
+  one.d.explanations = {{{"amp.lag"}, 0.05}, {{"amp.delay"}, 0.95}};
+  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  one.d.explanations = {{{"amp.delay"}, 1}};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.d.effects[0].tied_with = {"amp.delay"};
+  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  one.d.effects[0].tied_with.clear();
+  one.d.effects[0].id = "valve.relief";
+  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  one.d.effects[0].id = "amp.lag";
+  one.d.horizons[1].typical.after = 1.2;
+  one.d.horizons[2].typical.after = 2;
+  EXPECT_EQ(one.Of(), Verdict::kNamed) << "no gap is left";
+}
+
+// Tests values alone: parameters at the noise, a part above it, and nothing missing where the model as given is at the noise too and
+// none of them is surely another.
+TEST(VerdictOn, ValuesAlone) {
+  Judged one({12, 1.2, 1.2}, {30, 2, 2});
+  one.FindNoEffect({"b", "T_s", "J", "beta"});
+  EXPECT_EQ(one.Of(), Verdict::kParameters);
+  one.d.horizons[1].typical = {12, 3, 3};
+  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  one.d.horizons[1].typical = {1.2, 1.1, 1.1};
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+}
+
+// Tests that nothing is missing only where whole runs say so too, as far as the model can follow them.
+TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
+  Judged one({1.05, 1.05, 1.05}, {1.1, 1.1, 1.1});
+  one.FindNoEffect({});
+  one.d.fit = one.d.held_out = {1.05, 1.05, 1.05};
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+  one.d.fit = one.d.held_out = {3, 3, 3};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.d.held_out.after = kInfinite;
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+}
+
+// Tests that a curve is a part of the gap and no cause: beside an effect a part is found, alone nothing is explained.
+TEST(VerdictOn, AClosureIsAPart) {
+  Judged one({12, 6, 1.1}, {30, 12, 1.5});
+  one.d.closures.emplace_back().id = "closure.pump_torque";
+  EXPECT_EQ(one.Of(), Verdict::kPartly);
+  one.d.effects.clear();
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+}
+
+// Tests that the gap that is compared is of the horizon next to 0.4 s that has one.
+TEST(GapToCompare, OfTheNearestHorizon) {
+  Judged one({12, 6, std::nan("")}, {30, 12, 5});
+  one.d.horizons.erase(one.d.horizons.begin());
+  const diagnose::ComparedGap gap = GapToCompare(one.d, one.proof);
+  EXPECT_EQ(gap.seconds, 1.6);
+  EXPECT_EQ(gap.gap.after, 5);
+  one.proof.seconds = 0;
+  EXPECT_EQ(GapToCompare(one.d, one.proof).seconds, 0);
+  EXPECT_EQ(GapToCompare(one.d, one.proof).gap.after, 10);
+}
+
+// Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
+TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
+  Judged one({50, 50, 2}, {50, 50, 2});
+  EXPECT_EQ(VerdictOn(one.d, one.proof, false), Verdict::kPartly);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, true), Verdict::kNamed);
+  const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
+  EXPECT_FALSE(diagnose::ExactSensors(PointersTo(noisy)));
+  NoisyRig exact;
+  exact.model = Table1With();
+  exact.pressure_noise = exact.speed_noise = 0;
+  exact.encoder_bits = 26;
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(
+      exact.Record("exact", model::Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
+  EXPECT_TRUE(diagnose::ExactSensors(PointersTo(runs)));
+}
+
+}  // namespace
+}  // namespace hydro::testing

@@ -1,0 +1,108 @@
+// Verdicts in words.
+#include "diagnose/say/sentence.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+namespace hydro::testing {
+namespace {
+
+using diagnose::Verdict;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+diagnose::Diagnosis With(Verdict verdict, std::vector<std::string> tied_with = {}) {
+  diagnose::Diagnosis d;
+  d.verdict = verdict;
+  d.held_out = {20, 12, 1.05};
+  diagnose::FoundEffect lag;
+  lag.id = "amp.lag";
+  lag.summary = "the amplifier lags";
+  lag.tied_with = std::move(tied_with);
+  d.effects = {lag};
+  return d;
+}
+
+// The sentence on whole runs.
+std::string Said(const diagnose::Diagnosis& d) { return diagnose::Sentence(d, {d.held_out, 0}); }
+
+// Tests that rivals are named in words, other values among them.
+TEST(Sentence, RivalsInWords) {
+  EXPECT_EQ(Said(With(Verdict::kNamed)),
+            "Missing: the amplifier lags [amp.lag] (held-out gap 20 to 1.05 noise units).");
+  const diagnose::Diagnosis tied =
+      With(Verdict::kTied, {"amp.delay", "parameter J + parameter b", "parameters"});
+  EXPECT_THAT(Said(tied), HasSubstr("[amp.lag] (or amp.delay, or other values of J and "
+                                    "b, or other values of the model's parameters)"));
+  EXPECT_EQ(diagnose::WhyNext(tied.effects),
+            "distinguishes amp.lag from amp.delay, other values of J and b and other values of the model's "
+            "parameters");
+  EXPECT_EQ(diagnose::WhyNext(With(Verdict::kNamed).effects), "");
+}
+
+// Tests that values alone can explain a part.
+TEST(Sentence, ValuesThatExplainAPart) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  d.effects.clear();
+  diagnose::ChangedParameter b;
+  b.fitted.name = "b";
+  b.fitted.value = 0.03;
+  b.model = 0.02;
+  d.parameters = {b};
+  EXPECT_THAT(Said(d), StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
+}
+
+// Tests that a change that rounds to nothing is not claimed.
+TEST(Sentence, NoImprovementIsClaimed) {
+  diagnose::Diagnosis d = With(Verdict::kUnexplained);
+  d.held_out = {0.9981, 0.998, 0.9979};
+  EXPECT_THAT(Said(d), AllOf(HasSubstr("takes nothing of the held-out gap"),
+                             HasSubstr("the held-out gap stays at 0.998 noise units")));
+}
+
+// Tests that a value which the runs do not show apart from others is left to its remark.
+TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  diagnose::ChangedParameter b, J;
+  b.fitted.name = "b";
+  J.fitted.name = "J";
+  J.resting = true;
+  d.parameters = {b, J};
+  EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = "))));
+}
+
+// Tests that a model that cannot follow the runs is said to be that, and no number stands for it.
+TEST(Sentence, WhatCannotBeFollowed) {
+  diagnose::Diagnosis d = With(Verdict::kNamed);
+  d.held_out.before = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(Said(d), AllOf(StartsWith("Missing: the amplifier lags"),
+                             HasSubstr("the model as given cannot follow the held-out runs; 1.05 noise "
+                                       "units are left")));
+  d.verdict = Verdict::kUnexplained;
+  EXPECT_THAT(Said(d),
+              AllOf(HasSubstr("the nearest is the amplifier lags [amp.lag] ("), Not(HasSubstr("%"))));
+  d.held_out.after = std::nan("");
+  EXPECT_THAT(Said(d), HasSubstr("the model cannot follow the held-out runs"));
+}
+
+// Tests that a gap of windows is said with the time that they reach.
+TEST(Sentence, AGapOverWindows) {
+  EXPECT_THAT(diagnose::Sentence(With(Verdict::kNamed), {{11, 6, 1.2}, 0.4}),
+              HasSubstr("(held-out gap over 0.4 s 11 to 1.2 noise units)"));
+}
+
+// Tests that a curve alone is no cause.
+TEST(Sentence, ACurveAlone) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  d.effects.clear();
+  d.closures.emplace_back().id = "closure.pump_torque";
+  EXPECT_THAT(Said(d),
+              StartsWith("Something is missing that no known effect explains; a curve closes a part"));
+}
+
+}  // namespace
+}  // namespace hydro::testing
