@@ -210,7 +210,12 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
       best += Top(std::prev(here)->second, here->second, std::next(here)->second, width);
     at.parameters[shape] = std::exp(best);
   }
+  const Rows before = rows_;
+  const Shape shape_before = ShapeOf(variant);
   Take(variant, runs_->MakeShapeRows(variant, {at}), at);
+  if (SetEvidence(rows_).Shows(set)) return;
+  rows_ = before;
+  Restore(shape_before);
 }
 
 // An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
@@ -238,12 +243,13 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
     const Rows before = rows_;
     const Shape shape_before = ShapeOf(variant);
     Take(variant, runs_->MakeShapeRows(variant, {at}), at);
-    fit = SetEvidence(rows_).Fit(set);
-    if (fit.log_evidence >= evidence) {
+    const SetEvidence moved(rows_);
+    if (moved.Shows(set)) fit = moved.Fit(set);
+    if (moved.Shows(set) && fit.log_evidence >= evidence) {
       evidence = fit.log_evidence;
       continue;
     }
-    // A step too far, as of a resonance, whose phase turns within a few per cent.
+    // A step too far, as of a resonance, whose phase turns within a few per cent, or of a limit that the runs then never reach.
     rows_ = before;
     Restore(shape_before);
     return;

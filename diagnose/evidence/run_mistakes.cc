@@ -24,6 +24,11 @@ bool IsPossible(const Mistakes& mistakes, const RecordingMistake& one) {
                       [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
 }
 
+// Whether other factors of the signals do not mend it.
+bool NeedsAnotherReading(const RecordingMistake& one) {
+  return one.time_factor != 1 || one.shaft.has_value() || one.unsigned_signal.has_value();
+}
+
 }  // namespace
 
 double OddsAgainstMistake() { return std::log(1000.0); }
@@ -45,19 +50,20 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
   as_recorded_ = given == nullptr ? 0 : given->Evidence({});
 }
 
-// The balances with the times and the shaft of these mistakes; null: no samples of such a machine are so far apart.
+// The balances with the times, the shaft and the signs of these mistakes; null: no samples of such a machine are so far apart.
 const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
-  std::pair<double, model::Shaft> reading = {1, run_.shaft};
+  std::tuple<double, model::Shaft, std::string> reading = {1, run_.shaft, ""};
   for (const RecordingMistake& one : mistakes) {
-    reading.first *= one.time_factor;
-    reading.second = one.shaft.value_or(reading.second);
+    std::get<double>(reading) *= one.time_factor;
+    std::get<model::Shaft>(reading) = one.shaft.value_or(std::get<model::Shaft>(reading));
+    if (one.unsigned_signal.has_value()) std::get<std::string>(reading) += NameOf(*one.unsigned_signal);
   }
-  if (reading.first * MedianInterval(run_.time) > kSlowest) return nullptr;
+  if (std::get<double>(reading) * MedianInterval(run_.time) > kSlowest) return nullptr;
   const auto known = readings_.find(reading);
   if (known != readings_.end()) return &known->second;
   Run run = run_;
   for (const RecordingMistake& one : mistakes) {
-    if (one.time_factor != 1 || one.shaft.has_value()) Correct(one, &run);
+    if (NeedsAnotherReading(one)) Correct(one, &run);
   }
   return &readings_.emplace(reading, RecordingBalances(model_, run, possible_)).first->second;
 }

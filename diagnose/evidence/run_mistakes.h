@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <map>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,8 +46,8 @@ class RunMistakes {
   runs::MeasuredRun run_;
   std::vector<RecordingMistake> possible_;
   double as_recorded_ = 0;
-  // By the times' factor and the shaft.
-  mutable std::map<std::pair<double, model::Shaft>, RecordingBalances> readings_;
+  // By the times' factor, the shaft, and the signals that are read as signed numbers.
+  mutable std::map<std::tuple<double, model::Shaft, std::string>, RecordingBalances> readings_;
 };
 
 }  // namespace hydro::diagnose

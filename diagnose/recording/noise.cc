@@ -1,8 +1,9 @@
-// Estimates how noisy a series is from the series itself: the level of the quietest part of its upper
-// spectrum.
+// Estimates how noisy a series is from the series itself: the level of the quietest part of its upper spectrum, or of its quietest
+// samples.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <utility>
@@ -45,6 +46,36 @@ double NoisePower(std::vector<double> powers) {
     mean = next;
   }
   return mean;
+}
+
+// The standard deviation of the noise in fourth differences of values in a row, without those that an event made large: where a motion
+// has a corner every few samples, no band of the spectrum is quiet, but most differences are.
+double QuietNoise(const std::vector<double>& values) {
+  constexpr double kCut = 2.5;  // standard deviations
+  std::vector<double> sizes;
+  for (size_t i = 0; i + kOrder < values.size(); ++i) {
+    double difference = 0;
+    for (size_t lag = 0; lag <= kOrder; ++lag) difference += kDifference[lag] * values[i + lag];
+    if (!std::isnan(difference)) sizes.push_back(std::abs(difference));
+  }
+  if (sizes.size() < kSegment) return std::numeric_limits<double>::infinity();
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  double spread = *middle / 0.6745;  // the median size of a normal number
+  const double density = std::exp(-kCut * kCut / 2) / std::sqrt(2 * std::numbers::pi);
+  const double kept_variance = 1 - 2 * kCut * density / std::erf(kCut / std::numbers::sqrt2);
+  for (int pass = 0; pass < 10; ++pass) {
+    double sum = 0, kept = 0;
+    for (const double size : sizes) {
+      if (size > kCut * spread) continue;
+      sum += size * size;
+      kept += 1;
+    }
+    spread = kept > 0 ? std::sqrt(sum / kept / kept_variance) : 0;
+  }
+  double square = 0;
+  for (const double weight : kDifference) square += weight * weight;
+  return spread / std::sqrt(square);
 }
 
 // Windowed cosines and sines of the upper half of the spectrum, one a row.
@@ -219,7 +250,7 @@ double EstimateNoise(const std::vector<double>& all) {
     }
     noise = SpectralNoise(filled, segments);
   }
-  return std::max(noise, rounding);
+  return std::max(std::min(noise, QuietNoise(values)), rounding);
 }
 
 }  // namespace hydro::diagnose

@@ -67,6 +67,22 @@ std::optional<double> FactorBetween(const std::string& unit, const std::string& 
   return *factor / said;
 }
 
+// If these are counts that have the top bit of an integer of some size, which is a sign if they were signed: that size. Else 0.
+int BitsOfUnsigned(const runs::MeasuredSignal& signal) {
+  constexpr double kWhole = 1e-6;
+  double largest = 0;
+  for (const double value : signal.values) {
+    if (std::isnan(value)) continue;
+    const double counts = (value - signal.source.offset) / signal.source.scale;
+    if (counts < 0 || std::abs(counts - std::round(counts)) > kWhole) return 0;
+    largest = std::max(largest, counts);
+  }
+  for (const int bits : {8, 10, 12, 14, 16, 18, 20, 24, 32}) {
+    if (largest < std::exp2(bits)) return largest >= std::exp2(bits - 1) ? bits : 0;
+  }
+  return 0;
+}
+
 std::string ShaftName(model::Shaft shaft) {
   for (const auto& [name, one] : runs::kShafts) {
     if (one == shaft) return name;
@@ -109,6 +125,18 @@ class MistakeList {
       mistake.unit = unit;
       list_.push_back(std::move(mistake));
     }
+  }
+  void AddUnsigned(SignalOfRun signal) {
+    const int bits = BitsOfUnsigned(run_.*signal);
+    if (bits == 0) return;
+    RecordingMistake mistake;
+    const double counts = std::exp2(bits);
+    mistake.what = std::string(NameOf(signal)) + " jumps by " + ShortNumber(counts, 10) +
+                   " counts between values above 0 and below the top: signed numbers of " +
+                   std::to_string(bits) + " bits read as unsigned";
+    mistake.unsigned_signal = signal;
+    mistake.span = counts * (run_.*signal).source.scale;
+    list_.push_back(std::move(mistake));
   }
   void AddSign(const std::vector<SignalOfRun>& signals) {
     const std::vector<SignalOfRun> measured = Measured(run_, signals);
@@ -166,6 +194,9 @@ void AddSignals(const Run& run, MistakeList* list) {
 std::vector<RecordingMistake> PossibleMistakes(const Run& run) {
   MistakeList list(run);
   list.AddTimes();
+  for (const SignalOfRun signal :
+       Measured(run, {&Run::voltage, &Run::motor_speed, &Run::arm_speed, &Run::p1, &Run::p2}))
+    list.AddUnsigned(signal);
   AddSignals(run, &list);
   return list.Take();
 }

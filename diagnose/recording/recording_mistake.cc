@@ -17,6 +17,12 @@ void Multiply(double factor, runs::MeasuredSignal* signal) {
   signal->source.offset *= factor;
 }
 
+void ReadAsSigned(double span, runs::MeasuredSignal* signal) {
+  for (double& value : signal->values) {
+    if ((value - signal->source.offset) / span > 0.5) value -= span;
+  }
+}
+
 double MeanOf(const std::vector<double>& values) {
   double sum = 0, count = 0;
   for (const double value : values) {
@@ -51,6 +57,7 @@ bool Exclude(const RecordingMistake& a, const RecordingMistake& b) {
   if ((a.time_factor != 1 && b.time_factor != 1) || (a.pressures_exchanged && b.pressures_exchanged))
     return true;
   if (a.shaft.has_value() && b.shaft.has_value()) return true;
+  if (a.unsigned_signal.has_value() && a.unsigned_signal == b.unsigned_signal) return true;
   if (a.IsSign() != b.IsSign()) return false;
   // Both pressures in one unit are a mistake of their own.
   const bool pressures = a.IsOfOnePressure() && b.IsOfOnePressure();
@@ -66,6 +73,7 @@ void Correct(const RecordingMistake& mistake, Run* run) {
   if (run->begun.has_value()) *run->begun *= mistake.time_factor;
   run->time_source.scale *= mistake.time_factor;
   run->time_source.offset *= mistake.time_factor;
+  if (mistake.unsigned_signal.has_value()) ReadAsSigned(mistake.span, &(run->**mistake.unsigned_signal));
   for (const auto& [signal, factor] : mistake.factors) Multiply(factor, &(run->*signal));
   if (mistake.pressures_exchanged) std::swap(run->p1, run->p2);
   if (!mistake.shaft.has_value()) return;

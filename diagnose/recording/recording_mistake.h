@@ -24,6 +24,9 @@ struct RecordingMistake {
   bool pressures_exchanged = false;   // p1 and p2
   std::string unit;                   // of the columns, where it is known; else ""
   std::optional<model::Shaft> shaft;  // how the shaft was held
+  // Signed numbers that were read as unsigned: of this signal, what is above half of `span` is less by it. In the signal's unit.
+  std::optional<SignalOfRun> unsigned_signal;
+  double span = 0;
 
   bool operator==(const RecordingMistake&) const = default;
   bool IsSign() const;  // of one signal or more
@@ -32,8 +35,8 @@ struct RecordingMistake {
   std::string InvertedSensor() const;
 };
 
-// The mistakes that this recording may have: those whose signals are measured. Mistakes in the times come first. Units
-// are those that a sidecar can name.
+// The mistakes that this recording may have: those whose signals are measured. Mistakes in the times come first, then numbers read as
+// unsigned, which have to be mended before they are scaled. Units are those that a sidecar can name.
 std::vector<RecordingMistake> PossibleMistakes(const runs::MeasuredRun& run);
 
 // The other ways in which the shaft may have been held.

@@ -212,6 +212,22 @@ TEST(Diagnose, FreesOnlyWhatItMay) {
                                                       "parameter b + parameter beta"));
 }
 
+// Tests that a run of a fifth of a second is judged: an effect that acts at one point of its grid may act nowhere beside it.
+TEST(Diagnose, ARunOfAFifthOfASecond) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.b *= 1.5;
+  truth.parameters.T_s *= 1.5;
+  testing::NoisyRig rig;
+  rig.model = truth;
+  const diagnose::RunData run = rig.Record("bypass", model::Shaft::kClamped, 0, 0.2, true,
+                                           [](double t) { return t < 0.02 ? 0.0 : 2 + 10 * t; });
+  diagnose::DiagnoseOptions options;
+  options.free = {"b", "T_s"};
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), {run.measured}, {}, options, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
+  EXPECT_LE(d.held_out.after, d.held_out.before);
+}
+
 // Tests that a diagnosis that a time limit ended says so before anything else.
 TEST(Diagnose, SaysThatItIsUnfinished) {
   diagnose::DiagnoseOptions options = Few();

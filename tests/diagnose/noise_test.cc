@@ -53,6 +53,28 @@ TEST(EstimateNoise, OnMotionSampledSlowly) {
   EXPECT_NEAR(MeanEstimate(50, 1.5, [](double t) { return Motion(t, 8); }), 1.5, 0.05 * 1.5);
 }
 
+// Tests the same of a motor that is switched twice a second and seen at 100 and 200 Hz: each stretch of the spectrum has a corner in it.
+TEST(EstimateNoise, OnCornersInEveryStretch) {
+  const auto saw = [](double t) {
+    const double phase = t / 0.47 - std::floor(t / 0.47);
+    return 480 * std::abs(phase - 0.5) + 3 * phase * phase;
+  };
+  EXPECT_NEAR(MeanEstimate(100, 0.1, saw), 0.1, 0.1 * 0.1);
+  EXPECT_NEAR(MeanEstimate(200, 0.1, saw), 0.1, 0.1 * 0.1);
+}
+
+// Tests that a signal that stands in every second or fourth row, or in rows of its own, has the noise of its own samples.
+TEST(EstimateNoise, OfASignalInFewRows) {
+  for (const size_t every : {2, 3, 4}) {
+    std::mt19937_64 random(every);
+    std::normal_distribution<double> normal(0, 0.1);
+    std::vector<double> values(every * kSamples, std::numeric_limits<double>::quiet_NaN());
+    for (size_t i = 0; i < kSamples; ++i)
+      values[every * i] = 20 * std::sin(0.03 * static_cast<double>(i)) + normal(random);
+    EXPECT_NEAR(EstimateNoise(values), 0.1, 0.01) << "in every " << every << "th row";
+  }
+}
+
 // Tests that an angle that grows to a million times the noise does not leak into it.
 TEST(EstimateNoise, OnGrowingAngle) {
   EXPECT_NEAR(MeanEstimate(1000, 1e-3, [](double t) { return 300 * t + 50 * std::sin(2 * kPi * 3 * t); }),

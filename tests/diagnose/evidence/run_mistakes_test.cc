@@ -97,6 +97,43 @@ TEST(RunMistakes, OneRun) {
   EXPECT_TRUE(wrong.Search([] { return true; }).empty());
 }
 
+// The signal as counts of `scale` each, in integers of this size without a sign.
+void StoreUnsigned(double bits, double scale, runs::MeasuredSignal* signal) {
+  for (double& value : signal->values) {
+    const double counts = std::round(value / scale);
+    value = scale * (counts < 0 ? counts + std::exp2(bits) : counts);
+  }
+  signal->source.scale = scale;
+}
+
+// Tests that signed numbers that were read as unsigned are found, of any size and signal, and that a recorder's whole range is none.
+TEST(RunMistakes, SignedNumbersReadAsUnsigned) {
+  const Recording run = Recorded(model::Shaft::kClamped);
+  for (const auto& [bits, scale] : {std::pair{8, 0.05}, std::pair{12, 0.0025}, std::pair{16, 0.01}}) {
+    Recording wrong = run;
+    StoreUnsigned(bits, scale, &wrong.voltage);
+    const MistakeTrial found = RunMistakes(kAsGiven, wrong).Search(NeverUp).front();
+    ASSERT_EQ(found.mistakes.size(), 1u);
+    EXPECT_THAT(found.mistakes[0].what,
+                ::testing::HasSubstr(std::to_string(bits) + " bits read as unsigned"));
+    EXPECT_GT(found.Merit(), 0);
+    Correct(found.mistakes[0], &wrong);
+    for (size_t k = 0; k < run.samples(); ++k)
+      EXPECT_NEAR(wrong.voltage.values[k], run.voltage.values[k], scale);
+  }
+  Recording speed = run;
+  StoreUnsigned(14, 0.05, &speed.motor_speed);
+  EXPECT_THAT(RunMistakes(kAsGiven, speed).Search(NeverUp).front().mistakes.front().what,
+              ::testing::StartsWith("motor_speed jumps by 16384 counts"));
+  testing::NoisyRig rig;
+  rig.model = kAsGiven;
+  Recording one_way = rig.Record("pulses", model::Shaft::kClamped, 0.1, 2, false,
+                                 [](double t) { return std::sin(9 * t) > 0 ? 2.55 : 0.0; })
+                          .measured;
+  one_way.voltage.source.scale = 0.01;
+  EXPECT_LT(RunMistakes(kAsGiven, one_way).Search(NeverUp).front().Merit(), 0);
+}
+
 // Tests that a factor without a unit gains where it is right, and half of it less.
 TEST(RunMistakes, FactorWithoutAUnit) {
   Recording run = Recorded(model::Shaft::kClamped);
