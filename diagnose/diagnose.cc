@@ -79,8 +79,12 @@ std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<co
 std::vector<Change> EffectChanges(const model::ModelDescription& given,
                                   const std::vector<std::string>& allowed,
                                   const std::vector<const RunData*>& runs) {
+  const bool oil =
+      IsMeasured("p1", runs) || IsMeasured("p2", runs) ||
+      std::any_of(runs.begin(), runs.end(), [](const RunData* run) { return !run->stimulus.bypass; });
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
+    if (info.needs_oil && !oil) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
     const bool has =

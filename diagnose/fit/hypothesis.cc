@@ -31,6 +31,18 @@ double FreeParameter::ToFitted(double number) const { return logarithmic ? std::
 double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std::exp(fitted) : fitted; }
 double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
 
+ValueReach ReachOf(const model::Parameters& given, const model::Parameters& estimated) {
+  constexpr double kImplausible = 2;  // no data sheet is wrong by more
+  ValueReach reach;
+  for (const model::BaseParameter& base : model::BaseParameters()) {
+    const auto [least, most] = std::minmax(given.*base.member, estimated.*base.member);
+    const bool scales = least > 0;
+    reach.low.*base.member = scales && !base.info.min_allowed ? least / kImplausible : -INFINITY;
+    reach.high.*base.member = scales ? most * kImplausible : INFINITY;
+  }
+  return reach;
+}
+
 std::vector<FreeParameter> Hypothesis::Free() const {
   std::vector<FreeParameter> free;
   for (const size_t i : base) {
@@ -43,6 +55,10 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     if (parameter.logarithmic) {
       parameter.low = value / kReach;
       parameter.high = value * kReach;
+    }
+    if (reach != nullptr) {
+      parameter.low = std::max(parameter.low, reach->low.*model::BaseParameters()[i].member);
+      parameter.high = std::min(parameter.high, reach->high.*model::BaseParameters()[i].member);
     }
     free.push_back(parameter);
   }

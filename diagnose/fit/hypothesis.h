@@ -46,6 +46,13 @@ struct FreeParameter {
   double Slope() const { return logarithmic ? value : 1; }
 };
 
+// How far fits may move base values; infinite where only physics bounds them.
+struct ValueReach {
+  model::Parameters low, high;
+};
+// Twice as far as the given and the estimated value are apart: a fit that goes beyond contradicts both.
+ValueReach ReachOf(const model::Parameters& given, const model::Parameters& estimated);
+
 struct Hypothesis {
   model::ModelDescription model;  // with the values of `free`
   std::vector<Change> changes;    // relative to the model as given
@@ -54,6 +61,7 @@ struct Hypothesis {
   std::vector<std::string> effects;  // ids whose parameters are free
   // What fits know of the free base parameters beforehand; null: nothing.
   std::shared_ptr<const Knowledge> known = {};
+  std::shared_ptr<const ValueReach> reach = {};  // null: as far as physics
   // What runs sampled this way can show of a frequency, Hz: beyond half their rate a resonance is any stiffness or resistance.
   double highest_frequency = std::numeric_limits<double>::infinity();
 

@@ -55,6 +55,9 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   hypothesis.model = proposal.model;
   hypothesis.changes = proposal.changes;
   hypothesis.base = proposal.base;
+  // Over windows in which little changes, a motor ten times as heavy predicts that nothing does, and the balances know better.
+  hypothesis.reach =
+      std::make_shared<const ValueReach>(ReachOf(context_.given.parameters, proposal.model.parameters));
   // Estimates hold one number of each balance, which scales all others: a fit moves it instead of them.
   for (const size_t place : allowed_) {
     const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
@@ -155,10 +158,12 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   JudgeFar(windows_, context_.jobs, set);
   JudgeFar(windows_, context_.jobs, &whole);
   const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
-  const bool near_falls = near.Exceeds(0) && far.logarithm >= -far.error;
-  const bool far_falls = far.Exceeds(0) && near.logarithm >= -near.error;
+  // Windows that scatter much tell little, but what is worse in most of them is worse.
+  const auto equal = [](const GapFall& fall) { return std::min(fall.error, kPartOfValues); };
+  const bool near_falls = near.Exceeds(0) && far.logarithm >= -equal(far);
+  const bool far_falls = far.Exceeds(0) && near.logarithm >= -equal(near);
   // Where windows are too short to tell, whole held-out runs do.
-  const bool alike = std::abs(near.logarithm) <= near.error && std::abs(far.logarithm) <= far.error;
+  const bool alike = std::abs(near.logarithm) <= equal(near) && std::abs(far.logarithm) <= equal(far);
   const auto of_runs = [this](const ProvedSet& one) { return MeanSquare(OverRuns(context_, one)); };
   if (near_falls || far_falls || (alike && of_runs(whole) < of_runs(*set))) *set = whole;
 }

@@ -250,7 +250,10 @@ double EstimateNoise(const std::vector<double>& all) {
     }
     noise = SpectralNoise(filled, segments);
   }
-  return std::max(std::min(noise, QuietNoise(values)), rounding);
+  // The smaller of two estimates would be too small by chance: three of the standard deviations that correlated differences have.
+  const double chance = 3 * std::sqrt(1.5 / static_cast<double>(values.size()));
+  const double quiet = QuietNoise(values);
+  return std::max(quiet < (1 - chance) * noise ? quiet : noise, rounding);
 }
 
 }  // namespace hydro::diagnose

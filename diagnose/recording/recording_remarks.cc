@@ -58,8 +58,12 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   }
 }
 
+// Of the way that the motor turns: so much is an overshoot.
+constexpr double kOtherWay = 0.01;
+
 void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
   double low = INFINITY, high = -INFINITY, noise = 0, most_pressure = 0;
+  double forward = 0, backward = 0;  // sums of speeds: how far the motor turned
   bool speed = false, pressure = false;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
@@ -69,6 +73,10 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
         low = std::min(low, range.low);
         high = std::max(high, range.high);
         noise = std::max(noise, signal.noise);
+        for (const double value : signal.values) {
+          if (std::abs(value) > kHardlyMoves * signal.noise)
+            (value > 0 ? forward : backward) += std::abs(value);
+        }
       } else if (signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2) {
         pressure = true;
         most_pressure = std::max(most_pressure, range.size() / signal.noise);
@@ -77,8 +85,9 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
   }
   if (speed && high - low < 2 * kHardlyMoves * noise) {
     remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be identified");
-  } else if (speed && (low > -kHardlyMoves * noise || high < kHardlyMoves * noise)) {
-    remarks->push_back("the motor turns one way only: friction cannot be distinguished from a wrong torque");
+  } else if (speed && std::min(forward, backward) <= kOtherWay * std::max(forward, backward)) {
+    remarks->push_back(
+        "the motor turns one way only: friction, its asymmetry and a constant torque cannot be told apart");
   }
   if (pressure && most_pressure < 2 * kHardlyMoves) {
     remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be identified");

@@ -115,7 +115,9 @@ class Wave : public EffectOf<Wave> {
                               .unit = "1",
                               .meaning = "damping ratio of the resonance",
                               .starts = {0.03},
-                              .example = 0.05}}},
+                              .example = 0.05}},
+              // Behind an open bypass, oil in a line is inertia and friction of the motor.
+              .needs_oil = true},
      .make = MakeEffect<Wave>});
 
 }  // namespace

@@ -134,6 +134,9 @@ struct EffectInfo {
   // Balances of measured torques and flows cannot speak for it: what it acts through is not measured, or it makes an inequality of a
   // balance, or it was settled before any was formed. Each effect that sets it says why.
   bool unseen_by_balances = false;
+  // Runs that all have the bypass open and no pressure recorded, as of a bare motor, cannot show it: it would stand there for what is the
+  // motor's.
+  bool needs_oil = false;
   // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
   bool listed = true;
 };

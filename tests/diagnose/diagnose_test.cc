@@ -219,13 +219,17 @@ TEST(Diagnose, ARunOfAFifthOfASecond) {
   truth.parameters.T_s *= 1.5;
   testing::NoisyRig rig;
   rig.model = truth;
-  const diagnose::RunData run = rig.Record("bypass", model::Shaft::kClamped, 0, 0.2, true,
-                                           [](double t) { return t < 0.02 ? 0.0 : 2 + 10 * t; });
+  diagnose::RunData run = rig.Record("bypass", model::Shaft::kClamped, 0, 0.2, true,
+                                     [](double t) { return t < 0.02 ? 0.0 : 2 + 10 * t; });
+  run.measured.p1 = run.measured.p2 = {};
   diagnose::DiagnoseOptions options;
   options.free = {"b", "T_s"};
   const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), {run.measured}, {}, options, {});
   EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
   EXPECT_LE(d.held_out.after, d.held_out.before);
+  // Nor is there a wave in lines that no oil was seen in.
+  for (const diagnose::Candidate& candidate : d.candidates)
+    EXPECT_EQ(candidate.id.find("line.wave"), std::string::npos) << candidate.id;
 }
 
 // Tests that a diagnosis that a time limit ended says so before anything else.

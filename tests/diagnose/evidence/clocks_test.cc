@@ -139,6 +139,10 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
   EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
               ElementsAre(HasSubstr("the samples show another noise"), HasSubstr("1 gap in time, up to 3"),
                           HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
+  for (size_t i = 100; i < 130; ++i)
+    run.motor_speed.values[i] *= -1;  // an overshoot says nothing about the other way
+  const RunData overshoots = PrepareRun(run, testing::Table1());
+  EXPECT_THAT(RecordingRemarks({}, {&overshoots}, {}), ::testing::Contains(HasSubstr("one way only")));
 }
 
 // Tests that the way in which tables were read is one remark for all runs that share it, and none for plain

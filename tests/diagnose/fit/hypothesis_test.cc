@@ -154,5 +154,24 @@ TEST(Hypothesis, FrequenciesBelowHalfTheSamplingRate) {
   EXPECT_EQ(highest(), 500);
 }
 
+// Tests that a fit stays within twice what is given and estimated, both ways where a value cannot be nothing, and upwards where it can.
+TEST(Hypothesis, ReachesTwiceAsFarAsGivenAndEstimated) {
+  Hypothesis hypothesis;
+  hypothesis.model = {"Table 1", testing::Table1(), {}};
+  model::Parameters estimated = testing::Table1();
+  estimated.J *= 3;
+  estimated.b *= 0.5;
+  estimated.mgl = 0;
+  hypothesis.reach =
+      std::make_shared<const diagnose::ValueReach>(diagnose::ReachOf(testing::Table1(), estimated));
+  for (const char* name : {"J", "b", "mgl"}) hypothesis.base.push_back(model::BasePlace(name));
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  EXPECT_DOUBLE_EQ(free[0].low, testing::Table1().J / 2);
+  EXPECT_DOUBLE_EQ(free[0].high, testing::Table1().J * 6);
+  EXPECT_DOUBLE_EQ(free[1].low, 0);
+  EXPECT_DOUBLE_EQ(free[1].high, testing::Table1().b * 2);
+  EXPECT_EQ(free[2].high, model::BaseParameters()[hypothesis.base[2]].info.max);
+}
+
 }  // namespace
 }  // namespace hydro::testing
