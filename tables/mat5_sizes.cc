@@ -24,8 +24,8 @@ constexpr int kDeepestArray = 32;  // arrays within arrays
 constexpr size_t kMostDimensions = 64;
 constexpr uint32_t kComplex = 0x800;
 
-enum Type : uint32_t { kUint32 = 6, kMatrix = 14, kCompressed = 15 };
-enum Class : uint32_t { kCell = 1, kStruct = 2, kObject = 3, kSparse = 5, kLastNumeric = 15 };
+enum Type : uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed = 15, kUtf8 = 16 };
+enum Class : uint32_t { kCell = 1, kStruct = 2, kObject = 3, kSparse = 5, kFunction = 16, kOpaque = 17 };
 
 // Bytes of a number of that type; 0: it is none.
 size_t SizeOf(uint32_t type) {
@@ -74,13 +74,15 @@ class Walk {
     const Element flags = Take(&rest);
     if (flags.type != kUint32 || flags.data.size() != 8) Fail("has no array flags");
     const uint32_t kind = Number(flags.data, 0) & 0xff;
-    if (kind < kCell || kind > kLastNumeric)
-      return Rest(rest, depth);  // an object of MATLAB's: nothing of it is read
+    if (kind < kCell || kind > kOpaque) Fail(fmt::format("is of class {}", kind));
+    if (kind == kOpaque) return Rest(rest, depth);  // an object of MATLAB's: nothing of it is read
     const size_t count = Product(Take(&rest));
     const Element name = Take(&rest);
+    if (name.type != kInt8 && name.type != kUtf8) Fail("has no name");
     if (depth == 0) name_.assign(reinterpret_cast<const char*>(name.data.data()), name.data.size());
     switch (kind) {
       case kCell:
+      case kFunction:
         return Arrays(rest, count, 1, depth);
       case kObject:
         Take(&rest);  // its class
@@ -114,6 +116,7 @@ class Walk {
   // Of dimensions; the largest size where it is beyond all.
   size_t Product(const Element& dimensions) const {
     const size_t count = dimensions.data.size() / 4;
+    if (dimensions.type != kInt32 || dimensions.data.size() % 4 != 0) Fail("has no dimensions");
     if (count < 2 || count > kMostDimensions) Fail(fmt::format("has {} dimensions", count));
     size_t product = 1;
     for (size_t i = 0; i < count; ++i) {
