@@ -8,28 +8,9 @@
 #include <system_error>
 
 #include "base/read_files.h"
+#include "base/utf8.h"
 
 namespace hydro {
-namespace {
-
-// Length in bytes of the UTF-8 character at the start of `text`; 0 if there is none.
-size_t CharacterLength(std::string_view text) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  const size_t length = byte(0) < 0x80    ? 1
-                        : byte(0) < 0xc2  ? 0
-                        : byte(0) < 0xe0  ? 2
-                        : byte(0) < 0xf0  ? 3
-                        : byte(0) <= 0xf4 ? 4
-                                          : 0;
-  if (length > text.size()) return 0;
-  for (size_t i = 1; i < length; ++i) {
-    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
-  }
-  return length;
-}
-
-}  // namespace
-
 std::string ReadTextFile(const std::string& file) {
   constexpr size_t kLargest = 64u << 20;
   CheckIsFile(file);

@@ -125,19 +125,24 @@ std::string DescribeLoop(const char* name, const CheckedLoop& loop) {
   return text + fmt::format(" (worst: {})", loop.worst_case);
 }
 
+LoopCheck Unknown(const std::exception& error) {
+  LoopCheck check;
+  check.unjudged = fmt::format("the loops cannot be judged: {}", error.what());
+  check.unknown = true;
+  return check;
+}
+
 }  // namespace
 
 bool LoopCheck::stable() const {
-  return (!pressure || pressure->worst.stable) && (!position || position->worst.stable);
+  return !unknown && (!pressure || pressure->worst.stable) && (!position || position->worst.stable);
 }
 
 LoopCheck CheckLoops(const settings::StackConfig& config) {
   try {
     return CheckLoops(config, PressureLawSettingsFor(config));
   } catch (const std::exception& error) {
-    LoopCheck check;
-    check.unjudged = fmt::format("the loops cannot be judged: {}", error.what());
-    return check;
+    return Unknown(error);
   }
 }
 
@@ -148,8 +153,7 @@ LoopCheck CheckLoops(const settings::StackConfig& config,
   try {
     Check(config, pressure, &check);
   } catch (const std::exception& error) {
-    check = LoopCheck();
-    check.unjudged = fmt::format("the loops cannot be judged: {}", error.what());
+    return Unknown(error);
   }
   return check;
 }

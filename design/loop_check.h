@@ -35,8 +35,10 @@ struct LoopCheck {
   std::optional<CheckedLoop> position;
   std::vector<CheckedCase> cases;
   std::string unjudged;  // why a loop that the configuration closes could not be judged; empty: it was
+  // Of `unjudged`: that loop moves something, and nobody knows how. False for one that cannot move its arm.
+  bool unknown = false;
 
-  // Every loop that was judged is stable. True also when none was: see `unjudged`.
+  // Every loop that moves something is known to be stable.
   bool stable() const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -19,7 +20,11 @@ constexpr double kLeastGain = 1e-9;   // loop gains below this are rounding erro
 
 double Radius(const std::vector<Complex>& poles) {
   double radius = 0;
-  for (const Complex& pole : poles) radius = std::max(radius, std::abs(pole));
+  for (const Complex& pole : poles) {
+    const double size = std::abs(pole);
+    if (std::isnan(size)) return std::numeric_limits<double>::infinity();  // what is unknown is not stable
+    radius = std::max(radius, size);
+  }
   return radius;
 }
 

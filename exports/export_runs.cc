@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <unordered_map>
 #include <utility>
 
 #include "base/input_error.h"
@@ -39,14 +40,15 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
     auto& all = to->messages.Of<Message>();
     all.insert(all.end(), std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
   });
+  std::unordered_map<std::string, size_t> places;
+  for (size_t i = 0; i < to->channels.size(); ++i) places.emplace(to->channels[i].channel, i);
   for (const runs::ChannelSummary& channel : log.channels) {
-    const auto same = std::find_if(to->channels.begin(), to->channels.end(),
-                                   [&](const auto& one) { return one.channel == channel.channel; });
-    if (same == to->channels.end()) {
+    const auto [same, is_new] = places.try_emplace(channel.channel, to->channels.size());
+    if (is_new) {
       to->channels.push_back(channel);
     } else {
-      same->events += channel.events;
-      same->undecodable += channel.undecodable;
+      to->channels[same->second].events += channel.events;
+      to->channels[same->second].undecodable += channel.undecodable;
     }
   }
   to->events += log.events;

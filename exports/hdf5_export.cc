@@ -1,6 +1,7 @@
 // HDF5: a dataset for each column, with its unit and meaning as attributes; a group for each channel and, of several, each run.
 #include <type_traits>
 
+#include "base/utf8.h"
 #include "exports/hdf5_handle.h"
 #include "exports/output.h"
 #include "exports/write_export.h"
@@ -36,7 +37,8 @@ class Hdf5Writer {
     const Hdf5Handle type = TextType(), space(H5Screate(H5S_SCALAR), H5Sclose, file_);
     const Hdf5Handle attribute(H5Acreate2(at, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                                file_);
-    const char* const text = value.c_str();
+    const std::string clean = AsUtf8(value);
+    const char* const text = clean.c_str();
     CheckHdf5(H5Awrite(attribute, type, static_cast<const void*>(&text)), file_);
   }
 

@@ -1,8 +1,12 @@
 #include "exports/mat_layout.h"
 
+#include <algorithm>
 #include <cctype>
 #include <set>
+#include <string_view>
 #include <utility>
+
+#include "base/utf8.h"
 
 namespace hydro::exports {
 namespace {
@@ -74,31 +78,20 @@ std::vector<MatField> MatVariables(const std::vector<ExportedRun>& runs) {
 
 std::u16string Utf16(const std::string& text) {
   std::u16string wide;
-  for (size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const size_t length = byte < 0x80                   ? 1
-                          : byte >= 0xf0 && byte < 0xf5 ? 4
-                          : byte >= 0xe0                ? 3
-                          : byte >= 0xc2                ? 2
-                                                        : 0;
-    char32_t point = length == 1 ? byte : byte & (0x7fu >> length);
-    bool whole = length > 0 && byte < 0xf5 && i + length <= text.size();
-    for (size_t k = 1; whole && k < length; ++k) {
-      whole = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
-      point = point << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3fu);
-    }
-    if (!whole) {
-      wide += u'\xfffd';
-      ++i;
-      continue;
-    }
+  for (std::string_view rest = text; !rest.empty();) {
+    const size_t length = CharacterLength(rest);
+    // The first byte of a character of 2, 3 or 4 bytes has 5, 4 or 3 bits of its number, each other byte six.
+    char32_t point = length == 0   ? char32_t{0xfffd}
+                     : length == 1 ? static_cast<unsigned char>(rest[0])
+                                   : static_cast<unsigned char>(rest[0]) & (0x7fu >> length);
+    for (size_t i = 1; i < length; ++i) point = point << 6 | (static_cast<unsigned char>(rest[i]) & 0x3fu);
     if (point < 0x10000) {
       wide += static_cast<char16_t>(point);
     } else {
       wide += static_cast<char16_t>(0xd800 + ((point - 0x10000) >> 10));
       wide += static_cast<char16_t>(0xdc00 + ((point - 0x10000) & 0x3ff));
     }
-    i += length;
+    rest.remove_prefix(std::max<size_t>(length, 1));
   }
   return wide;
 }

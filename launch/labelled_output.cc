@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/json_text.h"
 #include "base/text_file.h"
 
 namespace hydro::launch {
@@ -40,7 +41,7 @@ std::string LabelledOutput::Formatted(Stream stream, std::string_view label, std
   if (json_) {
     const nlohmann::ordered_json line{
         {"source", label}, {"stream", stream == Stream::kOut ? "out" : "err"}, {"text", Printable(text)}};
-    return line.dump() + "\n";
+    return JsonText(line) + "\n";
   }
   std::string line;
   line.reserve(label_width_ + text.size() + 16);

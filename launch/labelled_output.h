@@ -44,6 +44,7 @@ class LabelledOutput {
   // The descriptor that must be writable for the next byte; -1: nothing waits.
   int waiting_fd() const { return queue_.empty() ? -1 : FdOf(queue_.front().stream); }
   bool full() const { return queued_bytes_ > kMostQueued; }
+  std::size_t unread() const { return queued_bytes_; }
 
   // Writes at most PIPE_BUF bytes. Called when waiting_fd() polls as writable it does not block, even on a
   // blocking descriptor: a pipe that polls as writable has that much room.

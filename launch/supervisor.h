@@ -39,7 +39,7 @@ class Supervisor : public Children {
   bool stopping() const override { return stop_.begun(); }
   void KillAll() override;
   int running() const override { return stop_.running(); }
-  bool finished() const override { return running() == 0 && output_.waiting_fd() < 0; }
+  size_t unread() const override { return output_.unread(); }
 
  private:
   struct Child {

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace hydro::launch {
 
 TerminalReport::TerminalReport(LabelledOutput& output, const settings::StackConfig& config,
@@ -26,7 +28,7 @@ void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
                       {"lost_messages", p.lost_messages},
                       {"fault", p.fault}});
     }
-    output_.Json(nlohmann::ordered_json{{"processes", rows}}.dump());
+    output_.Json(JsonText(nlohmann::ordered_json{{"processes", rows}}));
     return;
   }
   if (!style_.status) return;
@@ -38,7 +40,7 @@ void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
 
 void TerminalReport::End(int exit_code) {
   if (style_.json) {
-    output_.Json(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", log_file_}}.dump());
+    output_.Json(JsonText(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", log_file_}}));
   } else if (!log_file_.empty()) {
     Print("next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_);
   }

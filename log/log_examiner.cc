@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/interruption.h"
 #include "base/number_text.h"
 #include "base/saturating.h"
 #include "base/text_file.h"
@@ -40,6 +41,7 @@ LogVerdict LogExaminer::Examine() {
 }
 
 bool LogExaminer::TakeEvent(int64_t offset) {
+  Interruption::Check();
   LogEvent event;
   const std::string wrong = ParseLogEvent(file_, offset, event);
   if (!wrong.empty()) return Unreadable(offset, wrong);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/big_endian.h"
+#include "base/interruption.h"
 #include "base/number_text.h"
 #include "log/log_check.h"
 #include "log/log_format.h"
@@ -100,6 +101,7 @@ LogReader::LogReader(const std::string& file, OnDamage on_damage)
 
 bool LogReader::Next(LogEvent& event) {
   while (offset_ < verdict_.readable_end) {
+    Interruption::Check();
     ParseLogEvent(file_, offset_, event);
     offset_ = EndOf(event);
     if (IsCheck(event)) continue;

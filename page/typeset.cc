@@ -1,5 +1,7 @@
 #include "page/typeset.h"
 
+#include "base/utf8.h"
+
 namespace hydro::page {
 namespace {
 
@@ -84,7 +86,7 @@ double CharacterWidth(char c) {
 std::string EscapeMarkup(std::string_view text) {
   std::string out;
   out.reserve(text.size() + 16);
-  for (const char c : text) {
+  for (const char c : AsUtf8(text)) {
     switch (c) {
       case '<':
         out += "&lt;";

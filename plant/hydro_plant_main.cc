@@ -1,4 +1,7 @@
 // hydro-plant CONFIG: the simulated actuator.
+#include <spdlog/spdlog.h>
+
+#include "design/fastest_motion.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "process/process_main.h"
@@ -21,6 +24,8 @@ int main(int argc, char** argv) {
   return hydro::process::RunProcess(
       "hydro-plant", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        if (const std::string remark = hydro::design::FastMotionRemark(config); !remark.empty())
+          spdlog::warn("{}", remark);
         hydro::plant::SimulatedRig rig(config);
         return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-plant",
                                       hydro::process::HeartbeatArrived)

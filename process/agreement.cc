@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "base/utf8.h"
+
 namespace hydro::process {
 namespace {
 
@@ -24,7 +26,7 @@ std::string Value(const std::map<std::string, std::string>& entries, const std::
   const auto found = entries.find(key);
   if (found == entries.end()) return "not given";
   if (found->second.size() <= kLongestValue) return found->second;
-  return found->second.substr(0, kLongestValue) + "...";
+  return std::string(FirstBytes(found->second, kLongestValue)) + "...";
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ constexpr std::array kCodes{
     FaultCode{"sensor_arm_speed", FaultEffect::kZeroVolts},
     FaultCode{"board_error", FaultEffect::kZeroVolts},
     FaultCode{"encoder_lost", FaultEffect::kZeroVolts},
+    FaultCode{"guardian_gone", FaultEffect::kZeroVolts},
     FaultCode{"model_error", FaultEffect::kZeroVolts},
     FaultCode{"repeated_motor_command", FaultEffect::kWarning},
     FaultCode{"logger_gone", FaultEffect::kWarning},

@@ -1,6 +1,8 @@
 #include "runs/channel_suffix.h"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
 #include "base/input_error.h"
 #include "base/text_file.h"
@@ -20,31 +22,37 @@ std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
   return suffixes;
 }
 
+// Anybody on the network can make up channels: of very many, the first are named.
 std::string ListOf(const std::set<std::string>& suffixes) {
+  constexpr size_t kListed = 20;
   std::string list;
-  for (const std::string& suffix : suffixes) list += (list.empty() ? "'" : ", '") + suffix + "'";
+  size_t listed = 0;
+  for (const std::string& suffix : suffixes) {
+    if (listed++ == kListed) return list + ", ... (" + std::to_string(suffixes.size() - kListed) + " more)";
+    list += (list.empty() ? "'" : ", '") + suffix + "'";
+  }
   return list;
-}
-
-int64_t EventsOn(const RunLog& log, const std::string& name) {
-  const auto channel = std::ranges::find(log.channels, name, &ChannelSummary::channel);
-  return channel == log.channels.end() ? 0 : channel->events;
 }
 
 // The stack whose run the log is of, where the rest are strays: a packet on another state channel must not make
 // a log unreadable.
 std::optional<std::string> OwnSuffix(const RunLog& log, const std::set<std::string>& suffixes) {
+  std::unordered_map<std::string_view, int64_t> events;
+  for (const ChannelSummary& channel : log.channels) events[channel.channel] = channel.events;
+  const auto on = [&]<class Message>(const std::string& suffix, const bus::MessageRow<Message>& row) {
+    const auto found = events.find(std::string(row.channel) + suffix);
+    return found == events.end() ? 0 : found->second;
+  };
   std::set<std::string> described;
   int64_t states = 0;
   for (const std::string& suffix : suffixes) {
-    const bus::Channels channels(suffix);
-    if (EventsOn(log, channels.Of<run_description_t>()) > 0) described.insert(suffix);
-    states += EventsOn(log, channels.Of<state_t>());
+    if (on(suffix, bus::RowOf<run_description_t>()) > 0) described.insert(suffix);
+    states += on(suffix, bus::RowOf<state_t>());
   }
   if (described.size() == 1) return *described.begin();
   if (described.size() > 1) return std::nullopt;
   for (const std::string& suffix : suffixes) {
-    if (EventsOn(log, bus::Channels(suffix).Of<state_t>()) > states / 10 * 9) return suffix;
+    if (on(suffix, bus::RowOf<state_t>()) > states / 10 * 9) return suffix;
   }
   return std::nullopt;
 }
@@ -58,12 +66,13 @@ std::string NamesOf(const std::vector<JointChannels>& joints) {
 
 // What the channels of the limb with this joint end in: of those that the log has, the longest.
 std::optional<std::string> LimbOf(const std::string& suffix, const std::set<std::string>& limbs) {
-  std::optional<std::string> longest;
-  for (const std::string& limb : limbs) {
-    const bool fits = suffix.starts_with(limb + "_") && suffix.size() > limb.size() + 1;
-    if (fits && (!longest || limb.size() > longest->size())) longest = limb;
+  if (suffix.size() < 2) return std::nullopt;
+  for (size_t end = suffix.rfind('_', suffix.size() - 2); end != std::string::npos;
+       end = suffix.rfind('_', end - 1)) {
+    if (std::string limb = suffix.substr(0, end); limbs.contains(limb)) return limb;
+    if (end == 0) break;
   }
-  return longest;
+  return std::nullopt;
 }
 
 // The suffix of the joint that `choice` names. A name may be the end of another, so the limb's own channels count too.
@@ -114,7 +123,8 @@ std::vector<JointChannels> JointsIn(const RunLog& log) {
 bool IsWholeLimb(const RunLog& log, const StackChoice& choice) {
   if (choice.given()) return false;
   const std::set<std::string> suffixes = StateSuffixes(log);
-  return suffixes.size() > 1 && !OwnSuffix(log, suffixes) && JointsIn(log).size() == suffixes.size();
+  return suffixes.size() > 1 && suffixes.size() <= kMostJoints && !OwnSuffix(log, suffixes) &&
+         JointsIn(log).size() == suffixes.size();
 }
 
 std::string ChooseSuffix(const RunLog& log, const StackChoice& choice) {

@@ -1,6 +1,7 @@
 // Which stack's channels of a log are read, where it holds several.
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ std::set<std::string> StateSuffixes(const RunLog& log);
 
 // The joints whose states a log holds, by suffix; empty: it is not of a limb. `log` has its list of channels.
 std::vector<JointChannels> JointsIn(const RunLog& log);
+
+// More joints than that are no limb but made-up channels: whoever wants one names it.
+inline constexpr size_t kMostJoints = 1000;
 
 // Whether `choice` leaves open which of several joints is meant.
 bool IsWholeLimb(const RunLog& log, const StackChoice& choice);

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "runs/info.h"
 
 namespace hydro::runs {
@@ -147,8 +148,7 @@ std::string InfoJson(const LogInfo& info) {
   json["faults"] = ListJson(info.faults, FaultJson);
   json["stops"] = ListJson(info.stops, StopJson);
   json["outputs_left"] = ListJson(info.outputs_left, OutputLeftJson);
-  // Text from a log may not be UTF-8; invalid bytes are replaced, not refused.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json, 2) + "\n";
 }
 
 }  // namespace hydro::runs

@@ -4,6 +4,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "base/utf8.h"
 #include "process/output_left.h"
 #include "runs/info.h"
 #include "runs/sampling.h"
@@ -15,7 +16,7 @@ namespace {
 // Text from a log may hold anything: a line's end in it must not look like a line of this program's, nor fill the screen.
 std::string Shown(const std::string& text) {
   constexpr size_t kLongest = 500;
-  return Printable(text.size() <= kLongest ? text : text.substr(0, kLongest) + "...");
+  return Printable(text.size() <= kLongest ? text : std::string(FirstBytes(text, kLongest)) + "...");
 }
 template <class Value>
 const Value& Shown(const Value& value) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <hydro/run_description_t.hpp>
+#include <unordered_map>
 #include <utility>
 
 #include "log/message_kinds.h"
@@ -48,13 +49,17 @@ std::string LimbConfigs::Of(const std::string& limb) const {
 }
 
 void LimbConfigs::Order(std::vector<JointChannels>* joints) const {
-  std::map<std::string, std::vector<std::string>> names;  // by limb
+  std::map<std::string, std::unordered_map<std::string, size_t>> places;  // by limb, then by name
   for (const JointChannels& joint : *joints) {
-    if (!names.contains(joint.limb)) names[joint.limb] = JointNamesIn(Of(joint.limb));
+    const auto [limb, is_new] = places.try_emplace(joint.limb);
+    if (!is_new) continue;
+    for (const std::string& name : JointNamesIn(Of(joint.limb)))
+      limb->second.try_emplace(name, limb->second.size());
   }
   const auto place = [&](const JointChannels& joint) {
-    const std::vector<std::string>& all = names.at(joint.limb);
-    return std::pair(joint.limb, std::find(all.begin(), all.end(), joint.name) - all.begin());
+    const auto& all = places.at(joint.limb);
+    const auto found = all.find(joint.name);
+    return std::pair(joint.limb, found == all.end() ? all.size() : found->second);
   };
   std::ranges::stable_sort(*joints, {}, place);
 }

@@ -1,6 +1,9 @@
 #include "runs/limb_info.h"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace hydro::runs {
@@ -8,13 +11,6 @@ namespace {
 
 // The launcher's form of it too.
 std::string Named(const std::string& joint, const std::string& source) { return joint + " " + source; }
-
-// A joint of the same name in another limb is told apart by its channels.
-std::string NameOf(const RunLog& joint, const LimbLog& log) {
-  const auto same = std::count_if(log.joints.begin(), log.joints.end(),
-                                  [&](const RunLog& other) { return other.joint == joint.joint; });
-  return same == 1 ? joint.joint : joint.suffix;
-}
 
 // What happened to a joint happened to the limb.
 void AddEvents(const JointInfo& joint, LogInfo* limb) {
@@ -41,20 +37,23 @@ void AddEvents(const JointInfo& joint, LogInfo* limb) {
 LimbInfo SummariseLimb(const LimbLog& log, bool si) {
   LimbInfo all;
   all.limb = Summarise(log.limb, si);
+  std::unordered_map<std::string_view, int> named;
+  for (const RunLog& joint : log.joints) ++named[joint.joint];
   for (const RunLog& joint : log.joints) {
-    all.joints.push_back({NameOf(joint, log), Summarise(joint, si), TrackArm(joint)});
+    // A joint of the same name in another limb is told apart by its channels.
+    const std::string& name = named[joint.joint] == 1 ? joint.joint : joint.suffix;
+    all.joints.push_back({name, Summarise(joint, si), TrackArm(joint)});
     AddEvents(all.joints.back(), &all.limb);
   }
   const auto by_tick = [](const auto& a, const auto& b) { return a.tick < b.tick; };
   std::stable_sort(all.limb.faults.begin(), all.limb.faults.end(), by_tick);
   // Each joint has its own rows; a limb with many would fill the screen with channels.
-  std::erase_if(all.limb.channels, [&](const ChannelInfo& channel) {
-    return std::any_of(all.joints.begin(), all.joints.end(), [&](const JointInfo& joint) {
-      return std::any_of(joint.info.channels.begin(), joint.info.channels.end(), [&](const ChannelInfo& one) {
-        return one.summary.channel == channel.summary.channel;
-      });
-    });
-  });
+  std::unordered_set<std::string_view> of_joints;
+  for (const JointInfo& joint : all.joints) {
+    for (const ChannelInfo& channel : joint.info.channels) of_joints.insert(channel.summary.channel);
+  }
+  std::erase_if(all.limb.channels,
+                [&](const ChannelInfo& channel) { return of_joints.contains(channel.summary.channel); });
   return all;
 }
 

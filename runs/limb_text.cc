@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/json_text.h"
 #include "base/number_text.h"
 #include "base/saturating.h"
 #include "base/text_file.h"
@@ -81,7 +82,7 @@ void AppendList(const Items& items, TextOf text_of, std::string* text) {
 
 Json TrackingOf(const JointInfo& joint) { return Json::parse(SummaryJson(joint.tracking, joint.info)); }
 
-std::string Dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string Dump(const Json& json) { return JsonText(json, 2) + "\n"; }
 
 }  // namespace
 

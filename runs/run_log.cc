@@ -4,6 +4,7 @@
 #include <map>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "base/big_endian.h"
@@ -113,10 +114,12 @@ void FindOthers(const LimbConfigs& configs, RunLog* log) {
   const auto self = std::ranges::find(joints, log->suffix, &JointChannels::suffix);
   if (self != joints.end() && joints.size() > 1) log->joint = self->name;
   if (self != joints.end()) log->limb_config = configs.Of(self->limb);
+  std::unordered_set<std::string_view> siblings;
+  for (const JointChannels& joint : joints) {
+    if (self != joints.end() && joint.limb == self->limb) siblings.insert(joint.suffix);
+  }
   for (const std::string& other : StateSuffixes(*log)) {
-    const auto joint = std::ranges::find(joints, other, &JointChannels::suffix);
-    const bool sibling = self != joints.end() && joint != joints.end() && joint->limb == self->limb;
-    if (other != log->suffix && !sibling) log->other_suffixes.push_back(other);
+    if (other != log->suffix && !siblings.contains(other)) log->other_suffixes.push_back(other);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "base/saturating.h"
 #include "base/text_file.h"
 #include "base/units.h"
@@ -136,7 +137,7 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
                        {"source", tuning.source}});
   }
   json["tunings"] = tunings;
-  return json.dump(2) + "\n";
+  return JsonText(json, 2) + "\n";
 }
 
 }  // namespace hydro::runs

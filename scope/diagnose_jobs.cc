@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/interruption.h"
 #include "base/new_file.h"
 #include "base/text_file.h"
 #include "scope/live_messages.h"
@@ -98,6 +99,7 @@ int DiagnoseJobs::Start(const CutSource& source, const std::string& model_text, 
 
 void DiagnoseJobs::Work(int job, const CutSource& source, const std::string& model_text, double t0, double t1,
                         const std::string& folder) {
+  const Interruption interruption(&end_);
   std::string last_line;
   int exit_code = 2;
   try {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/json_text.h"
 #include "base/text_file.h"
 #include "scope/foxglove_topics.h"
 #include "settings/command_line.h"
@@ -17,7 +18,7 @@ constexpr size_t kMostSubscriptions = 64;
 constexpr size_t kMostReplies = 16;
 constexpr char kMessageData = 1;  // the opcode
 
-std::string Text(const json& object) { return object.dump(-1, ' ', false, json::error_handler_t::replace); }
+std::string Text(const json& object) { return JsonText(object); }
 
 template <class T>
 void Put(std::string& bytes, T value) {
@@ -77,7 +78,7 @@ void FoxgloveConversation::Subscribe(std::string_view message) {
   for (const json& item : *list) {
     if (op == "unsubscribe") {
       if (!item.is_number_unsigned())
-        return Complain("unsubscribe: found " + item.dump() + ", allowed are ids");
+        return Complain("unsubscribe: found " + JsonText(item) + ", allowed are ids");
       for (auto& [channel, ids] : subscriptions_) ids.erase(item.get<uint32_t>());
       continue;
     }

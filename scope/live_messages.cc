@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "settings/command_line.h"
 
 namespace hydro::scope {
@@ -10,9 +11,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::string Text(const json& object) {
-  return object.dump(-1, ' ', false, json::error_handler_t::replace);  // NaN becomes null
-}
+std::string Text(const json& object) { return JsonText(object); }
 
 const char* KindName(Run::Kind kind) {
   return kind == Run::Kind::kLive ? "live" : (kind == Run::Kind::kPast ? "past" : "log");

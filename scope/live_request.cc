@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/json_text.h"
 #include "base/text_file.h"
 
 namespace hydro::scope {
@@ -17,8 +18,7 @@ constexpr size_t kMostText = 300;
 constexpr size_t kMostEntries = 200;
 
 InputError Wrong(const std::string& key, const json& found, const std::string& allowed) {
-  return InputError(key + ": found " + Quoted(found.dump(-1, ' ', true, json::error_handler_t::replace)) +
-                    ", allowed is " + allowed);
+  return InputError(key + ": found " + Quoted(JsonText(found)) + ", allowed is " + allowed);
 }
 
 // The fields of a request, of which only known ones are read.

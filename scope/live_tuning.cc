@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/json_text.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "hydro_set/saved_config.h"
@@ -65,7 +66,7 @@ void LiveTuning::Poll() {
               {"version", answer->version}};
     }
     std::exchange(waiting_, nullptr)(
-        {answer->accepted != 0, PrintableLines(answer->text), data.is_null() ? "" : data.dump()});
+        {answer->accepted != 0, PrintableLines(answer->text), data.is_null() ? "" : JsonText(data)});
   }
   const auto& in_force = client_.in_force();
   if (!in_force || !client_.run() || client_.run()->session != in_force->session) return;
@@ -94,14 +95,13 @@ void LiveTuning::Describe() {
     // A stack of another version: nothing to show, and the plant refuses what this one asks.
   }
   const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
-  message_ = json({{"op", "tuning"},
-                   {"run", run_},
-                   {"control", control_},
-                   {"version", in_force.version},
-                   {"acts_at", in_force.acts_at},
-                   {"text", text},
-                   {"entries", entries}})
-                 .dump(-1, ' ', false, json::error_handler_t::replace);
+  message_ = JsonText(json({{"op", "tuning"},
+                            {"run", run_},
+                            {"control", control_},
+                            {"version", in_force.version},
+                            {"acts_at", in_force.acts_at},
+                            {"text", text},
+                            {"entries", entries}}));
 }
 
 }  // namespace hydro::scope

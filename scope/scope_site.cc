@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/json_text.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "runs/run_table.h"
@@ -38,7 +39,7 @@ json BodyOf(const Request& request) {
 double NumberOf(const json& body, const char* key) {
   const auto field = body.find(key);
   if (field == body.end() || !field->is_number() || !std::isfinite(field->get<double>())) {
-    throw Wrong(std::string(key) + ": found " + (field == body.end() ? "nothing" : field->dump()) +
+    throw Wrong(std::string(key) + ": found " + (field == body.end() ? "nothing" : JsonText(*field)) +
                 ", allowed is a number");
   }
   return field->get<double>();
@@ -47,7 +48,7 @@ double NumberOf(const json& body, const char* key) {
 uint32_t RunIdOf(const json& body) {
   const double id = body.contains("run") ? NumberOf(body, "run") : 0;
   if (!(id >= 0 && id <= 4294967295.0))
-    throw Wrong("run: found " + body["run"].dump() + ", allowed is a run's number");
+    throw Wrong("run: found " + JsonText(body["run"]) + ", allowed is a run's number");
   return static_cast<uint32_t>(id);
 }
 
@@ -205,7 +206,7 @@ void ScopeSite::Cut(const Request& request, const Reply& reply) {
   const json body = BodyOf(request);
   const Run* const run = context_.runs.Find(RunIdOf(body));
   if (run == nullptr)
-    throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
+    throw Wrong("run: found " + JsonText(body.value("run", json(0))) + ", allowed is one that is open");
   const double t0 = NumberOf(body, "t0");
   const double t1 = NumberOf(body, "t1");
   const std::string format =
@@ -238,7 +239,7 @@ void ScopeSite::Diagnose(const Request& request, const Reply& reply) {
   const json body = BodyOf(request);
   const Run* const run = context_.runs.Find(RunIdOf(body));
   if (run == nullptr)
-    throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
+    throw Wrong("run: found " + JsonText(body.value("run", json(0))) + ", allowed is one that is open");
   const std::string model = run->description ? run->description->model_text : std::string();
   const int job = jobs_.Start(CutSourceOf(*run), model, NumberOf(body, "t0"), NumberOf(body, "t1"));
   Response response;

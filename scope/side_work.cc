@@ -1,40 +1,79 @@
 #include "scope/side_work.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/interruption.h"
 
 namespace hydro::scope {
 namespace {
 
 constexpr size_t kMostWaiting = 8;
 
+constexpr std::string_view kName = "hydro-scope.";
+constexpr time_t kSurelyLocked_s = 60;  // a folder is locked as soon as it is made
+
+// Of scopes that were killed: their folders are there, are this user's, and nobody holds the lock.
+void RemoveAbandoned(const std::filesystem::path& temporary) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(temporary, ignored)) {
+    if (!entry.path().filename().string().starts_with(kName)) continue;
+    const int folder = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0) continue;
+    struct stat about {};
+    const bool old = fstat(folder, &about) == 0 && about.st_uid == geteuid() &&
+                     time(nullptr) - about.st_mtime > kSurelyLocked_s;
+    if (old && flock(folder, LOCK_EX | LOCK_NB) == 0) std::filesystem::remove_all(entry.path(), ignored);
+    close(folder);
+  }
+}
+
 std::string MakeFolder() {
   std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / "hydro-scope.XXXXXX").string();
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  if (!error) RemoveAbandoned(temporary);
+  std::string name = (temporary / (std::string(kName) + "XXXXXX")).string();
   if (error || mkdtemp(name.data()) == nullptr) {
     throw InputError("cannot make a folder " + name + " for files; TMPDIR names another place");
   }
   return name;
 }
 
+// The lock by which other scopes see that this one lives. It ends with the process, however that ends.
+int LockFolder(const std::string& name) {
+  const int folder = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) flock(folder, LOCK_SH | LOCK_NB);
+  return folder;
+}
+
 }  // namespace
 
 SideWork::SideWork(std::function<void(std::function<void()>)> post)
-    : post_(std::move(post)), folder_(MakeFolder()), thread_([this] { Loop(); }) {}
+    : post_(std::move(post)),
+      folder_(MakeFolder()),
+      lock_(LockFolder(folder_)),
+      thread_([this] { Loop(); }) {}
 
 SideWork::~SideWork() {
   {
     const std::lock_guard lock(mutex_);
-    ended_ = true;
+    ended_ = true;  // also interrupts the work that is being done
   }
   changed_.notify_all();
   thread_.join();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
+  if (lock_ >= 0) close(lock_);
 }
 
 bool SideWork::Do(std::function<std::function<void()>()> work) {
@@ -51,6 +90,7 @@ std::string SideWork::FreshFile(const std::string& ending) {
 }
 
 void SideWork::Loop() {
+  const Interruption interruption(&ended_);
   while (true) {
     std::function<std::function<void()>()> work;
     {

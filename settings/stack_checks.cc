@@ -55,6 +55,21 @@ void CheckAngles(const TomlNode& root, const std::string& section, const Traject
   }
 }
 
+// A trajectory that changes faster than it is looked at would be seen as another one. `highest` is in Hz.
+void CheckFrequency(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
+                    double highest, const char* why) {
+  const auto check = [&](const char* key, double frequency) {
+    if (frequency <= highest) return;
+    throw KeyError(root, section + key, ShortestNumber(frequency) + " Hz",
+                   "up to " + ShortestNumber(highest) + " Hz, " + why);
+  };
+  if (spec.kind == TrajectorySpec::Kind::kSine || spec.kind == TrajectorySpec::Kind::kSquare)
+    check(".frequency_hz", spec.frequency_hz);
+  if (spec.kind != TrajectorySpec::Kind::kChirp) return;
+  check(".first_frequency_hz", spec.first_frequency_hz);
+  check(".last_frequency_hz", spec.last_frequency_hz);
+}
+
 }  // namespace
 
 // Decimal fractions such as 0.005 are not exact in binary, hence the tolerance, far below any difference that anyone could mean.
@@ -88,6 +103,12 @@ void CheckTimes(const TomlNode& root, StackConfig* config) {
     throw KeyError(root, "limits.stale_input_s", ShortestNumber(config->limits.stale_input_s) + " s",
                    "above " + ShortestNumber(tick) +
                        " s, in which one state follows another (1 / (plant.rate_hz time.speed))");
+  }
+  CheckFrequency(root, "reference", config->reference.trajectory, 0.5 / position.sample_interval_s,
+                 "half of the rate at which the position loop samples it (position.sample_interval_s)");
+  if (config->model.motion) {
+    CheckFrequency(root, "model.motion", *config->model.motion, 0.5 * rate,
+                   "half of the plant's rate (plant.rate_hz)");
   }
   config->last_tick = -1;
   if (config->time.duration_s > 0) {

@@ -8,6 +8,7 @@
 #include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "design/fastest_motion.h"
 #include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "runs/run_log.h"
@@ -69,8 +70,8 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   }
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
-  if (const std::string remark = ArmRemark(*config); !remark.empty()) {
-    std::fprintf(stderr, "hydro-sim: warning: %s\n", hydro::Printable(remark).c_str());
+  for (const std::string& remark : {ArmRemark(*config), hydro::design::FastMotionRemark(*config)}) {
+    if (!remark.empty()) std::fprintf(stderr, "hydro-sim: warning: %s\n", hydro::Printable(remark).c_str());
   }
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/interruption.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 
@@ -65,6 +66,7 @@ bool CsvText::AllNumbers() const {
 }
 
 bool CsvText::Next() {
+  Interruption::Check();
   if (!TakeRow()) {
     if (any_row_) return false;
     throw InputError(file_ + ": found no rows, allowed one or more below the column names");

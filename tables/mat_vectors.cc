@@ -3,13 +3,13 @@
 #include <matio.h>
 
 #include <cstdint>
-#include <cstring>
 
 #include "base/input_error.h"
 #include "base/mapped_file.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "tables/mat_handles.h"
+#include "tables/mat_sizes.h"
 
 namespace hydro::tables {
 namespace {
@@ -118,29 +118,6 @@ void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vecto
   }
 }
 
-constexpr size_t kMat5HeaderSize = 128;
-constexpr size_t kMat5TagSize = 8;  // of each element after the header: its type and byte count
-
-// When a MAT 5 file is cut off, matio returns unfilled memory for the missing values, so all elements must be
-// there.
-void CheckMat5IsWhole(const std::string& file) {
-  const MappedFile contents(file);
-  const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
-  size_t offset = kMat5HeaderSize;
-  while (offset < contents.size()) {
-    const size_t left = contents.size() - offset;
-    uint32_t size = 0;
-    if (left >= kMat5TagSize) std::memcpy(&size, contents.data() + offset + 4, sizeof size);
-    if (swapped) size = __builtin_bswap32(size);
-    if (left < kMat5TagSize || size > left - kMat5TagSize) {
-      throw InputError(file + ": byte " + std::to_string(offset) +
-                       ": found a variable cut off by the end of the file, " + std::to_string(left) +
-                       " bytes; " + std::to_string(kMat5TagSize + size) + " are needed");
-    }
-    offset += kMat5TagSize + size;
-  }
-}
-
 }  // namespace
 
 MatContents ReadMatContents(const std::string& file) {
@@ -152,7 +129,8 @@ MatContents ReadMatContents(const std::string& file) {
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
   }
-  if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
+  // When a file is cut off, matio returns unfilled memory for the missing values; and it allocates what the dimensions say.
+  Mat_GetVersion(mat.get()) == MAT_FT_MAT5 ? CheckMat5Sizes(file) : CheckMat73Sizes(file);
   MatContents found;
   while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {
     found.structs = found.structs || variable->class_type == MAT_C_STRUCT;

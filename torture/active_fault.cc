@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <limits>
 
 namespace hydro::torture {
 
@@ -134,13 +135,18 @@ std::optional<int64_t> ActiveFault::Continue() {
       world_.SendStop();
       return std::nullopt;
     case FaultKind::kInsider:
-      world_.SendInsider(injection_.amount, injection_.duration_s);
+      // The numbers of every fifth end with the largest that there is.
+      world_.SendInsider(injection_.amount, injection_.duration_s,
+                         injection_.seed % 5 == 4 ? std::numeric_limits<int64_t>::max() - 20 : 0);
       return std::nullopt;
     case FaultKind::kForeignStop:
       SendForeignStop();
       return std::nullopt;
     case FaultKind::kRearm:
       world_.SendRearm();
+      return std::nullopt;
+    case FaultKind::kSet:
+      world_.SendSet(static_cast<int>(injection_.amount));
       return std::nullopt;
     case FaultKind::kHugeSequence:
     case FaultKind::kHugeTick:
@@ -156,6 +162,9 @@ std::optional<int64_t> ActiveFault::Continue() {
       return 5'000'000;
     case FaultKind::kSecondSender:
       SendSecondSender();
+      return 1'000'000;
+    case FaultKind::kSecondReference:
+      SendSecondReference();
       return 1'000'000;
     case FaultKind::kReplay:
       SendReplay();

@@ -28,6 +28,7 @@ class ActiveFault {
   void SendForeignStop();
   void SendSecondPlant();
   void SendSecondSender();
+  void SendSecondReference();
   void SendReplay();
   void SendFlood();
   // The newest genuine motor command, with a number in it changed.

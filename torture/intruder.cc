@@ -46,6 +46,16 @@ void ActiveFault::SendSecondSender() {
   world_.Forge(command);
 }
 
+void ActiveFault::SendSecondReference() {
+  pressure_command_t command{};
+  const PlantRecord* plant = world_.observer().newest_plant();
+  command.tick = plant != nullptr ? plant->tick : 0;
+  command.session = static_cast<int64_t>(injection_.seed) + 111;
+  command.sequence = sent_++;
+  command.pressure_ref = injection_.amount;
+  world_.Forge(command);
+}
+
 void ActiveFault::SendReplay() {
   const auto before = world_.now() - static_cast<TrueTime>(injection_.amount * 1e9);
   if (const Packet* packet = world_.RecordedCommand(before)) world_.ForgeAgain(*packet);

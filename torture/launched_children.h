@@ -28,7 +28,7 @@ class LaunchedChildren : public launch::Children {
   bool stopping() const override { return stop_.begun(); }
   void KillAll() override;
   int running() const override { return stop_.running(); }
-  bool finished() const override { return running() == 0; }
+  size_t unread() const override { return 0; }
 
  private:
   struct Child : public launch::Stoppable {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/saturating.h"
 #include "bus/channels.h"
 #include "logger/logger_app.h"
 #include "plant/plant_app.h"
@@ -60,16 +61,18 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
   }
 }
 
-SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds) {
-  return [&config, voltage, seconds](bus::Bus& bus, bus::Clock& clock) {
+SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds,
+                                      int64_t first_sequence) {
+  return [&config, voltage, seconds, first_sequence](bus::Bus& bus, bus::Clock& clock) {
     const bus::Channels channels(config.bus.channel_suffix);
-    int64_t sequence = 0;
+    int64_t sequence = first_sequence;
     bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
       motor_command_t command{};
       command.utime = clock.Utime();
       command.tick = state.tick;
       command.session = bus.process()->session;
-      command.sequence = sequence++;
+      command.sequence = sequence;
+      sequence = SaturatingSum(sequence, 1);
       command.voltage = voltage;
       bus.Publish(channels.Of<motor_command_t>(), command);
     });

@@ -18,7 +18,10 @@ SimulatedProcess::Body LaunchProgram(const settings::StackConfig& config, World&
 // starts again what has ended, so soon that a patient operator would go on for ever.
 SimulatedProcess::Body RearmProgram(const settings::StackConfig& config);
 SimulatedProcess::Body StopProgram(const settings::StackConfig& config, bool watched);
-// Somebody with the stack's key, who answers each state with a motor command of that voltage.
-SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds);
+// hydro-set with one of several values, allowed ones and others, or an undo: `which`, 0 to 7.
+SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which);
+// Somebody with the stack's key, who answers each state with a motor command of that voltage, numbered from `first_sequence` on.
+SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds,
+                                      int64_t first_sequence);
 
 }  // namespace hydro::torture

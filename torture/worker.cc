@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/json_text.h"
 #include "base/new_file.h"
 #include "process/stop_signal.h"
 #include "torture/active_fault.h"
@@ -69,7 +70,7 @@ class Worker {
   std::string Run() {
     const auto jobs = static_cast<uint64_t>(options_.jobs);
     for (uint64_t i = static_cast<uint64_t>(index_); !Over(i); i += jobs) RunSeed(options_.first_seed + i);
-    return json{{"coverage", ToJson(coverage_)}, {"findings", findings_}, {"failed", failed_}}.dump();
+    return JsonText(json{{"coverage", ToJson(coverage_)}, {"findings", findings_}, {"failed", failed_}});
   }
 
  private:

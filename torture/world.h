@@ -86,7 +86,8 @@ class World : public NetworkPort {
   void SendRearm();
   void SendStop();
   // Somebody who has the stack's key sends motor commands of his own.
-  void SendInsider(double voltage, double seconds);
+  void SendInsider(double voltage, double seconds, int64_t first_sequence);
+  void SendSet(int which);
   Disk& disk() { return disk_; }
   bool has_logger() const { return schedule_.logger; }
   // The path of a new log, of the process `number`.

@@ -63,9 +63,11 @@ const Packet* World::RecordedCommand(TrueTime before) const {
 
 void World::SendRearm() { Begin(Role::kOperator, RearmProgram(config_), false); }
 
-void World::SendInsider(double voltage, double seconds) {
-  Begin(Role::kOperator, InsiderProgram(config_, voltage, seconds), false);
+void World::SendInsider(double voltage, double seconds, int64_t first_sequence) {
+  Begin(Role::kOperator, InsiderProgram(config_, voltage, seconds, first_sequence), false);
 }
+
+void World::SendSet(int which) { Begin(Role::kOperator, SetProgram(config_, which), false); }
 
 void World::SendStop() {
   const bool watched = !schedule_.launcher && !ending_;

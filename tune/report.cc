@@ -62,8 +62,9 @@ std::string MarginsText(const Proposal& proposal) {
     text += fmt::format(
         "  over the model's uncertainty: gain margins down to {} (pressure) and {} (position){}\n",
         NumberText(uncertain.pressure->worst.gain), NumberText(uncertain.position->worst.gain),
-        uncertain.stable() ? "" : ", UNSTABLE");
+        uncertain.pressure->worst.stable && uncertain.position->worst.stable ? "" : ", UNSTABLE");
   }
+  if (uncertain.unknown) text += "  over part of the model's uncertainty " + uncertain.unjudged + "\n";
   return text;
 }
 
@@ -142,7 +143,11 @@ design::LoopCheck UncertainMargins(const StepJudge& judge, const Gains& gains) {
   for (const model::ModelDescription& model : judge.models()) {
     config.model.description = model;
     const design::LoopCheck check = design::CheckLoops(config, law);
-    if (!check.unjudged.empty() || !check.pressure || !check.position) continue;
+    if (check.unknown) {
+      all.unknown = true;
+      all.unjudged = check.unjudged;
+    }
+    if (!check.pressure || !check.position) continue;
     const auto add = [](const design::CheckedLoop& loop, std::optional<design::CheckedLoop>* worst) {
       if (!*worst)
         *worst = loop;

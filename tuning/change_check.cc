@@ -67,23 +67,35 @@ bool HardlyStable(const design::LoopCheck& check) {
   const auto hardly = [](const std::optional<design::CheckedLoop>& loop) {
     if (!loop || !loop->margins_known) return false;
     const design::LoopMargins& worst = loop->worst;
-    return worst.gain < 1.25 || worst.least_gain > 0.8 || worst.phase_deg < 10;
+    return !(worst.gain >= 1.25) || !(worst.least_gain <= 0.8) || !(worst.phase_deg >= 10);
   };
   return check.stable() && (hardly(check.pressure) || hardly(check.position));
 }
 
-// Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
-bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next,
-                 std::string* text) {
-  const bool goes_farther = design::LargestArmAngle(next) > design::LargestArmAngle(in_force);
-  if (!goes_farther && SameLaws(ValuesOf(in_force), ValuesOf(next))) return true;
+bool GoesNoFarther(const settings::StackConfig& than, const settings::StackConfig& next) {
+  return design::LargestArmAngle(next) <= design::LargestArmAngle(than) &&
+         SameLaws(ValuesOf(than), ValuesOf(next));
+}
+
+// Why the loops forbid the change; empty: they permit it. Fills in their margins as `text`.
+std::string WhyTheLoopsForbid(const settings::StackConfig& configured, const settings::StackConfig& in_force,
+                              const settings::StackConfig& next, std::string* text) {
+  if (GoesNoFarther(in_force, next)) return "";
   const design::LoopCheck check = design::CheckLoops(next);
-  if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
+  *text = design::Describe(check);
+  if (check.unknown) {
+    // What the stack was started with, somebody has answered for.
+    if (GoesNoFarther(configured, next)) return "";
+    return *text +
+           "; allowed are values whose loops can be judged: change these in the configuration, and restart";
+  }
   if (HardlyStable(check))
     *text += "; HARDLY STABLE: a rig that differs a little from its model may oscillate";
-  if (check.stable()) return true;
+  if (check.stable()) return "";
   // From loops that are unstable already, a change may lead towards stable ones.
-  return SpectralRadius(check) < SpectralRadius(design::CheckLoops(in_force));
+  const design::LoopCheck now = design::CheckLoops(in_force);
+  if (!now.unknown && SpectralRadius(check) < SpectralRadius(now)) return "";
+  return "would be unstable: " + *text;
 }
 
 }  // namespace
@@ -168,10 +180,8 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
   if (!change.text.empty()) return change;
   std::string margins;
-  if (!LoopsPermit(in_force, *next, &margins)) {
-    change.text = "would be unstable: " + margins;
-    return change;
-  }
+  change.text = WhyTheLoopsForbid(configured, in_force, *next, &margins);
+  if (!change.text.empty()) return change;
 
   const std::string reference = settings::ReferenceText(*next);
   change.new_reference = reference != settings::ReferenceText(in_force);

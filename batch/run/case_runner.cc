@@ -18,6 +18,7 @@
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "base/text_lines.h"
+#include "base/utf8.h"
 #include "batch/run/case_command.h"
 #include "batch/run/collect.h"
 #include "batch/store/small_file.h"
@@ -37,7 +38,7 @@ std::string LastLine(const std::string& path) {
   const size_t begin = text.find_last_of('\n', end);
   const size_t start = begin == std::string::npos ? 0 : begin + 1;
   const std::string line = Trimmed(text.substr(start, end + 1 - start));
-  return Printable(line.size() > kMost ? line.substr(0, kMost) + "..." : line);
+  return Printable(line.size() > kMost ? std::string(FirstBytes(line, kMost)) + "..." : line);
 }
 
 // The same on every machine.

@@ -45,7 +45,17 @@ double Uncertain(const Draw& draw, int64_t seed, int64_t number) {
 
 }  // namespace
 
-double Rounded(double value) { return *ParseNumber(ShortNumber(value, 12)); }
+double Rounded(double value) { return ParseNumber(ShortNumber(value, 12)).value_or(value); }
+
+double Between(double from, double to, double part, bool logarithmic) {
+  const double span = logarithmic ? std::log(to / from) : to - from;
+  double value = logarithmic ? from * std::exp(part * span) : from + part * span;
+  if (!std::isfinite(span)) {
+    value = logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), part)) : std::lerp(from, to, part);
+  }
+  const auto [low, high] = std::minmax(from, to);
+  return std::clamp(value, low, high);
+}
 
 Value DrawnValue(const Draw& draw, int64_t seed, int64_t number) {
   switch (draw.distribution) {
@@ -66,9 +76,8 @@ Value DrawnValue(const Draw& draw, int64_t seed, int64_t number) {
     const double value = std::floor(draw.min + u * (draw.max - draw.min + 1));
     return static_cast<int64_t>(std::min(value, draw.max));
   }
-  if (draw.distribution == Distribution::kUniform)
-    return std::clamp(Rounded(draw.min + u * (draw.max - draw.min)), draw.min, draw.max);
-  return std::clamp(Rounded(draw.min * std::exp(u * std::log(draw.max / draw.min))), draw.min, draw.max);
+  const bool logarithmic = draw.distribution == Distribution::kLogUniform;
+  return std::clamp(Rounded(Between(draw.min, draw.max, u, logarithmic)), draw.min, draw.max);
 }
 
 }  // namespace hydro::batch

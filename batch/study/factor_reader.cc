@@ -17,6 +17,8 @@ using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
 constexpr size_t kMostValues = 1'000'000;
+constexpr double kLargestWhole = 0x1p53;  // up to it every whole number is a double
+constexpr double kFarthestDraw = 10;  // standard deviations; a normal draw never lies so far from the mean
 
 std::vector<std::string> ParameterNames() {
   std::vector<std::string> names;
@@ -89,7 +91,7 @@ std::vector<Value> Range(double from, double to, int steps, bool logarithmic) {
   std::vector<Value> values;
   for (int i = 0; i < steps; ++i) {
     const double part = steps == 1 ? 0 : static_cast<double>(i) / (steps - 1);
-    double value = logarithmic ? from * std::pow(to / from, part) : from + part * (to - from);
+    double value = Between(from, to, part, logarithmic);
     if (i == 0) value = from;
     if (i > 0 && i == steps - 1) value = to;
     values.emplace_back(Rounded(value));
@@ -188,6 +190,11 @@ void ReadBounds(SectionReader* section, Draw* draw) {
   section->Boolean("whole", &draw->whole);
   if (draw->whole && (std::floor(draw->min) != draw->min || std::floor(draw->max) != draw->max))
     throw section->Error("whole", "true beside bounds with a fraction", "whole min and max");
+  if (draw->whole && (draw->min < -kLargestWhole || draw->max > kLargestWhole)) {
+    throw section->Error(
+        "whole", "true from " + ShortestNumber(draw->min) + " to " + ShortestNumber(draw->max),
+        "bounds from -" + ShortestNumber(kLargestWhole) + " to " + ShortestNumber(kLargestWhole));
+  }
 }
 
 void ReadNormal(SectionReader* section, Draw* draw) {
@@ -196,6 +203,10 @@ void ReadNormal(SectionReader* section, Draw* draw) {
   section->Number("mean", &draw->mean);
   section->Number("standard_deviation", &draw->standard_deviation, settings::kPositive);
   ReadBounds(section, draw);
+  if (!std::isfinite(std::fabs(draw->mean) + kFarthestDraw * draw->standard_deviation)) {
+    throw section->Error("standard_deviation", ShortestNumber(draw->standard_deviation),
+                         "one of which ten are a number");
+  }
   if (draw->mean < draw->min || draw->mean > draw->max)
     throw section->Error("mean", ShortestNumber(draw->mean), "a number between min and max");
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "base/number_text.h"
 
 namespace hydro::batch {
@@ -69,8 +70,6 @@ Value ValueOfCell(const std::string& cell) {
   return cell;
 }
 
-std::string JsonString(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string JsonString(const std::string& text) { return hydro::JsonText(nlohmann::json(text)); }
 
 }  // namespace hydro::batch

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json_text.h"
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig1_drawing.h"
@@ -319,7 +320,7 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
   result.comparisons = Comparisons(apparatus);
   result.explanation = Explanation(apparatus);
   result.findings = Findings(apparatus);
-  result.numbers = Numbers(apparatus).dump();
+  result.numbers = hydro::JsonText(Numbers(apparatus));
   result.pictures = {{"",
                       {"The apparatus, after Figure 1 and eqs. (1) to (15), with the numbers of Table 1; "
                        "leakages in in^3/(s psi). Arrows show the directions in which θ', q_1, q_2 and α "

@@ -4,6 +4,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/json_text.h"
 #include "base/new_file.h"
 #include "page/figure_svg.h"
 #include "settings/command_line.h"
@@ -56,7 +57,7 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
     if (json.contains(key)) throw std::logic_error(experiment.name + ": the key '" + key + "' is taken");
     json[key] = value;
   }
-  return json.dump(2) + "\n";
+  return hydro::JsonText(json, 2) + "\n";
 }
 
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,

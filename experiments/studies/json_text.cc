@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace hydro::experiments {
 
-std::string JsonText(const nlohmann::json& value) { return value.dump(2); }
+std::string JsonText(const nlohmann::json& value) { return hydro::JsonText(value, 2); }
 
 nlohmann::json ParseJson(const std::string& text) { return nlohmann::json::parse(text); }
 

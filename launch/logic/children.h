@@ -1,6 +1,7 @@
 // The processes that a launch has started, as it sees them: real ones (launch/supervisor.h) or simulated ones (torture/).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -34,8 +35,10 @@ class Children {
   virtual void KillAll() = 0;
 
   virtual int running() const = 0;  // children that have not ended
+  // Bytes that wait for the reader of this launcher's output.
+  virtual size_t unread() const = 0;
   // No child is left, and what they have said has been passed on.
-  virtual bool finished() const = 0;
+  bool finished() const { return running() == 0 && unread() == 0; }
 };
 
 }  // namespace hydro::launch

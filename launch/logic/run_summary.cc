@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/saturating.h"
+#include "base/utf8.h"
 #include "process/fault_codes.h"
 #include "process/output_left.h"
 
@@ -19,6 +20,13 @@ constexpr size_t kMostOutputs = 256;
 constexpr size_t kListedOutputs = 4;  // of more, those at zero are counted
 constexpr size_t kLongestText = 500;
 constexpr size_t kWidestLine = 79;  // of a terminal of 80 columns
+
+// A session is one sender; its name in a message that changed on the way may be another's. Only the simulated
+// joints of a limb have no session, and then the names tell them apart.
+bool SameSender(int64_t session, const std::string& name, int64_t other_session,
+                const std::string& other_name) {
+  return session == other_session && (session != 0 || name == other_name);
+}
 
 }  // namespace
 
@@ -44,8 +52,8 @@ void RunSummary::Add(const loop_statistics_t& report) {
 
 void RunSummary::Add(const fault_t& fault) {
   auto known = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& other) {
-    return other.first.session == fault.session && other.first.code == fault.code &&
-           other.first.source == fault.source;
+    return other.first.code == fault.code &&
+           SameSender(other.first.session, other.first.source, fault.session, fault.source);
   });
   if (known == faults_.end()) {
     if (faults_.size() == kMostFaults) return;
@@ -58,7 +66,7 @@ void RunSummary::Add(const fault_t& fault) {
 
 void RunSummary::Add(const output_left_t& left) {
   const auto known = std::find_if(outputs_left_.begin(), outputs_left_.end(), [&](const output_left_t& one) {
-    return one.session == left.session && one.role == left.role;
+    return SameSender(one.session, one.role, left.session, left.role);
   });
   if (known != outputs_left_.end()) {
     *known = left;
@@ -87,7 +95,7 @@ std::vector<std::string> RunSummary::Lines() const {
     lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
                                 fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
                                 fault.active ? ", still there at the end" : "",
-                                fault.first.text.substr(0, kLongestText)));
+                                FirstBytes(fault.first.text, kLongestText)));
   }
   AppendOutputs(&lines);
   return lines;
@@ -126,11 +134,11 @@ std::vector<ProcessStatus> RunSummary::Status() const {
 }
 
 std::string StatusLine(const ProcessStatus& status) {
-  std::string line = fmt::format("{:<14.14}{:>6.0f} Hz  p99 {:>6.0f} us  missed {:>4}  lost {:>3}  {}",
-                                 status.role, status.rate_hz, status.latency_p99_us, status.missed_deadlines,
-                                 status.lost_messages, status.fault.empty() ? "ok" : status.fault);
-  if (line.size() > kWidestLine) line.resize(kWidestLine);
-  return line;
+  const std::string line =
+      fmt::format("{:<14.14}{:>6.0f} Hz  p99 {:>6.0f} us  missed {:>4}  lost {:>3}  {}", status.role,
+                  status.rate_hz, status.latency_p99_us, status.missed_deadlines, status.lost_messages,
+                  status.fault.empty() ? "ok" : status.fault);
+  return std::string(FirstBytes(line, kWidestLine));
 }
 
 std::vector<std::string> RunSummary::FaultsLeft() const {

@@ -73,6 +73,7 @@ class StackLaunch {
   bool joints_ended_ = false;  // of a process here, while others go on
   bool killed_ = false;
   bool plant_killed_ = false;  // a plant or driver ended by a signal, and could say no more
+  bool told_ = false;          // by a signal: somebody waits for this launcher's end
   int interrupts_ = 0;
   int exit_code_ = 0;
   std::string early_end_;      // a program that ended with 0 although no stop was heard

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "launch/logic/stack_launch.h"
 #include "process/role.h"
@@ -16,15 +17,24 @@ using namespace std::chrono_literals;
 constexpr double kPlantMargin_s = 1;      // its own launch may have begun that much later
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
 
+constexpr auto kUnreadTime = 2s;  // how long a reader may take nothing when the launcher has been told to end
+
 constexpr auto kQuestionPeriod = 300ms;  // while a process is not ready
 
 }  // namespace
 
-// The terminal may be slow or stopped; a second Ctrl-C still ends the launcher.
+// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept waiting by one that
+// takes nothing any more.
 void StackLaunch::WriteRemainingOutput() {
   TimePoint until = TimePoint::max();
+  std::optional<size_t> unread;
   while (!children_.finished() && clock_.Now() < until) {
-    if (killed_) until = std::min(until, clock_.Now() + kFinalMessageTime);
+    if (killed_) {
+      until = std::min(until, clock_.Now() + kFinalMessageTime);
+    } else if (told_ && children_.unread() != unread) {
+      unread = children_.unread();
+      until = clock_.Now() + kUnreadTime;
+    }
     children_.Wait(until);
     OnSignals();
   }
@@ -38,6 +48,7 @@ void StackLaunch::OnSignals() {
       killed_ = true;
       if (exit_code_ == 0) exit_code_ = 1;
     } else {
+      told_ = true;
       BeginStop(std::string("stopped by SIG") + sigabbrev_np(*signal), 0);
     }
   }

@@ -83,6 +83,12 @@ OutputLeft BoardRig::Zero() noexcept {
 double BoardRig::Drive(double voltage) {
   if (!std::isfinite(voltage)) voltage = 0;
   voltage = std::clamp(voltage, min_voltage_, max_voltage_);
+  if (!guardian_->Watches()) {
+    throw RigError(
+        "guardian_gone",
+        "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
+        "stands still; allowed is a run with one: find out what ended it, and start again");
+  }
   board_.Write(output_, output_.converter.Code(TerminalVoltage(amplifier_, voltage)));
   if (watchdog_) {
     watchdog_high_ = !watchdog_high_;

@@ -27,11 +27,13 @@ class BoardRig : public Rig {
   std::string role() const override { return "driver"; }
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return faults_; }
-  // Toggles the watchdog line once the board has accepted the voltage.
+  // Toggles the watchdog line once the board has accepted the voltage. Throws RigError "guardian_gone", before any voltage is
+  // put out, when a kill of this process would leave it.
   double Drive(double voltage) override;
   OutputLeft Zero() noexcept override;
 
   const std::string& board_name() const { return board_.name(); }
+  pid_t guardian() const { return guardian_->pid(); }
 
  private:
   settings::AmplifierSection amplifier_;

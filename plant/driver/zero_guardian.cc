@@ -68,6 +68,17 @@ ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
   pipe_ = ends[1];
 }
 
+bool ZeroGuardian::Watches() {
+  if (!watches_) return false;
+  int status = 0;
+  const pid_t changed = waitpid(pid_, &status, WNOHANG | WUNTRACED);
+  if (changed == 0) return true;
+  watches_ = false;
+  // Its number may soon be another process's. A guardian that stands still is left for Dismiss().
+  if (changed < 0 || !WIFSTOPPED(status)) pid_ = -1;
+  return false;
+}
+
 void ZeroGuardian::Dismiss() {
   if (pipe_ < 0) return;
   // When the guardian no longer exists, SIGPIPE must not end this process.
@@ -79,6 +90,7 @@ void ZeroGuardian::Dismiss() {
   sigaction(SIGPIPE, &before, nullptr);
   close(pipe_);
   pipe_ = -1;
+  if (pid_ < 0) return;
   for (int i = 0; i < kExitTimeout_ms; ++i) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
     usleep(1000);

@@ -19,6 +19,9 @@ class ZeroGuardian {
   ZeroGuardian(const ZeroGuardian&) = delete;
   ZeroGuardian& operator=(const ZeroGuardian&) = delete;
 
+  // False from when the guardian has ended, or stood still (SIGSTOP), and so would not write: for the loop, in each tick.
+  bool Watches();
+
   // Ends the guardian: the output is at zero and the device is about to be closed.
   void Dismiss();
 
@@ -26,6 +29,7 @@ class ZeroGuardian {
 
  private:
   pid_t pid_ = -1;
+  bool watches_ = true;
   int pipe_ = -1;
 };
 

@@ -79,7 +79,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, `stale_input_s` after the second was last heard; the first is followed",
         .tests = "fault_commands.PressureCommandTest.test_two_senders",
-        .injected = "change:position_ctrl",
+        .injected = "change:position_ctrl second_reference",
     },
 };
 

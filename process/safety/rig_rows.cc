@@ -84,6 +84,21 @@ constexpr std::array kRows{
         .not_injected = kNoDriver,
     },
     SafetyRow{
+        .id = "guardian_gone",
+        .fault = "the guardian `hydro-zero`, which writes the zero should the driver be killed, ends or "
+                 "stands still",
+        .detected = "driver",
+        .codes = "guardian_gone",
+        .within = {"the next tick", 1},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
+        .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/BoardRigTest.WithoutAGuardianNoVoltage",
+        .not_injected = kNoDriver,
+    },
+    SafetyRow{
         .id = "limit_exceeded",
         .fault =
             "a pressure above `limits.pressure_psi`, a motor above `limits.motor_speed_rad_s`, an arm beyond "

@@ -9,8 +9,8 @@ namespace {
 constexpr std::array kRows{
     SafetyRow{
         .id = "tuning_refused",
-        .fault =
-            "values that would make a loop unstable, loosen a limit while the motor may move, or are none",
+        .fault = "values that would make a loop unstable, or of which that cannot be judged, that loosen a "
+                 "limit while the motor may move, or are none",
         .detected = "plant or driver, before they act",
         .within = {"at once"},
         .output = SafeOutput::kNotObeyed,
@@ -18,10 +18,10 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "nothing has changed",
-        .tests =
-            "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
-            "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
-        .not_injected = "no kind of fault asks for other values",
+        .tests = "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
+                 "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.RefusesWhatCannotBeJudged "
+                 "tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
+        .injected = "set",
     },
     SafetyRow{
         .id = "tuning_torn",
@@ -38,7 +38,7 @@ constexpr std::array kRows{
                  "tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
                  "tuning/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
                  "position_ctrl/PositionAppTest.ActsByTheValuesInForceWhenItJoins",
-        .not_injected = "no kind of fault asks for other values",
+        .not_injected = "no kind by itself: it takes a set while a controller crashes, hangs or is not heard",
     },
     SafetyRow{
         .id = "plan_refused",

@@ -7,6 +7,7 @@
 
 #include "base/saturating.h"
 #include "base/text_file.h"
+#include "base/utf8.h"
 #include "process/participant.h"
 #include "process/status.h"
 #include "runs/tuning_history.h"
@@ -21,7 +22,7 @@ constexpr size_t kMostProcesses = 64;   // a flood of made-up ones is not kept
 constexpr size_t kMostText = 400;
 constexpr uint64_t kMostReports = 100000;  // of a loop: a day
 
-std::string Shown(const std::string& text) { return Printable(text.substr(0, kMostText)); }
+std::string Shown(const std::string& text) { return Printable(FirstBytes(text, kMostText)); }
 
 std::string StateName(const process_status_t& status) {
   switch (status.state) {

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -99,6 +100,7 @@ std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std
     for (const std::string& channel : stack->channels().names()) by_channel.emplace(channel, stack.get());
   }
   const bus::Channels of_limb(limb);
+  const std::set<std::string, std::less<>> limb_names(of_limb.names().begin(), of_limb.names().end());
   log::LogEvent event;
   while (reader.Next(event)) {
     const auto stack = by_channel.find(event.channel);
@@ -106,6 +108,7 @@ std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std
       stack->second->intake().Take(event.channel, event.data, event.size, event.utime);
       continue;
     }
+    if (!limb_names.contains(event.channel)) continue;
     for (const auto& one : stacks)
       one->intake().TakeOfLimb(of_limb, event.channel, event.data, event.size, event.utime);
   }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/utf8.h"
 #include "scope/wire/target.h"
 
 namespace hydro::scope {
@@ -43,7 +44,7 @@ Response ErrorResponse(int status, const std::string& text) {
   Response response;
   response.status = status;
   response.body = "{\"error\": \"";
-  for (const char c : text) {
+  for (const char c : AsUtf8(text)) {
     if (c == '"' || c == '\\') response.body += '\\';
     response.body += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }

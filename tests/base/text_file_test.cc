@@ -19,6 +19,7 @@ TEST(TextFileTest, Printable) {
                       "2J"),
             "\\x9b2J \\xc2\\x9b2J");
   EXPECT_EQ(Printable("\xff \xc3 \xe2\x82"), "\\xff \\xc3 \\xe2\\x82");
+  EXPECT_EQ(Printable("\xed\xa0\x80 \xc1\xbf \xe0\x9f\xbf"), "\\xed\\xa0\\x80 \\xc1\\xbf \\xe0\\x9f\\xbf");
   EXPECT_EQ(Printable(std::string_view("\0x", 2)), "\\x00x");
 }
 

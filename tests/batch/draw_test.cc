@@ -6,6 +6,7 @@
 #include "model/terms/parameter_info.h"
 #include "settings/model_file.h"
 #include "tests/batch/study_folder.h"
+#include "tests/settings/texts.h"
 
 namespace hydro::batch {
 namespace {
@@ -62,6 +63,61 @@ TEST(DrawTest, HasTheMomentsOfItsDistribution) {
               .distribution = Distribution::kChoice,
               .choices = {int64_t{0}, int64_t{0}, int64_t{0}, int64_t{1}}};
   EXPECT_NEAR(MomentsOf(choice, Same).mean, 0.25, six);
+}
+
+// Tests that a range whose ends have no finite difference or ratio gives finite values between them, in grids and draws, that
+// they increase, and that they fill the range.
+TEST(DrawTest, RangesThatOverflow) {
+  const StudyFolder folder;
+  const std::string head = "draws = 200\n[[step]]\nrun = [\"true\"]\n";
+  const struct {
+    const char *from, *to, *scale, *distribution;
+  } cases[] = {{"1e-300", "1e300", "log", "log_uniform"},
+               {"4e-308", "1.7e308", "log", "log_uniform"},
+               {"-1.7e308", "1.7e308", "linear", "uniform"},
+               {"-1e308", "1.7976931348623157e308", "linear", "uniform"}};
+  for (const auto& c : cases) {
+    const double from = std::stod(c.from), to = std::stod(c.to);
+    const Study grid =
+        folder.Read("[[step]]\nrun = [\"true\"]\n[[grid]]\nkey = \"k\"\nfrom = " + std::string(c.from) +
+                    "\nto = " + c.to + "\nsteps = 9\nscale = \"" + c.scale + "\"\n");
+    double last = -HUGE_VAL;
+    for (int64_t i = 0; i < 9; ++i) {
+      const double value = *AsNumber(grid.Values(i)[0]);
+      EXPECT_TRUE(std::isfinite(value) && value > last) << c.from << ", " << i << ": " << value;
+      last = value;
+    }
+    EXPECT_NEAR(last / to, 1, 1e-11);
+    const Study draws = folder.Read(head + "[[draw]]\nkey = \"k\"\ndistribution = \"" + c.distribution +
+                                    "\"\nmin = " + c.from + "\nmax = " + c.to + "\n");
+    int low = 0;
+    for (int64_t i = 0; i < 200; ++i) {
+      const double value = *AsNumber(draws.Values(i)[0]);
+      ASSERT_TRUE(std::isfinite(value) && value >= from && value <= to) << c.from << ": " << value;
+      low += value < Between(from, to, 0.5, std::string(c.scale) == "log") ? 1 : 0;
+    }
+    EXPECT_NEAR(low, 100, 43) << "six standard deviations of 200 throws of a coin";
+  }
+  EXPECT_EQ(Rounded(HUGE_VAL), HUGE_VAL);
+  EXPECT_TRUE(std::isnan(Rounded(NAN)));
+  EXPECT_EQ(Rounded(5e-324), 5e-324);
+}
+
+// Tests that draws that would not be numbers are refused with the key.
+TEST(DrawTest, RefusesWhatIsNoNumber) {
+  const StudyFolder folder;
+  const auto error = [&](const std::string& draw) {
+    return settings::InputErrorOf([&] {
+      folder.Read("draws = 2\n[[step]]\nrun = [\"true\"]\n[[draw]]\nkey = \"k\"\ndistribution = " + draw);
+    });
+  };
+  EXPECT_THAT(
+      error("\"uniform\"\nmin = 0\nmax = 1e300\nwhole = true\n"),
+      ::testing::HasSubstr("whole: found true from 0 to 1e+300, allowed bounds from -9007199254740992"));
+  EXPECT_THAT(error("\"normal\"\nmean = 0\nstandard_deviation = 1e308\n"),
+              ::testing::HasSubstr("standard_deviation: found 1e+308"));
+  EXPECT_THAT(error("\"uniform\"\nmin = 0\nmax = inf\n"), ::testing::HasSubstr("max: found"));
+  EXPECT_EQ(error("\"uniform\"\nmin = -9007199254740992\nmax = 9007199254740992\nwhole = true\n"), "");
 }
 
 // Tests that what a case gets for a key depends on seed, number and key, and on none of the study's other keys.

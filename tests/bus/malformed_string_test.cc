@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bus/bus.h"
+#include "bus/messages.h"
 
 namespace hydro::bus {
 namespace {
@@ -47,6 +48,51 @@ TEST(MalformedStringTest, AZeroByteInsideIsRefused) {
   EXPECT_EQ(type.decode(bytes.data(), size), nullptr);
   fault_t into;
   EXPECT_FALSE(type.decode_into(&into, bytes.data(), size));
+}
+
+// A message of the type with an element in its array of strings, if it has one.
+template <class Message>
+Message Example() {
+  Message message{};
+  if constexpr (requires { message.names; }) {
+    message.count = 2;
+    message.names = {"pressure.k_p", "position.c1"};
+    message.values = {1, 2};
+  }
+  return message;
+}
+
+// Decodes the message with each number of 32 bits in it replaced: whatever is a length somewhere gets a value that no encoder
+// writes. A message that decodes can be sent on.
+template <class Message>
+void ExpectNoHarm(std::string_view channel) {
+  const Message message = Example<Message>();
+  std::vector<uint8_t> sound(static_cast<size_t>(message.getEncodedSize()));
+  const int size = static_cast<int>(sound.size());
+  ASSERT_EQ(message.encode(sound.data(), 0, size), size) << channel;
+  ASSERT_NE(TypeOf<Message>().decode(sound.data(), size), nullptr) << channel;
+  for (size_t at = 8; at + 4 <= sound.size(); ++at) {
+    for (const int32_t length :
+         {0, -1, -7, std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max(), size}) {
+      std::vector<uint8_t> bytes = sound;
+      for (size_t i = 0; i < 4; ++i)
+        bytes[at + i] = static_cast<uint8_t>(static_cast<uint32_t>(length) >> (24 - 8 * i));
+      Message into;
+      bool decoded = false;
+      EXPECT_NO_THROW(decoded = TypeOf<Message>().decode_into(&into, bytes.data(), size))
+          << channel << ", " << length << " at byte " << at;
+      if (decoded) EXPECT_EQ(into.getEncodedSize(), size) << channel << ", " << length << " at byte " << at;
+    }
+  }
+}
+
+// Tests the same of every message that there is, and of every place in it, elements of arrays included.
+TEST(MalformedStringTest, NoLengthInAnyMessageDoesHarm) {
+  std::apply(
+      [](const auto&... row) {
+        (ExpectNoHarm<typename std::remove_cvref_t<decltype(row)>::Type>(row.channel), ...);
+      },
+      kMessages);
 }
 
 }  // namespace

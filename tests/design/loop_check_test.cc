@@ -62,16 +62,18 @@ TEST(LoopCheck, JudgesTheLoopsThatAreClosed) {
   EXPECT_TRUE(clamped.pressure.has_value());
   EXPECT_EQ(clamped.cases.size(), 3U);
   EXPECT_THAT(clamped.unjudged, HasSubstr("does not move a shaft that is held"));
+  EXPECT_TRUE(clamped.stable() && !clamped.unknown) << "a loop that moves nothing is none to fear";
   EXPECT_THAT(CheckLoops(Retuned({"model.bypass=true"})).unjudged, HasSubstr("bypass"));
   const LoopCheck seldom = CheckLoops(
       Retuned({"plant.rate_hz=1e6", "pressure.rate_hz=8e3", "position.sample_interval_s=0.006001"}));
   EXPECT_THAT(seldom.unjudged, HasSubstr("repeats too seldom"));
+  EXPECT_TRUE(seldom.unknown && !seldom.stable()) << "what is not known is not stable";
   const LoopCheck uneven = CheckLoops(
       Retuned({"pressure.rate_hz=1000", "position.sample_interval_s=0.0052", "time.duration_s=1.04"}));
   EXPECT_TRUE(uneven.stable());
   EXPECT_THAT(Describe(uneven), HasSubstr("position loop: stable, margins unknown"));
   const LoopCheck wild = CheckLoops(Retuned({"position.c1=1e300", "position.c2=1e300"}));
-  EXPECT_TRUE(!wild.stable() || !wild.unjudged.empty());
+  EXPECT_FALSE(wild.stable());
   const LoopCheck none = CheckLoops(Retuned({"position.c1=0", "position.c2=0"}));
   EXPECT_TRUE(none.stable());
   EXPECT_TRUE(std::isinf(none.position->worst.gain));

@@ -202,6 +202,17 @@ class WaysOutTest(DriverCase):
             self.assertIn("board_error", driver.stderr)
             self.assertRegex(driver.stderr, "driver[.]\\w+: (reading|writing) subdevice")
 
+    # Tests that the end of the guardian, or a guardian that stands still, ends the run with zero volts and its name: a kill of
+    # the driver would leave the voltage.
+    def test_guardian_gone(self):
+        for number in (signal.SIGKILL, signal.SIGSTOP):
+            def act(driver, _, number=number):
+                with open(f"/proc/{driver.pid}/task/{driver.pid}/children", encoding="ascii") as file:
+                    os.kill(int(file.read()), number)
+
+            driver = self.leave(f"guardian {number.name}", act, 1)
+            self.assertIn("guardian_gone", driver.stderr)
+
     # Tests a stop message from another process, here the pressure loop's when the motor exceeds its speed limit.
     def test_stop_message(self):
         self.leave("stop message", lambda *_: None, 1, "limits.motor_speed_rad_s=200", driven=False)

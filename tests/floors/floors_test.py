@@ -155,6 +155,13 @@ class FloorsTest(unittest.TestCase):
         found = link_problems(lists, self.floors)
         self.assertEqual(found, [], "links that are not allowed:\n" + "\n".join(found))
 
+    def test_json_is_written_at_one_place(self):
+        """Tests that all JSON is written by JsonText (base/json_text.h), which no bytes from outside can make throw."""
+        allowed = {"base/json_text.cc", "diagnose/report/report_json.cc"}
+        found = [f"{path}: write JSON with JsonText()" for path, text in self.sources()
+                 if path not in allowed and re.search(r"[.>]dump\(", text)]
+        self.assertEqual(found, [], "\n".join(found))
+
     def test_every_source_lies_in_a_room(self):
         """Tests that each folder with sources is in the list, and that each room of the list is there."""
         with_sources = {pathlib.PurePath(path).parent.as_posix() for path, _ in self.sources()}

@@ -5,6 +5,7 @@
 
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "base/utf8.h"
 #include "hydro_log/replay.h"
 #include "log/log_reader.h"
 #include "log/log_writer.h"
@@ -40,10 +41,10 @@ void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
   if (!accepted) return;
   Accepts([&] {
     const runs::LogInfo info = runs::Summarise(log, true);
-    Promise(!runs::InfoText(info).empty() && !runs::InfoJson(info).empty(), "info says something");
+    Promise(!runs::InfoText(info).empty() && IsUtf8(runs::InfoJson(info)), "info says something in UTF-8");
     const runs::Tracking tracking = runs::TrackArm(log);
     Promise(!runs::SummaryText(tracking, info, true).empty(), "a summary says something");
-    runs::SummaryJson(tracking, info);
+    Promise(IsUtf8(runs::SummaryJson(tracking, info)), "a summary's JSON is UTF-8");
   });
   Promise(!runs::FirstDifference(log.messages, "a", log.messages, "b").has_value(),
           "a log is identical to itself");

@@ -8,6 +8,7 @@
 #include "runs/run_table.h"
 #include "settings/stack_config.h"
 #include "tables/csv_points.h"
+#include "tables/mat_sizes.h"
 #include "tables/table.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
@@ -37,6 +38,23 @@ void Table(const uint8_t* data, size_t size) {
       Promise(runs::ExportRun(runs::ReadRunLog(folder.Path("import.log"))).rows() == table.rows(),
               "an import exports as many rows");
     });
+  });
+}
+
+// Version 5. That of 7.3 is HDF5's own to read.
+void Mat(const uint8_t* data, size_t size) {
+  static const ScratchFolder folder;
+  const std::string_view text = Text(data, size);
+  if (text.find("\x89HDF\r\n") != std::string_view::npos) return;
+  const std::string file = folder.Write("table.mat", text);
+  Accepts([&] {
+    const ::hydro::tables::Table table = tables::ReadTable(file);
+    size_t numbers = 0;
+    for (const tables::Column& column : table.columns) {
+      Promise(column.values.size() == table.rows(), "columns are of one length");
+      numbers += column.values.size();
+    }
+    Promise(numbers <= tables::MostNumbers(size), "a table holds no more than its file can");
   });
 }
 

@@ -11,6 +11,7 @@ const Target* FindTarget(std::string_view name) {
       {"recorder", Recorder},
       {"log", Log},
       {"table", Table},
+      {"mat", Mat},
       {"measured_run", MeasuredRun},
       {"points", Points},
       {"stack_toml", StackToml},
@@ -20,6 +21,7 @@ const Target* FindTarget(std::string_view name) {
       {"url", Url},
       {"key", Key},
       {"scope", Scope},
+      {"text", ForeignText},
   };
   for (const Target& target : kTargets) {
     if (name == target.name) return &target;

@@ -27,14 +27,16 @@ void Plant(const uint8_t* data, size_t size);        // what the plant and its v
 void Recorder(const uint8_t* data, size_t size);     // what the logger does with them
 void Log(const uint8_t* data, size_t size);          // all that hydro-log does with a log
 void Table(const uint8_t* data, size_t size);        // hydro-log import
+void Mat(const uint8_t* data, size_t size);          // a MAT file as a table
 void MeasuredRun(const uint8_t* data, size_t size);  // a CSV with its sidecar
 void Points(const uint8_t* data, size_t size);       // the CSV of a trajectory
 void StackToml(const uint8_t* data, size_t size);
 void ModelToml(const uint8_t* data, size_t size);
-void Effect(const uint8_t* data, size_t size);     // a file of an effect as text, and a model that has it
-void Overrides(const uint8_t* data, size_t size);  // --set
-void Url(const uint8_t* data, size_t size);        // bus.url
-void Key(const uint8_t* data, size_t size);        // bus.key_file
-void Scope(const uint8_t* data, size_t size);      // what a browser sends to hydro-scope
+void Effect(const uint8_t* data, size_t size);       // a file of an effect as text, and a model that has it
+void Overrides(const uint8_t* data, size_t size);    // --set
+void Url(const uint8_t* data, size_t size);          // bus.url
+void Key(const uint8_t* data, size_t size);          // bus.key_file
+void ForeignText(const uint8_t* data, size_t size);  // text of messages, logs, files, other programs
+void Scope(const uint8_t* data, size_t size);        // what a browser sends to hydro-scope
 
 }  // namespace hydro::fuzz

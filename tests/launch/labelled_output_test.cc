@@ -102,6 +102,19 @@ TEST_F(LabelledOutputTest, QuietAndJson) {
                     "\n");
 }
 
+// Tests that a child that prints what is not UTF-8, a surrogate here, does not end the launcher: a line of JSON says which bytes.
+TEST_F(LabelledOutputTest, WhatIsNoUtf8StaysJson) {
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  output.set_json();
+  output.Line(Stream::kOut, "pid.py", "\xed\xa0\x80 \xc0\xaf \xc3\xa4");
+  output.Line(Stream::kOut, "\xff", "");
+  output.Flush();
+  EXPECT_EQ(Read(),
+            "{\"source\":\"pid.py\",\"stream\":\"out\",\"text\":\"\\\\xed\\\\xa0\\\\x80 \\\\xc0\\\\xaf "
+            "\xc3\xa4\"}\n"
+            "{\"source\":\"\xef\xbf\xbd\",\"stream\":\"out\",\"text\":\"\"}\n");
+}
+
 // Tests that colours surround the label only.
 TEST_F(LabelledOutputTest, ColoursTheLabel) {
   LabelledOutput output(pipe_[1], pipe_[1], true);

@@ -127,5 +127,30 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   EXPECT_EQ(summary.FaultsLeft().size(), 1u);
 }
 
+// Tests that a fault whose sender's name changed on the way ends with that sender's own report of its end, and is
+// no fault that stays; and that joints without sessions are told apart by their names.
+TEST(RunSummaryTest, ASenderIsItsSession) {
+  RunSummary summary;
+  fault_t fault{};
+  fault.session = 7;
+  fault.code = "stale_state";
+  fault.source = "pr%ssure_ctrl";
+  fault.active = 1;
+  summary.Add(fault);
+  fault.source = "pressure_ctrl";
+  fault.active = 0;
+  summary.Add(fault);
+  EXPECT_THAT(summary.FaultsLeft(), IsEmpty());
+  fault.session = 0;
+  fault.active = 1;
+  fault.source = "hip plant";
+  summary.Add(fault);
+  fault.source = "knee plant";
+  summary.Add(fault);
+  fault.active = 0;
+  summary.Add(fault);
+  EXPECT_THAT(summary.FaultsLeft(), ::testing::ElementsAre("stale_state of hip plant"));
+}
+
 }  // namespace
 }  // namespace hydro::launch

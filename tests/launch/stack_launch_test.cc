@@ -57,7 +57,7 @@ class FakeChildren : public Children {
     for (const auto& [program, pid] : std::map(pids)) End(program, {0, SIGKILL}, true);
   }
   int running() const override { return static_cast<int>(pids.size()); }
-  bool finished() const override { return pids.empty(); }
+  size_t unread() const override { return unread_bytes; }
 
   void End(const std::string& program, ProcessEnd end, bool terminated = false) {
     ended_.push_back({specs_[program].label, program, pids.at(program), end, terminated, false});
@@ -68,6 +68,7 @@ class FakeChildren : public Children {
   std::map<std::string, int32_t> pids;  // of those that run
   std::deque<int> signals;
   bool deaf = false;
+  size_t unread_bytes = 0;
 
  private:
   template <class T>
@@ -154,6 +155,44 @@ TEST_F(StackLaunchTest, SignalEndsInOrder) {
   ASSERT_FALSE(stops_.empty());
   EXPECT_EQ(stops_[0].addressee, 1101);
   EXPECT_EQ(stops_[0].exit_code, 0);
+}
+
+// Tests that a launcher that was told to end does so where nobody takes its output.
+TEST_F(StackLaunchTest, AnUnreadOutputDoesNotHoldTheEnd) {
+  children_.unread_bytes = 1000;
+  bus::Clock::TimePoint told{};
+  EXPECT_EQ(Run(1s,
+                [&] {
+                  told = clock_.Now();
+                  children_.signals.push_back(SIGTERM);
+                }),
+            0);
+  EXPECT_GE(clock_.Now() - told, 2s);
+  EXPECT_LT(clock_.Now() - told, 4s);
+}
+
+// Tests that a reader that takes a little now and then gets all of it.
+TEST_F(StackLaunchTest, ASlowReaderGetsAll) {
+  // A byte a wait, each of which lasts until the deadline.
+  FakeChildren slow(clock_);
+  bool ready = false, signalled = false;
+  slow.unread_bytes = 10;
+  slow.on_wait = [&] {
+    if (slow.pids.empty() && slow.unread_bytes > 0) --slow.unread_bytes;
+    if (!ready) {
+      for (const auto& [program, role] :
+           std::map<std::string, std::string>{{"hydro-plant", "plant"},
+                                              {"hydro-pressure-ctrl", "pressure_ctrl"},
+                                              {"hydro-logger", "logger"}}) {
+        Announce(role, slow.pids[program]);
+      }
+    }
+    ready = true;
+    if (!signalled) slow.signals.push_back(SIGINT);
+    signalled = true;
+  };
+  EXPECT_EQ(StackLaunch(bus_, clock_, slow, report_, config_, plan_, {}).Run(), 0);
+  EXPECT_EQ(slow.unread_bytes, 0u) << "all was taken";
 }
 
 // Tests that another host's logger keeps nobody from starting a stack that is spread over hosts, as another plant does; and on one

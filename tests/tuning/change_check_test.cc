@@ -107,6 +107,41 @@ TEST(PrepareChange, RefusesWithTheReason) {
   }
 }
 
+// Tests that gains whose loops cannot be judged are refused with the reason, however small, for each reason that there is; that
+// what touches no loop is accepted; and that the way back to the configuration stays open.
+TEST(PrepareChange, RefusesWhatCannotBeJudged) {
+  const struct {
+    const char* effect;
+    const char* rates;
+    const char* says;
+  } cases[] = {
+      {"[effects.\"amp.delay\"]\ndelay = 0.07\n", "rate_hz = 1000",
+       "amp.delay of 0.07 s is more than 60 ticks"},
+      {"[effects.\"sensor.skew\"]\nsignal = \"arm_angle\"\ndelay = 0.02\n", "rate_hz = 5000",
+       "sensor.skew of 0.02 s is more than 60 ticks"},
+  };
+  for (const auto& c : cases) {
+    const settings::StackConfig configured =
+        settings::ParseStackConfig(settings::Replaced(kConfigText, "rate_hz = 1000", c.rates), "stack.toml",
+                                   std::string(settings::kModelText) + c.effect, "model.toml");
+    for (const std::vector<std::string>& changes :
+         {std::vector<std::string>{"position.c1=100000", "position.c2=100000"},
+          {"position.c2=1201"},
+          {"pressure.damping_ratio=0.6"}}) {
+      const PreparedChange change = PrepareChange(configured, configured, changes, {});
+      EXPECT_EQ(change.config, nullptr) << changes.front();
+      EXPECT_THAT(change.text, StartsWith("the loops cannot be judged: "));
+      EXPECT_THAT(change.text, HasSubstr(c.says));
+      EXPECT_THAT(change.text, HasSubstr("change these in the configuration, and restart"));
+    }
+    EXPECT_NE(PrepareChange(configured, configured, {"limits.pressure_psi=1500"}, {}).config, nullptr);
+    const settings::StackConfig other = settings::Changed(configured, {"position.c2=300"});
+    const auto back = std::make_shared<const settings::StackConfig>(configured);
+    EXPECT_NE(PrepareChange(configured, other, back, {}).config, nullptr);
+    EXPECT_EQ(PrepareChange(other, other, back, {}).config, nullptr);
+  }
+}
+
 // Tests that one bad value of several leaves all as they were.
 TEST(PrepareChange, AllOrNone) { EXPECT_EQ(Prepared({"position.c2=400", "position.c1=-1"}).config, nullptr); }
 

@@ -8,6 +8,8 @@
 #include <hydro/fault_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
+#include <hydro/rearm_t.hpp>
+#include <hydro/stop_t.hpp>
 #include <hydro/tuned_settings_t.hpp>
 #include <hydro/tuning_answer_t.hpp>
 #include <hydro/tuning_request_t.hpp>
@@ -382,6 +384,90 @@ TEST_F(LiveTuningTest, AControllerThatIsSilentEndsTheRequest) {
   ASSERT_NE(AnswerTo(1), nullptr);
   EXPECT_FALSE(AnswerTo(1)->accepted);
   EXPECT_THAT(AnswerTo(1)->text, HasSubstr("position_ctrl has not answered; nothing has changed"));
+  ExpectNothingDecided();
+}
+
+// Tests values that are asked for while a latched fault holds zero volts: limits may be loosened then, nothing moves before the re-arm,
+// and after it the loops act by them.
+TEST_F(LiveTuningTest, SetsDuringALatchedFault) {
+  config_ += "[limits]\nrearm = \"explicit\"\nmotor_speed_rad_s = 20\n";
+  std::vector<fault_t> faults;
+  std::vector<rearm_t> rearmed;
+  listen_ = [&] {
+    bus_->Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& f) { faults.push_back(f); });
+    bus_->Subscribe<rearm_t>("HYDRO_REARM", [&](const rearm_t& r) {
+      if (r.kind != rearm_t::REQUEST) rearmed.push_back(r);
+    });
+  };
+  const auto rearm = [&] {
+    rearm_t request{};
+    request.tick = states_.back().tick;
+    request.session = 77;
+    request.addressee = states_.back().session;
+    request.kind = rearm_t::REQUEST;
+    bus_->Publish("HYDRO_REARM", request);
+  };
+  at_[2000] = [&] { Ask(1, "limits.motor_speed_rad_s=900\nposition.c2=400"); };
+  at_[3000] = rearm;
+  at_[5000] = [&] { Ask(2, "limits.motor_speed_rad_s=1000"); };
+  ASSERT_EQ(Run(1.2), 0);
+  ASSERT_FALSE(faults.empty());
+  EXPECT_EQ(faults.front().code, "motor_speed_limit");
+  EXPECT_LT(faults.front().tick, 2000);
+  ASSERT_NE(AnswerTo(1), nullptr);
+  EXPECT_TRUE(AnswerTo(1)->accepted) << AnswerTo(1)->text;
+  ASSERT_EQ(rearmed.size(), 1u);
+  EXPECT_EQ(rearmed[0].kind, rearm_t::ACCEPTED) << rearmed[0].text;
+  double after = 0;
+  for (const state_t& state : states_) {
+    if (state.tick > faults.front().tick + 1 && state.tick <= 3000)
+      ASSERT_EQ(state.voltage, 0) << state.tick << ": a set is no re-arm";
+    if (state.tick > 3100) after = std::max(after, std::fabs(state.voltage));
+  }
+  EXPECT_GT(after, 0.1);
+  ASSERT_NE(AnswerTo(2), nullptr);
+  EXPECT_FALSE(AnswerTo(2)->accepted) << "it may move again";
+}
+
+// Tests that a request beside a stop, in whatever order they arrive, ends with the run, in order and at zero volts.
+TEST_F(LiveTuningTest, SetsDuringAStop) {
+  for (const int64_t later : {-3, -1, 0, 1, 3}) {
+    at_.clear();
+    answers_.clear();
+    const auto ask = [&] { Ask(1, "position.c2=400"); };
+    const auto stop = [&] {
+      stop_t message{};
+      message.session = 78;
+      message.source = "launch";
+      message.reason = "a test";
+      message.addressee = states_.back().session;
+      bus_->Publish("HYDRO_STOP", message);
+    };
+    at_[1000] = [&, later] {
+      if (later >= 0) stop();
+      if (later <= 0) ask();
+    };
+    if (later > 0) at_[1000 + later] = ask;
+    if (later < 0) at_[1000 - later] = stop;
+    EXPECT_EQ(Run(1), 0) << later;
+    EXPECT_LT(states_.back().tick, 1100) << "it has ended";
+    for (const motor_command_t& command : commands_) EXPECT_TRUE(std::isfinite(command.voltage));
+  }
+}
+
+// Tests that a run that has just begun has nothing to undo, whatever was changed in the one before it.
+TEST_F(LiveTuningTest, NothingIsUndoneAfterARestart) {
+  at_[500] = [&] { Ask(1, "position.c2=400"); };
+  ASSERT_EQ(Run(0.3), 0);
+  ASSERT_TRUE(AnswerTo(1) != nullptr && AnswerTo(1)->accepted);
+  at_.clear();
+  answers_.clear();
+  settings_.clear();
+  at_[500] = [&] { Ask(2, "", tuning_request_t::UNDO); };
+  ASSERT_EQ(Run(0.3), 0);
+  ASSERT_NE(AnswerTo(2), nullptr);
+  EXPECT_FALSE(AnswerTo(2)->accepted);
+  EXPECT_THAT(AnswerTo(2)->text, HasSubstr("nothing to undo"));
   ExpectNothingDecided();
 }
 

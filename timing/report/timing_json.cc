@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "timing/report/timing_report.h"
 
 namespace hydro::timing {
@@ -74,8 +75,7 @@ std::string TimingJson(const std::vector<TimedProcess>& processes, const std::st
     for (const loop_statistics_t& report : process.reports) seconds.push_back(ReportJson(report));
     list.push_back(std::move(one));
   }
-  // Names may come from anywhere on the network.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json, 1) + "\n";
 }
 
 }  // namespace hydro::timing

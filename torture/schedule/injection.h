@@ -44,12 +44,14 @@ enum class FaultKind : uint8_t {
   kStop,
   kRearm,
   kSignal,
+  kSet,  // hydro-set
   // Another stack on the same network.
   kForeignStop,
   kSecondPlant,
   // Somebody who sends what no process of the stack would.
   kSecondSender,
-  kInsider,  // he has the key
+  kSecondReference,  // of pressure commands
+  kInsider,          // he has the key
   kReplay,
   kHugeSequence,
   kHugeTick,

@@ -342,6 +342,34 @@ TEST_F(BoardRigTest, Guardian) {
   }
 }
 
+// Tests that no voltage is put out once the guardian has been killed, or stands still: a kill of the driver would leave it.
+TEST_F(BoardRigTest, WithoutAGuardianNoVoltage) {
+  for (const int signal : {SIGKILL, SIGSTOP}) {
+    board_->nonzero_writes = 0;
+    auto rig = Open();
+    rig->Drive(5);
+    kill(rig->guardian(), signal);
+    std::string code;
+    for (int i = 0; i < 10000 && code.empty(); ++i) {
+      const int64_t writes = board_->nonzero_writes;
+      try {
+        rig->Drive(5);
+        usleep(1000);
+      } catch (const RigError& error) {
+        code = error.code();
+        EXPECT_THAT(error.what(), HasSubstr("hydro-zero"));
+        EXPECT_EQ(board_->nonzero_writes, writes) << "before the voltage, not after";
+      }
+    }
+    EXPECT_EQ(code, "guardian_gone") << signal;
+    EXPECT_TRUE(rig->Zero().accepted);
+    EXPECT_EQ(board_->outputs[0], SimulatedBoard::kZeroCode);
+    EXPECT_THROW(rig->Drive(5), RigError) << "it does not come back";
+    rig.reset();
+    EXPECT_EQ(board_->outputs[0], SimulatedBoard::kZeroCode);
+  }
+}
+
 // Tests that a stopped guardian does not keep us from ending.
 TEST_F(BoardRigTest, StoppedGuardian) {
   ComediBoard board(config_.file, file_, 0);
