@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   line.AddOption("--samples", &request.samples,
                  "N of what may be true instead of the model, from [uncertainty] (8)");
   line.AddOption("--jobs", &request.jobs, "N threads (as many as processors)");
+  line.AddForce();
   line.AddFlag("--fixed-gains", &request.fixed_gains, "eq. (17) alone, without a braking curve");
   line.AddFlag("--noise", &request.noise, "with noisy sensors");
   line.AddFlag("--si", &request.si, "show gains in SI units");

@@ -111,8 +111,8 @@ void CheckCanBeChanged(const settings::StackConfig& config, const std::string& o
 
 void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
   std::filesystem::create_directories(folder);
-  WriteWholeFile(folder + "/tune.svg", ReportPicture(report));
-  WriteWholeFile(folder + "/tune.html", ReportPage(report, si));
+  WriteWholeFile(folder + "/tune.svg", ReportPicture(report), Existing::kKept);
+  WriteWholeFile(folder + "/tune.html", ReportPage(report, si), Existing::kKept);
 }
 
 // The gains as the stack's own programs run them: nothing that was left out of the search can differ.
@@ -160,6 +160,9 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const settings::StackConfig config = Load(request);
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
+  if (!request.folder.empty()) {
+    for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(request.folder + file);
+  }
   if (!request.output.empty()) CheckCanBeChanged(config, request.output);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));

@@ -12,6 +12,7 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 
 namespace hydro {
@@ -86,6 +87,36 @@ TEST_F(NewFileTest, KeepsAForeignPart) {
   { const NewFile unfinished(Path("out"), Opening::kTemporary); }
   EXPECT_EQ(TextOf(Path("out.part")), "somebody's");
   EXPECT_FALSE(std::filesystem::exists(Path("out.part2")));
+}
+
+// Tests that kKept keeps a file with contents unless told otherwise, says what to do, and takes an empty file's or a device's place.
+TEST_F(NewFileTest, KeepsWhatIsThere) {
+  const std::string log = Make("run.lcmlog", "yesterday");
+  for (const Opening opening : {Opening::kDirect, Opening::kTemporary}) {
+    const auto open = [&] { NewFile(log, opening, Existing::kKept); };
+    EXPECT_THAT(ErrorOf(open), AllOf(HasSubstr(log), HasSubstr("--force")));
+  }
+  EXPECT_THAT(ErrorOf([&] { CheckCanBeCreated(log); }), HasSubstr("--force"));
+  EXPECT_THAT(ErrorOf([&] { WriteTextFile(log, "today"); }), HasSubstr("--force"));
+  EXPECT_EQ(TextOf(log), "yesterday");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);  // nothing is left beside it
+  WriteTextFile(Make("empty", ""), "today");
+  EXPECT_EQ(TextOf(Path("empty")), "today");
+  CheckIsNew("/dev/null");
+  AllowReplacing();
+  WriteTextFile(log, "today");
+  AllowReplacing(false);
+  EXPECT_EQ(TextOf(log), "today");
+}
+
+// Tests that a file which appears while another of its name is being written is kept, and so is what was written.
+TEST_F(NewFileTest, KeepsWhatAppears) {
+  NewFile file(Path("run"), Opening::kTemporary, Existing::kKept);
+  file.Write("ours", 4);
+  Make("run", "theirs");
+  EXPECT_THROW(file.Finish(), WriteError);
+  EXPECT_EQ(TextOf(Path("run")), "theirs");
+  EXPECT_EQ(TextOf(Path("run.part")), "ours");
 }
 
 // Tests that the names of what a killed process leaves are told from others.
