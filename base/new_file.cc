@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "base/input_error.h"
 #include "base/read_files.h"
@@ -164,20 +165,34 @@ bool NewFile::TakeBack(size_t size) {
 
 int NewFile::GiveName() const {
   if (existing_ == Existing::kKept && !may_replace && HasContents(name_)) return EEXIST;
-  return std::rename(path_.c_str(), name_.c_str()) == 0 ? 0 : errno;
+  if (std::rename(path_.c_str(), name_.c_str()) != 0) return errno;
+  // The new name survives a power failure, too. That it does not is no reason to fail: one of the two files is there.
+  const size_t slash = name_.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : name_.substr(0, slash + 1);
+  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return 0;
+  fsync(directory);
+  close(directory);
+  return 0;
+}
+
+int NewFile::Close() {
+  int error = 0;
+  // A name that is given before its bytes are on the disk may lead to an empty file after a power failure.
+  if (path_ != name_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) error = errno;
+  if (close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
+  return error;
 }
 
 void NewFile::Finish() {
   if (descriptor_ < 0) return;
   const bool ours = path_ == name_ || IsStillOurs();
-  const int result = close(descriptor_);
-  const int error = errno;
-  descriptor_ = -1;
+  const int error = Close();
   if (!ours) {
     throw WriteError(name_ + ": cannot be written: " + path_ +
                      " was moved or replaced while it was being written");
   }
-  if (result != 0) {
+  if (error != 0) {
     if (path_ != name_) unlink(path_.c_str());
     ThrowWriteError(name_, error);
   }

@@ -58,7 +58,8 @@ class NewFile {
   void Write(const void* data, size_t size);
   // Removes the last `size` bytes written; false where that is impossible (not a regular file).
   bool TakeBack(size_t size);
-  // Closes the file and, with kTemporary, gives it its name. Throws WriteError, also where kKept finds a file of
+  // Closes the file and, with kTemporary, gives it its name when its bytes are on the disk: after a power failure, the name leads to
+  // all of the new contents or to what it led to before. Throws WriteError, also where kKept finds a file of
   // that name that was not there before. Later calls do nothing.
   void Finish();
 
@@ -68,6 +69,7 @@ class NewFile {
  private:
   bool IsStillOurs() const;
   int GiveName() const;  // 0, or the error of rename()
+  int Close();           // 0, or the error of fsync() or close()
 
   std::string name_;
   std::string path_;
