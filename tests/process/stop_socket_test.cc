@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <ctime>
@@ -48,7 +49,11 @@ class Client {
   // "ok", "" when the connection was closed, or "nothing" in that time.
   std::string Answer(int patience_ms = kPatience_ms) const {
     pollfd waiting{fd_, POLLIN, 0};
-    if (poll(&waiting, 1, patience_ms) <= 0) return "nothing";
+    int ready = -1;
+    do {
+      ready = poll(&waiting, 1, patience_ms);
+    } while (ready < 0 && errno == EINTR);  // a stop is a signal, too
+    if (ready == 0) return "nothing";
     char answer[8];
     const ssize_t size = recv(fd_, answer, sizeof answer, 0);
     return {answer, static_cast<size_t>(size > 0 ? size : 0)};

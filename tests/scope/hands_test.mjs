@@ -81,7 +81,7 @@ test('numbers at the cursors', async () => {
     return aside.scrollWidth - aside.clientWidth;
   });
   assert.ok(side <= 1, `the panel is ${side} pixels too wide`);
-  await page.keyboard.press('Escape');
+  await page.keyboard.press('c'); // away again
 });
 
 // Tests that two fingers zoom: what was between them stays between them.
