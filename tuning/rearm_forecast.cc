@@ -41,6 +41,18 @@ Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
   return {};
 }
 
+// Where a plan leads at a time (position_ctrl/plan_follower.cc: cubics between its points).
+double PlannedAt(const arm_plan_t& plan, double time) {
+  const auto behind = std::upper_bound(plan.time.begin(), plan.time.end(), time);
+  if (behind == plan.time.begin()) return plan.arm_angle.front();
+  if (behind == plan.time.end()) return plan.arm_angle.back();
+  const auto i = static_cast<size_t>(behind - plan.time.begin()) - 1;
+  const double h = plan.time[i + 1] - plan.time[i], s = (time - plan.time[i]) / h;
+  const double a0 = plan.arm_angle[i], a1 = plan.arm_angle[i + 1];
+  const double v0 = plan.arm_speed[i] * h, v1 = plan.arm_speed[i + 1] * h;
+  return a0 + s * (v0 + s * (3 * (a1 - a0) - 2 * v0 - v1 + s * (2 * (a0 - a1) + v0 + v1)));
+}
+
 // The reference over plant time, as the position loop would have it without a hold.
 class Wanted {
  public:
@@ -52,12 +64,18 @@ class Wanted {
     if (spec.kind != settings::TrajectorySpec::Kind::kPlanner) {
       trajectory_ = settings::MakeTrajectory(spec);
     } else {
-      // The planner says more every few milliseconds: its newest plan is where the arm would go.
-      planned_ = heard.plan && !heard.plan->arm_angle.empty() ? heard.plan->arm_angle.back() : spec.initial;
+      initial_ = spec.initial;
+      if (heard.plan && !heard.plan->time.empty()) plan_ = &*heard.plan;
+      // A plan that nothing follows is followed no further.
+      if (plan_ != nullptr && plan_->tick >= 0 && heard.run->rate_hz > 0)
+        holds_from_ = static_cast<double>(plan_->tick) / heard.run->rate_hz + spec.delay_s + spec.timeout_s;
     }
   }
 
-  double At(double time) const { return trajectory_ ? trajectory_->Value(time - from_) : planned_; }
+  double At(double time) const {
+    if (trajectory_) return trajectory_->Value(time - from_);
+    return plan_ == nullptr ? initial_ : PlannedAt(*plan_, std::min(time, holds_from_));
+  }
 
   bool JumpsBetween(double begin, double end) const {
     if (!trajectory_) return false;
@@ -71,7 +89,9 @@ class Wanted {
  private:
   double from_;  // s, when the reference begins
   std::unique_ptr<trajectory::Trajectory> trajectory_;
-  double planned_ = 0;
+  double initial_ = 0;  // of a planner's, before its first plan
+  const arm_plan_t* plan_ = nullptr;
+  double holds_from_ = INFINITY;  // s
 };
 
 // The way back: a straight line from where it is to where it is wanted (position_ctrl/law/reference_return.h).
@@ -103,7 +123,7 @@ std::string TextOf(const RearmForecast& f, const Referred& referred, bool planne
   const double way = f.target - f.present;
   std::string text = fmt::format("{} is at {}; its reference comes back to {}", referred.words,
                                  number(f.present), number(f.target));
-  if (planner) text += " (the newest plan's end)";
+  if (planner) text += " (by the newest plan)";
   text += fmt::format(": {} {}{}", f.quantity == "arm_angle" ? "the arm will move by" : "a change of",
                       way > 0 ? "+" : "", number(way));
   text += f.return_s > 0 ? " in " + ShortNumber(f.return_s) + " s" : " at once";

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <hydro/arm_plan_t.hpp>
 #include <hydro/arm_reference_t.hpp>
 #include <hydro/fault_t.hpp>
 #include <hydro/rearm_t.hpp>
@@ -64,6 +65,7 @@ class RearmForecastTest : public ::testing::Test {
     bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS", [this](const tuned_settings_t& settings) {
       if (settings.stage == tuned_settings_t::IN_FORCE) heard_.in_force = settings;
     });
+    bus_->Subscribe<arm_plan_t>("HYDRO_ARM_PLAN", [this](const arm_plan_t& plan) { heard_.plan = plan; });
     bus_->Subscribe<arm_reference_t>("HYDRO_ARM_REFERENCE",
                                      [this](const arm_reference_t& r) { references_[r.tick] = r.value; });
     bus_->Subscribe<rearm_t>(
@@ -216,6 +218,41 @@ TEST_F(RearmForecastTest, AReferenceSetMeanwhile) {
   ExpectTrue();
   EXPECT_EQ(forecast_.target, -0.05);
   EXPECT_EQ(forecast_.highest, 0.2);
+}
+
+// Tests a planner: the reference comes back to where its newest plan ends, or, where it has fallen silent in the middle of that, to
+// where it was followed last.
+TEST_F(RearmForecastTest, APlan) {
+  for (const bool silent : {false, true}) {
+    at_[100] = [&, this](const state_t& state) {
+      arm_plan_t plan{};
+      plan.tick = state.tick;
+      plan.session = 5;
+      plan.count = 2;
+      plan.time = {0, 0.6};
+      plan.arm_angle = {0, 0.15};
+      plan.arm_speed = {0, 0};
+      plan.torque = {0, 0};
+      bus_->Publish("HYDRO_ARM_PLAN", plan);
+    };
+    heard_ = {};
+    accepted_ = 0;
+    angles_.clear();
+    references_.clear();
+    Run({std::string("reference={signal = \"arm_angle\", kind = \"planner\", timeout_s = ") +
+         (silent ? "0.2" : "30.0") + "}"},
+        3);
+    ASSERT_TRUE(forecast_.known) << forecast_.text;
+    if (silent) {
+      EXPECT_GT(forecast_.target, 0.04);
+      EXPECT_LT(forecast_.target, 0.11);
+    } else {
+      EXPECT_EQ(forecast_.target, 0.15);
+    }
+    EXPECT_NEAR(ReferenceAfter(0.51), forecast_.target, silent ? 2e-3 : 1e-9);
+    EXPECT_NEAR(ArmAfter(1.5), forecast_.target, 5e-3);
+    EXPECT_THAT(forecast_.text, HasSubstr(" rad (by the newest plan)"));
+  }
 }
 
 // Tests a reference that is no angle: what is known of it is said, and that the arm's way does not follow.

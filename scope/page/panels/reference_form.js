@@ -77,7 +77,7 @@ export class ReferenceForm {
         ),
       ),
       this.fields,
-      el('p', { class: 'hint', text: 'The arm moves. Limits of the position loop hold.' }),
+      el('p', { class: 'hint', text: 'The machine may move. Limits of the position loop hold.' }),
       el('div', { class: 'row' }, this.send),
       this.result,
     );
