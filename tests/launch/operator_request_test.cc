@@ -112,6 +112,11 @@ class OperatorRequestTest : public ::testing::Test {
     config_.joints = {"hip", "knee"};
     config_.bus.joint_suffixes = {"_hip", "_knee"};
   }
+  void OneJoint() {
+    config_.joints.clear();
+    config_.bus.joint_suffixes.clear();
+    config_.bus.channel_suffix = "_hip";
+  }
   FakePlant& Add(const std::string& suffix, int64_t session, int8_t kind, const std::string& text) {
     return *plants_.emplace_back(std::make_unique<FakePlant>(bus_, suffix, session, kind, text));
   }
@@ -150,35 +155,53 @@ TEST_F(OperatorRequestTest, SaysWhereItMoves) {
   EXPECT_FALSE(result.forecasts[1].second.held);
 }
 
-// Tests that the same is told before, in the same words, and that nobody is asked for anything.
+// Tests that the same is told before, in the same words, and that nobody is asked for anything; and what is said where there is nothing to
+// tell.
 TEST_F(OperatorRequestTest, ForecastsWithoutARequest) {
-  config_.joints.clear();
-  config_.bus.joint_suffixes.clear();
-  config_.bus.channel_suffix = "_hip";
-  EXPECT_EQ(ForecastRearm(bus_, clock_, config_).exit_code, 1);  // nobody is there
+  OneJoint();
   Add("_hip", 1, rearm_t::ACCEPTED, "").Hold();
-  const OperatorResult before = ForecastRearm(bus_, clock_, config_);
-  EXPECT_EQ(before.exit_code, 0);
+  const OperatorResult result = ForecastRearm(bus_, clock_, config_);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(
+      result.text,
+      "the arm is at 0.125 rad; its reference comes back to 0.1 rad: the arm will move by -0.025 rad in "
+      "0.5 s, at up to 0.05 rad/s");
   EXPECT_EQ(plants_[0]->asked(), 0);
-  EXPECT_EQ(RearmStack(bus_, clock_, config_).text, "re-armed: ; " + before.text);
+}
+
+TEST_F(OperatorRequestTest, ForecastsOfOneThatDrives) {
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
   EXPECT_THAT(ForecastRearm(bus_, clock_, config_).text, HasSubstr("re-arming changes nothing"));
 }
 
+TEST_F(OperatorRequestTest, ForecastsOfNobody) {
+  OneJoint();
+  EXPECT_EQ(ForecastRearm(bus_, clock_, config_).exit_code, 1);
+}
+
 // Tests that the log says who asked.
-TEST_F(OperatorRequestTest, SaysWhoAsks) {
+TEST_F(OperatorRequestTest, SaysWhoRearms) {
   std::vector<std::string> said;
-  bus_.Subscribe<stop_t>("HYDRO_STOP_hip",
-                         [&](const stop_t& stop) { said.push_back(stop.source + ": " + stop.reason); });
   bus_.Subscribe<rearm_t>("HYDRO_REARM_hip", [&](const rearm_t& rearm) {
     if (rearm.kind == rearm_t::REQUEST) said.push_back(rearm.source + ": " + rearm.text);
   });
+  OneJoint();
   Add("_hip", 1, rearm_t::ACCEPTED, "");
-  Add("_knee", 2, rearm_t::ACCEPTED, "");
   RearmStack(bus_, clock_, config_, {}, kScopePage);
   ASSERT_FALSE(said.empty());
   EXPECT_EQ(said.back(), "scope: Re-arm on the page of hydro-scope");
+}
+
+TEST_F(OperatorRequestTest, SaysWhoStops) {
+  std::vector<std::string> said;
+  bus_.Subscribe<stop_t>("HYDRO_STOP_hip",
+                         [&](const stop_t& stop) { said.push_back(stop.source + ": " + stop.reason); });
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
   NoProcesses none;
   StopOverBus(bus_, clock_, config_, none, {}, kScopePage);
+  ASSERT_FALSE(said.empty());
   EXPECT_EQ(said.back(), "scope: STOP on the page of hydro-scope");
 }
 
@@ -201,9 +224,7 @@ TEST_F(OperatorRequestTest, AMissingJointKeepsTheOthersFromIt) {
 // Tests that a joint is re-armed by itself where it alone is meant.
 TEST_F(OperatorRequestTest, OneJointAlone) {
   Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
-  config_.joints.clear();
-  config_.bus.joint_suffixes.clear();
-  config_.bus.channel_suffix = "_hip";
+  OneJoint();
   EXPECT_EQ(RearmStack(bus_, clock_, config_).text, "re-armed: ended pressure_limit");
 }
 
