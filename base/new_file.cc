@@ -166,7 +166,8 @@ bool NewFile::TakeBack(size_t size) {
 int NewFile::GiveName() const {
   if (existing_ == Existing::kKept && !may_replace && HasContents(name_)) return EEXIST;
   if (std::rename(path_.c_str(), name_.c_str()) != 0) return errno;
-  // The new name survives a power failure, too. That it does not is no reason to fail: one of the two files is there.
+  // The new name survives a power failure, too. That it does not is no reason to fail: one of the two files
+  // is there.
   const size_t slash = name_.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : name_.substr(0, slash + 1);
   const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

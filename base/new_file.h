@@ -38,15 +38,15 @@ bool IsBeingWritten(const std::string& file);
 // The name that a file of this name had got from a NewFile (kTemporary): "a.csv" of "a.csv.part" and "a.csv.part2"; empty for other names.
 std::string WholeOfPart(const std::string& name);
 
-// Throws InputError if a NewFile (kKept) of that name could not be created, so that a program fails before it works.
-// Leaves no file behind. An empty name is not checked.
+// Throws InputError if a NewFile (kKept) of that name could not be created, so that a program fails before it
+// works. Leaves no file behind. An empty name is not checked.
 void CheckCanBeCreated(const std::string& file);
 
 class NewFile {
  public:
-  // Creates the file; readers of one that is replaced keep its contents. Throws InputError when the file cannot
-  // be created, another process is writing it, this one has read it (read_files.h), or it must be kept.
-  // Anything but a regular file, such as /dev/null, is always opened directly.
+  // Creates the file; readers of one that is replaced keep its contents. Throws InputError when the file
+  // cannot be created, another process is writing it, this one has read it (read_files.h), or it must be
+  // kept. Anything but a regular file, such as /dev/null, is always opened directly.
   NewFile(const std::string& file, Opening opening, Existing existing = Existing::kReplaced);
   ~NewFile();
   NewFile(const NewFile&) = delete;
@@ -58,9 +58,9 @@ class NewFile {
   void Write(const void* data, size_t size);
   // Removes the last `size` bytes written; false where that is impossible (not a regular file).
   bool TakeBack(size_t size);
-  // Closes the file and, with kTemporary, gives it its name when its bytes are on the disk: after a power failure, the name leads to
-  // all of the new contents or to what it led to before. Throws WriteError, also where kKept finds a file of
-  // that name that was not there before. Later calls do nothing.
+  // Closes the file and, with kTemporary, gives it its name when its bytes are on the disk: after a power
+  // failure, the name leads to all of the new contents or to what it led to before. Throws WriteError, also
+  // where kKept finds a file of that name that was not there before. Later calls do nothing.
   void Finish();
 
   const std::string& name() const { return name_; }  // final name, as given

@@ -11,8 +11,9 @@
 
 namespace hydro::hydro_set {
 
-// The values in force by key of tunable_keys.h: as they stand in the configuration in force, in TOML; what it leaves to its defaults or derives
-// as the loops have it, through `text`. Throws InputError when the description is not one of this version.
+// The values in force by key of tunable_keys.h: as they stand in the configuration in force, in TOML; what it
+// leaves to its defaults or derives as the loops have it, through `text`. Throws InputError when the
+// description is not one of this version.
 std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
                                                  const tuned_settings_t& in_force,
                                                  const std::function<std::string(double)>& text);

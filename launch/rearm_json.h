@@ -7,8 +7,8 @@
 
 namespace hydro::launch {
 
-// On one line: `rearmed`, `text`, and `forecasts`, what the machine does by it, of a limb one for each joint. A forecast that is
-// not known has null for its numbers.
+// On one line: `rearmed`, `text`, and `forecasts`, what the machine does by it, of a limb one for each joint.
+// A forecast that is not known has null for its numbers.
 std::string RearmJson(const OperatorResult& result);
 
 // The forecasts alone, a list.

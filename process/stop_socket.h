@@ -19,9 +19,9 @@ std::string StopRequestText(const std::string& role, const std::string& reason);
 
 class StopSocket {
  public:
-  // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with the requester's role and reason.
-  // Where no socket can be had there is none: a run does not depend on it. The thread inherits the process's
-  // priority and processor: it sleeps until it is asked.
+  // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with
+  // the requester's role and reason. Where no socket can be had there is none: a run does not depend on it.
+  // The thread inherits the process's priority and processor: it sleeps until it is asked.
   StopSocket(const std::string& prefix, const std::string& role);
   ~StopSocket();
   StopSocket(const StopSocket&) = delete;

@@ -41,8 +41,8 @@ class CommandLine {
   CommandLine(CommandLine&&) noexcept;
   CommandLine& operator=(CommandLine&&) noexcept;
 
-  // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --force, --si.
-  // Without `config_required`, an absent CONFIG leaves options->config empty.
+  // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --force,
+  // --si. Without `config_required`, an absent CONFIG leaves options->config empty.
   void AddCommon(CommonOptions* options, bool config_required = true);
 
   // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". Refuses

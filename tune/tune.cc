@@ -108,7 +108,8 @@ void AddOverrides(const settings::StackConfig& given, const std::vector<std::str
   }
 }
 
-// The given text with what --set changed and the gains of `tuned`, for a file `output`. Of a limb, the stack of this joint alone.
+// The given text with what --set changed and the gains of `tuned`, for a file `output`. Of a limb, the stack
+// of this joint alone.
 std::string TunedText(const TuneRequest& request, const settings::StackConfig& given,
                       const settings::StackConfig& tuned) {
   const bool limb = settings::IsLimbFile(given.file);

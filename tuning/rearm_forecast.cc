@@ -94,7 +94,8 @@ class Wanted {
   double holds_from_ = INFINITY;  // s
 };
 
-// The way back: a straight line from where it is to where it is wanted (position_ctrl/law/reference_return.h).
+// The way back: a straight line from where it is to where it is wanted
+// (position_ctrl/law/reference_return.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
   forecast->target = wanted.At(end);

@@ -1,6 +1,7 @@
-// What the machine will do when it is re-armed, as far as that can be known before: where the reference comes back to, how far that
-// is from where the arm is, and how fast. While the voltage is held at zero the published reference follows the arm, and so
-// says nothing of it. One function for everyone who re-arms, on a page or in a terminal. Pure.
+// What the machine will do when it is re-armed, as far as that can be known before: where the reference comes
+// back to, how far that is from where the arm is, and how fast. While the voltage is held at zero the
+// published reference follows the arm, and so says nothing of it. One function for everyone who re-arms, on a
+// page or in a terminal. Pure.
 #pragma once
 
 #include <hydro/arm_plan_t.hpp>
@@ -43,7 +44,8 @@ struct HeardOfStack {
 // If it is re-armed now.
 RearmForecast ForecastRearm(const HeardOfStack& heard);
 
-// The configuration that a running stack acts by. Throws InputError when the description is not one of this version.
+// The configuration that a running stack acts by. Throws InputError when the description is not one of this
+// version.
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
 
 }  // namespace hydro::tuning

@@ -114,7 +114,8 @@ TEST_F(NewFileTest, KeepsAForeignPart) {
   EXPECT_FALSE(std::filesystem::exists(Path("out.part2")));
 }
 
-// Tests that kKept keeps a file with contents unless told otherwise, says what to do, and takes an empty file's or a device's place.
+// Tests that kKept keeps a file with contents unless told otherwise, says what to do, and takes an empty
+// file's or a device's place.
 TEST_F(NewFileTest, KeepsWhatIsThere) {
   const std::string log = Make("run.lcmlog", "yesterday");
   for (const Opening opening : {Opening::kDirect, Opening::kTemporary}) {
@@ -134,8 +135,8 @@ TEST_F(NewFileTest, KeepsWhatIsThere) {
   EXPECT_EQ(TextOf(log), "today");
 }
 
-// Tests that a file has its name only when its bytes are on the disk, and the name itself then; that a disk that cannot say so fails, and
-// leaves what was there; and that a file system without fsync() does.
+// Tests that a file has its name only when its bytes are on the disk, and the name itself then; that a disk
+// that cannot say so fails, and leaves what was there; and that a file system without fsync() does.
 TEST_F(NewFileTest, OnTheDiskBeforeItsName) {
   calls.clear();
   WriteWholeFile(Path("a"), "12345");
@@ -154,7 +155,8 @@ TEST_F(NewFileTest, OnTheDiskBeforeItsName) {
   EXPECT_THAT(calls, IsEmpty());
 }
 
-// Tests that a file which appears while another of its name is being written is kept, and so is what was written.
+// Tests that a file which appears while another of its name is being written is kept, and so is what was
+// written.
 TEST_F(NewFileTest, KeepsWhatAppears) {
   NewFile file(Path("run"), Opening::kTemporary, Existing::kKept);
   file.Write("ours", 4);

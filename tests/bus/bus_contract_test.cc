@@ -261,8 +261,8 @@ TEST_P(BusContractTest, HandlersMaySubscribe) {
   EXPECT_EQ(late, 7);
 }
 
-// Tests that a handler may subscribe to its own channel, and a tap to any: who is new gets the next message, and not this one, whether it
-// comes typed or as bytes.
+// Tests that a handler may subscribe to its own channel, and a tap to any: who is new gets the next message,
+// and not this one, whether it comes typed or as bytes.
 TEST_P(BusContractTest, HandlersMaySubscribeToTheirOwnChannel) {
   std::vector<std::string> heard;
   const auto note = [&](const std::string& who) {

@@ -37,8 +37,8 @@ LogBus::EventSource Source(const std::vector<Event>& events) {
   };
 }
 
-// Tests that a handler that subscribes to its own channel, and a tap that subscribes, add who gets the next event, and not this one: as
-// every transport does (bus_contract_test.cc).
+// Tests that a handler that subscribes to its own channel, and a tap that subscribes, add who gets the next
+// event, and not this one: as every transport does (bus_contract_test.cc).
 TEST(LogBusTest, HandlersMaySubscribeToTheirOwnChannel) {
   const std::vector<Event> events = {StateEvent(0), StateEvent(1)};
   SimulatedClock clock;

@@ -137,8 +137,8 @@ TEST(UdpmSocketTest, OnlyWhatWasAskedFor) {
   EXPECT_EQ(Next(receiver), "ANYTHING");
 }
 
-// Tests that what is sent to another group on this port is not heard, though this machine has joined that group too, and neither is what is
-// sent to this machine's own address.
+// Tests that what is sent to another group on this port is not heard, though this machine has joined that
+// group too, and neither is what is sent to this machine's own address.
 TEST(UdpmSocketTest, HearsItsOwnGroupAlone) {
   UdpmUrl url = ParseUdpmUrl(FreeBusUrl());
   UdpmSocket ours(url);

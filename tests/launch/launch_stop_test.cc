@@ -42,7 +42,8 @@ pid_t PidOf(LaunchedProgram& launch, const std::string& role) {
 
 class LaunchSignalTest : public ::testing::TestWithParam<int> {};
 
-// Tests that each of the three signals ends a run in order with exit 0, and that a log that was never begun is not recommended.
+// Tests that each of the three signals ends a run in order with exit 0, and that a log that was never begun
+// is not recommended.
 TEST_P(LaunchSignalTest, EndsInOrder) {
   StackFolder stack;
   auto launch = stack.Launch({"--log", "a.lcmlog"});

@@ -138,8 +138,8 @@ TEST_F(OperatorRequestTest, RearmsAllJoints) {
   EXPECT_EQ(plants_[1]->asked(), plants_[0]->asked());
 }
 
-// Tests that a re-arm says where the machine moves by it, of the joints that were held: from the state in which it was asked,
-// though the plant drives again before it has described itself.
+// Tests that a re-arm says where the machine moves by it, of the joints that were held: from the state in
+// which it was asked, though the plant drives again before it has described itself.
 TEST_F(OperatorRequestTest, SaysWhereItMoves) {
   Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit").Hold();
   Add("_knee", 2, rearm_t::ACCEPTED, "no fault is latched");
@@ -155,8 +155,8 @@ TEST_F(OperatorRequestTest, SaysWhereItMoves) {
   EXPECT_FALSE(result.forecasts[1].second.held);
 }
 
-// Tests that the same is told before, in the same words, and that nobody is asked for anything; and what is said where there is nothing to
-// tell.
+// Tests that the same is told before, in the same words, and that nobody is asked for anything; and what is
+// said where there is nothing to tell.
 TEST_F(OperatorRequestTest, ForecastsWithoutARequest) {
   OneJoint();
   Add("_hip", 1, rearm_t::ACCEPTED, "").Hold();

@@ -66,7 +66,8 @@ TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   EXPECT_EQ(lines[1].size(), lines[2].size());
 }
 
-// Tests that the table fits a terminal of 80 columns beside the longest label, whatever the numbers are, and that its columns stay apart.
+// Tests that the table fits a terminal of 80 columns beside the longest label, whatever the numbers are, and
+// that its columns stay apart.
 TEST(RunSummaryTest, TheTableFits) {
   constexpr size_t kBesideTheLabel = 79 - std::string_view("[position_ctrl] ").size();
   RunSummary summary;
@@ -85,7 +86,8 @@ TEST(RunSummaryTest, TheTableFits) {
   EXPECT_EQ(lines[3], "plant         18000M  123k 1235k 1235k 1235k  9870M  9223P   9E");
 }
 
-// Tests that a plant that slept through a part of its ticks gets advice, with the numbers, and that a loop or a few ticks do not.
+// Tests that a plant that slept through a part of its ticks gets advice, with the numbers, and that a loop or
+// a few ticks do not.
 TEST(RunSummaryTest, SkippedTicks) {
   RunSummary summary;
   loop_statistics_t report = Report(3.0, 1583, 1001, 345);

@@ -26,7 +26,8 @@ namespace hydro::log {
 class LogTest : public testing::Test {
  protected:
   LogTest() {
-    // In memory where the system has such a folder: thousands of logs are written, each to the disk (new_file.h).
+    // In memory where the system has such a folder: thousands of logs are written, each to the disk
+    // (new_file.h).
     const std::string base = std::filesystem::exists("/dev/shm") ? "/dev/shm" : testing::TempDir();
     std::string pattern = base + "/hydro_log_XXXXXX";
     folder_ = mkdtemp(pattern.data());

@@ -130,7 +130,8 @@ TEST_F(PlantAppTest, LockstepNamesAStalledPositionLoop) {
   EXPECT_THAT(failure_, HasSubstr("position_ctrl has not answered tick 0"));
 }
 
-// Tests that in lockstep nobody else's pressure command, nor one for a future tick, counts as the position loop's answer.
+// Tests that in lockstep nobody else's pressure command, nor one for a future tick, counts as the position
+// loop's answer.
 TEST_F(PlantAppTest, LockstepWaitsForItsOwnPositionLoop) {
   on_state_ = [this](const state_t& s) {
     SendVoltage(s.tick, 0);
@@ -144,7 +145,8 @@ TEST_F(PlantAppTest, LockstepWaitsForItsOwnPositionLoop) {
   EXPECT_EQ(states_.back().tick, 50);
 }
 
-// Tests that in lockstep the answer to an older tick that comes late, of either loop, does not take the newest one back.
+// Tests that in lockstep the answer to an older tick that comes late, of either loop, does not take the
+// newest one back.
 TEST_F(PlantAppTest, LockstepLateAnswers) {
   on_state_ = [this](const state_t& s) {
     if (s.tick % 5 == 0) SendPressureCommand(s.tick);

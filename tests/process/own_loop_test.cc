@@ -76,8 +76,8 @@ TEST_F(OwnPositionLoopTest, AnswersEachSampleOnce) {
               ElementsAre(process_status_t::READY, process_status_t::RUNNING, process_status_t::DONE));
 }
 
-// Tests that a sample that later states have overtaken is answered, and that a number that was seen already, on a tick beyond all that
-// was, is not: every good state after it would be an old one.
+// Tests that a sample that later states have overtaken is answered, and that a number that was seen already,
+// on a tick beyond all that was, is not: every good state after it would be an old one.
 TEST_F(OwnPositionLoopTest, OvertakenSamplesAndForgedOnes) {
   OwnPositionLoop loop(bus_, clock_, config_, [this](const state_t&, pressure_command_t*) { ++asked_; });
   for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7}) State(tick, tick);

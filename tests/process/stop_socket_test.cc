@@ -67,8 +67,8 @@ class Client {
   int fd_;
 };
 
-// Tests that a process without file descriptors can still be stopped, by one who says who he is and why; and that a second one is
-// answered when there is a descriptor again, without a busy loop until then.
+// Tests that a process without file descriptors can still be stopped, by one who says who he is and why; and
+// that a second one is answered when there is a descriptor again, without a busy loop until then.
 TEST(StopSocketTest, WithoutFileDescriptors) {
   CatchStopSignals();
   const std::string prefix = "hydro-stop-test/" + std::to_string(getpid()) + "/";

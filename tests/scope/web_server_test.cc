@@ -299,8 +299,8 @@ TEST_F(WebServerTest, ClientsLeave) {
   EXPECT_EQ(site_.heard, heard);
 }
 
-// Tests that a server without file descriptors goes on with its turns and its clients, does not spin, and takes new clients when
-// there are descriptors again.
+// Tests that a server without file descriptors goes on with its turns and its clients, does not spin, and
+// takes new clients when there are descriptors again.
 TEST_F(WebServerTest, WithoutFileDescriptors) {
   const Client early(server_.port());
   early.Send(Upgrade("/live", std::string("Authorization: Bearer ") + kToken + "\r\n"));

@@ -87,7 +87,8 @@ TEST_F(TuneProgram, KeepsToFixedGainsWhenAsked) {
   EXPECT_FALSE(settings::LoadStackConfig(tuned).position.braking_rad_s2);
 }
 
-// Tests that --set changes a key for the search, and that what is written has it, in its place, with paths that lead to the same files.
+// Tests that --set changes a key for the search, and that what is written has it, in its place, with paths
+// that lead to the same files.
 TEST_F(TuneProgram, SetsKeys) {
   const std::string tuned = (folder_ / "tuned.toml").string();
   const Outcome outcome = Run(

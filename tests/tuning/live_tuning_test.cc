@@ -177,8 +177,8 @@ TEST_F(LiveTuningTest, TakesEffectOnOneTickInBothLoops) {
   }
 }
 
-// Tests that hydro-set's "would be unstable" and its acceptance come true: with gains beyond the edge the simulated arm swings on about its
-// reference, with gains well within it comes to rest.
+// Tests that hydro-set's "would be unstable" and its acceptance come true: with gains beyond the edge the
+// simulated arm swings on about its reference, with gains well within it comes to rest.
 TEST_F(LiveTuningTest, WhatWouldBeUnstableSwings) {
   const settings::StackConfig configured = settings::Parsed(config_);
   const auto accepted = [&](double c1) {

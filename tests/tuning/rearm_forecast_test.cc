@@ -1,4 +1,5 @@
-// What is said before a re-arm, held against what the simulated arm then does: the real plant and loops on a simulated clock.
+// What is said before a re-arm, held against what the simulated arm then does: the real plant and loops on a
+// simulated clock.
 #include "tuning/rearm_forecast.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +36,8 @@ constexpr int64_t kRearms = 1200;  // and is ended
 
 class RearmForecastTest : public ::testing::Test {
  protected:
-  // A run in which a loop reports a fault in mid-motion, and the plant is re-armed later; `forecast_` is of that tick.
+  // A run in which a loop reports a fault in mid-motion, and the plant is re-armed later; `forecast_` is of
+  // that tick.
   void Run(std::vector<std::string> changes, double duration_s = 13.5) {
     changes.insert(changes.end(), {"time.mode=lockstep", "limits.rearm=explicit", "noise.arm_angle_rad=0"});
     settings::StackConfig config = settings::LoadStackConfig(HYDRO_TEST_CONFIG, changes);
@@ -143,8 +145,8 @@ class RearmForecastTest : public ::testing::Test {
   std::map<int64_t, double> references_;
 };
 
-// Tests a step that was half done when the fault came: the arm goes to where the step leads, not to where the published
-// reference stands while it follows the arm.
+// Tests a step that was half done when the fault came: the arm goes to where the step leads, not to where the
+// published reference stands while it follows the arm.
 TEST_F(RearmForecastTest, AStepInMidMotion) {
   Run({"reference.steps=[[0.2, 0.3]]"});
   ExpectTrue();
@@ -220,8 +222,8 @@ TEST_F(RearmForecastTest, AReferenceSetMeanwhile) {
   EXPECT_EQ(forecast_.highest, 0.2);
 }
 
-// Tests a planner: the reference comes back to where its newest plan ends, or, where it has fallen silent in the middle of that, to
-// where it was followed last.
+// Tests a planner: the reference comes back to where its newest plan ends, or, where it has fallen silent in
+// the middle of that, to where it was followed last.
 TEST_F(RearmForecastTest, APlan) {
   for (const bool silent : {false, true}) {
     at_[100] = [&, this](const state_t& state) {

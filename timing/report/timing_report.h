@@ -15,7 +15,8 @@ std::string TimingJson(const std::vector<TimedProcess>& processes, const std::st
 // A table for a terminal, of several lines.
 std::string TimingText(const std::vector<TimedProcess>& processes);
 
-// What to do when a plant has slept through that many of its ticks; empty where these are few. `config`: the configuration's name.
+// What to do when a plant has slept through that many of its ticks; empty where these are few. `config`: the
+// configuration's name.
 std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string& config);
 
 // A self-contained HTML page: the table, and plots of each process.
