@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "base/input_error.h"
 #include "base/read_files.h"
@@ -18,6 +20,14 @@ namespace hydro {
 namespace {
 
 constexpr std::string_view kPart = ".part";
+
+std::atomic<bool> may_replace = false;
+
+// An empty file, such as mktemp leaves, holds nothing that could be lost.
+bool HasContents(const std::string& file) {
+  struct stat status;
+  return stat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
+}
 
 [[noreturn]] void ThrowCannotCreate(const std::string& file, int error) {
   throw InputError(file + ": cannot be created: " + std::strerror(error) +
@@ -64,6 +74,14 @@ std::string FreePart(const std::string& name) {
 
 }  // namespace
 
+void AllowReplacing(bool allowed) { may_replace = allowed; }
+
+void CheckIsNew(const std::string& file) {
+  if (may_replace || !HasContents(file)) return;
+  if (IsBeingWritten(file)) ThrowIsBeingWritten(file);
+  throw InputError(file + ": found a file of this name, allowed: another name, or --force to replace it");
+}
+
 // Every NewFile holds a lock on its file.
 bool IsBeingWritten(const std::string& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -85,16 +103,18 @@ void CheckCanBeCreated(const std::string& file) {
   if (file.empty()) return;
   // The reader of a pipe would take the attempt for the whole output.
   if (stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) return;
-  const NewFile attempt(file, Opening::kTemporary);
+  const NewFile attempt(file, Opening::kTemporary, Existing::kKept);
 }
 
-NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(file) {
+NewFile::NewFile(const std::string& file, Opening opening, Existing existing)
+    : name_(file), path_(file), existing_(existing) {
   if (ExistsAndIsNotRegular(file)) {
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
     return;
   }
   CheckKeeps(name_);
+  if (existing_ == Existing::kKept) CheckIsNew(name_);
   if (opening == Opening::kTemporary) {
     path_ = FreePart(name_);
   } else {
@@ -143,30 +163,52 @@ bool NewFile::TakeBack(size_t size) {
   return end >= 0 && ftruncate(descriptor_, end) == 0;
 }
 
+int NewFile::GiveName() const {
+  if (existing_ == Existing::kKept && !may_replace && HasContents(name_)) return EEXIST;
+  if (std::rename(path_.c_str(), name_.c_str()) != 0) return errno;
+  // The new name survives a power failure, too. That it does not is no reason to fail: one of the two files
+  // is there.
+  const size_t slash = name_.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : name_.substr(0, slash + 1);
+  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return 0;
+  fsync(directory);
+  close(directory);
+  return 0;
+}
+
+int NewFile::Close() {
+  int error = 0;
+  // A name that is given before its bytes are on the disk may lead to an empty file after a power failure.
+  if (path_ != name_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) error = errno;
+  if (close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
+  return error;
+}
+
 void NewFile::Finish() {
   if (descriptor_ < 0) return;
   const bool ours = path_ == name_ || IsStillOurs();
-  const int result = close(descriptor_);
-  const int error = errno;
-  descriptor_ = -1;
+  const int error = Close();
   if (!ours) {
     throw WriteError(name_ + ": cannot be written: " + path_ +
                      " was moved or replaced while it was being written");
   }
-  if (result != 0) {
+  if (error != 0) {
     if (path_ != name_) unlink(path_.c_str());
     ThrowWriteError(name_, error);
   }
   if (path_ == name_) return;
-  if (std::rename(path_.c_str(), name_.c_str()) != 0) {
-    const int rename_error = errno;
+  if (const int rename_error = GiveName(); rename_error == EEXIST && existing_ == Existing::kKept) {
+    throw WriteError(
+        name_ + ": cannot be written: a file of this name appeared meanwhile; what was written is " + path_);
+  } else if (rename_error != 0) {
     unlink(path_.c_str());
     ThrowWriteError(name_, rename_error);
   }
 }
 
-void WriteWholeFile(const std::string& file, const std::string& text) {
-  NewFile out(file, Opening::kTemporary);
+void WriteWholeFile(const std::string& file, const std::string& text, Existing existing) {
+  NewFile out(file, Opening::kTemporary, existing);
   out.Write(text.data(), text.size());
   out.Finish();
 }

@@ -20,23 +20,34 @@ enum class Opening {
   kTemporary,
 };
 
+// What becomes of a file with contents that has the name already.
+enum class Existing {
+  kReplaced,
+  kKept,  // InputError, unless AllowReplacing() was called: what a user names may be yesterday's measurement
+};
+
+// --force: from now on, this process replaces what it would have kept.
+void AllowReplacing(bool allowed = true);
+
+// Throws InputError if a file with contents has this name and must be kept.
+void CheckIsNew(const std::string& file);
+
 // Whether a NewFile, of this process or another, is writing to the file of this name.
 bool IsBeingWritten(const std::string& file);
 
 // The name that a file of this name had got from a NewFile (kTemporary): "a.csv" of "a.csv.part" and "a.csv.part2"; empty for other names.
 std::string WholeOfPart(const std::string& name);
 
-// Throws InputError if a NewFile of that name could not be created, so that a program fails before it works.
-// Leaves no file behind. An empty name is not checked.
+// Throws InputError if a NewFile (kKept) of that name could not be created, so that a program fails before it
+// works. Leaves no file behind. An empty name is not checked.
 void CheckCanBeCreated(const std::string& file);
 
 class NewFile {
  public:
-  // Creates the file and replaces an existing one; readers of the old one keep its contents. Throws
-  // InputError when the file cannot be created, another process is writing it, or this one has read it
-  // (read_files.h). Anything but a regular file,
-  // such as /dev/null, is always opened directly.
-  NewFile(const std::string& file, Opening opening);
+  // Creates the file; readers of one that is replaced keep its contents. Throws InputError when the file
+  // cannot be created, another process is writing it, this one has read it (read_files.h), or it must be
+  // kept. Anything but a regular file, such as /dev/null, is always opened directly.
+  NewFile(const std::string& file, Opening opening, Existing existing = Existing::kReplaced);
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -47,7 +58,9 @@ class NewFile {
   void Write(const void* data, size_t size);
   // Removes the last `size` bytes written; false where that is impossible (not a regular file).
   bool TakeBack(size_t size);
-  // Closes the file and, with kTemporary, gives it its name. Throws WriteError. Later calls do nothing.
+  // Closes the file and, with kTemporary, gives it its name when its bytes are on the disk: after a power
+  // failure, the name leads to all of the new contents or to what it led to before. Throws WriteError, also
+  // where kKept finds a file of that name that was not there before. Later calls do nothing.
   void Finish();
 
   const std::string& name() const { return name_; }  // final name, as given
@@ -55,13 +68,17 @@ class NewFile {
 
  private:
   bool IsStillOurs() const;
+  int GiveName() const;  // 0, or the error of rename()
+  int Close();           // 0, or the error of fsync() or close()
 
   std::string name_;
   std::string path_;
+  Existing existing_;
   int descriptor_ = -1;
 };
 
 // The one way to write a small file: whole or not at all. Throws what NewFile throws.
-void WriteWholeFile(const std::string& file, const std::string& text);
+void WriteWholeFile(const std::string& file, const std::string& text,
+                    Existing existing = Existing::kReplaced);
 
 }  // namespace hydro

@@ -14,7 +14,7 @@ void CheckCanBeWritten(const std::string& file) {
 
 void WriteTextFile(const std::string& file, const std::string& text, std::FILE* out) {
   if (file != kStandardOutput) {
-    WriteWholeFile(file, text);
+    WriteWholeFile(file, text, Existing::kKept);
     return;
   }
   if (std::fwrite(text.data(), 1, text.size(), out) == text.size() && std::fflush(out) == 0) return;

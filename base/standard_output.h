@@ -13,7 +13,7 @@ inline constexpr const char* kStandardOutput = "-";
 // As CheckCanBeCreated (new_file.h).
 void CheckCanBeWritten(const std::string& file);
 
-// As WriteWholeFile (new_file.h); `-` goes to `out`.
+// As WriteWholeFile (new_file.h) with Existing::kKept; `-` goes to `out`.
 void WriteTextFile(const std::string& file, const std::string& text, std::FILE* out = stdout);
 
 // Where a program prints what it has to say beside the files that it writes: `out`, or `err` when `out` takes one of them.

@@ -13,6 +13,7 @@
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
 // - The seal of an authenticated message (bus/seal/) is never delivered with it. On a bus with a key, a
 //   message that is not genuine is counted in refused() and not delivered.
+// - A handler may subscribe, also to its own channel: the new handler gets later messages, not this one.
 // - Only one thread uses a bus.
 #pragma once
 

@@ -36,6 +36,7 @@ struct InProcessBus::Channel {
   std::string name;
   const MessageType* type = nullptr;  // of the typed copies: that of the first publisher or subscriber
   std::unique_ptr<Handler> handlers;  // in the order of subscription
+  const Handler* last = nullptr;      // of them
   std::vector<std::unique_ptr<Slot>> slots;
   Slot* idle = nullptr;  // the first of those in which no message waits
 
@@ -96,6 +97,7 @@ void InProcessBus::SubscribeTyped(const std::string& channel, const MessageType&
   while (*last != nullptr) last = &(*last)->next;
   *last = std::make_unique<Handler>(
       Handler{&type, found.type->hash == type.hash, type.create(), std::move(handler), nullptr});
+  found.last = last->get();
 }
 
 std::shared_ptr<Outlet> InProcessBus::MakeOutlet(const std::string& channel, const MessageType& type) {
@@ -152,16 +154,19 @@ inline void InProcessBus::Done(Slot& slot) {
 }
 
 inline void InProcessBus::Dispatch(const Slot& slot) {
+  // Who subscribes meanwhile does not get this message.
+  const Handler* const last = slot.channel->last;
   if (!taps_.empty()) ShowTaps(slot);
-  if (slot.raw) return DispatchRaw(slot);
+  if (last == nullptr) return;
+  if (slot.raw) return DispatchRaw(slot, *last);
   const void* const message = slot.message.get();
-  for (const Handler* handler = slot.channel->handlers.get(); handler != nullptr;
-       handler = handler->next.get()) {
+  for (const Handler* handler = slot.channel->handlers.get();; handler = handler->next.get()) {
     if (handler->of_channel) {
       handler->call(message);
     } else {
       ++undecodable_;
     }
+    if (handler == last) return;
   }
 }
 
@@ -194,15 +199,15 @@ int InProcessBus::HandleUntil(TimePoint deadline) {
   return handled;
 }
 
-void InProcessBus::DispatchRaw(const Slot& slot) {
+void InProcessBus::DispatchRaw(const Slot& slot, const Handler& last) {
   const auto size = static_cast<int>(slot.bytes.size());
-  for (const Handler* handler = slot.channel->handlers.get(); handler != nullptr;
-       handler = handler->next.get()) {
+  for (const Handler* handler = slot.channel->handlers.get();; handler = handler->next.get()) {
     if (handler->type->decode_into(handler->decoded.get(), slot.bytes.data(), size)) {
       handler->call(handler->decoded.get());
     } else {
       ++undecodable_;
     }
+    if (handler == &last) return;
   }
 }
 
@@ -215,7 +220,8 @@ void InProcessBus::ShowTaps(const Slot& slot) {
     bytes = &encoded_;
   }
   const RawMessage message{channel.name, bytes->data(), static_cast<int>(bytes->size()), stamps_->Utime()};
-  for (size_t i = 0; i < taps_.size(); ++i) taps_[i](message);
+  const size_t count = taps_.size();
+  for (size_t i = 0; i < count; ++i) taps_[i](message);
 }
 
 }  // namespace hydro::bus

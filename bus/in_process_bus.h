@@ -50,7 +50,7 @@ class InProcessBus : public Bus {
   void Append(Slot& slot);
   void Done(Slot& slot);
   void Dispatch(const Slot& slot);
-  [[gnu::noinline]] void DispatchRaw(const Slot& slot);
+  [[gnu::noinline]] void DispatchRaw(const Slot& slot, const Handler& last);
   [[gnu::noinline]] void ShowTaps(const Slot& slot);
 
   const Clock* stamps_;

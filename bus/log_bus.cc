@@ -65,8 +65,9 @@ int LogBus::HandleUntil(TimePoint deadline) {
 
 bool LogBus::Dispatch(const RawMessage& event) {
   bool handled = !taps_.empty();
-  for (size_t i = 0; i < taps_.size(); ++i) taps_[i](event);
-  for (size_t i = 0; i < handlers_.size(); ++i) {
+  const size_t taps = taps_.size(), handlers = handlers_.size();  // who subscribes meanwhile does not get it
+  for (size_t i = 0; i < taps; ++i) taps_[i](event);
+  for (size_t i = 0; i < handlers; ++i) {
     Handler& handler = handlers_[i];
     if (handler.channel != event.channel) continue;
     if (handler.type->decode_into(handler.message.get(), event.data, event.size)) {

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   bool list = false;
   line.AddPositional("NAME", &request.name, "which one, or all", false);
   line.AddOption("-o,--out", &request.folder, "DIR where to write (out/experiments)");
+  line.AddForce();
   line.AddOption("--run", &request.options.measured_run,
                  "FILE a measured run to analyse (friction, leakage)");
   line.AddOption("--seed", &request.options.seed, "N of every noise, and of drawn machines (1)");

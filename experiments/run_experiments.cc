@@ -165,7 +165,9 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
   CreateFolder(request.folder);
   for (const char* ending : {".json", ".csv", ".svg"}) {
     CheckKeeps(request.folder + "/" + request.name + ending, {request.options.measured_run});
+    for (const Experiment& experiment : chosen) CheckIsNew(request.folder + "/" + experiment.name + ending);
   }
+  if (request.name == "all") CheckIsNew(request.folder + "/index.html");
 
   std::vector<std::exception_ptr> failures;
   const std::vector<ReportEntry> entries = RunAll(chosen, request, errors, &failures);

@@ -41,7 +41,7 @@ std::string MakeTemporary() {
 
 Output::Output(const std::string& name, bool text) : name_(name) {
   if (name != kStandardOutput) {
-    file_ = std::make_unique<NewFile>(name, Opening::kTemporary);
+    file_ = std::make_unique<NewFile>(name, Opening::kTemporary, Existing::kKept);
   } else if (!text && isatty(STDOUT_FILENO) != 0) {
     throw InputError("-o -: found a terminal, allowed is a pipe or a file for a format that is no text");
   }

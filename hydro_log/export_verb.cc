@@ -35,6 +35,7 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
       "NAME export the messages of this channel (HYDRO_STATE), or table; may be given several times");
   verb.AddFlag("--all-channels", &selection_.all,
                "export the table and the messages of every channel (MCAP: always)");
+  verb.AddForce();
   runs::AddStackChoice(&verb, &choice_);
 }
 

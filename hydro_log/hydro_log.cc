@@ -63,6 +63,7 @@ class ImportVerb {
         "FILE the table: X.csv or X.mat, with any of export's columns that include time_s; in a "
         "MAT file they may stand in one struct");
     verb.AddOption("-o,--output", &out_, "FILE the log", true);
+    verb.AddForce();
   }
   int Run() const {
     tables::CheckTableName(table_);
@@ -137,6 +138,7 @@ class RepairVerb {
                      "replaced, and the damaged one kept as LOG.damaged.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
+    verb.AddForce();
   }
   int Run() const {
     if (!out_.empty()) CheckKeeps(out_, {log_});

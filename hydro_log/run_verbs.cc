@@ -78,6 +78,7 @@ SummaryVerb::SummaryVerb(settings::CommandLine& line) {
   verb.AddPositional("LOG", &log_, "FILE the log");
   runs::AddStackChoice(&verb, &choice_);
   verb.AddOption("--json", &json_, "FILE write the same there as JSON; - for the standard output");
+  verb.AddForce();
   verb.AddFlag("--si", &si_, "print figures in SI units too");
 }
 
@@ -109,6 +110,7 @@ TimingVerb::TimingVerb(settings::CommandLine& line) {
   verb.AddOption("--json", &json_,
                  "FILE write the same there as JSON, with the histograms; - for the standard output");
   verb.AddOption("--page", &page_, "FILE write plots there (HTML); - for the standard output");
+  verb.AddForce();
 }
 
 int TimingVerb::Run() const {

@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   line.AddOption("--save", &request.save,
                  "FILE write CONFIG with the values in force, comments kept (without CONFIG: the whole "
                  "configuration of the run); - for the standard output");
+  line.AddForce();
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-set", [&] { return Run(request, arguments, overrides); });
 }

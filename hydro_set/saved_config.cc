@@ -7,7 +7,7 @@
 #include "base/text_file.h"
 #include "settings/moved_paths.h"
 #include "settings/toml/toml_edit.h"
-#include "tuning/change_check.h"
+#include "tuning/rearm_forecast.h"
 #include "tuning/tunable_keys.h"
 
 namespace hydro::hydro_set {
@@ -28,19 +28,12 @@ std::map<std::string, std::string> Entries(const std::string& text, const std::s
 
 }  // namespace
 
-settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force) {
-  settings::StackConfig configured =
-      settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
-  if (in_force.changes.empty()) return configured;
-  return settings::Changed(configured, tuning::ParseChanges(in_force.changes));
-}
-
 std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
                                                  const tuned_settings_t& in_force,
                                                  const std::function<std::string(double)>& text) {
   std::map<std::string, std::string> values;
   for (size_t i = 0; i < in_force.names.size(); ++i) values[in_force.names[i]] = text(in_force.values[i]);
-  const settings::StackConfig config = ConfigInForce(run, in_force);
+  const settings::StackConfig config = tuning::ConfigInForce(run, in_force);
   for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file))) {
     values[key] = std::move(value);
   }
@@ -49,7 +42,7 @@ std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
 
 std::string SavedText(const std::string& file, const std::string& joint, const std::string& output,
                       const run_description_t& run, const tuned_settings_t& in_force) {
-  const settings::StackConfig config = ConfigInForce(run, in_force);
+  const settings::StackConfig config = tuning::ConfigInForce(run, in_force);
   if (file.empty()) return config.text;
   if (!joint.empty()) {
     const settings::StackConfig given = settings::LoadStackConfig(file, {"joint=" + joint});

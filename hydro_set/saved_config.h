@@ -11,12 +11,9 @@
 
 namespace hydro::hydro_set {
 
-// What the stack runs with: its configuration (from its description) with the values in force. Throws InputError when the
+// The values in force by key of tunable_keys.h: as they stand in the configuration in force, in TOML; what it
+// leaves to its defaults or derives as the loops have it, through `text`. Throws InputError when the
 // description is not one of this version.
-settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
-
-// The values in force by key of tunable_keys.h: as they stand in that configuration, in TOML; what it leaves to its defaults or derives as
-// the loops have it, through `text`. Throws InputError likewise.
 std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
                                                  const tuned_settings_t& in_force,
                                                  const std::function<std::string(double)>& text);

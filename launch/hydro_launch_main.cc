@@ -11,6 +11,7 @@
 #include "launch/logic/operator_request.h"
 #include "launch/make_key.h"
 #include "launch/new_controller.h"
+#include "launch/rearm_json.h"
 #include "launch/stop_stack.h"
 #include "process/stack_bus.h"
 #include "settings/command_line.h"
@@ -52,8 +53,8 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "stop the running stack and wait until it has ended; starts nothing. Also: hydro-launch stop CONFIG");
   line->AddFlag(
       "--rearm", &options->rearm,
-      "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing. Also: "
-      "hydro-launch rearm CONFIG");
+      "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"), and say where the machine "
+      "moves by it, with --json as numbers too; starts nothing. Also: hydro-launch rearm CONFIG");
   line->AddFlag("--make-key", &options->make_key,
                 "write a new key into CONFIG's bus.key_file; starts nothing");
   line->AddOption(
@@ -86,6 +87,7 @@ std::string FlagInstead(const Options& options) {
 void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
   std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed", "--joint"};
   if (flag == "--doctor") allowed.emplace_back("--host");
+  if (flag == "--rearm") allowed.emplace_back("--json");
   if (flag == "--new-controller") allowed.clear();
   for (const std::string& given : line.Given()) {
     if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
@@ -100,10 +102,14 @@ hydro::launch::OperatorResult Rearm(const hydro::settings::StackConfig& config) 
   return hydro::launch::RearmStack(*bus, hydro::bus::WallClock(), config);
 }
 
-int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop) {
+int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop, bool json) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadCommonConfig(options.config, options.overrides);
   const hydro::launch::OperatorResult result = stop ? hydro::launch::StopStack(config) : Rearm(config);
+  if (json) {
+    std::printf("%s\n", hydro::launch::RearmJson(result).c_str());
+    return result.exit_code;
+  }
   // Names and reasons come from the network.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());
@@ -123,12 +129,13 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   }
   if (config.empty()) throw hydro::InputError("CONFIG is required; see --help");
   if (options.make_key) return hydro::launch::MakeKey(options.common);
-  if (options.stop) return RunOperatorRequest(options.common, true);
-  if (options.rearm) return RunOperatorRequest(options.common, false);
+  if (options.stop) return RunOperatorRequest(options.common, true, false);
+  if (options.rearm) return RunOperatorRequest(options.common, false, options.request.json);
   hydro::launch::LaunchRequest request = options.request;
   request.config_file = config;
   request.overrides = options.common.overrides;
   request.log_file = options.common.log;
+  request.force = options.common.force;
   return hydro::launch::LaunchStack(request);
 }
 

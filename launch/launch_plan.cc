@@ -136,6 +136,7 @@ ChildSpec ChildFor(const settings::ProcessSection& process, const settings::Stac
   if (program == kLogger) {
     child.last = true;
     child.argv.insert(child.argv.end(), {"-o", request.log_file});
+    if (request.force) child.argv.emplace_back("--force");
   } else if (with_log && AwaitsLogger(process)) {
     child.argv.insert(child.argv.end(), {"--expect", "logger"});
   }

@@ -14,6 +14,7 @@ struct LaunchRequest {
   std::string config_file;
   std::vector<std::string> overrides;  // "section.key=value", passed on to every process
   std::string log_file;                // --log; empty: no logger runs
+  bool force = false;                  // --force: the logger may replace a log
   std::string host;                    // --host; empty: everything on this machine
   std::string timing_file;             // --timing; empty: no report
   bool quiet = false;                  // --quiet: errors only

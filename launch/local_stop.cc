@@ -22,7 +22,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr char kRequest[] = "stop hydro-launch --stop";
 constexpr int kAnswer_ms = 500;
 constexpr auto kByThemselves = 500ms;  // how long the others may take to end because the plant has
 
@@ -52,7 +51,8 @@ std::set<std::string> NamesWith(const std::string& prefix) {
 
 }  // namespace
 
-LocalStop::LocalStop(const settings::StackConfig& config) {
+LocalStop::LocalStop(const settings::StackConfig& config, const Asker& asker)
+    : request_(process::StopRequestText(asker.role, asker.stop)) {
   const int port = bus::ParseUdpmUrl(config.bus.url).port;
   for (const std::string& suffix : settings::StackSuffixes(config)) {
     Connect(process::StopSocketPrefix(port, suffix));
@@ -84,7 +84,7 @@ LocalStop::~LocalStop() {
 void LocalStop::Ask(Process& process) {
   if (process.asked || process.deaf) return;
   process.asked = true;
-  send(process.connection, kRequest, sizeof kRequest - 1, MSG_NOSIGNAL);
+  send(process.connection, request_.data(), request_.size(), MSG_NOSIGNAL);
   pollfd waiting{process.connection, POLLIN, 0};
   char answer[8];
   if (poll(&waiting, 1, kAnswer_ms) > 0 && recv(process.connection, answer, sizeof answer, 0) <= 0) {

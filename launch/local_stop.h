@@ -15,7 +15,7 @@ class LocalStop : public LocalProcesses {
   using Duration = std::chrono::steady_clock::duration;
 
   // Finds the processes of the stack.
-  explicit LocalStop(const settings::StackConfig& config);
+  LocalStop(const settings::StackConfig& config, const Asker& asker);
   ~LocalStop() override;
   LocalStop(const LocalStop&) = delete;
   LocalStop& operator=(const LocalStop&) = delete;
@@ -46,6 +46,7 @@ class LocalStop : public LocalProcesses {
   bool AllEnded(bool with_loggers);
   void AwaitEnd(bool with_loggers, Duration patience);
 
+  std::string request_;
   std::vector<Process> processes_;
 };
 

@@ -6,14 +6,15 @@
 
 namespace hydro::launch {
 
-OperatorResult StopStack(const settings::StackConfig& config, const OperatorTiming& timing) {
-  LocalStop local(config);
+OperatorResult StopStack(const settings::StackConfig& config, const Asker& asker,
+                         const OperatorTiming& timing) {
+  LocalStop local(config, asker);
   local.StopMotor();
   OperatorResult result{1, ""};
   std::string remark;
   try {
     const auto bus = process::OpenStackBus(config.bus);
-    result = StopOverBus(*bus, bus::WallClock(), config, local, timing);
+    result = StopOverBus(*bus, bus::WallClock(), config, local, timing, asker);
   } catch (const bus::BusError& error) {
     if (local.found() == 0) throw;
     remark = std::string(" (over their local sockets: ") + error.what() + ")";

@@ -8,9 +8,14 @@ namespace hydro::launch {
 
 TerminalReport::TerminalReport(LabelledOutput& output, const settings::StackConfig& config,
                                const LaunchPlan& plan, const ReportStyle& style, const std::string& log_file)
-    : output_(output), config_(config), style_(style), log_file_(log_file) {
+    : output_(output),
+      config_(config),
+      style_(style),
+      log_file_(log_file),
+      old_log_(IdentityOfRegular(log_file)) {
   if (style_.quiet) output_.set_quiet();
   if (style_.json) output_.set_json();
+  for (const ChildSpec& child : plan.children) logs_here_ |= child.program() == "hydro-logger";
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
   for (const ChildSpec& child : plan.children) output_.AnnounceLabel(child.label);
@@ -38,11 +43,21 @@ void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
   output_.SetStatus(lines);
 }
 
+// A run that ends before its logger has begun leaves no log, and one on another host leaves it there.
+bool TerminalReport::LogWasWritten() const {
+  const auto log = IdentityOfRegular(log_file_);
+  return log && log != old_log_;
+}
+
 void TerminalReport::End(int exit_code) {
+  const bool written = LogWasWritten();
   if (style_.json) {
-    output_.Json(JsonText(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", log_file_}}));
-  } else if (!log_file_.empty()) {
+    output_.Json(
+        JsonText(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", written ? log_file_ : ""}}));
+  } else if (written) {
     Print("next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_);
+  } else if (logs_here_) {
+    Print("nothing was recorded: the run ended before " + log_file_ + " was begun");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "base/file_identity.h"
 #include "launch/labelled_output.h"
 #include "launch/logic/launch_report.h"
 #include "launch/logic/plan.h"
@@ -36,10 +37,14 @@ class TerminalReport : public LaunchReport {
  private:
   static constexpr char kLabel[] = "launch";
 
+  bool LogWasWritten() const;
+
   LabelledOutput& output_;
   const settings::StackConfig& config_;
   const ReportStyle style_;
   const std::string log_file_;
+  const std::optional<FileIdentity> old_log_;  // what had the log's name before the run
+  bool logs_here_ = false;                     // this launch starts the logger
   std::optional<TimingFiles> timing_files_;
 };
 

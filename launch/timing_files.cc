@@ -21,8 +21,8 @@ TimingFiles::TimingFiles(const std::string& json) : json_(json) {
 }
 
 void TimingFiles::Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const {
-  WriteWholeFile(json_, timing::TimingJson(processes, source));
-  WriteWholeFile(page_, timing::TimingPage(processes, source));
+  WriteWholeFile(json_, timing::TimingJson(processes, source), Existing::kKept);
+  WriteWholeFile(page_, timing::TimingPage(processes, source), Existing::kKept);
 }
 
 }  // namespace hydro::launch

@@ -268,8 +268,8 @@ int LimbApp::End() {
     return std::max(exit_code, participant_.Leave(failure));
   if (!failure.empty()) {
     participant_.RequestStop(failure, 1);
-  } else if (const std::string reason = process::StopReason(); !reason.empty()) {
-    participant_.RequestStop(reason, 0, process::kLaunchRole);
+  } else if (const process::StopRequest asked = process::StopReason(); !asked.reason.empty()) {
+    participant_.RequestStop(asked.reason, 0, asked.role);
   } else if (const int signal = process::StopSignal(participant_.bus()); signal != 0) {
     participant_.RequestStop(fmt::format("hydro-limb was stopped by signal {}", signal), 0);
   } else {

@@ -26,8 +26,9 @@ size_t WholeEvents(const uint8_t* buffer, size_t size) {
 }
 }  // namespace
 
-LogWriter::LogWriter(const std::string& file, Opening opening, std::string note, uint32_t follows)
-    : file_(file, opening),
+LogWriter::LogWriter(const std::string& file, Opening opening, std::string note, uint32_t follows,
+                     Existing existing)
+    : file_(file, opening, existing),
       opening_(opening),
       note_(std::move(note)),
       capacity_(kBufferSize),

@@ -18,9 +18,11 @@ class LogWriter {
  public:
   // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, where everything flushed
   // survives a kill; Opening::kTemporary for a log that appears whole or not at all. Throws InputError when
-  // it cannot be created. `note`: where the log comes from, for readers of it; empty for a recording. `follows`: of a
-  // recording in parts, last_check() of the part before; 0: it begins here.
-  LogWriter(const std::string& file, Opening opening, std::string note = {}, uint32_t follows = 0);
+  // it cannot be created, also because a log of that name is to be kept. `note`: where the log comes from,
+  // for readers of it; empty for a recording. `follows`: of a recording in parts, last_check() of the part
+  // before; 0: it begins here.
+  LogWriter(const std::string& file, Opening opening, std::string note = {}, uint32_t follows = 0,
+            Existing existing = Existing::kKept);
   // With kDirect, flushes the rest and ignores errors, and the log has no end mark; with kTemporary, removes
   // an unfinished file.
   ~LogWriter();

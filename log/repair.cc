@@ -105,8 +105,9 @@ void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, c
   std::string note = result.verdict.note;
   if (const std::string added = NoteOf(result, file); !added.empty())
     note += (note.empty() ? "" : "; ") + added;
-  ForgetRead(file);  // `out` may be the same: RepairInPlace() keeps the original
-  LogWriter writer(out, Opening::kTemporary, note);
+  const bool in_place = out == file;  // RepairInPlace() keeps the original
+  if (in_place) ForgetRead(file);
+  LogWriter writer(out, Opening::kTemporary, note, 0, in_place ? Existing::kReplaced : Existing::kKept);
   LogEvent event;
   for (const KeptEvent& place : kept) {
     ParseLogEvent(contents, place.begin, event);

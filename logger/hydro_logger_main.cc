@@ -17,8 +17,7 @@ int main(int argc, char** argv) {
   hydro::logger::LoggerOptions logger;
   double rotate_mb = 0;
   command_line.AddCommon(&options);
-  command_line.AddOption("-o,--output", &logger.file,
-                         "FILE where to record (an existing file is replaced); short for --log");
+  command_line.AddOption("-o,--output", &logger.file, "FILE where to record; short for --log");
   command_line.AddOption("--rotate-mb", &rotate_mb,
                          "MB start a new file (FILE-001 ...) when one grows larger than this; 0: never");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;

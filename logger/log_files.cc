@@ -3,7 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
+
+#include "base/new_file.h"
 
 namespace hydro::logger {
 
@@ -14,12 +17,30 @@ std::string RotatedName(const std::string& file, int n) {
       .string();
 }
 
-LogFiles::LogFiles(std::string file, int64_t rotate_bytes, std::string description_channel)
-    : file_(std::move(file)),
+LogFiles::LogFiles(const std::string& file, int64_t rotate_bytes, std::string description_channel)
+    : file_(Checked(file, rotate_bytes)),
       rotate_bytes_(rotate_bytes),
       description_channel_(std::move(description_channel)),
       writer_(std::make_unique<log::LogWriter>(file_, Opening::kDirect)) {
   watch_.Watch(file_);
+}
+
+// All of them before the first is begun: a recording must not end in the middle because of yesterday's.
+const std::string& LogFiles::Checked(const std::string& file, int64_t rotate_bytes) {
+  namespace fs = std::filesystem;
+  if (rotate_bytes <= 0) return file;
+  const fs::path path(file);
+  const std::string begin = path.stem().string() + "-", end = path.extension().string();
+  std::error_code failed;  // LogWriter says why
+  for (const auto& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", failed)) {
+    const std::string name = entry.path().filename();
+    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end))
+      continue;
+    const std::string number = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (number.find_first_not_of("0123456789") == std::string::npos) CheckIsNew(entry.path());
+  }
+  return file;
 }
 
 void LogFiles::Append(const EventQueue::Event& event) {

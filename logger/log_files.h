@@ -20,10 +20,11 @@ std::string RotatedName(const std::string& file, int n);
 
 class LogFiles {
  public:
-  // Opens the first file; throws InputError when it cannot be opened. `rotate_bytes`: a new file is started when
-  // one has grown beyond this; 0: never. Each file begins with the newest message of `description_channel`, so
-  // that it describes itself.
-  LogFiles(std::string file, int64_t rotate_bytes, std::string description_channel);
+  // Opens the first file; throws InputError when it cannot be opened, or when later files of such a recording
+  // are there already and must be kept (new_file.h). `rotate_bytes`: a new file is started when one has grown
+  // beyond this; 0: never. Each file begins with the newest message of `description_channel`, so that it
+  // describes itself.
+  LogFiles(const std::string& file, int64_t rotate_bytes, std::string description_channel);
 
   // Throw WriteError, and InputError when a further file cannot be opened.
   void Append(const EventQueue::Event& event);
@@ -41,6 +42,7 @@ class LogFiles {
 
  private:
   void Rotate();
+  static const std::string& Checked(const std::string& file, int64_t rotate_bytes);
 
   std::string file_;
   int64_t rotate_bytes_;

@@ -25,7 +25,7 @@ constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's ow
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
 
-constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers are followed: a flood is not
+constexpr size_t kMostSenders = 1024;  // of one kind of message that are followed: a flood is not
 
 }  // namespace
 
@@ -183,6 +183,7 @@ void LoggerApp::CheckOverflow() {
 void LoggerApp::OnStatus(const process_status_t& status) {
   if (status.role == process::kLaunchRole) return;  // it asks who is there, and never says that it has ended
   if (status.role != "logger") {
+    if (others_.size() >= kMostSenders && !others_.contains(status.session)) return;
     others_[status.session] = process::HasLeft(status);
   } else if (status.session == participant_.session()) {
     left_ = process::HasLeft(status);

@@ -140,7 +140,7 @@ std::string OutputSafety::OwnCause() const {
   return "";
 }
 
-// LCM receivers hear every multicast group on their port, so the other stack may use another group.
+// Its own channels, on this group and port.
 void OutputSafety::OnDescription(const run_description_t& description) {
   if (description.session == participant_.session()) return;
   other_stack_heard_ = participant_.clock().Now();

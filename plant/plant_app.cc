@@ -74,10 +74,9 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
   const bus::Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(),
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
-  bus.Subscribe<pressure_command_t>(channels.Of<pressure_command_t>(),
-                                    [this](const pressure_command_t& command) {
-                                      if (command.tick <= tick_) newest_pressure_command_tick_ = command.tick;
-                                    });
+  bus.Subscribe<pressure_command_t>(
+      channels.Of<pressure_command_t>(),
+      [this](const pressure_command_t& command) { OnPressureCommand(command); });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   for (const bus::Channels& loggers : LoggersChannels(config.bus)) {
@@ -143,8 +142,8 @@ void PlantApp::OnRigError(const RigError& error) {
 
 // Ends the run for every process and gives the reason, unless somebody has done so already.
 void PlantApp::RequestStop() {
-  if (const std::string reason = process::StopReason(); !reason.empty()) {
-    participant_.RequestStop(reason, 0, process::kLaunchRole);
+  if (const process::StopRequest asked = process::StopReason(); !asked.reason.empty()) {
+    participant_.RequestStop(asked.reason, 0, asked.role);
     return;
   }
   if (const int signal = process::StopSignal(participant_.bus()); signal != 0) {

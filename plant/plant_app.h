@@ -132,6 +132,7 @@ class PlantApp {
   void HoldWhile(VoltageGuard::Cause cause, const std::string& text);
   void CheckSupervisor(bus::Clock::TimePoint now);
   void OnMotorCommand(const motor_command_t& command);
+  void OnPressureCommand(const pressure_command_t& command);
   void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration AgeOfAnswer() const;

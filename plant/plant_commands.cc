@@ -41,7 +41,18 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
     participant_.statistics().RecordRoundTrip(*taken);
   }
   waiting_commands_.push_back(command);
-  newest_command_tick_ = command.tick;
+  // The answer to a state that was repeated may come after that to a newer one. A successor has answered
+  // nothing yet.
+  const bool successor = verdict == bus::SequenceMonitor::Verdict::kRestarted;
+  newest_command_tick_ = successor ? command.tick : std::max(newest_command_tick_, command.tick);
+}
+
+// The plant obeys the pressure loop alone; in lockstep it waits until the position loop of this run, and
+// nobody else, has answered.
+void PlantApp::OnPressureCommand(const pressure_command_t& command) {
+  if (command.tick > tick_ || participant_.Refuses(command.session)) return;
+  if (!roll_call_.Has("position_ctrl", command.session)) return;
+  newest_pressure_command_tick_ = std::max(newest_pressure_command_tick_, command.tick);
 }
 
 // What a sender has commanded before it turned out to run with another configuration does not act either.

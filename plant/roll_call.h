@@ -17,6 +17,9 @@ class RollCall {
 
   void Observe(const process_status_t& status);
 
+  // Whether that session is present in this role.
+  bool Has(const std::string& role, int64_t session) const { return present_.contains({role, session}); }
+
   // The expected roles that are not ready, in the order given.
   std::vector<std::string> Missing() const;
 

@@ -51,8 +51,10 @@ void OwnPositionLoop::OnState(const state_t& state) {
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == answered_) Send();  // the plant asks again: the answer may have been lost
-      // Later states that ask for no answer have overtaken it in the network.
-      if (state.tick > answered_ && state.tick % interval_ == 0) Answer(state);
+      // Later states that ask for no answer have overtaken it in the network. One beyond all that was seen is
+      // none of these.
+      if (state.tick > answered_ && state.tick < participant_.tick() && state.tick % interval_ == 0)
+        Answer(state);
       return;
     case bus::SequenceMonitor::Verdict::kAccept:
       break;

@@ -108,6 +108,7 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     const StderrLog log(program);  // stdout is for results
     const settings::StackConfig config = load(options.config, options.overrides);
     CheckKeeps(options.log);
+    CheckIsNew(options.log);
     CatchStopSignals();
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const StopSocket stop_socket(

@@ -15,7 +15,7 @@ namespace {
 using internal::caught_signal;
 
 std::mutex reason_mutex;
-std::string stop_reason;
+StopRequest stop_request;
 
 void Remember(int signal) { caught_signal = signal; }
 
@@ -30,17 +30,17 @@ void CatchStopSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void StopBecause(const std::string& reason) {
+void StopBecause(const StopRequest& request) {
   {
     const std::lock_guard lock(reason_mutex);
-    if (stop_reason.empty()) stop_reason = reason;
+    if (stop_request.reason.empty()) stop_request = request;
   }
   kill(getpid(), SIGTERM);  // not only the flag: it interrupts a wait
 }
 
-std::string StopReason() {
+StopRequest StopReason() {
   const std::lock_guard lock(reason_mutex);
-  return stop_reason;
+  return stop_request;
 }
 
 }  // namespace hydro::process

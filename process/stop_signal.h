@@ -25,10 +25,16 @@ inline int StopSignal(const bus::Bus& bus) {
   return hosted != nullptr ? hosted->stop_signal : StopSignal();
 }
 
+// Who wants the end, and why, in a line.
+struct StopRequest {
+  std::string role;
+  std::string reason;
+};
+
 // Sets the flag as SIGTERM does, for a reason that is told with the end of the run. Any thread may call it.
-void StopBecause(const std::string& reason);
+void StopBecause(const StopRequest& request);
 
 // Why the flag was set; empty when a signal came from elsewhere.
-std::string StopReason();
+StopRequest StopReason();
 
 }  // namespace hydro::process

@@ -7,8 +7,10 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <string_view>
+#include <utility>
 
 #include "process/abstract_socket.h"
 #include "process/stop_signal.h"
@@ -16,8 +18,11 @@
 namespace hydro::process {
 namespace {
 
+constexpr std::string_view kStop = "stop ";
+constexpr char kBetween[] = ": ";
 constexpr size_t kMostConnections = 8;
-constexpr int kBacklog = 64;  // requests that were given up wait too, while the process is stopped
+constexpr int kPause_ms = 100;  // before it tries again what the system refused
+constexpr int kBacklog = 64;    // requests that were given up wait too, while the process is stopped
 
 bool MayStopUs(int connection) {
   ucred peer{};
@@ -48,11 +53,16 @@ std::string StopSocketPrefix(int port, const std::string& channel_suffix) {
   return "hydro-stop/" + std::to_string(port) + "/" + channel_suffix + "/";
 }
 
+std::string StopRequestText(const std::string& role, const std::string& reason) {
+  return std::string(kStop) + role + kBetween + reason;
+}
+
 StopSocket::StopSocket(const std::string& prefix, const std::string& role) {
   const std::string name = prefix + role + "/" + std::to_string(getpid());
   listener_ = BindAbstract(SOCK_SEQPACKET | SOCK_NONBLOCK, name);
   wake_ = eventfd(0, EFD_CLOEXEC);
   if (listener_ < 0 || wake_ < 0 || listen(listener_, kBacklog) != 0) return;
+  spare_ = dup(wake_);
   const SignalsBlocked blocked;
   thread_ = std::thread([this] { Listen(); });
 }
@@ -64,15 +74,22 @@ StopSocket::~StopSocket() {
     thread_.join();
   }
   for (const int connection : connections_) close(connection);
+  if (spare_ >= 0) close(spare_);
   if (listener_ >= 0) close(listener_);
   if (wake_ >= 0) close(wake_);
 }
 
 void StopSocket::Listen() {
   while (true) {
-    std::vector<pollfd> waiting{{wake_, POLLIN, 0}, {listener_, POLLIN, 0}};
+    if (spare_ < 0) spare_ = dup(wake_);
+    const bool deaf =
+        std::exchange(deaf_, false);  // a listener that cannot accept would wake the poll at once
+    std::vector<pollfd> waiting{{wake_, POLLIN, 0}, {deaf ? -1 : listener_, POLLIN, 0}};
     for (const int connection : connections_) waiting.push_back({connection, POLLIN, 0});
-    if (poll(waiting.data(), waiting.size(), -1) < 0) continue;
+    if (poll(waiting.data(), waiting.size(), deaf ? kPause_ms : -1) < 0) {
+      if (errno != EINTR) std::this_thread::sleep_for(std::chrono::milliseconds(kPause_ms));
+      continue;
+    }
     if (waiting[0].revents != 0) return;
     for (size_t i = waiting.size() - 1; i >= 2; --i) {
       if (waiting[i].revents == 0 || Answer(waiting[i].fd)) continue;
@@ -84,8 +101,16 @@ void StopSocket::Listen() {
 }
 
 void StopSocket::Accept() {
-  const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (connection < 0) return;
+  const auto accept = [this] { return accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); };
+  int connection = accept();
+  if (connection < 0 && (errno == EMFILE || errno == ENFILE) && spare_ >= 0) {
+    close(std::exchange(spare_, -1));  // a process without descriptors can still be stopped
+    connection = accept();
+  }
+  if (connection < 0) {
+    deaf_ = errno != EAGAIN && errno != EINTR && errno != ECONNABORTED;
+    return;
+  }
   if (!MayStopUs(connection)) {
     close(connection);
     return;
@@ -101,10 +126,12 @@ bool StopSocket::Answer(int connection) {
   std::array<char, 256> request{};
   const ssize_t size = recv(connection, request.data(), request.size(), 0);
   if (size < 0) return errno == EAGAIN || errno == EINTR;
-  constexpr std::string_view kStop = "stop ";
-  const std::string_view text(request.data(), static_cast<size_t>(size));
+  std::string_view text(request.data(), static_cast<size_t>(size));
   if (!text.starts_with(kStop)) return false;
-  StopBecause(std::string(text.substr(kStop.size())));
+  text.remove_prefix(kStop.size());
+  const size_t between = text.find(kBetween);
+  if (between == std::string_view::npos) return false;
+  StopBecause({std::string(text.substr(0, between)), std::string(text.substr(between + 2))});
   return send(connection, "ok", 2, MSG_NOSIGNAL) == 2;
 }
 

@@ -14,11 +14,14 @@ namespace hydro::process {
 // "hydro-stop/7667//". A name goes on with role, slash and process id.
 std::string StopSocketPrefix(int port, const std::string& channel_suffix);
 
+// What such a socket is sent: who asks, and why, one line.
+std::string StopRequestText(const std::string& role, const std::string& reason);
+
 class StopSocket {
  public:
-  // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with the requester's reason.
-  // Where no socket can be had there is none: a run does not depend on it. The thread inherits the process's
-  // priority and processor: it sleeps until it is asked.
+  // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with
+  // the requester's role and reason. Where no socket can be had there is none: a run does not depend on it.
+  // The thread inherits the process's priority and processor: it sleeps until it is asked.
   StopSocket(const std::string& prefix, const std::string& role);
   ~StopSocket();
   StopSocket(const StopSocket&) = delete;
@@ -31,6 +34,8 @@ class StopSocket {
 
   int listener_ = -1;
   int wake_ = -1;                 // an eventfd: ends Listen()
+  int spare_ = -1;                // given up for a requester when the process has no descriptor left
+  bool deaf_ = false;             // the last one could not be accepted
   std::vector<int> connections_;  // kept open: their end tells the requester that this process has ended
   std::thread thread_;
 };

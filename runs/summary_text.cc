@@ -10,6 +10,7 @@
 #include "runs/sampling.h"
 #include "runs/tracking.h"
 #include "runs/tuning_history.h"
+#include "timing/report/timing_report.h"
 
 namespace hydro::runs {
 namespace {
@@ -55,6 +56,9 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
       "log",
       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
       LostMessages(info));
+  const std::string advice =
+      timing::SkippedTicksAdvice(info.ticks.announced, info.ticks.states + info.ticks.announced, "CONFIG");
+  if (!advice.empty()) line("{}", advice);
   if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));
   const std::string caution = log::Caution(info.verdict);
   if (!caution.empty()) line("log: {}", caution);

@@ -124,6 +124,8 @@ void LiveConversation::Take(const LiveRequest& request) {
       return context_.desk.Stop(ReplyTo(request.id));
     case Op::kRearm:
       return context_.desk.Rearm(ReplyTo(request.id));
+    case Op::kRearmForecast:
+      return context_.desk.ForecastRearm(ReplyTo(request.id));
     case Op::kSet:
       return context_.desk.Set(request.run, request.entries, ReplyTo(request.id));
     case Op::kUndo:

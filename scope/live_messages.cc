@@ -37,6 +37,7 @@ json Limits(const Run& run) {
   if (std::isfinite(given.pressure_psi)) limits["pressure_psi"] = given.pressure_psi;
   if (std::isfinite(given.arm_angle_rad)) limits["arm_angle_rad"] = given.arm_angle_rad;
   if (std::isfinite(given.motor_speed_rad_s)) limits["motor_speed_rad_s"] = given.motor_speed_rad_s;
+  limits["return_s"] = given.return_s;
   return limits;
 }
 

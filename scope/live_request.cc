@@ -87,13 +87,21 @@ class Fields {
 
 const std::map<std::string, LiveRequest::Op>& Operations() {
   using Op = LiveRequest::Op;
-  static const std::map<std::string, Op> operations{{"view", Op::kView},       {"unview", Op::kUnview},
-                                                    {"get", Op::kGet},         {"values", Op::kValues},
-                                                    {"trigger", Op::kTrigger}, {"untrigger", Op::kUntrigger},
-                                                    {"arm", Op::kArm},         {"mark", Op::kMark},
-                                                    {"ghost", Op::kGhost},     {"ghost_sync", Op::kGhostSync},
-                                                    {"stop", Op::kStop},       {"rearm", Op::kRearm},
-                                                    {"set", Op::kSet},         {"undo", Op::kUndo}};
+  static const std::map<std::string, Op> operations{{"view", Op::kView},
+                                                    {"unview", Op::kUnview},
+                                                    {"get", Op::kGet},
+                                                    {"values", Op::kValues},
+                                                    {"trigger", Op::kTrigger},
+                                                    {"untrigger", Op::kUntrigger},
+                                                    {"arm", Op::kArm},
+                                                    {"mark", Op::kMark},
+                                                    {"ghost", Op::kGhost},
+                                                    {"ghost_sync", Op::kGhostSync},
+                                                    {"stop", Op::kStop},
+                                                    {"rearm", Op::kRearm},
+                                                    {"set", Op::kSet},
+                                                    {"undo", Op::kUndo},
+                                                    {"rearm_forecast", Op::kRearmForecast}};
   return operations;
 }
 

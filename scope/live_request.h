@@ -25,6 +25,7 @@ struct LiveRequest {
     kGhostSync,
     kStop,
     kRearm,
+    kRearmForecast,
     kSet,
     kUndo,
   };

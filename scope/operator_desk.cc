@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/text_file.h"
+#include "launch/rearm_json.h"
 #include "launch/stop_stack.h"
 #include "process/stack_bus.h"
 
@@ -14,7 +15,7 @@ OperatorDesk::OperatorDesk(std::shared_ptr<const settings::StackConfig> config, 
     : config_(std::move(config)), control_(control), post_(std::move(post)), tunings_(std::move(tunings)) {}
 
 OperatorDesk::~OperatorDesk() {
-  for (Errand* errand : {&stop_, &rearm_}) {
+  for (Errand* errand : {&stop_, &rearm_, &forecast_}) {
     if (errand->thread.joinable()) errand->thread.join();
   }
 }
@@ -32,14 +33,15 @@ void OperatorDesk::Run(Errand* errand, Done done, std::function<launch::Operator
     }
     post_([errand, result] {
       const auto waiting = std::exchange(errand->waiting, {});
-      for (const Done& one : waiting) one({result.exit_code == 0, Printable(result.text), {}});
+      const std::string data = result.forecasts.empty() ? "" : launch::ForecastsJson(result);
+      for (const Done& one : waiting) one({result.exit_code == 0, Printable(result.text), data});
     });
   });
 }
 
 void OperatorDesk::Stop(Done done) {
   if (config_ == nullptr) return done({false, "there is no stack here: a log is shown", {}});
-  Run(&stop_, std::move(done), [config = config_] { return launch::StopStack(*config); });
+  Run(&stop_, std::move(done), [config = config_] { return launch::StopStack(*config, launch::kScopePage); });
 }
 
 bool OperatorDesk::Refused(const Done& done) const {
@@ -57,7 +59,15 @@ void OperatorDesk::Rearm(Done done) {
   if (Refused(done)) return;
   Run(&rearm_, std::move(done), [config = config_] {
     const auto bus = process::OpenStackBus(config->bus);
-    return launch::RearmStack(*bus, bus::WallClock(), *config);
+    return launch::RearmStack(*bus, bus::WallClock(), *config, {}, launch::kScopePage);
+  });
+}
+
+void OperatorDesk::ForecastRearm(Done done) {
+  if (Refused(done)) return;
+  Run(&forecast_, std::move(done), [config = config_] {
+    const auto bus = process::OpenStackBus(config->bus);
+    return launch::ForecastRearm(*bus, bus::WallClock(), *config);
   });
 }
 

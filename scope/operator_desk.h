@@ -48,6 +48,8 @@ class OperatorDesk {
   void Stop(Done done);
   // As hydro-launch --rearm.
   void Rearm(Done done);
+  // What that would do now: a sentence, and as `data` the numbers.
+  void ForecastRearm(Done done);
   void Set(uint32_t run, const std::vector<std::string>& entries, Done done);
   void Undo(uint32_t run, Done done);
 
@@ -71,6 +73,7 @@ class OperatorDesk {
   std::map<uint32_t, Tuning*> tunings_;
   Errand stop_;
   Errand rearm_;
+  Errand forecast_;
 };
 
 }  // namespace hydro::scope

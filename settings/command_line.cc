@@ -13,6 +13,7 @@
 
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
+#include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 
@@ -211,6 +212,7 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
         return "joint=" + Filled(name, text, "NAME of a [[joint]]");
       });
   AddOption("--log", &options->log, "FILE where to record the run");
+  AddForce(&options->force);
   AddFlag("--si", &options->si, "print figures in SI units");
 }
 
@@ -248,6 +250,16 @@ void CommandLine::AddOption(const std::string& names, std::vector<std::string>* 
 void CommandLine::AddFlag(const std::string& names, bool* target, const std::string& help) {
   impl_->app().add_flag_callback(
       names, [target] { *target = true; }, help);
+}
+
+void CommandLine::AddForce(bool* target) {
+  impl_->app().add_flag_callback(
+      "--force",
+      [target] {
+        AllowReplacing();
+        if (target != nullptr) *target = true;
+      },
+      "replace files that are there already");
 }
 
 void CommandLine::AddPositional(const std::string& name, std::string* target, const std::string& help,

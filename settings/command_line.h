@@ -27,8 +27,9 @@ struct CommonOptions {
   std::string config;  // CONFIG
   // For LoadStackConfig: the --set options, and --time, --duration and --seed as the keys that they set.
   std::vector<std::string> overrides;
-  std::string log;  // --log; empty: not given
-  bool si = false;  // show figures in SI
+  std::string log;     // --log; empty: not given
+  bool force = false;  // --force was given, for those who pass it on
+  bool si = false;     // show figures in SI
 };
 
 // Parse() sets the targets given to Add..., which must outlive it. The target of an absent option keeps its
@@ -40,8 +41,8 @@ class CommandLine {
   CommandLine(CommandLine&&) noexcept;
   CommandLine& operator=(CommandLine&&) noexcept;
 
-  // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --si.
-  // Without `config_required`, an absent CONFIG leaves options->config empty.
+  // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --force,
+  // --si. Without `config_required`, an absent CONFIG leaves options->config empty.
   void AddCommon(CommonOptions* options, bool config_required = true);
 
   // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". Refuses
@@ -57,6 +58,8 @@ class CommandLine {
   void AddOption(const std::string& names, std::vector<std::string>* target, const std::string& help,
                  bool required = false);
   void AddFlag(const std::string& names, bool* target, const std::string& help);
+  // --force, which a program that writes files of a given name needs: replace those that are there (new_file.h).
+  void AddForce(bool* target = nullptr);
   void AddPositional(const std::string& name, std::string* target, const std::string& help,
                      bool required = true);
   void AddPositional(const std::string& name, std::vector<std::string>* target, const std::string& help,

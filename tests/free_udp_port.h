@@ -15,7 +15,7 @@ inline int FreeUdpPort() {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_addr.s_addr = htonl(INADDR_ANY);  // so that a port on which any group is heard is not free
   socklen_t length = sizeof address;
   if (fd < 0 || bind(fd, reinterpret_cast<sockaddr*>(&address), length) != 0 ||
       getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
@@ -23,7 +23,8 @@ inline int FreeUdpPort() {
   }
   // Set after the port was chosen: the choice avoids every port in use, and from now on LCM may share this
   // one.
-  const int reuse = 1;
+  const int reuse = 1, deaf = 0;
+  setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &deaf, sizeof deaf);
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   return ntohs(address.sin_port);
 }

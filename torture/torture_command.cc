@@ -50,7 +50,8 @@ void WriteNumbers(const std::string& file, const CampaignOptions& options, const
                  fmt::format("{{\"first_seed\": {}, \"runs\": {}, \"simulated_s\": {:.17g}, \"ticks\": {}, "
                              "\"faults_injected\": {}, \"failed_runs\": {}, \"findings\": {}}}\n",
                              options.first_seed, coverage.runs, coverage.simulated_s, coverage.ticks,
-                             coverage.injected, result.failed_runs, result.findings.size()));
+                             coverage.injected, result.failed_runs, result.findings.size()),
+                 Existing::kKept);
 }
 
 // The findings come last, where the end of a long output shows them.
@@ -89,6 +90,7 @@ void AddOptions(settings::CommandLine* line, TortureOptions* options) {
   line->AddOption("--out", &options->out,
                   "DIR where to put the schedules of failed runs; default out/torture");
   line->AddOption("--numbers", &options->numbers, "FILE.json write runs, faults and findings as numbers");
+  line->AddForce();
   line->AddOption("--without", &options->without,
                   "KIND a kind of fault that is not injected; may be repeated");
   line->AddFlag("--first", &options->first, "end at the first run that fails");
@@ -115,6 +117,7 @@ int Run(const TortureOptions& options) {
   if (options.jobs < 1 || options.jobs > 256) {
     throw InputError(fmt::format("--jobs: found {}, allowed are 1 to 256", options.jobs));
   }
+  if (!options.numbers.empty()) CheckCanBeCreated(options.numbers);
   CampaignOptions campaign;
   campaign.first_seed =
       options.seed >= 0 ? static_cast<uint64_t>(options.seed) : std::random_device()() % 1'000'000'000u;

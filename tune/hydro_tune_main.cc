@@ -24,6 +24,9 @@ int main(int argc, char** argv) {
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
   line.AddPositional("CONFIG", &request.config, "FILE the stack's configuration (TOML)");
   line.AddOption(
+      "--set", &request.overrides,
+      "SECTION.KEY=VALUE changes one key of CONFIG, e.g. model.file=other.toml; -o writes it, too");
+  line.AddOption(
       "--joint", &request.joint,
       "NAME of a configuration with [[joint]] sections, the joint to tune; -o then writes the stack of this "
       "joint alone");
@@ -39,6 +42,7 @@ int main(int argc, char** argv) {
   line.AddOption("--samples", &request.samples,
                  "N of what may be true instead of the model, from [uncertainty] (8)");
   line.AddOption("--jobs", &request.jobs, "N threads (as many as processors)");
+  line.AddForce();
   line.AddFlag("--fixed-gains", &request.fixed_gains, "eq. (17) alone, without a braking curve");
   line.AddFlag("--noise", &request.noise, "with noisy sensors");
   line.AddFlag("--si", &request.si, "show gains in SI units");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +15,9 @@
 #include "settings/limb_config.h"
 #include "settings/moved_paths.h"
 #include "settings/stack_config.h"
+#include "settings/toml/toml_document.h"
 #include "settings/toml/toml_edit.h"
+#include "settings/toml/toml_entries.h"
 #include "tune/refusal.h"
 #include "tune/report.h"
 #include "tune/search.h"
@@ -32,7 +35,7 @@ void CheckRange(const char* option, int value, int least, int most) {
 }
 
 settings::StackConfig Load(const TuneRequest& request) {
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides = request.overrides;
   if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);
   if (request.interval) {
     if (!ParseNumber(*request.interval)) {
@@ -87,32 +90,55 @@ Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
   return proposal;
 }
 
-// The given text with the gains of `tuned`, for a file `output`. Of a limb, the stack of this joint alone.
-std::string TunedText(const settings::StackConfig& given, const settings::StackConfig& tuned,
-                      const std::string& output) {
-  const std::string before = settings::IsLimbFile(given.file) ? given.text : ReadTextFile(given.file);
+// Puts what --set changed into `changed` and `removed`: the text of the file knows nothing of it.
+void AddOverrides(const settings::StackConfig& given, const std::vector<std::string>& overrides,
+                  std::map<std::string, std::string>* changed, std::vector<std::string>* removed) {
+  if (overrides.empty()) return;
+  const auto entries = [](const settings::StackConfig& config) {
+    const auto list = settings::TomlEntries(settings::ParseToml(config.text, config.file));
+    return std::map<std::string, std::string>(list.begin(), list.end());
+  };
+  const auto before = entries(settings::LoadStackConfig(given.file)), after = entries(given);
+  for (const auto& [key, value] : after) {
+    const auto was = before.find(key);
+    if (was == before.end() || was->second != value) (*changed)[key] = value;
+  }
+  for (const auto& [key, value] : before) {
+    if (!after.contains(key)) removed->push_back(key);
+  }
+}
+
+// The given text with what --set changed and the gains of `tuned`, for a file `output`. Of a limb, the stack
+// of this joint alone.
+std::string TunedText(const TuneRequest& request, const settings::StackConfig& given,
+                      const settings::StackConfig& tuned) {
+  const bool limb = settings::IsLimbFile(given.file);
+  const std::string before = limb ? given.text : ReadTextFile(given.file);
+  std::map<std::string, std::string> keys;
+  std::vector<std::string> removed;
+  if (!limb) AddOverrides(given, request.overrides, &keys, &removed);
+  for (const auto& [key, value] : settings::MovedPaths(given, request.output)) keys[key] = value;
   const Keys old =
       GainKeys(settings::ParseStackConfig(before, given.file, given.model.text, given.model.file));
-  Keys keys = settings::MovedPaths(given, output);
   for (const auto& key : GainKeys(tuned)) {
-    if (std::find(old.begin(), old.end(), key) == old.end()) keys.push_back(key);
+    if (std::find(old.begin(), old.end(), key) == old.end()) keys[key.first] = key.second;
   }
-  return settings::EditToml(before, given.file, keys, {});
+  return settings::EditToml(before, given.file, {keys.begin(), keys.end()}, removed);
 }
 
 // Before the search, with gains that all differ from the given ones.
-void CheckCanBeChanged(const settings::StackConfig& config, const std::string& output) {
+void CheckCanBeChanged(const TuneRequest& request, const settings::StackConfig& config) {
   Gains other = GainsOf(config);
   other.as_configured = false;
   for (double* gain : {&other.natural_frequency, &other.damping_ratio, &other.c1, &other.c2})
     *gain = 1.5 * *gain + 1;
-  TunedText(config, With(config, other), output);
+  TunedText(request, config, With(config, other));
 }
 
 void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
   std::filesystem::create_directories(folder);
-  WriteWholeFile(folder + "/tune.svg", ReportPicture(report));
-  WriteWholeFile(folder + "/tune.html", ReportPage(report, si));
+  WriteWholeFile(folder + "/tune.svg", ReportPicture(report), Existing::kKept);
+  WriteWholeFile(folder + "/tune.html", ReportPage(report, si), Existing::kKept);
 }
 
 // The gains as the stack's own programs run them: nothing that was left out of the search can differ.
@@ -160,7 +186,10 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const settings::StackConfig config = Load(request);
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
-  if (!request.output.empty()) CheckCanBeChanged(config, request.output);
+  if (!request.folder.empty()) {
+    for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(request.folder + file);
+  }
+  if (!request.output.empty()) CheckCanBeChanged(request, config);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
 
@@ -193,7 +222,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   std::fwrite(text.data(), 1, text.size(), said);
   if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
   if (!request.output.empty()) {
-    WriteTextFile(request.output, TunedText(config, With(config, chosen.best.gains), request.output), out);
+    WriteTextFile(request.output, TunedText(request, config, With(config, chosen.best.gains)), out);
   }
   for (const std::string& told : Epilogue(request, chosen.best)) std::fprintf(said, "%s\n", told.c_str());
   return 0;

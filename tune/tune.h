@@ -10,6 +10,7 @@ namespace hydro::tune {
 
 struct TuneRequest {
   std::string config;                   // the file
+  std::vector<std::string> overrides;   // "section.key=value", as with --set
   std::string joint;                    // of a limb, which of its joints; empty: it is a stack's
   std::vector<std::string> goals;       // as ParseGoals reads them
   std::optional<std::string> interval;  // s, T; none: the configuration's

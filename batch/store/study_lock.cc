@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <thread>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
@@ -21,7 +22,9 @@ namespace hydro::batch {
 namespace {
 
 constexpr auto kBeat = std::chrono::seconds(5);
-constexpr double kSilent = 60;  // s
+constexpr double kSilent = 60;   // s
+constexpr int kMostUnread = 50;  // a lock that is released meanwhile is free or another's by then
+constexpr auto kUnread = std::chrono::milliseconds(20);
 
 double Seconds(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
@@ -73,9 +76,18 @@ bool StudyLock::Make() {
 }
 
 StudyLock::StudyLock(const std::string& folder) : file_(folder + "/lock"), owner_(NewOwnerName()) {
-  for (int attempt = 0; !Make(); ++attempt) {
+  for (int attempt = 0, unread = 0; !Make(); ++attempt) {
     LockHolder holder;
-    if (!Holder(folder, &holder)) continue;  // just released
+    if (!Holder(folder, &holder)) {  // just released, or nothing that can be read
+      if (++unread > kMostUnread) {
+        throw InputError(file_ +
+                         ": found something that cannot be read, allowed is the lock that hydro-batch makes; "
+                         "remove it if no hydro-batch runs there");
+      }
+      std::this_thread::sleep_for(kUnread);
+      --attempt;
+      continue;
+    }
     if (!holder.gone || attempt > 3) {
       throw InputError(folder + ": found it in use by hydro-batch, process " + std::to_string(holder.pid) +
                        " on " + holder.host + " (seen " + ShortNumber(holder.silent_s, 2) +

@@ -78,9 +78,7 @@ int Listen(const Socket& receiver, const UdpmUrl& url, const sockaddr_in& group)
   int receive_buffer = 0;
   socklen_t length = sizeof receive_buffer;
   getsockopt(receiver.fd(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, &length);
-  sockaddr_in any = group;
-  any.sin_addr.s_addr = htonl(INADDR_ANY);
-  if (bind(receiver.fd(), reinterpret_cast<const sockaddr*>(&any), sizeof any) != 0) {
+  if (bind(receiver.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "cannot listen on the port", "another program may hold it: choose another port");
   }
   ip_mreq membership{};

@@ -52,8 +52,6 @@ UdpmSocket::UdpmSocket(const UdpmUrl& url) : packet_(kLcmLargestPacket + 1) {
   group_.sin_family = AF_INET;
   group_.sin_port = htons(url.port);
   inet_pton(AF_INET, url.group.c_str(), &group_.sin_addr);
-  sockaddr_in any = group_;
-  any.sin_addr.s_addr = htonl(INADDR_ANY);
   ip_mreq membership{};
   membership.imr_multiaddr = group_.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
@@ -68,7 +66,8 @@ UdpmSocket::UdpmSocket(const UdpmUrl& url) : packet_(kLcmLargestPacket + 1) {
   if (open && url.recv_buf_size > 0) SetOption(receiver_, SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   SetOption(receiver_, SOL_SOCKET, SO_TIMESTAMP, 1);
   AttachChannelFilter(receiver_, channels_);
-  if (!open || bind(receiver_, address(any), sizeof any) != 0 ||
+  // To the group: what is sent to other groups on this port, or to this machine alone, stays away.
+  if (!open || bind(receiver_, address(group_), sizeof group_) != 0 ||
       !SetOption(receiver_, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) {
     const std::string why = std::strerror(errno);
     if (sender_ >= 0) close(sender_);

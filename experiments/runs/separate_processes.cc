@@ -90,6 +90,7 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
                                         "realtime",
                                         "--log",
                                         log,
+                                        "--force",  // what is left there is of a run without results
                                         "--set",
                                         "model.file=" + model,
                                         "--set",

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <hydro/arm_plan_t.hpp>
 #include <hydro/rearm_t.hpp>
+#include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
+#include <hydro/tuned_settings_t.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +13,7 @@
 #include "bus/channels.h"
 #include "bus/session.h"
 #include "launch/logic/operator_request.h"
+#include "tuning/rearm_forecast.h"
 
 namespace hydro::launch {
 namespace {
@@ -27,7 +31,16 @@ class Asked {
     bus.Subscribe<state_t>(channels_.Of<state_t>(), [this](const state_t& state) {
       plants_.insert(state.session);
       tick_ = state.tick;
+      // The state in which it was asked: later ones may show what the re-arm did.
+      if (!asked_ || (!answer_ && state.command_tick < 0)) heard_.state = state;
     });
+    bus.Subscribe<run_description_t>(channels_.Of<run_description_t>(),
+                                     [this](const run_description_t& run) { heard_.run = run; });
+    bus.Subscribe<tuned_settings_t>(channels_.Of<tuned_settings_t>(), [this](const tuned_settings_t& s) {
+      if (s.stage == tuned_settings_t::IN_FORCE) heard_.in_force = s;
+    });
+    bus.Subscribe<arm_plan_t>(channels_.Of<arm_plan_t>(),
+                              [this](const arm_plan_t& plan) { heard_.plan = plan; });
     bus.Subscribe<rearm_t>(channels_.Of<rearm_t>(), [this](const rearm_t& message) {
       const bool ours = message.kind != rearm_t::REQUEST && message.addressee == session_;
       if (ours && plants_.contains(message.session) && !answer_) answer_ = message;
@@ -38,17 +51,19 @@ class Asked {
   bool heard() const { return !plants_.empty(); }
   size_t plants() const { return plants_.size(); }
   bool answered() const { return answer_.has_value(); }
+  bool described() const { return heard_.run && heard_.in_force; }
   bool accepted() const { return answer_ && answer_->kind == rearm_t::ACCEPTED; }
 
-  void Ask(int64_t utime) {
+  void Ask(int64_t utime, const Asker& asker) {
+    asked_ = true;
     rearm_t request;
     request.utime = utime;
     request.tick = tick_;
     request.session = session_;
     request.addressee = *plants_.begin();
     request.kind = rearm_t::REQUEST;
-    request.source = "launch";
-    request.text = "hydro-launch --rearm";
+    request.source = asker.role;
+    request.text = asker.rearm;
     bus_.Publish(channels_.Of<rearm_t>(), request);
   }
 
@@ -58,6 +73,9 @@ class Asked {
     return accepted() ? answer_->text : "refused by the " + answer_->source + ": " + answer_->text;
   }
 
+  // From the last state before an answer, when the voltage was still held at zero.
+  tuning::RearmForecast Forecast() const { return tuning::ForecastRearm(heard_); }
+
  private:
   bus::Bus& bus_;
   std::string joint_;  // empty: it is a stack by itself
@@ -65,7 +83,9 @@ class Asked {
   int64_t session_;
   std::set<int64_t> plants_;
   int64_t tick_ = -1;
+  bool asked_ = false;
   std::optional<rearm_t> answer_;
+  tuning::HeardOfStack heard_;
 };
 
 using Joints = std::vector<std::unique_ptr<Asked>>;
@@ -127,31 +147,67 @@ std::string Answers(const Joints& joints) {
   return text;
 }
 
+// Until `done` holds for all.
+template <class Done>
+void Listen(bus::Bus& bus, const bus::Clock& clock, const Joints& joints, bus::Clock::Duration longest,
+            Done done) {
+  const auto start = clock.Now();
+  while (!All(joints, done) && clock.Now() - start < longest) bus.HandleUntil(clock.Now() + kRearmRepeat);
+}
+
+void ListenForAll(bus::Bus& bus, const bus::Clock& clock, const Joints& joints,
+                  const OperatorTiming& timing) {
+  const auto heard = [](const Asked& joint) { return joint.heard(); };
+  Listen(bus, clock, joints, timing.presence, heard);
+  if (!All(joints, heard)) return;
+  for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
+}
+
+// "hip: the arm is at ...; knee: ..."; `all`: also of joints whose voltage is not held.
+void AddForecasts(const Joints& joints, bool all, OperatorResult* result) {
+  for (const auto& joint : joints) {
+    result->forecasts.emplace_back(joint->joint(), joint->Forecast());
+    if (!all && !result->forecasts.back().second.held) continue;
+    const std::string& said = result->forecasts.back().second.text;
+    result->text +=
+        (result->text.empty() ? "" : "; ") + (joint->joint().empty() ? "" : joint->joint() + ": ") + said;
+  }
+}
+
 }  // namespace
 
-OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
-                          const OperatorTiming& timing) {
+OperatorResult ForecastRearm(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
+                             const OperatorTiming& timing) {
   const Joints joints = PlantsOf(bus, config, bus::IdentityOn(bus, clock).session);
-  const auto heard = [](const Asked& joint) { return joint.heard(); };
-  const auto start = clock.Now();
-  while (!All(joints, heard) && clock.Now() - start < timing.presence)
-    bus.HandleUntil(clock.Now() + kRearmRepeat);
-  if (All(joints, heard)) {
-    for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
-  }
+  ListenForAll(bus, clock, joints, timing);
+  if (const std::string why = WhyNot(joints, config.bus.url); !why.empty()) return {1, why};
+  Listen(bus, clock, joints, timing.description, [](const Asked& joint) { return joint.described(); });
+  OperatorResult result{0, ""};
+  AddForecasts(joints, true, &result);
+  return result;
+}
+
+OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
+                          const OperatorTiming& timing, const Asker& asker) {
+  const Joints joints = PlantsOf(bus, config, bus::IdentityOn(bus, clock).session);
+  ListenForAll(bus, clock, joints, timing);
   if (const std::string why = WhyNot(joints, config.bus.url); !why.empty()) return {1, why};
   const auto answered = [](const Asked& joint) { return joint.answered(); };
   const auto asked = clock.Now();
   while (!All(joints, answered) && clock.Now() - asked < timing.presence) {
     for (const auto& joint : joints) {
-      if (!joint->answered()) joint->Ask(clock.Utime());
+      if (!joint->answered()) joint->Ask(clock.Utime(), asker);
     }
     for (const auto until = clock.Now() + kRearmRepeat; !All(joints, answered) && clock.Now() < until;)
       bus.HandleUntil(until);
   }
   const bool accepted = All(joints, [](const Asked& joint) { return joint.accepted(); });
   const std::string text = config.joints.empty() ? joints.front()->Text() : Answers(joints);
-  return {accepted ? 0 : 1, (accepted ? "re-armed: " : "") + text};
+  OperatorResult result{accepted ? 0 : 1, (accepted ? "re-armed: " : "") + text};
+  if (!accepted) return result;
+  Listen(bus, clock, joints, timing.description, [](const Asked& joint) { return joint.described(); });
+  AddForecasts(joints, false, &result);
+  return result;
 }
 
 }  // namespace hydro::launch

@@ -8,6 +8,8 @@
 #include "base/utf8.h"
 #include "process/fault_codes.h"
 #include "process/output_left.h"
+#include "process/role.h"
+#include "timing/report/timing_report.h"
 
 namespace hydro::launch {
 namespace {
@@ -20,6 +22,20 @@ constexpr size_t kMostOutputs = 256;
 constexpr size_t kListedOutputs = 4;  // of more, those at zero are counted
 constexpr size_t kLongestText = 500;
 constexpr size_t kWidestLine = 79;  // of a terminal of 80 columns
+// The table of loops: with the longest label, "[position_ctrl] ", 79 columns, whatever the numbers are.
+constexpr int kCycles = 7, kTime = 6, kLongestTime = 7, kMissed = 7, kLost = 5;
+
+// "18000k" where the digits of a number and a blank before them do not fit into so many columns.
+std::string Fitted(double value, int columns) {
+  std::string text = fmt::format("{:.0f}", value);
+  for (const char* unit = "kMGTPE"; static_cast<int>(text.size()) >= columns && *unit != '\0'; ++unit) {
+    value /= 1000;
+    text = fmt::format("{:.0f}{}", value, *unit);
+  }
+  return fmt::format("{:>{}}", text, columns);
+}
+
+std::string Fitted(int64_t value, int columns) { return Fitted(static_cast<double>(value), columns); }
 
 // A session is one sender; its name in a message that changed on the way may be another's. Only the simulated
 // joints of a limb have no session, and then the names tell them apart.
@@ -77,19 +93,22 @@ void RunSummary::Add(const output_left_t& left) {
 
 std::vector<std::string> RunSummary::Lines() const {
   std::vector<std::string> lines;
-  size_t width = 14;
-  for (const Loop& loop : loops_) width = std::max(width, loop.shown.role.size() + 1);
+  size_t width = 13;
+  for (const Loop& loop : loops_) width = std::max(width, loop.shown.role.size());
   if (!loops_.empty()) {
-    lines.push_back(fmt::format("{:>{}}{:>27}", "period us", width + 30, "latency us"));
-    lines.push_back(fmt::format("{:<{}}{:>10}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}", "process", width,
-                                "cycles", "p50", "p99", "p50", "p99", "max", "missed", "lost"));
+    lines.push_back(fmt::format("{:>{}}{:>{}}", "period us", width + kCycles + 2 * kTime, "latency us",
+                                2 * kTime + kLongestTime));
+    lines.push_back(fmt::format("{:<{}}{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}", "process", width,
+                                "cycles", kCycles, "p50", kTime, "p99", kTime, "p50", kTime, "p99", kTime,
+                                "max", kLongestTime, "missed", kMissed, "lost", kLost));
   }
   for (const Loop& loop : loops_) {
     const loop_statistics_t& s = loop.shown;
-    lines.push_back(fmt::format("{:<{}}{:>10}{:>11.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>7}", s.role,
-                                width, loop.cycles, s.period_p50_us, s.period_p99_us, s.latency_p50_us,
-                                s.latency_p99_us, loop.latency_max_us, loop.missed_deadlines,
-                                loop.lost_messages));
+    lines.push_back(fmt::format("{:<{}}", s.role, width) + Fitted(loop.cycles, kCycles) +
+                    Fitted(s.period_p50_us, kTime) + Fitted(s.period_p99_us, kTime) +
+                    Fitted(s.latency_p50_us, kTime) + Fitted(s.latency_p99_us, kTime) +
+                    Fitted(loop.latency_max_us, kLongestTime) + Fitted(loop.missed_deadlines, kMissed) +
+                    Fitted(loop.lost_messages, kLost));
   }
   for (const Fault& fault : faults_) {
     lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
@@ -139,6 +158,16 @@ std::string StatusLine(const ProcessStatus& status) {
                   status.rate_hz, status.latency_p99_us, status.missed_deadlines, status.lost_messages,
                   status.fault.empty() ? "ok" : status.fault);
   return std::string(FirstBytes(line, kWidestLine));
+}
+
+std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
+  for (const Loop& loop : loops_) {
+    if (!process::IsPlant(loop.shown.role)) continue;
+    const std::string advice = timing::SkippedTicksAdvice(
+        loop.missed_deadlines, SaturatingSum(loop.cycles, loop.missed_deadlines), config);
+    if (!advice.empty()) return loop.shown.role + ": " + advice;
+  }
+  return "";
 }
 
 std::vector<std::string> RunSummary::FaultsLeft() const {

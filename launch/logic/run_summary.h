@@ -36,6 +36,9 @@ class RunSummary {
   // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
+  // What to do where a plant, driver or limb has slept through a part of its ticks; empty where it has not.
+  std::string SkippedTicksAdvice(const std::string& config) const;
+
   bool says_what_was_left() const { return !outputs_left_.empty(); }
 
   // A row for each process that has reported, in the order of their first reports.

@@ -142,6 +142,8 @@ void StackLaunch::PrintSummary() {
   for (const std::string& line : watch_.summary().Lines()) Print(line);
   if (plant_killed_ && !watch_.summary().says_what_was_left())
     PrintError("no plant or driver has said what voltage it left: make sure that the output is at zero");
+  const std::string advice = watch_.summary().SkippedTicksAdvice(config_.file);
+  if (!advice.empty()) PrintError(advice);
   const std::vector<std::string> left = watch_.summary().FaultsLeft();
   if (left.empty()) return;
   PrintError(

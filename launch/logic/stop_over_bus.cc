@@ -107,12 +107,15 @@ class Presence {
 
 }  // namespace
 
+const Asker kHydroLaunch{process::kLaunchRole, "hydro-launch --stop", "hydro-launch --rearm"};
+const Asker kScopePage{"scope", "STOP on the page of hydro-scope", "Re-arm on the page of hydro-scope"};
+
 std::string Stopped(size_t count) {
   return fmt::format("stopped: {} process{}", count, count == 1 ? " has ended" : "es have ended");
 }
 
 OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
-                           LocalProcesses& local, const OperatorTiming& timing) {
+                           LocalProcesses& local, const OperatorTiming& timing, const Asker& asker) {
   std::vector<bus::Channels> stacks;
   for (const std::string& suffix : settings::StackSuffixes(config)) stacks.emplace_back(suffix);
   Presence presence(bus, clock, stacks, local);
@@ -120,8 +123,8 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
   stop.tick = -1;
   stop.session = bus::IdentityOn(bus, clock).session;
   stop.addressee = 0;  // whoever hears it: an operator who stops is not asked which run
-  stop.source = process::kLaunchRole;
-  stop.reason = "hydro-launch --stop";
+  stop.source = asker.role;
+  stop.reason = asker.stop;
   stop.exit_code = 0;
   const auto start = clock.Now();
   auto next_stop = start;

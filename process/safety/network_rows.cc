@@ -24,7 +24,7 @@ constexpr std::array kRows{
     },
     SafetyRow{
         .id = "two_plants",
-        .fault = "two plants; another stack on the port, whatever its multicast group",
+        .fault = "two plants; another stack on the port and multicast group",
         .detected = "pressure loop, by its states; plant, with its program, host and `bus.url`",
         .codes = "second_state_sender other_stack",
         .within = {"5 ticks after its states, a second for its name", 5},
@@ -34,7 +34,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, 2.5 s after the other was last heard",
         .tests =
-            "sharing.SharingTest.test_two_plants fault_commands.MotorCommandTest.test_other_group "
+            "sharing.SharingTest.test_two_plants fault_commands.MotorCommandTest.test_other_stack "
             "plant/PlantFaultsTest.OtherStack pressure_ctrl/PressureAppTest.SecondStateSenderGivesZeroVolts",
         .injected = "second_plant",
     },

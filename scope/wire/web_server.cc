@@ -56,7 +56,7 @@ class SocketSession;
 
 class WebServer::Impl {
  public:
-  explicit Impl(const WebServerOptions& given) : options(given), acceptor_(io), timer_(io) {
+  explicit Impl(const WebServerOptions& given) : options(given), acceptor_(io), timer_(io), pause_(io) {
     error_code error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error) {
@@ -101,7 +101,8 @@ class WebServer::Impl {
   void Turn();
 
   tcp::acceptor acceptor_;
-  asio::steady_timer timer_;
+  asio::steady_timer timer_;  // of the turns
+  asio::steady_timer pause_;  // before the next try to accept
   const std::function<std::chrono::microseconds()>* turn_ = nullptr;
   bool ended_ = false;
 };
@@ -462,15 +463,18 @@ void WebServer::Impl::Accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (ended_ || error == asio::error::operation_aborted) return;
     if (error) {  // out of file descriptors: better later than in a busy loop
-      timer_.expires_after(std::chrono::milliseconds(100));
-    } else {
-      error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      const bool full = connections >= options.most_connections;
-      // Beyond twice the limit not even an answer.
-      if (connections < 2 * options.most_connections) {
-        std::make_shared<HttpSession>(*this, std::move(socket))->Start(full);
-      }
+      pause_.expires_after(std::chrono::milliseconds(100));
+      pause_.async_wait([this](error_code) {
+        if (!ended_) Accept();
+      });
+      return;
+    }
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    const bool full = connections >= options.most_connections;
+    // Beyond twice the limit not even an answer.
+    if (connections < 2 * options.most_connections) {
+      std::make_shared<HttpSession>(*this, std::move(socket))->Start(full);
     }
     Accept();
   });

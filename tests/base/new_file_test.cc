@@ -3,21 +3,47 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "base/input_error.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
+
+// The calls that this process makes, in their order: these take the place of the library's own.
+namespace {
+std::vector<std::string> calls;
+int fsync_error = 0;
+}  // namespace
+
+extern "C" int fsync(int fd) {
+  struct stat status {};
+  fstat(fd, &status);
+  calls.emplace_back(S_ISDIR(status.st_mode) ? "fsync folder" : "fsync " + std::to_string(status.st_size));
+  errno = fsync_error;
+  return fsync_error == 0 ? 0 : -1;
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  calls.emplace_back("rename");
+  return static_cast<int>(syscall(SYS_rename, from, to));
+}
 
 namespace hydro {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 std::string ErrorOf(const std::function<void()>& action) {
   try {
@@ -86,6 +112,58 @@ TEST_F(NewFileTest, KeepsAForeignPart) {
   { const NewFile unfinished(Path("out"), Opening::kTemporary); }
   EXPECT_EQ(TextOf(Path("out.part")), "somebody's");
   EXPECT_FALSE(std::filesystem::exists(Path("out.part2")));
+}
+
+// Tests that kKept keeps a file with contents unless told otherwise, says what to do, and takes an empty
+// file's or a device's place.
+TEST_F(NewFileTest, KeepsWhatIsThere) {
+  const std::string log = Make("run.lcmlog", "yesterday");
+  for (const Opening opening : {Opening::kDirect, Opening::kTemporary}) {
+    const auto open = [&] { NewFile(log, opening, Existing::kKept); };
+    EXPECT_THAT(ErrorOf(open), AllOf(HasSubstr(log), HasSubstr("--force")));
+  }
+  EXPECT_THAT(ErrorOf([&] { CheckCanBeCreated(log); }), HasSubstr("--force"));
+  EXPECT_THAT(ErrorOf([&] { WriteTextFile(log, "today"); }), HasSubstr("--force"));
+  EXPECT_EQ(TextOf(log), "yesterday");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);  // nothing is left beside it
+  WriteTextFile(Make("empty", ""), "today");
+  EXPECT_EQ(TextOf(Path("empty")), "today");
+  CheckIsNew("/dev/null");
+  AllowReplacing();
+  WriteTextFile(log, "today");
+  AllowReplacing(false);
+  EXPECT_EQ(TextOf(log), "today");
+}
+
+// Tests that a file has its name only when its bytes are on the disk, and the name itself then; that a disk
+// that cannot say so fails, and leaves what was there; and that a file system without fsync() does.
+TEST_F(NewFileTest, OnTheDiskBeforeItsName) {
+  calls.clear();
+  WriteWholeFile(Path("a"), "12345");
+  EXPECT_THAT(calls, ElementsAre("fsync 5", "rename", "fsync folder"));
+  fsync_error = EIO;
+  EXPECT_THROW(WriteWholeFile(Path("a"), "other"), WriteError);
+  EXPECT_EQ(TextOf(Path("a")), "12345");
+  EXPECT_FALSE(std::filesystem::exists(Path("a.part")));
+  fsync_error = EINVAL;
+  WriteWholeFile(Path("a"), "new");
+  EXPECT_EQ(TextOf(Path("a")), "new");
+  fsync_error = 0;
+  calls.clear();
+  NewFile direct(Path("direct"), Opening::kDirect);  // it has its name from the start
+  direct.Finish();
+  EXPECT_THAT(calls, IsEmpty());
+}
+
+// Tests that a file which appears while another of its name is being written is kept, and so is what was
+// written.
+TEST_F(NewFileTest, KeepsWhatAppears) {
+  NewFile file(Path("run"), Opening::kTemporary, Existing::kKept);
+  file.Write("ours", 4);
+  Make("run", "theirs");
+  EXPECT_THROW(file.Finish(), WriteError);
+  EXPECT_EQ(TextOf(Path("run")), "theirs");
+  EXPECT_EQ(TextOf(Path("run.part")), "ours");
 }
 
 // Tests that the names of what a killed process leaves are told from others.

@@ -139,6 +139,14 @@ TEST(StudyLockTest, TakesOverFromTheDead) {
   EXPECT_EQ(LockRefusal(folder / ""), "");
 }
 
+// Tests that something of the lock's name that cannot be read is named, instead of being tried for ever.
+TEST(StudyLockTest, NamesWhatIsNoLock) {
+  const StudyFolder folder;
+  fs::create_directories(folder / "lock");
+  EXPECT_THAT(LockRefusal(folder / ""), HasSubstr("lock: found something that cannot be read"));
+  EXPECT_TRUE(fs::is_directory(folder / "lock"));
+}
+
 // Tests that the lock of another host holds while that touches it, and no longer than a minute after.
 TEST(StudyLockTest, BelievesAnotherHostWhileItIsHeard) {
   const StudyFolder folder;

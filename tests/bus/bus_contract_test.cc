@@ -261,6 +261,40 @@ TEST_P(BusContractTest, HandlersMaySubscribe) {
   EXPECT_EQ(late, 7);
 }
 
+// Tests that a handler may subscribe to its own channel, and a tap to any: who is new gets the next message,
+// and not this one, whether it comes typed or as bytes.
+TEST_P(BusContractTest, HandlersMaySubscribeToTheirOwnChannel) {
+  std::vector<std::string> heard;
+  const auto note = [&](const std::string& who) {
+    return [&heard, who](const state_t& state) { heard.push_back(who + " " + std::to_string(state.tick)); };
+  };
+  bool tapped = false;
+  bus_->SubscribeAll([&](const RawMessage& message) {
+    if (message.channel != "STATE" || std::exchange(tapped, true)) return;
+    bus_->Subscribe<state_t>("STATE", note("by the tap"));
+    bus_->SubscribeAll([&](const RawMessage& later) {
+      if (later.channel == "STATE") heard.emplace_back("tap");
+    });
+  });
+  bus_->Subscribe<state_t>("STATE", [&](const state_t& state) {
+    heard.push_back("first " + std::to_string(state.tick));
+    if (state.tick == 0) bus_->Subscribe<state_t>("STATE", note("second"));
+  });
+  SendStates("STATE", 1);
+  HandleWhileNot([&] { return !heard.empty(); });
+  HandleRest();
+  EXPECT_THAT(heard, ElementsAre("first 0"));
+  heard.clear();
+  state_t state{};
+  state.tick = 1;
+  std::vector<uint8_t> bytes(static_cast<size_t>(state.getEncodedSize()));
+  state.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  bus_->PublishRaw("STATE", bytes.data(), static_cast<int>(bytes.size()));
+  HandleWhileNot([&] { return heard.size() >= 4; });
+  HandleRest();
+  EXPECT_THAT(heard, testing::UnorderedElementsAre("first 1", "second 1", "by the tap 1", "tap"));
+}
+
 // Tests that without messages HandleUntil() returns 0 at the deadline and not before, and at once if it has
 // passed.
 TEST_P(BusContractTest, ReturnsAtTheDeadline) {

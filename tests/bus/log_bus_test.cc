@@ -37,6 +37,31 @@ LogBus::EventSource Source(const std::vector<Event>& events) {
   };
 }
 
+// Tests that a handler that subscribes to its own channel, and a tap that subscribes, add who gets the next
+// event, and not this one: as every transport does (bus_contract_test.cc).
+TEST(LogBusTest, HandlersMaySubscribeToTheirOwnChannel) {
+  const std::vector<Event> events = {StateEvent(0), StateEvent(1)};
+  SimulatedClock clock;
+  LogBus bus(Source(events), {.clock = &clock});
+  std::vector<std::string> heard;
+  bool tapped = false;
+  bus.SubscribeAll([&](const RawMessage&) {
+    if (std::exchange(tapped, true)) return;
+    bus.SubscribeAll([&](const RawMessage&) { heard.emplace_back("tap"); });
+    bus.Subscribe<state_t>("STATE", [&](const state_t&) { heard.emplace_back("by the tap"); });
+  });
+  bus.Subscribe<state_t>("STATE", [&](const state_t& state) {
+    heard.emplace_back("first");
+    if (state.tick == 0)
+      bus.Subscribe<state_t>("STATE", [&](const state_t&) { heard.emplace_back("second"); });
+  });
+  bus.HandleUntil(clock.Now());
+  EXPECT_THAT(heard, ElementsAre("first"));
+  heard.clear();
+  bus.HandleUntil(clock.Now() + 1ms);
+  EXPECT_THAT(heard, ElementsAre("tap", "first", "by the tap", "second"));
+}
+
 // Tests that events come one at a time, in file order and at their own times, and that the end is announced.
 TEST(LogBusTest, FeedsEventsAtTheirTimes) {
   const std::vector<Event> events = {StateEvent(0), StateEvent(1), StateEvent(5)};

@@ -137,6 +137,31 @@ TEST(UdpmSocketTest, OnlyWhatWasAskedFor) {
   EXPECT_EQ(Next(receiver), "ANYTHING");
 }
 
+// Tests that what is sent to another group on this port is not heard, though this machine has joined that
+// group too, and neither is what is sent to this machine's own address.
+TEST(UdpmSocketTest, HearsItsOwnGroupAlone) {
+  UdpmUrl url = ParseUdpmUrl(FreeBusUrl());
+  UdpmSocket ours(url);
+  ours.AcceptAll();
+  UdpmUrl other_url = url;
+  other_url.group = "239.255.76.99";
+  UdpmSocket other(other_url);
+  other.AcceptAll();
+  ASSERT_TRUE(other.Send("THEIRS", "x", 1));
+  EXPECT_EQ(Next(other), "THEIRS");
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_port = htons(url.port);
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  using namespace std::string_literals;
+  const std::string packet = "LC02\0\0\0\0DIRECT\0!"s;
+  sendto(fd, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&here), sizeof here);
+  close(fd);
+  ASSERT_TRUE(ours.Send("OURS", "x", 1));
+  EXPECT_EQ(Next(ours), "OURS");
+}
+
 // Tests that packets that are not LCM's, or not whole, are skipped.
 TEST(UdpmSocketTest, SkipsWhatIsNotLcm) {
   const std::string url = FreeBusUrl();

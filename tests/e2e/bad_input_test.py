@@ -252,6 +252,67 @@ class BadInputTest(stack.TestCase):
 
 
 
+class ResultsStayTest(stack.TestCase):
+    """No program replaces a log or a result that is there already, unless it is told to."""
+
+    def setUp(self):
+        super().setUp()
+        self.log = self.path("run.lcmlog")
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.05", "-o", self.log)
+        self.run_program("hydro-log", "export", self.log, "-o", self.path("run.csv"))
+
+    def refused_and_forced(self, output, program, *arguments, code=0):
+        """Refused in one line that names the file and the cure, and done with --force; an empty file is no result."""
+        with open(output, "w", encoding="utf-8") as file:
+            file.write("yesterday\n")
+        before = sorted(os.listdir(self.folder))
+        refused = self.run_program(program, *arguments, expect=2)
+        self.assertRegex(refused.stderr, f"^hydro-[^\n]*{os.path.basename(output)}: found a file of this name[^\n]*--force[^\n]*\n$")
+        self.assertEqual(refused.stdout, "")
+        with open(output, encoding="utf-8") as file:
+            self.assertEqual(file.read(), "yesterday\n")
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        self.run_program(program, *arguments, "--force", expect=code, timeout=60)
+        with open(output, "rb") as file:
+            self.assertNotEqual(file.read(), b"yesterday\n")
+
+    # Tests the programs that record a run: each alone, and the launcher, whose logger is told too.
+    def test_logs(self):
+        old = self.path("old.lcmlog")
+        demo = [stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--duration", "0.05"]
+        alone = [*demo, "--set", "time.start_timeout_s=0.2"]  # nobody joins: the plant gives up
+        self.refused_and_forced(old, "hydro-sim", *demo, "-o", old)
+        self.refused_and_forced(old, "hydro-sim", *demo, "--log", old)
+        self.refused_and_forced(old, "hydro-plant", *alone, "--log", old, code=1)
+        self.refused_and_forced(old, "hydro-launch", *demo, "--time", "lockstep", "--log", old)
+        self.assertEqual(len(event_log.Log(old).states), 51)
+        report = self.path("timing.json")
+        self.refused_and_forced(report, "hydro-launch", *demo, "--time", "lockstep", "--timing", report)
+        for program, option in (("hydro-logger", "-o"), ("hydro-pressure-ctrl", "--log"), ("hydro-position-ctrl", "--log")):
+            with self.subTest(program):
+                refused = self.run_program(program, *demo, option, self.log, expect=2)
+                self.assertRegex(refused.stderr, r"^[^\n]*run\.lcmlog: found a file of this name[^\n]*--force[^\n]*\n$")
+
+    # Tests that a recording in parts looks for all of them before it begins.
+    def test_parts_of_a_recording(self):
+        with open(self.path("new-001.lcmlog"), "wb") as file:
+            file.write(b"yesterday")
+        refused = self.run_program("hydro-logger", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "-o",
+                                   self.path("new.lcmlog"), "--rotate-mb", "1", expect=2)
+        self.assertIn("new-001.lcmlog: found a file of this name", refused.stderr)
+        self.assertFalse(os.path.exists(self.path("new.lcmlog")))
+
+    # Tests what is made of logs.
+    def test_results(self):
+        for name, arguments in (("x.csv", ["export", self.log, "-o"]), ("x.mat", ["export", self.log, "-o"]),
+                                ("x.h5", ["export", self.log, "-o"]), ("x.mcap", ["export", self.log, "-o"]),
+                                ("back.lcmlog", ["import", self.path("run.csv"), "-o"]),
+                                ("whole.lcmlog", ["repair", self.log, "-o"]), ("summary.json", ["summary", self.log, "--json"])):
+            with self.subTest(name):
+                self.refused_and_forced(self.path(name), "hydro-log", *arguments, self.path(name))
+        self.run_program("hydro-log", "export", self.log, "-o", "/dev/null", "--format", "csv")  # keeps nothing
+
+
 class InputsStayTest(stack.TestCase):
     """No program writes over what it reads, by whatever path it is named."""
 

@@ -203,16 +203,17 @@ class MotorCommandTest(fault_case.FaultCase):
         gone = [f for f in log.faults if f.code == "undecodable_message" and not f.active]
         self.assertTrue(gone)
 
-    # Tests that another stack on this port, even in another multicast group, is noticed and named.
-    def test_other_group(self):
+    # Tests that another stack on this port and group is noticed and named, and that one of another group on this port is not even heard.
+    def test_other_stack(self):
         self.run_with(self.once(lambda s: [repeated()]))
-        other = self.peer(group="239.255.76.99")
-        for _ in range(4):
-            other.publish("HYDRO_RUN", session=555, program="hydro-plant", host="neighbour",
-                          config_text=f'[bus]\nurl = "udpm://239.255.76.99:{other.port}?ttl=0"\n')
-            self.wait_for_states(50)
+        far, other = self.peer(group="239.255.76.99"), self.peer()
+        for peer, session in (far, 444), (other, 555):
+            for _ in range(4):
+                peer.publish("HYDRO_RUN", session=session, program="hydro-plant", host="neighbour",
+                             config_text=f'[bus]\nurl = "udpm://239.255.76.67:{peer.port}?ttl=0"\n')
+                self.wait_for_states(50)
         fault = self.wait_for_fault("other_stack", source="plant")
-        for part in ("hydro-plant on neighbour", "session 555", "239.255.76.99"):
+        for part in ("hydro-plant on neighbour", "session 555", "239.255.76.67"):
             self.assertIn(part, fault.text)
         self.assertEqual(self.check_zero_and_back("other_stack", least=50).states[0].voltage, 0)
 

@@ -1,5 +1,7 @@
 """Rows of docs/safety.md: exceeded limits, and how a latched fault ends (limits.rearm), with the real programs."""
 
+import json
+
 import event_log
 import fault_case
 import lcm_peer
@@ -69,6 +71,21 @@ class RearmTest(fault_case.FaultCase):
     def rearm(self, expect):
         return self.run_program("hydro-launch", *self.run_.arguments, "--rearm", expect=expect)
 
+    def check_forecast(self, log, told):
+        """What was told of the way back is what the position loop then asked for, in the same words for people and programs."""
+        [forecast] = told["forecasts"]
+        self.assertRegex(told["text"], "^re-armed: ended .*; the arm is at .* rad; its reference comes back to .* rad: the arm will move by ")
+        self.assertTrue(told["text"].endswith(forecast["text"]), told)
+        accepted = next(r for r in log.rearms if r.kind == 1)
+        state = next(s for s in log.states if s.tick >= accepted.tick - 1)
+        self.assertAlmostEqual(forecast["present"], state.arm_angle, delta=0.01)
+        back = accepted.tick + round(forecast["return_s"] * 1000)
+        reference = next(r.value for r in log.of("HYDRO_ARM_REFERENCE") if r.tick >= back + 20)
+        self.assertGreaterEqual(reference, forecast["lowest"] - 1e-3)
+        self.assertLessEqual(reference, forecast["highest"] + 1e-3)
+        if forecast["lowest"] == forecast["highest"]:
+            self.assertAlmostEqual(reference, forecast["target"], delta=1e-6)
+
     # Tests that the voltage stays zero long after the pressure has fallen, that a re-arm ends this, and that exceeding
     # the limit again raises the fault again.
     def test_pressure(self):
@@ -107,10 +124,13 @@ class RearmTest(fault_case.FaultCase):
         self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
                           start=self.log.count("HYDRO_MOTOR_COMMAND"))
         self.wait_for_states(300)
-        self.rearm(0)
+        told = json.loads(self.run_program("hydro-launch", *self.run_.arguments, "--rearm", "--json").stdout)
+        self.assertEqual(told["rearmed"], True)
         self.wait_for_fault("stale_motor_command", active=False)
         self.wait_for_voltage()
+        self.wait_for_states(800)
         log = self.finish()
+        self.check_forecast(log, told)
         self.assertEqual(self.assert_zero_during(log, "stale_motor_command", "plant", least=300), 0)
 
     # Tests that the pressure loop's faults are latched too: its safe output keeps the voltage at zero afterwards.

@@ -43,7 +43,7 @@ class GapClosedTest(stack.TestCase):
 
     def column(self, log, name):
         table = log + ".csv"
-        self.run_program("hydro-log", "export", log, "-o", table)
+        self.run_program("hydro-log", "export", log, "-o", table, "--force")
         with open(table, encoding="utf-8") as file:
             return [float(row[name]) for row in csv.DictReader(file)]
 

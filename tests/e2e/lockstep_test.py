@@ -65,9 +65,9 @@ class LockstepTest(stack.TestCase):
     # Tests that compare notices differences: another seed of the noise, another gain, a shorter run.
     def test_compare_finds_differences(self):
         base = self.run_sim("base.lcmlog", (*DEMO, "--duration", "0.5"))
-        for change in (("--seed", "2"), ("--set", "position.c2=1201"), ("--duration", "0.499")):
+        for number, change in enumerate((("--seed", "2"), ("--set", "position.c2=1201"), ("--duration", "0.499"))):
             with self.subTest(change):
-                other = self.run_sim("other.lcmlog", (*DEMO, "--set", "time.duration_s=0.5", *change))
+                other = self.run_sim(f"other{number}.lcmlog", (*DEMO, "--set", "time.duration_s=0.5", *change))
                 compare = self.run_program("hydro-log", "compare", base, other, expect=1)
                 self.assertRegex(compare.stdout, r"\Adiffer at tick \d+: .*\n\Z")
 

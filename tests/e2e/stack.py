@@ -47,13 +47,17 @@ def config(name):
     return os.path.join(CONFIG, name)
 
 
+IP_MULTICAST_ALL = 49  # of linux/in.h; the module socket has no name for it
+
+
 class Port:
     """A UDP port that no socket of this machine uses. It stays reserved as long as this object lives: others who ask
     get others, while LCM, which shares its ports, can use it."""
 
     def __init__(self):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(("127.0.0.1", 0))
+        self.socket.bind(("", 0))  # not to one address: a port on which any group is heard is not free
+        self.socket.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)  # it hears nothing itself
         # After the choice, which so avoids every port in use.
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self.url = f"udpm://239.255.76.67:{self.socket.getsockname()[1]}?ttl=0"

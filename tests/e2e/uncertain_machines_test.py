@@ -43,8 +43,8 @@ class UncertainMachinesTest(stack.TestCase):
         with open(model, "w", encoding="utf-8") as file:
             file.write("[parameters]\n" + "".join(f"{name} = {self.rows[number][name]}\n" for name in TABLE_1))
         log, summary = self.path(f"run{number}.lcmlog"), self.path(f"run{number}.json")
-        self.run_program("hydro-sim", os.path.join(stack.CONFIG, "retuned.toml"), "--duration", 0.1 + WATCHED, "--machine", model, "-o", log)
-        self.run_program("hydro-log", "summary", log, "--json", summary)
+        self.run_program("hydro-sim", os.path.join(stack.CONFIG, "retuned.toml"), "--duration", 0.1 + WATCHED, "--machine", model, "-o", log, "--force")
+        self.run_program("hydro-log", "summary", log, "--json", summary, "--force")
         with open(summary, encoding="utf-8") as file:
             return json.load(file)["tracking"]["steps"][0]
 

@@ -254,7 +254,7 @@ class ForeignReadersTest(unittest.TestCase):
         self.assertEqual(text(state["units"][0, 0]["p1"]), "psi")
         self.assertIn("odd.lcmlog", text(state["exported_from"]))
         # The table alone: its columns and nothing else.
-        self.export(self.log, "-o", file)
+        self.export(self.log, "-o", file, "--force")
         self.assertEqual([name for name in scipy.io.loadmat(file) if not name.startswith("__")], list(self.table))
 
     # Tests the same in MAT 7.3, by the rules by which MATLAB reads it: its classes, its order of dimensions, references to cells.

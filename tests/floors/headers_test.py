@@ -56,6 +56,11 @@ def included_by(folder):
 class HeadersTest(unittest.TestCase):
     floors = read_floors((ROOT / "cmake/rooms.txt").read_text())
 
+    # Tests that clang-tidy looks into the headers of every folder.
+    def test_clang_tidy_sees_all(self):
+        listed = re.search(r"HeaderFilterRegex: '\(([\w|]+)\)/", (ROOT / ".clang-tidy").read_text())[1].split("|")
+        self.assertEqual(listed, sorted({name.split("/")[0] for name in self.floors} - {"lcmtypes"}))
+
     def test_rooms_exist(self):
         self.assertEqual(ROOMS - set(self.floors), set())
         self.assertEqual({room for room in ROOMS if not headers_of({room}, self.floors)}, set())

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/new_file.h"
+
 namespace hydro::fuzz {
 
 class ScratchFolder {
@@ -16,6 +18,7 @@ class ScratchFolder {
     std::string name = std::string(base) + "/hydro-fuzz-XXXXXX";
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for scratch files");
     path_ = name;
+    AllowReplacing();  // each input stands for another process
   }
   ~ScratchFolder() {
     std::error_code ignored;

@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Refers to one process, even after its id has been reused.
 class Watched {
@@ -41,7 +42,8 @@ pid_t PidOf(LaunchedProgram& launch, const std::string& role) {
 
 class LaunchSignalTest : public ::testing::TestWithParam<int> {};
 
-// Tests that each of the three signals ends a run in order with exit 0.
+// Tests that each of the three signals ends a run in order with exit 0, and that a log that was never begun
+// is not recommended.
 TEST_P(LaunchSignalTest, EndsInOrder) {
   StackFolder stack;
   auto launch = stack.Launch({"--log", "a.lcmlog"});
@@ -50,6 +52,9 @@ TEST_P(LaunchSignalTest, EndsInOrder) {
   EXPECT_EQ(launch->WaitForExit(), 0) << launch->text();
   EXPECT_THAT(launch->out(), Contains(HasSubstr(std::string("stopped by SIG") + sigabbrev_np(GetParam()))));
   EXPECT_THAT(launch->out(), Contains("[logger]        got SIGTERM"));
+  EXPECT_THAT(launch->out(),
+              Contains(HasSubstr("nothing was recorded: the run ended before a.lcmlog was begun")));
+  EXPECT_THAT(launch->out(), Not(Contains(HasSubstr("next: hydro-log summary"))));
   EXPECT_TRUE(launch->err().empty()) << launch->text();
 }
 INSTANTIATE_TEST_SUITE_P(Signals, LaunchSignalTest, ::testing::Values(SIGINT, SIGTERM, SIGHUP));

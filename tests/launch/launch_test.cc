@@ -104,7 +104,7 @@ TEST(LaunchTest, PrintsTimingAndFaults) {
   launch->WaitForLine("all 3 processes ready");
   launch->Signal(SIGINT);
   EXPECT_EQ(launch->WaitForExit(), 0);
-  EXPECT_THAT(launch->WaitForLine("pressure_ctrl       1000"), HasSubstr(" 345        7      3"));
+  EXPECT_THAT(launch->WaitForLine("pressure_ctrl   1000"), HasSubstr(" 345      7    3"));
   EXPECT_THAT(launch->WaitForLine("fault over_pressure"), HasSubstr("p1 is 2100 psi, allowed are 2000 psi"));
 }
 

@@ -4,12 +4,15 @@
 
 #include <hydro/process_status_t.hpp>
 #include <hydro/rearm_t.hpp>
+#include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 #include <hydro/stop_t.hpp>
+#include <hydro/tuned_settings_t.hpp>
 #include <memory>
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
+#include "tests/settings/small_texts.h"
 
 namespace hydro::launch {
 namespace {
@@ -41,11 +44,24 @@ class FakePlant {
       state_t state{};
       state.session = session;
       state.tick = ++tick_;
+      state.command_tick = held_ ? -1 : tick_ - 1;
+      state.arm_angle = 0.125;
+      state.time = 1e-3 * static_cast<double>(tick_);
       bus.Publish(channels_.Of<state_t>(), state);
+      if (!describes_itself_ || tick_ % 10 != 5) return;
+      run_description_t run{};
+      run.config_text = settings::kConfigText;
+      run.model_text = settings::kModelText;
+      run.rate_hz = 1000;
+      bus.Publish(channels_.Of<run_description_t>(), run);
+      tuned_settings_t in_force{};
+      in_force.stage = tuned_settings_t::IN_FORCE;
+      bus.Publish(channels_.Of<tuned_settings_t>(), in_force);
     });
     bus.Subscribe<rearm_t>(channels_.Of<rearm_t>(), [=, this, &bus](const rearm_t& request) {
       if (request.kind != rearm_t::REQUEST || request.addressee != session) return;
       ++asked_;
+      held_ = held_ && kind != rearm_t::ACCEPTED;
       rearm_t answer = request;
       answer.session = session;
       answer.addressee = request.session;
@@ -67,12 +83,18 @@ class FakePlant {
     });
   }
 
+  void Hold() {
+    held_ = describes_itself_ = true;
+    tick_ = 1000;  // after the step of kConfigText
+  }
   int asked() const { return asked_; }
   int stopped() const { return stopped_; }
 
  private:
   const bus::Channels channels_;
   int64_t tick_ = 0;
+  bool held_ = false;  // at zero volts
+  bool describes_itself_ = false;
   int asked_ = 0;
   int stopped_ = 0;
 };
@@ -89,6 +111,11 @@ class OperatorRequestTest : public ::testing::Test {
   OperatorRequestTest() {
     config_.joints = {"hip", "knee"};
     config_.bus.joint_suffixes = {"_hip", "_knee"};
+  }
+  void OneJoint() {
+    config_.joints.clear();
+    config_.bus.joint_suffixes.clear();
+    config_.bus.channel_suffix = "_hip";
   }
   FakePlant& Add(const std::string& suffix, int64_t session, int8_t kind, const std::string& text) {
     return *plants_.emplace_back(std::make_unique<FakePlant>(bus_, suffix, session, kind, text));
@@ -111,6 +138,73 @@ TEST_F(OperatorRequestTest, RearmsAllJoints) {
   EXPECT_EQ(plants_[1]->asked(), plants_[0]->asked());
 }
 
+// Tests that a re-arm says where the machine moves by it, of the joints that were held: from the state in
+// which it was asked, though the plant drives again before it has described itself.
+TEST_F(OperatorRequestTest, SaysWhereItMoves) {
+  Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit").Hold();
+  Add("_knee", 2, rearm_t::ACCEPTED, "no fault is latched");
+  const OperatorResult result = RearmStack(bus_, clock_, config_);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(
+      result.text,
+      "re-armed: hip: ended pressure_limit; knee: no fault is latched; hip: the arm is at 0.125 rad; its "
+      "reference comes back to 0.1 rad: the arm will move by -0.025 rad in 0.5 s, at up to 0.05 rad/s");
+  ASSERT_EQ(result.forecasts.size(), 2u);
+  EXPECT_EQ(result.forecasts[0].first, "hip");
+  EXPECT_TRUE(result.forecasts[0].second.known);
+  EXPECT_FALSE(result.forecasts[1].second.held);
+}
+
+// Tests that the same is told before, in the same words, and that nobody is asked for anything; and what is
+// said where there is nothing to tell.
+TEST_F(OperatorRequestTest, ForecastsWithoutARequest) {
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "").Hold();
+  const OperatorResult result = ForecastRearm(bus_, clock_, config_);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(
+      result.text,
+      "the arm is at 0.125 rad; its reference comes back to 0.1 rad: the arm will move by -0.025 rad in "
+      "0.5 s, at up to 0.05 rad/s");
+  EXPECT_EQ(plants_[0]->asked(), 0);
+}
+
+TEST_F(OperatorRequestTest, ForecastsOfOneThatDrives) {
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
+  EXPECT_THAT(ForecastRearm(bus_, clock_, config_).text, HasSubstr("re-arming changes nothing"));
+}
+
+TEST_F(OperatorRequestTest, ForecastsOfNobody) {
+  OneJoint();
+  EXPECT_EQ(ForecastRearm(bus_, clock_, config_).exit_code, 1);
+}
+
+// Tests that the log says who asked.
+TEST_F(OperatorRequestTest, SaysWhoRearms) {
+  std::vector<std::string> said;
+  bus_.Subscribe<rearm_t>("HYDRO_REARM_hip", [&](const rearm_t& rearm) {
+    if (rearm.kind == rearm_t::REQUEST) said.push_back(rearm.source + ": " + rearm.text);
+  });
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
+  RearmStack(bus_, clock_, config_, {}, kScopePage);
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(said.back(), "scope: Re-arm on the page of hydro-scope");
+}
+
+TEST_F(OperatorRequestTest, SaysWhoStops) {
+  std::vector<std::string> said;
+  bus_.Subscribe<stop_t>("HYDRO_STOP_hip",
+                         [&](const stop_t& stop) { said.push_back(stop.source + ": " + stop.reason); });
+  OneJoint();
+  Add("_hip", 1, rearm_t::ACCEPTED, "");
+  NoProcesses none;
+  StopOverBus(bus_, clock_, config_, none, {}, kScopePage);
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(said.back(), "scope: STOP on the page of hydro-scope");
+}
+
 // Tests that one refusal fails the whole, and comes first.
 TEST_F(OperatorRequestTest, ARefusalFailsTheWhole) {
   Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
@@ -130,9 +224,7 @@ TEST_F(OperatorRequestTest, AMissingJointKeepsTheOthersFromIt) {
 // Tests that a joint is re-armed by itself where it alone is meant.
 TEST_F(OperatorRequestTest, OneJointAlone) {
   Add("_hip", 1, rearm_t::ACCEPTED, "ended pressure_limit");
-  config_.joints.clear();
-  config_.bus.joint_suffixes.clear();
-  config_.bus.channel_suffix = "_hip";
+  OneJoint();
   EXPECT_EQ(RearmStack(bus_, clock_, config_).text, "re-armed: ended pressure_limit");
 }
 

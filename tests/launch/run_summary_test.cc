@@ -66,6 +66,47 @@ TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   EXPECT_EQ(lines[1].size(), lines[2].size());
 }
 
+// Tests that the table fits a terminal of 80 columns beside the longest label, whatever the numbers are, and
+// that its columns stay apart.
+TEST(RunSummaryTest, TheTableFits) {
+  constexpr size_t kBesideTheLabel = 79 - std::string_view("[position_ctrl] ").size();
+  RunSummary summary;
+  loop_statistics_t report = Report(1.0, 1000, 1001, 345);
+  report.role = "position_ctrl";
+  summary.Add(report);
+  report = Report(90000, 18000000000, 123456, 9.87e9);
+  report.session = 2;
+  report.period_p99_us = report.latency_p50_us = report.latency_p99_us = 1234567;
+  report.missed_deadlines = report.lost_messages = INT64_MAX;
+  summary.Add(report);
+  const auto lines = summary.Lines();
+  ASSERT_EQ(lines.size(), 4u);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), kBesideTheLabel) << line;
+  EXPECT_EQ(lines[2], "position_ctrl   1000  1001     0     0     0    345      2    1");
+  EXPECT_EQ(lines[3], "plant         18000M  123k 1235k 1235k 1235k  9870M  9223P   9E");
+}
+
+// Tests that a plant that slept through a part of its ticks gets advice, with the numbers, and that a loop or
+// a few ticks do not.
+TEST(RunSummaryTest, SkippedTicks) {
+  RunSummary summary;
+  loop_statistics_t report = Report(3.0, 1583, 1001, 345);
+  report.missed_deadlines = 1417;
+  report.role = "pressure_ctrl";
+  summary.Add(report);
+  EXPECT_EQ(summary.SkippedTicksAdvice("rig.toml"), "");
+  report.role = "driver";
+  report.session = 2;
+  summary.Add(report);
+  EXPECT_THAT(summary.SkippedTicksAdvice("rig.toml"),
+              AllOf(HasSubstr("driver: 1417 of 3000 ticks (47 %) were skipped"),
+                    HasSubstr("hydro-launch doctor rig.toml")));
+  RunSummary good;
+  report.missed_deadlines = 9;
+  good.Add(report);
+  EXPECT_EQ(good.SkippedTicksAdvice("rig.toml"), "");
+}
+
 // Tests that a report over the whole run replaces the sums.
 TEST(RunSummaryTest, WholeRunReplacesTheSum) {
   RunSummary summary;

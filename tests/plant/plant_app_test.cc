@@ -49,10 +49,10 @@ class PlantAppTest : public ::testing::Test {
     bus_.Publish("HYDRO_MOTOR_COMMAND", c);
   }
 
-  void SendPressureCommand(int64_t tick) {
+  void SendPressureCommand(int64_t tick, int64_t session = 1) {
     pressure_command_t c{};
     c.tick = tick;
-    c.session = 1;
+    c.session = session;
     bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
   }
 
@@ -128,6 +128,35 @@ TEST_F(PlantAppTest, LockstepNamesAStalledPositionLoop) {
   on_state_ = [this](const state_t& s) { SendVoltage(s.tick, 0); };
   EXPECT_EQ(Run(SmallStack()), 1);
   EXPECT_THAT(failure_, HasSubstr("position_ctrl has not answered tick 0"));
+}
+
+// Tests that in lockstep nobody else's pressure command, nor one for a future tick, counts as the position
+// loop's answer.
+TEST_F(PlantAppTest, LockstepWaitsForItsOwnPositionLoop) {
+  on_state_ = [this](const state_t& s) {
+    SendVoltage(s.tick, 0);
+    if (s.tick % 5 != 0) return;
+    SendPressureCommand(s.tick, 99);
+    SendPressureCommand(s.tick + 1);
+    if (s.tick < 50) SendPressureCommand(s.tick);
+  };
+  EXPECT_EQ(Run(SmallStack()), 1);
+  EXPECT_THAT(failure_, HasSubstr("position_ctrl has not answered tick 50"));
+  EXPECT_EQ(states_.back().tick, 50);
+}
+
+// Tests that in lockstep the answer to an older tick that comes late, of either loop, does not take the
+// newest one back.
+TEST_F(PlantAppTest, LockstepLateAnswers) {
+  on_state_ = [this](const state_t& s) {
+    if (s.tick % 5 == 0) SendPressureCommand(s.tick);
+    if (s.tick >= 5) SendPressureCommand(s.tick / 5 * 5 - 5);
+    SendVoltage(s.tick, 1.0);
+    if (s.tick == 40) SendVoltage(20, 1.0);
+  };
+  EXPECT_EQ(Run(SmallStack()), 0);
+  EXPECT_EQ(states_.size(), 101u) << "no state was sent again";
+  EXPECT_EQ(states_.back().tick, 100);
 }
 
 // Tests that a participant that says farewell during a lockstep run ends it at once, by name.

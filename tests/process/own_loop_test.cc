@@ -76,6 +76,23 @@ TEST_F(OwnPositionLoopTest, AnswersEachSampleOnce) {
               ElementsAre(process_status_t::READY, process_status_t::RUNNING, process_status_t::DONE));
 }
 
+// Tests that a sample that later states have overtaken is answered, and that a number that was seen already,
+// on a tick beyond all that was, is not: every good state after it would be an old one.
+TEST_F(OwnPositionLoopTest, OvertakenSamplesAndForgedOnes) {
+  OwnPositionLoop loop(bus_, clock_, config_, [this](const state_t&, pressure_command_t*) { ++asked_; });
+  for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7}) State(tick, tick);
+  ASSERT_EQ(asked_, 1);
+  State(5, 5);
+  EXPECT_EQ(asked_, 2);
+  EXPECT_EQ(commands_.back().tick, 5);
+  State(1000000, 3);
+  EXPECT_EQ(asked_, 2);
+  EXPECT_EQ(commands_.back().tick, 5);
+  for (const int64_t tick : {8, 9, 10}) State(tick, tick);
+  EXPECT_EQ(commands_.back().tick, 10);
+  EXPECT_EQ(loop.participant().statistics().Total(clock_.Now()).missed_deadlines, 0);
+}
+
 // Tests that the arm's reference is published before each answer, and not again with a repeated one.
 TEST_F(OwnPositionLoopTest, PublishesItsReference) {
   std::vector<arm_reference_t> references;

@@ -37,6 +37,53 @@ test('a phone', async () => {
   await phone.context().close();
 });
 
+// Tests that what must be seen, such as the answer to STOP, is on a phone's screen wherever one has scrolled to, beside STOP itself.
+test('notices on a phone', async () => {
+  const phone = await openPage(browser, scope.address, {
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+  });
+  await streaming(phone);
+  await phone.evaluate(() => hydroScope.notice.say('test', 'STOPPED: 4 processes have ended', 'stopped'));
+  for (const y of [0, 700, 100000]) {
+    await phone.evaluate((to) => scrollTo(0, to), y);
+    const line = await phone.getByText('STOPPED: 4 processes have ended').boundingBox();
+    const stop = await phone.getByRole('button', { name: /^STOP/ }).boundingBox();
+    assert.ok(line.y >= 0 && line.y + line.height <= stop.y, `scrolled to ${y}, the line is at ${line.y}`);
+    const above = await phone.evaluate(
+      ([x, top]) => document.elementFromPoint(x, top).textContent,
+      [line.x + 5, line.y + line.height / 2],
+    );
+    assert.match(above, /STOPPED/, 'nothing covers it');
+  }
+  await phone.context().close();
+});
+
+// Tests that the numbers of the cursors' table stay whole, however long they are, and that its panel is not wider for it.
+test('numbers at the cursors', async () => {
+  await page.keyboard.press('c');
+  const cells = page.locator('#section-cursors td.number');
+  await cells.first().waitFor();
+  const broken = await page.evaluate(() => {
+    const rows = [...document.querySelectorAll('#section-cursors td.number')];
+    return rows.map((cell) => {
+      cell.textContent = '\u22121.234e\u22127';
+      const range = document.createRange();
+      range.selectNodeContents(cell);
+      return range.getClientRects().length;
+    });
+  });
+  assert.ok(broken.length > 0);
+  assert.deepEqual([...new Set(broken)], [1], 'each number is on one line');
+  const side = await page.evaluate(() => {
+    const aside = document.querySelector('aside');
+    return aside.scrollWidth - aside.clientWidth;
+  });
+  assert.ok(side <= 1, `the panel is ${side} pixels too wide`);
+  await page.keyboard.press('c'); // away again
+});
+
 // Tests that two fingers zoom: what was between them stays between them.
 test('pinch', async () => {
   const phone = await openPage(browser, scope.address, {

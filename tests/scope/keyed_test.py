@@ -67,7 +67,7 @@ class KeyedTest(stack.TestCase):
         self.assertEqual(self.launched.wait(), 0, self.launched.report())
         run = event_log.Log(self.log_file)
         self.assertNotIn("unauthenticated_command", {f.code for f in run.faults})
-        self.assertEqual([stop.reason for stop in run.stops][:1], ["hydro-launch --stop"])
+        self.assertEqual([stop.reason for stop in run.stops][:1], ["STOP on the page of hydro-scope"])
         self.assertEqual({s.acts_at for s in run.of("HYDRO_SETTINGS") if s.version == 1 and s.acts_at >= 0}, {tick})
         # From that tick on, or from the first after it at which a loop of a busy machine woke.
         since = {s.role: s.since for s in run.of("HYDRO_TUNING_STATUS") if s.in_force == 1}

@@ -38,7 +38,9 @@ class LiveTest(stack.TestCase):
         kept = recorded.until(lambda m: m["op"] == "bins")
         self.assertEqual(shown["bins"], kept["bins"])
         self.assertEqual(str(shown["channels"]), str(kept["channels"]))  # NaN where a tick is missing
-        self.assertNotIn("scope", self.run_program("hydro-log", "info", log).stdout.split("config")[0])
+        said = [line for line in self.run_program("hydro-log", "info", log).stdout.split("config")[0].splitlines() if "scope" in line]
+        self.assertEqual(len(said), 1, said)  # the stack knows of it by its stop alone
+        self.assertIn("scope: STOP on the page of hydro-scope", said[0])
 
     # Tests that faults are told, and that re-arming and setting need [scope] control.
     def test_read_only(self):
@@ -51,7 +53,7 @@ class LiveTest(stack.TestCase):
             self.assertIn("control = true", reply["text"])
         scope_case.ask(client, 20, op="stop")
         stop = scope.live().until(lambda m: m["op"] == "event" and m["kind"] == "stop")
-        self.assertEqual(stop["text"], "hydro-launch --stop")
+        self.assertEqual((stop["source"], stop["text"]), ("scope", "STOP on the page of hydro-scope"))
         launch.wait()
 
     # Tests that a stack that starts again is a new run under the old number, and the one before stays.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <hydro/process_status_t.hpp>
 #include <hydro/run_description_t.hpp>
@@ -15,7 +16,12 @@
 namespace hydro::scope {
 namespace {
 
-std::string TestFile(const std::string& name) { return ::testing::TempDir() + "/scope_" + name; }
+// What a run of this test before left is removed.
+std::string TestFile(const std::string& name) {
+  std::string file = ::testing::TempDir() + "/scope_" + name;
+  std::filesystem::remove(file);
+  return file;
+}
 
 // Tests that a log opens as its run: every tick, its configuration, and its name.
 TEST(LogRunTest, OpensALog) {

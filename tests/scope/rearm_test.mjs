@@ -2,7 +2,7 @@
 // then does it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming } from './browser.mjs';
+import { openBrowser, openPage, streaming, until } from './browser.mjs';
 import { Bench } from './stack.mjs';
 
 let bench, browser, page;
@@ -14,6 +14,7 @@ before(async () => {
   const stack = await bench.launch(bench.file('run.lcmlog'), [
     explicit,
     'limits.motor_speed_rad_s=150',
+    'limits.return_s=2', // slow enough that the limit is not passed again
     'reference.frequency_hz=0.02',
   ]);
   const scope = await bench.scope(undefined, { sets: [explicit, 'scope.control=true'] });
@@ -40,10 +41,28 @@ test('re-arm says what it will do, and does it', async () => {
     .getByText(/motor_speed_limit/)
     .first()
     .waitFor();
-  await dialog.getByText(/The arm is at .* rad and its reference at .* rad now: it would move by .* rad\./).waitFor();
+  const way = await dialog.locator('.way').textContent();
+  const told = new RegExp(
+    '^If it were re-armed now: the arm is at (\\S+) rad; its reference comes back to (\\S+) rad: the arm will move by (\\S+) rad in 2 s, at up to (\\S+) rad/s',
+  ).exec(way);
+  assert.ok(told, way);
+  const [present, target, distance, rate] = told.slice(1).map((text) => Number(text.replace('\u2212', '-')));
+  assert.ok(Math.abs(target - present - distance) < 2e-3, way);
+  assert.ok(Math.abs(Math.abs(distance) / 2 - rate) < 0.02 * rate + 1e-3, way);
+  assert.ok(Math.abs(distance) > 0.01, `the arm was far from its reference: ${way}`);
   assert.equal(await page.locator('.events [data-kind=rearm]').count(), 0);
   await dialog.getByRole('button', { name: 'Re-arm: the arm may move' }).click();
   await page.getByText(/^Re-armed: ended .*motor_speed_limit/).waitFor();
   await page.locator('.events [data-kind=rearm]').first().waitFor();
+  // And so it does: after the two seconds, and the time that the loops take.
+  await until(
+    page,
+    async (wanted) => {
+      const { run, link } = hydroScope.scope;
+      const { data } = await link.request({ op: 'values', run: run.run, channels: ['arm_angle'], t: run.last });
+      return Math.abs(data.values[0] - wanted) < 0.02;
+    },
+    target,
+  );
   assert.deepEqual(page.problems, []);
 });

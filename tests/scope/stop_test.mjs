@@ -14,7 +14,7 @@ onALivePage((live) => ({ stack, scope, page } = live), {
 // Tests that re-arming says what it will do, and does nothing when it is not wanted.
 test('re-arm asks first', async () => {
   await page.getByRole('button', { name: 'Re-arm …' }).click();
-  await page.getByRole('dialog').getByText('the arm moves towards its reference').waitFor();
+  await page.getByRole('dialog').getByText('the reference comes back from where the arm is').waitFor();
   assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Leave it at zero');
   // STOP stays within reach: Tab goes to it out of the dialog.
   await page.keyboard.press('Tab');

@@ -73,6 +73,32 @@ test('a step from the page moves the arm', async () => {
   });
 });
 
+// Tests that a step commanded from the page is one: the reference goes from where it was to its value with nothing in between.
+test('a sharp step from the page', async () => {
+  await page.locator('#section-reference [data-name=kind]').selectOption('sharp');
+  await page.locator('[data-key="reference.to"]').fill('-0.05');
+  await page.getByRole('button', { name: 'Command it' }).click();
+  const accepted = page.locator('#section-reference .result').getByText(/^Accepted.* From tick \d+/);
+  await accepted.waitFor();
+  const begins = Number((await accepted.textContent()).match(/From tick (\d+)/)[1]) / 1000;
+  await until(page, () => {
+    const { bins } = hydroScope.display.frame();
+    return Math.abs(bins.max.arm_ref[bins.t.length - 3] + 0.05) < 1e-6;
+  });
+  const seen = await page.evaluate(async (from) => {
+    const { run, link } = hydroScope.scope;
+    const values = [];
+    for (let t = from + 0.002; t < Math.min(from + 1, run.last); t += 0.005) {
+      const { data } = await link.request({ op: 'values', run: run.run, channels: ['arm_ref'], t });
+      values.push(data.values[0]);
+    }
+    return values;
+  }, begins);
+  const between = seen.filter((value) => Math.abs(value - 0.05) > 1e-6 && Math.abs(value + 0.05) > 1e-6);
+  assert.deepEqual(between, []);
+  assert.ok(seen.some((value) => value > 0) && seen.some((value) => value < 0), `${seen}`);
+});
+
 // Tests that a sine begins when it is commanded, not as much later as the run is old: within two of its periods it has swung both
 // ways.
 test('a sine from the page begins now', async () => {

@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -127,6 +128,7 @@ class WebServerTest : public ::testing::Test {
     thread_ = std::thread([this] {
       server_.Run([this] {
         connections_ = server_.connections();
+        ++turns_;
         return std::chrono::microseconds(end_ ? -1 : 1000);
       });
     });
@@ -163,6 +165,7 @@ class WebServerTest : public ::testing::Test {
   WebServer server_{Options()};
   std::atomic<bool> end_ = false;
   std::atomic<int> connections_ = 0;
+  std::atomic<int64_t> turns_ = 0;
   std::thread thread_;
 };
 
@@ -294,6 +297,48 @@ TEST_F(WebServerTest, ClientsLeave) {
   huge.ReadAll();
   EXPECT_TRUE(Eventually([&] { return site_.open == 0; }));
   EXPECT_EQ(site_.heard, heard);
+}
+
+// Tests that a server without file descriptors goes on with its turns and its clients, does not spin, and
+// takes new clients when there are descriptors again.
+TEST_F(WebServerTest, WithoutFileDescriptors) {
+  const Client early(server_.port());
+  early.Send(Upgrade("/live", std::string("Authorization: Bearer ") + kToken + "\r\n"));
+  early.ReadUntil("\r\n\r\n");
+  const int waiting = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<uint16_t>(server_.port()));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const int highest = dup(waiting);
+  close(highest);
+  rlimit none = before;
+  none.rlim_cur = static_cast<rlim_t>(highest);  // the next descriptor cannot be had
+  setrlimit(RLIMIT_NOFILE, &none);
+  EXPECT_EQ(connect(waiting, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const auto processor_time = [] {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  };
+  const int64_t turns = turns_;
+  const auto used = processor_time();
+  EXPECT_TRUE(Eventually([&] { return turns_ > turns + 1000; })) << "the turns end";
+  EXPECT_LT(processor_time() - used, 400ms) << "it spins";
+  const int heard = site_.heard;
+  early.Send(Frame("word"));
+  EXPECT_TRUE(Eventually([&] { return site_.heard > heard; })) << "it serves the client that it has";
+  setrlimit(RLIMIT_NOFILE, &before);
+  const timeval patience{20, 0};
+  setsockopt(waiting, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  const std::string request = Head("GET /");
+  send(waiting, request.data(), request.size(), MSG_NOSIGNAL);
+  std::string answer(4096, '\0');
+  const ssize_t size = recv(waiting, answer.data(), answer.size(), 0);
+  EXPECT_GT(size, 0);
+  close(waiting);
 }
 
 // Tests that a port in use, or an address that is none, is said.

@@ -87,6 +87,25 @@ TEST_F(TuneProgram, KeepsToFixedGainsWhenAsked) {
   EXPECT_FALSE(settings::LoadStackConfig(tuned).position.braking_rad_s2);
 }
 
+// Tests that --set changes a key for the search, and that what is written has it, in its place, with paths
+// that lead to the same files.
+TEST_F(TuneProgram, SetsKeys) {
+  const std::string tuned = (folder_ / "tuned.toml").string();
+  const Outcome outcome = Run(
+      HYDRO_TUNE, kRetuned +
+                      " --fixed-gains --goal step_rad=0.1 --samples 0 --set pressure.damping_ratio=0.8 --set "
+                      "model.file=models/table1_gravity.toml --set limits.return_s=0.25 -o " +
+                      tuned);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const settings::StackConfig config = settings::LoadStackConfig(tuned);
+  EXPECT_EQ(config.limits.return_s, 0.25);
+  EXPECT_THAT(config.model.resolved_file, HasSubstr("table1_gravity.toml"));
+  EXPECT_THAT(ReadTextFile(tuned), HasSubstr("# psi s/rad"));
+  const Outcome wrong = Run(HYDRO_TUNE, kRetuned + " --set limits.retrun_s=0.25");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("limits.retrun_s"));
+}
+
 // Tests that - is the standard output, that all else then goes to the standard error, and that the advice names a file.
 TEST_F(TuneProgram, WritesToTheStandardOutput) {
   const Outcome outcome = Run("cd " HYDRO_CONFIG " && " HYDRO_TUNE,

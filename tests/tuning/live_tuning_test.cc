@@ -23,6 +23,7 @@
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/settings/texts.h"
+#include "tuning/change_check.h"
 
 namespace hydro::tuning {
 namespace {
@@ -176,6 +177,31 @@ TEST_F(LiveTuningTest, TakesEffectOnOneTickInBothLoops) {
     }
     previous_angle = angle;
   }
+}
+
+// Tests that hydro-set's "would be unstable" and its acceptance come true: with gains beyond the edge the
+// simulated arm swings on about its reference, with gains well within it comes to rest.
+TEST_F(LiveTuningTest, WhatWouldBeUnstableSwings) {
+  const settings::StackConfig configured = settings::Parsed(config_);
+  const auto accepted = [&](double c1) {
+    return PrepareChange(configured, configured, {"position.c1=" + std::to_string(c1)}, {}).config != nullptr;
+  };
+  double refused = 1000;
+  while (accepted(refused)) refused *= 1.05;
+  const std::string text = config_;
+  const auto swing = [&](double c1) {
+    config_ = settings::Replaced(text, "c1 = 10500", "c1 = " + std::to_string(c1));
+    EXPECT_EQ(Run(3), 0);
+    double least = INFINITY, most = -INFINITY;
+    for (const state_t& state : states_) {
+      if (state.time < 2) continue;
+      least = std::min(least, state.arm_angle);
+      most = std::max(most, state.arm_angle);
+    }
+    return most - least;
+  };
+  EXPECT_LT(swing(refused / 2), 1e-3);
+  EXPECT_GT(swing(refused * 1.2), 1e-2);
 }
 
 // Tests that the commands do not jump at a change of gains, though the arm is far from its reference and moves.

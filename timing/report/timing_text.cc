@@ -13,7 +13,21 @@ std::string HistogramLine(const char* name, const char* unit, const TimingHistog
                      unit);
 }
 
+// Of the ticks: a desktop's late wake-ups stay below.
+constexpr double kFewSkipped = 0.01;
+constexpr int64_t kVeryFewSkipped = 10;
+
 }  // namespace
+
+std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string& config) {
+  const double share = static_cast<double>(skipped) / static_cast<double>(ticks);
+  if (skipped < kVeryFewSkipped || !(share >= kFewSkipped)) return "";
+  return fmt::format(
+      "{} of {} ticks ({:.0f} %) were skipped, because this machine woke the process too late: what was "
+      "recorded is not the loop at its rate. `hydro-launch doctor {}` names what to change; a lower "
+      "plant.rate_hz asks less, and --time lockstep skips nothing",
+      skipped, ticks, 100 * share, config);
+}
 
 std::string TimingText(const std::vector<TimedProcess>& processes) {
   if (processes.empty()) return "no process reported how it kept time\n";

@@ -10,7 +10,10 @@ const kFromNow = ['reference.start_s=0'];
 // name -> {text, keys: [[key, label, unit or '' for the signal's, first value]], fixed: entries that go with
 // them}
 const kKinds = {
-  steps: { text: 'step to', keys: [['initial', 'Value', '', 0]], fixed: ['reference.steps=[]'] },
+  // A new reference is reached from where the old one is, on a straight line within limits.return_s.
+  steps: { text: 'go to', keys: [['initial', 'Value', '', 0]], fixed: ['reference.steps=[]'] },
+  // So it waits there for that time, and jumps then.
+  sharp: { text: 'step to', kind: 'steps', keys: [['to', 'Value', '', 0]], entries: sharpStep },
   sine: {
     text: 'sine',
     keys: [
@@ -42,6 +45,12 @@ const kKinds = {
   },
 };
 
+// now: the reference as it is; return_s: limits.return_s.
+export function sharpStep({ to }, now, return_s) {
+  const at = Number((return_s + 0.1).toPrecision(6));
+  return [`reference.initial=${now}`, `reference.steps=[[${at}, ${to}]]`];
+}
+
 export class ReferenceForm {
   #kind = 'steps';
   #inputs = new Map();
@@ -68,7 +77,7 @@ export class ReferenceForm {
         ),
       ),
       this.fields,
-      el('p', { class: 'hint', text: 'The arm moves. Limits of the position loop hold.' }),
+      el('p', { class: 'hint', text: 'The machine may move. Limits of the position loop hold.' }),
       el('div', { class: 'row' }, this.send),
       this.result,
     );
@@ -102,10 +111,29 @@ export class ReferenceForm {
     );
   }
 
+  // Of what the new reference begins from.
+  async #referenceNow() {
+    const { run, link } = this.scope;
+    const { ok, text, data } = await link.request({ op: 'values', run: run.run, channels: ['arm_ref'], t: run.last });
+    const now = data?.values?.[0];
+    if (!ok || typeof now !== 'number') throw new Error(text || 'the reference is not known');
+    return now;
+  }
+
+  async #entries() {
+    const chosen = kKinds[this.#kind];
+    const kind = `reference.kind=${chosen.kind ?? this.#kind}`;
+    const numbers = Object.fromEntries([...this.#inputs].map(([key, input]) => [key, input.value]));
+    if (chosen.entries) {
+      const now = await this.#referenceNow();
+      return [kind, ...chosen.entries(numbers, now, this.scope.run.limits?.return_s ?? 0.5)];
+    }
+    return [kind, ...Object.entries(numbers).map(([key, value]) => `reference.${key}=${value}`), ...chosen.fixed];
+  }
+
   async #send() {
-    const set = [...this.#inputs].map(([key, input]) => `reference.${key}=${input.value}`);
-    const entries = [`reference.kind=${this.#kind}`, ...set, ...kKinds[this.#kind].fixed];
     try {
+      const entries = await this.#entries();
       const reply = await this.scope.link.request({ op: 'set', run: this.scope.run?.run ?? 0, entries });
       setText(
         this.result,

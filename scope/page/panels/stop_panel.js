@@ -3,11 +3,11 @@
 // before it does it.
 
 import { byId, el } from '../dom.js';
-import { short } from '../settings/numbers.js';
 import { activeFaults } from '../settings/active_faults.js';
 import { showDialog } from './dialog.js';
 
 const kAgain_ms = 500;
+const kForecast_ms = 6000; // a stack describes itself once a second; of one that is silent nothing is known after 2.5 s
 const kPatience_ms = 5000; // a stack takes a second or two to end; then STOP is sent again
 
 export class StopPanel {
@@ -98,23 +98,28 @@ export class StopPanel {
     return '';
   }
 
-  // Where the arm stands and where it would go: the way that it will make when the loops act again.
+  // Where the machine would move to if it were re-armed now. The server works it out from the configuration in force: the
+  // reference that is shown follows the arm while the voltage is held at zero.
   async #way() {
-    const { run, scope } = this;
-    const channels = ['arm_angle', 'arm_ref'];
-    if (!channels.every((id) => scope.channel(id, run))) return '';
+    const unknown = (why) => `Where the machine would move to is not known: ${why}.`;
     try {
-      const { ok, data } = await scope.link.request({ op: 'values', run: run.run, channels, t: run.last });
-      const [arm, reference] = data?.values ?? [];
-      if (!ok || typeof arm !== 'number' || typeof reference !== 'number') return '';
-      return `The arm is at ${short(arm)} rad and its reference at ${short(reference)} rad now: it would move by ${short(reference - arm)} rad.`;
-    } catch {
-      return '';
+      const { ok, text } = await this.scope.link.request({ op: 'rearm_forecast' }, kForecast_ms);
+      return ok ? `If it were re-armed now: ${text}.` : unknown(text);
+    } catch (error) {
+      return unknown(error.message);
+    }
+  }
+
+  // The reference may go on while the dialog is open.
+  async #keepTelling(way) {
+    while (way.isConnected && byId('dialog').open) {
+      way.textContent = await this.#way();
+      await new Promise((done) => setTimeout(done, kAgain_ms));
     }
   }
 
   async #askRearm() {
-    const way = await this.#way();
+    const way = el('p', { class: 'strong way', text: await this.#way() });
     const faults = activeFaults(this.scope.eventsOf(this.run));
     const held =
       faults.length === 0 ? 'No fault is active that this page knows of.' : 'These hold the voltage at zero now:';
@@ -122,9 +127,9 @@ export class StopPanel {
       'Re-arm?',
       [
         el('p', {
-          text: 'Re-arming ends every latched fault whose cause is gone (limits.rearm = "explicit"). The control loops then act again: from the next tick the motor gets the voltage that they ask for, and the arm moves towards its reference as it is at that moment.',
+          text: 'Re-arming ends every latched fault whose cause is gone (limits.rearm = "explicit"). The control loops then act again: from the next tick the motor gets the voltage that they ask for, and the reference comes back from where the arm is to where it would be by now.',
         }),
-        ...(way ? [el('p', { class: 'strong', text: way })] : []),
+        way,
         el('p', { text: held }),
         ...(faults.length > 0
           ? [
@@ -144,6 +149,7 @@ export class StopPanel {
         { text: 'Re-arm: the arm may move', act: () => this.#rearm() },
       ],
     );
+    this.#keepTelling(way);
   }
 
   async #rearm() {

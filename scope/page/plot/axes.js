@@ -9,6 +9,8 @@ const kNarrow_px = 520;
 const kRight = 14;
 const kTimeAxis = 24;
 const kTimeLabel_px = 90; // between numbers of the time axis at least
+const kDigit_px = 6.4; // of kFont, a minus too
+const kBesideLabel_px = 12; // the tick, and the gaps on both sides of the number
 const kLabel_px = 12; // between numbers of a value axis at least: a low pane still has two
 const kMostLabels = 5;
 
@@ -16,9 +18,21 @@ const kSteps = [];
 for (let power = -7; power <= 8; power += 1)
   kSteps.push(Number(`1e${power}`), Number(`2e${power}`), Number(`5e${power}`));
 
+// How wide a value axis is: all numbers have their place, and charts above each other the same one. room: {px, grown()}, what all of
+// them share; it only grows.
+export function valueAxisSize(labels, least_px, room) {
+  const longest = Math.max(0, ...(labels ?? []).map((label) => String(label ?? '').length));
+  const needed = Math.ceil(longest * kDigit_px) + kBesideLabel_px;
+  if (needed > Math.max(least_px, room.px)) {
+    room.px = needed;
+    room.grown();
+  }
+  return Math.max(least_px, room.px);
+}
+
 // {axes, padding}. options: {units, colours, time_axis: with numbers, right: leave room for a second value
-// axis}
-export function chartAxes({ units, colours, time_axis, right }, width_px) {
+// axis, room: of valueAxisSize}
+export function chartAxes({ units, colours, time_axis, right, room }, width_px) {
   const grid = { stroke: () => colours.fine, width: 1 };
   const common = {
     font: kFont,
@@ -28,7 +42,7 @@ export function chartAxes({ units, colours, time_axis, right }, width_px) {
   };
   const value = {
     ...common,
-    size: width_px < kNarrow_px ? kLeftNarrow : kLeft,
+    size: (u, labels) => valueAxisSize(labels, width_px < kNarrow_px ? kLeftNarrow : kLeft, room),
     gap: 4,
     space: (u, axis, low, high, pixels) => Math.max(kLabel_px, Math.min(2 * kLabel_px, pixels / kMostLabels)),
     values: valueLabels,

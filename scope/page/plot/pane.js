@@ -13,7 +13,7 @@ const kDragged = 'application/x-hydro-channel';
 
 export class Pane {
   // context: {scope, overlay: OverlayRun, colours, state(): what decorations draw}
-  constructor(context, index, { is_last, right }) {
+  constructor(context, index, { is_last, right, room }) {
     const { scope } = context;
     this.scope = scope;
     this.index = index;
@@ -46,6 +46,7 @@ export class Pane {
       colours: context.colours,
       time_axis: is_last,
       right,
+      room,
       rate_hz: scope.run.rate_hz,
       limits: scope.run.limits,
       below: (ctx, chart) => drawBelow(ctx, chart, state()),

@@ -51,6 +51,7 @@ export class Panes {
             .map((one) => unitOf(one, scope.preferences.si)),
         ).size > 1,
     );
+    const room = { px: 0, grown: () => this.#alignAxes() };
     const open = this.#openMenu();
     const focused = document.activeElement?.dataset?.channel;
     this.panes = scope.layout.panes.map(
@@ -58,6 +59,7 @@ export class Panes {
         new Pane({ scope, overlay: this.overlay, colours: this.colours, state: () => this.#state() }, i, {
           is_last: i === count - 1,
           right,
+          room,
         }),
     );
     this.host.replaceChildren(...this.panes.map((pane) => pane.element), ...(count === 0 ? [this.#nothing()] : []));
@@ -66,6 +68,11 @@ export class Panes {
     else if (focused) this.host.querySelector(`.chip[data-channel="${CSS.escape(focused)}"]`)?.focus();
     this.#measure();
     this.#ask();
+  }
+
+  // When the numbers of one chart need more room, all make it.
+  #alignAxes() {
+    queueMicrotask(() => this.panes.forEach((pane) => pane.chart?.plot?.redraw(false, true)));
   }
 
   refit() {

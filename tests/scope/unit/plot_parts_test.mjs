@@ -2,6 +2,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { cursorNear, cursorRows, interval, moved, noCursors, placed } from '../../../scope/page/plot/cursors.js';
+import { valueAxisSize } from '../../../scope/page/plot/axes.js';
+import { sharpStep } from '../../../scope/page/panels/reference_form.js';
 import { fitted, following, stepped, zoomed } from '../../../scope/page/plot/time_window.js';
 import { bridge, gapsIn, gapsShown, trace } from '../../../scope/page/plot/trace_path.js';
 import { between, colourOf } from '../../../scope/page/plot/colours.js';
@@ -19,6 +21,26 @@ test('the time base steps 1-2-5', () => {
   assert.equal(stepped(3, 1), 5);
   assert.equal(stepped(0.9), 1);
   assert.equal(stepped(4), 5);
+});
+
+// Tests that a value axis has room for all its numbers, minus signs too, that charts above each other share it, and that it does not shrink.
+test('numbers of a value axis', () => {
+  let grown = 0;
+  const room = { px: 0, grown: () => (grown += 1) };
+  assert.equal(valueAxisSize(['\u22121', '0', '1'], 46, room), 46);
+  assert.equal(valueAxisSize(null, 46, room), 46);
+  assert.equal(grown, 0);
+  const wide = valueAxisSize(['\u22125000000', '0', '5000000'], 46, room);
+  assert.ok(wide >= 8 * 6.1 + 8, `${wide}`);
+  assert.equal(grown, 1);
+  assert.equal(valueAxisSize(['1'], 46, room), wide, 'the other charts stand below it');
+  assert.equal(valueAxisSize(['1'], 62, { px: 0, grown() {} }), 62);
+});
+
+// Tests that a sharp step begins where the reference is and jumps when a new reference is followed at full.
+test('a sharp step', () => {
+  assert.deepEqual(sharpStep({ to: '0.3' }, 0.1, 0.5), ['reference.initial=0.1', 'reference.steps=[[0.6, 0.3]]']);
+  assert.deepEqual(sharpStep({ to: '-5' }, 2, 0), ['reference.initial=2', 'reference.steps=[[0.1, -5]]']);
 });
 
 // Tests that zooming keeps the time under the pointer where it is.

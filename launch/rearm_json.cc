@@ -1,0 +1,45 @@
+#include "launch/rearm_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/text_file.h"
+
+namespace hydro::launch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ListOf(const OperatorResult& result) {
+  Json list = Json::array();
+  for (const auto& [joint, f] : result.forecasts) {
+    Json json;
+    if (!joint.empty()) json["joint"] = Printable(joint);
+    json["text"] = Printable(f.text);
+    const auto number = [&](double value) { return f.known ? Json(value) : Json(); };
+    json["quantity"] = f.known ? Json(f.quantity) : Json();
+    json["unit"] = f.known ? Json(f.unit) : Json();
+    json["present"] = number(f.present);
+    json["target"] = number(f.target);
+    json["return_s"] = number(f.return_s);
+    json["top_rate"] = number(f.top_rate);
+    json["jumps"] = f.known ? Json(f.jumps) : Json();
+    json["lowest"] = number(f.lowest);
+    json["highest"] = number(f.highest);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string ForecastsJson(const OperatorResult& result) { return ListOf(result).dump(); }
+
+std::string RearmJson(const OperatorResult& result) {
+  Json json;
+  json["rearmed"] = result.exit_code == 0;
+  json["text"] = Printable(result.text);
+  json["forecasts"] = ListOf(result);
+  return json.dump();
+}
+
+}  // namespace hydro::launch

@@ -1,0 +1,51 @@
+// What the machine will do when it is re-armed, as far as that can be known before: where the reference comes
+// back to, how far that is from where the arm is, and how fast. While the voltage is held at zero the
+// published reference follows the arm, and so says nothing of it. One function for everyone who re-arms, on a
+// page or in a terminal. Pure.
+#pragma once
+
+#include <hydro/arm_plan_t.hpp>
+#include <hydro/run_description_t.hpp>
+#include <hydro/state_t.hpp>
+#include <hydro/tuned_settings_t.hpp>
+#include <optional>
+#include <string>
+
+#include "settings/stack_config.h"
+
+namespace hydro::tuning {
+
+struct RearmForecast {
+  bool held = true;      // the voltage is held at zero: otherwise a re-arm changes nothing
+  bool known = false;    // otherwise only `text`, which says why not
+  std::string quantity;  // what the reference refers to, "arm_angle", "pressure", "torque" or "voltage"
+  std::string unit;      // of the numbers that follow
+  double present = 0;    // where it is now
+  double target = 0;     // where the reference will have come back to
+  double return_s = 0;   // in which plant time; 0: at once
+  double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
+  bool jumps = false;    // the reference jumps on that way
+  // What the reference does in the kForecast_s after that.
+  double lowest = 0;
+  double highest = 0;
+  std::string text;  // one line for a person
+};
+
+inline constexpr double kForecast_s = 10;
+
+// What was heard of a stack, the newest of each.
+struct HeardOfStack {
+  std::optional<run_description_t> run;
+  std::optional<tuned_settings_t> in_force;  // none: as configured
+  std::optional<arm_plan_t> plan;            // of a planner
+  std::optional<state_t> state;
+};
+
+// If it is re-armed now.
+RearmForecast ForecastRearm(const HeardOfStack& heard);
+
+// The configuration that a running stack acts by. Throws InputError when the description is not one of this
+// version.
+settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
+
+}  // namespace hydro::tuning
