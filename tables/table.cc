@@ -35,6 +35,8 @@ std::string Table::WhyNot(std::string_view name) const {
   return {};
 }
 
+void Table::Note(const std::string& what) { layout += (layout.empty() ? "" : ", ") + what; }
+
 std::string Table::Place(size_t row, std::string_view column) const {
   return file + ": " +
          (lines.empty() ? "row " + std::to_string(row + 1) : "line " + std::to_string(lines[row])) +
@@ -47,8 +49,8 @@ bool IsTable(const std::string& file) {
   return std::any_of(kEndings.begin(), kEndings.end(), [&](const char* one) { return ending == one; });
 }
 
-Table ReadTable(const std::string& file, const CsvSettings& settings) {
-  return EndingOf(file) == ".mat" ? ReadMat(file) : ReadCsv(file, settings);
+Table ReadTable(const std::string& file, const CsvSettings& settings, const AskedColumns& asked) {
+  return EndingOf(file) == ".mat" ? ReadMat(file, asked) : ReadCsv(file, settings, asked);
 }
 
 Table ReadTableWithoutUnits(const std::string& file) {
