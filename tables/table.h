@@ -66,6 +66,9 @@ void WriteTable(const Table& table, const std::string& file);
 // Whether a file of that name is read as a table: .csv, .tsv, .txt and .dat as text, .mat; in capitals too.
 bool IsTable(const std::string& file);
 
+// Throws InputError for the name of a file that is no table's.
+void RequireTableName(const std::string& file);
+
 // Throws the InputError that WriteTable would throw for this name, for callers that check before they work.
 void CheckTableName(const std::string& file);
 
