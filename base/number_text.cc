@@ -4,7 +4,6 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 namespace hydro {
 namespace {
@@ -47,13 +46,19 @@ std::string ShortestNumber(double value) {
 
 std::string ShortNumber(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value == 0 ? 0.0 : value);  // no -0
+  // As printf("%.*g") in the C locale; in others that writes decimal commas.
+  char text[64];
+  const auto written = [&](std::chars_format format, int precision) {
+    const auto end =
+        std::to_chars(text, text + sizeof text, value == 0 ? 0.0 : value, format, precision).ptr;  // no -0
+    return std::string(text, end);
+  };
+  std::string shown = written(std::chars_format::general, digits);
   // It would write 81000 as 8.1e+04.
   const double size = std::abs(value);
-  if (size >= 1 && size < 1e7 && std::strchr(text, 'e') != nullptr)
-    std::snprintf(text, sizeof text, "%.0f", value);
-  return text;
+  if (size >= 1 && size < 1e7 && shown.find('e') != std::string::npos)
+    shown = written(std::chars_format::fixed, 0);
+  return shown;
 }
 
 std::string HexNumber(uint64_t value, int digits) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/file_kind.h"
 #include "base/read_files.h"
 #include "base/utf8.h"
 
@@ -21,7 +22,12 @@ std::string ReadTextFile(const std::string& file) {
   char block[65536];
   while (stream.read(block, sizeof block), stream.gcount() > 0) {
     text.append(block, static_cast<size_t>(stream.gcount()));
-    if (text.size() > kLargest) throw InputError(file + ": found more than 64 MiB, allowed: 64 MiB");
+    if (text.size() > kLargest) {
+      const std::optional<FileKind> kind = FindFileKind(std::string_view(text).substr(0, sizeof block));
+      throw InputError(
+          file + ": " +
+          (kind.has_value() ? OtherKind(*kind, file, "a text") : "found more than 64 MiB, allowed: 64 MiB"));
+    }
   }
   if (stream.bad()) throw InputError(file + ": cannot be read: " + std::strerror(errno));
   RememberRead(file);

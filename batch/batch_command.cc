@@ -58,8 +58,9 @@ int RunWorker(const BatchOptions& options) {
     }
   }
   const RunOutcome outcome = RunCases(study, request);
-  std::printf("%lld cases, %lld failed, %.3g s\n", static_cast<long long>(outcome.progress.ran),
-              static_cast<long long>(outcome.progress.failed), outcome.progress.elapsed_s);
+  std::printf("%lld cases, %lld failed, %s s\n", static_cast<long long>(outcome.progress.ran),
+              static_cast<long long>(outcome.progress.failed),
+              ShortNumber(outcome.progress.elapsed_s, 3).c_str());
   return outcome.stopped ? 1 : 0;
 }
 

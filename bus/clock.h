@@ -31,6 +31,9 @@ class Clock {
   // True when time passes only because a caller that waits advances the clock.
   virtual bool simulated() const { return false; }
 
+  // On a simulated clock, the session of all that run on it (bus/session.h).
+  virtual int64_t session() const { return 0; }
+
  protected:
   // A clock that goes by itself.
   Clock() = default;
@@ -74,16 +77,20 @@ class WallClock : public Clock {
 // Starts at 0 and stands still until advanced.
 class SimulatedClock : public Clock {
  public:
-  SimulatedClock() : Clock(TimePoint()) {}
+  explicit SimulatedClock(int64_t session = 0) : Clock(TimePoint()), session_(session) {}
   int64_t Utime() const override {
     return std::chrono::duration_cast<std::chrono::microseconds>(Now().time_since_epoch()).count();
   }
   bool simulated() const override { return true; }
+  int64_t session() const override { return session_; }
 
   // Moves to `time`; a time in the past leaves the clock where it is.
   void AdvanceTo(TimePoint time) {
     if (time > Now()) SetTo(time);
   }
+
+ private:
+  int64_t session_;
 };
 
 }  // namespace hydro::bus

@@ -17,7 +17,7 @@ int64_t RandomSession() {
   return session;
 }
 
-int64_t SessionOn(const Clock& clock) { return clock.simulated() ? 0 : RandomSession(); }
+int64_t SessionOn(const Clock& clock) { return clock.simulated() ? clock.session() : RandomSession(); }
 
 HostedProcess IdentityOn(const Bus& bus, const Clock& clock) {
   if (const HostedProcess* hosted = bus.process()) return *hosted;

@@ -11,7 +11,7 @@ namespace hydro::bus {
 // A random number, never 0.
 int64_t RandomSession();
 
-// RandomSession() on a wall clock; 0 on a simulated one, so that every run is bit-identical.
+// RandomSession() on a wall clock. On a simulated one that of the clock, so that every run is bit-identical.
 int64_t SessionOn(const Clock& clock);
 
 // Who this process is: what the bus says of a simulated process (Bus::process()), otherwise the machine's

@@ -32,7 +32,7 @@ void AppendText(const std::string& value, std::string* text) {
 
 class CellWriter {
  public:
-  CellWriter(size_t row, bool alone, std::string* text) : row_(row), alone_(alone), text_(*text) {}
+  CellWriter(size_t row, Missing missing, std::string* text) : row_(row), missing_(missing), text_(*text) {}
 
   template <class T>
   void operator()(const std::vector<T>& values) {
@@ -42,8 +42,7 @@ class CellWriter {
  private:
   void Cell(int64_t value) { text_ += std::to_string(value); }
   void Cell(double value) {
-    // A missing value is an empty cell; a line with nothing else would be an empty line.
-    if (!std::isnan(value) || alone_) AppendNumber(value, text_);
+    if (!std::isnan(value) || missing_ == Missing::kNan) AppendNumber(value, text_);
   }
   void Cell(const std::string& value) { AppendText(value, &text_); }
   // A list is one cell, with blanks between its elements.
@@ -64,7 +63,7 @@ class CellWriter {
   }
 
   size_t row_;
-  bool alone_;
+  Missing missing_;
   std::string& text_;
 };
 
@@ -96,13 +95,15 @@ std::string HeadLine(const std::vector<SheetColumn>& columns, bool several) {
 }
 
 void WriteRows(const ExportedRun& run, const std::vector<SheetColumn>& columns, bool several, size_t rows,
-               Output* out) {
+               Missing missing, Output* out) {
   std::string text;
+  // A line with nothing but an empty cell would be an empty line.
+  if (columns.size() == 1) missing = Missing::kNan;
   for (size_t row = 0; row < rows; ++row) {
     if (several) AppendText(run.name, &text);
     for (size_t i = 0; i < columns.size(); ++i) {
       if (i > 0 || several) text += ',';
-      std::visit(CellWriter(row, columns.size() == 1, &text), columns[i].values);
+      std::visit(CellWriter(row, missing, &text), columns[i].values);
     }
     text += '\n';
     if (text.size() < kWriteChunk) continue;
@@ -124,7 +125,8 @@ void CheckOneSheet(const std::vector<ExportedRun>& runs) {
 }
 
 // The sheets of that name, of the runs that have one.
-void WriteTable(const std::vector<ExportedRun>& runs, const std::string& name, const std::string& file) {
+void WriteTable(const std::vector<ExportedRun>& runs, const std::string& name, Missing missing,
+                const std::string& file) {
   Output out(file, true);
   std::string head, first;
   for (const ExportedRun& run : runs) {
@@ -141,17 +143,17 @@ void WriteTable(const std::vector<ExportedRun>& runs, const std::string& name, c
       throw InputError(run.files.front() + ": found other units than in " + first +
                        ", allowed in one CSV are runs of the same");
     }
-    WriteRows(run, columns, runs.size() > 1, sheet->rows(), &out);
+    WriteRows(run, columns, runs.size() > 1, sheet->rows(), missing, &out);
   }
   out.Finish();
 }
 
 }  // namespace
 
-void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& file) {
+void WriteCsvExport(const std::vector<ExportedRun>& runs, Missing missing, const std::string& file) {
   if (!IsFolder(file)) {
     CheckOneSheet(runs);
-    WriteTable(runs, runs.front().sheets.front().name, file);
+    WriteTable(runs, runs.front().sheets.front().name, missing, file);
     return;
   }
   NewFolder folder(file);
@@ -159,7 +161,7 @@ void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& fil
   for (const ExportedRun& run : runs) {
     for (const Sheet& sheet : run.sheets) names.insert(sheet.name);
   }
-  for (const std::string& name : names) WriteTable(runs, name, folder.path() + "/" + name + ".csv");
+  for (const std::string& name : names) WriteTable(runs, name, missing, folder.path() + "/" + name + ".csv");
   folder.Finish();
 }
 

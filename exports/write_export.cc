@@ -80,10 +80,10 @@ Format FormatFor(const std::string& file, const std::optional<std::string>& name
 }
 
 void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std::string& program,
-                 const std::string& file) {
+                 const std::string& file, Missing missing) {
   switch (format) {
     case Format::kCsv:
-      return WriteCsvExport(runs, file);
+      return WriteCsvExport(runs, missing, file);
     case Format::kMat:
       return WriteMatExport(runs, file);
     case Format::kMat73:

@@ -11,6 +11,9 @@ namespace hydro::exports {
 
 enum class Format { kCsv, kMat, kMat73, kHdf5, kMcap };
 
+// How CSV shows a missing value: some readers, Octave's csvread among them, take an empty cell for 0.
+enum class Missing { kEmpty, kNan };
+
 // "csv", "mat", "mat73", "hdf5", "mcap".
 const char* NameOf(Format format);
 
@@ -24,11 +27,11 @@ Format FormatFor(const std::string& file, const std::optional<std::string>& name
 // Writes the runs, whole or not at all. Throws InputError when the file cannot be created or the format cannot hold the runs,
 // WriteError when the disk is full.
 void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std::string& program,
-                 const std::string& file);
+                 const std::string& file, Missing missing = Missing::kEmpty);
 
 // What WriteExport() calls. Of one run the table's columns stand by themselves; what else there is stands in groups (HDF5), structs (MAT) or under
 // topics (MCAP): of a run by its name where there are several, of a channel by the channel's name.
-void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& file);
+void WriteCsvExport(const std::vector<ExportedRun>& runs, Missing missing, const std::string& file);
 void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& file);
 void WriteMat73Export(const std::vector<ExportedRun>& runs, const std::string& file);
 void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program,

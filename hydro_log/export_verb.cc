@@ -25,6 +25,9 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
                  true);
   verb.AddOption("--format", &format_,
                  "NAME csv, mat (version 5), mat73, hdf5 or mcap, where the file's name does not tell");
+  verb.AddOption(
+      "--missing", &missing_,
+      "WORD how CSV shows missing values: empty (default) or nan, for readers that take an empty cell for 0");
   verb.AddFlag("--si", &selection_.si, "convert to SI units");
   verb.AddOption("--from", &from_s_, "S leave out what is before this plant time");
   verb.AddOption("--to", &to_s_, "S leave out what is after this plant time");
@@ -42,6 +45,11 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
 int ExportVerb::Run() const {
   const exports::Format format =
       exports::FormatFor(out_, format_.empty() ? std::nullopt : std::optional(format_));
+  if (missing_ != "empty" && missing_ != "nan")
+    throw InputError("--missing: found " + Quoted(missing_) + ", allowed empty or nan");
+  if (missing_ == "nan" && format != exports::Format::kCsv)
+    throw InputError("--missing: found nan for " + std::string(exports::NameOf(format)) +
+                     ", allowed for CSV: the other formats always have NaN");
   exports::Selection selection = selection_;
   if (from_s_ != kNotGiven) selection.from_s = from_s_;
   if (to_s_ != kNotGiven) selection.to_s = to_s_;
@@ -61,7 +69,8 @@ int ExportVerb::Run() const {
     std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(line).c_str());
   };
   const auto runs = exports::ReadRuns(logs_, choice_, selection, messages, say);
-  exports::WriteExport(runs, format, "hydro-log " + settings::ProgramVersion(), out_);
+  exports::WriteExport(runs, format, "hydro-log " + settings::ProgramVersion(), out_,
+                       missing_ == "nan" ? exports::Missing::kNan : exports::Missing::kEmpty);
   return 0;
 }
 

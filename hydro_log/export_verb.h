@@ -18,7 +18,7 @@ class ExportVerb {
 
  private:
   std::vector<std::string> logs_;
-  std::string out_, format_;
+  std::string out_, format_, missing_ = "empty";
   runs::StackChoice choice_;
   double from_s_ = kNotGiven, to_s_ = kNotGiven;
   exports::Selection selection_;

@@ -15,6 +15,7 @@
 #include "runs/limb_info.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
+#include "runs/senders.h"
 #include "settings/command_line.h"
 #include "tables/table.h"
 
@@ -66,7 +67,7 @@ class ImportVerb {
     verb.AddForce();
   }
   int Run() const {
-    tables::CheckTableName(table_);
+    tables::RequireTableName(table_);
     CheckKeeps(out_, {table_});
     tables::Table table = tables::ReadTableWithoutUnits(table_);
     tables::TakeStructOf("time_s", &table);
@@ -116,6 +117,7 @@ class CompareVerb {
     if (suffix) choice.suffix = suffix;
     // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
     runs::LimbLog log = runs::ReadLimbLog(file, choice);
+    runs::RequireOneRun(log);
     // Two empty logs are not a run and its repetition.
     const runs::RunMessages& messages = log.limb.messages;
     if (!log.whole() && messages.Of<state_t>().empty() && messages.Of<motor_command_t>().empty()) {

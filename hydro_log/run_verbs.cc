@@ -14,6 +14,7 @@
 #include "hydro_log/replay.h"
 #include "process/stop_signal.h"
 #include "runs/limb_info.h"
+#include "runs/senders.h"
 #include "runs/tracking.h"
 #include "timing/report/timing_report.h"
 
@@ -86,6 +87,7 @@ int SummaryVerb::Run() const {
   CheckOutput(json_, log_);
   std::FILE* const said = OutputBeside({json_});
   const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
+  runs::RequireOneRun(all);
   if (all.whole()) {
     const runs::LimbInfo limb = runs::SummariseLimb(all, si_);
     std::fputs(PrintableLines(runs::LimbSummaryText(limb)).c_str(), said);
@@ -118,7 +120,9 @@ int TimingVerb::Run() const {
   CheckOutput(page_, log_);
   CheckDistinct({json_, page_});
   // A limb's own loop keeps time for all its joints.
-  const runs::RunLog log = ReadLimbWithWarning(log_, choice_).limb;
+  const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
+  runs::RequireOneRun(all);
+  const runs::RunLog& log = all.limb;
   timing::TimingRecord record;
   for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);
   for (const loop_histogram_t& histogram : log.messages.Of<loop_histogram_t>()) record.Add(histogram);
@@ -164,11 +168,13 @@ int ReplayVerb::Run() const {
   const std::vector<std::string> command = ours ? std::vector<std::string>() : CommandWords(controller_);
   if (!ours) {
     const runs::RunLog log = ReadWithWarning(log_, choice_);
+    runs::RequireOneRun(log);
     const int exit_code = RunOwn(log, command);
     WarnOf(log);
     return exit_code;
   }
   const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
+  runs::RequireOneRun(all);
   int exit_code = all.whole() ? 0 : RunOurs(all.limb, "");
   for (const runs::RunLog& joint : all.joints) exit_code |= RunOurs(joint, joint.joint + " ");
   WarnOf(all.limb);

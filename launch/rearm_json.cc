@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "base/text_file.h"
 
 namespace hydro::launch {
@@ -32,14 +33,14 @@ Json ListOf(const OperatorResult& result) {
 
 }  // namespace
 
-std::string ForecastsJson(const OperatorResult& result) { return ListOf(result).dump(); }
+std::string ForecastsJson(const OperatorResult& result) { return JsonText(ListOf(result)); }
 
 std::string RearmJson(const OperatorResult& result) {
   Json json;
   json["rearmed"] = result.exit_code == 0;
   json["text"] = Printable(result.text);
   json["forecasts"] = ListOf(result);
-  return json.dump();
+  return JsonText(json);
 }
 
 }  // namespace hydro::launch

@@ -18,9 +18,10 @@ settings::StackConfig InsideALimb(settings::StackConfig config) {
 }  // namespace
 
 Joint::Joint(const settings::JointConfig& joint, std::unique_ptr<plant::Rig> rig, bus::Clock* clock,
-             const std::string& program, std::function<bool()> heartbeat)
+             const std::string& program, std::function<bool()> heartbeat, int64_t session)
     : name_(joint.name),
       config_(InsideALimb(joint.config)),
+      simulated_(session),
       clock_(clock != nullptr ? *clock : simulated_),
       bus_(clock != nullptr ? bus::InProcessBus(*clock) : bus::InProcessBus(&simulated_)),
       rig_(std::move(rig)),

@@ -21,9 +21,9 @@ namespace hydro::limb {
 class Joint {
  public:
   // `clock`: null for lockstep, in which the joint has a simulated clock of its own; else that of the process. `program`, `heartbeat`:
-  // as PlantApp's.
+  // as PlantApp's. `session`: of the simulated clock.
   Joint(const settings::JointConfig& joint, std::unique_ptr<plant::Rig> rig, bus::Clock* clock,
-        const std::string& program, std::function<bool()> heartbeat);
+        const std::string& program, std::function<bool()> heartbeat, int64_t session = 0);
 
   const std::string& name() const { return name_; }
   const settings::StackConfig& config() const { return config_; }

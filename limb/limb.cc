@@ -66,7 +66,7 @@ Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     auto rig = config.arm ? std::make_unique<plant::SimulatedRig>(joint.config, std::move(machines[i]))
                           : std::make_unique<plant::SimulatedRig>(joint.config);
     joints_.push_back(std::make_unique<Joint>(joint, std::move(rig), clock_ ? &*clock_ : nullptr,
-                                              options.program, options.heartbeat));
+                                              options.program, options.heartbeat, options.session));
   }
 }
 

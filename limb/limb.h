@@ -20,6 +20,7 @@ struct LimbOptions {
   std::string program = "hydro-limb";
   const bus::Clock* clock = nullptr;     // null: lockstep on simulated clocks
   std::function<bool()> heartbeat = {};  // as PlantApp's
+  int64_t session = 0;                   // of all joints, on simulated clocks
 };
 
 // What a log needs to describe the limb as a whole. Its sender adds who and when it is.

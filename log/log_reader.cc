@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/big_endian.h"
+#include "base/file_kind.h"
 #include "base/interruption.h"
 #include "base/number_text.h"
 #include "log/log_check.h"
@@ -11,6 +12,8 @@
 
 namespace hydro::log {
 namespace {
+
+constexpr std::string_view kTableEndings[] = {".csv", ".tsv", ".txt", ".dat", ".mat"};
 
 std::string Hex(uint32_t value) { return HexNumber(value, 8); }
 
@@ -25,6 +28,24 @@ bool BeginsAsText(const MappedFile& file) {
   return size >= 4 && std::all_of(file.data(), file.data() + size, [](uint8_t c) {
            return (c >= 0x20 && c < 0x7f) || c == '\n' || c == '\r' || c == '\t';
          });
+}
+
+// A file of another kind is told who reads it: repair would only find that it is damaged.
+void RefuseOtherKinds(const std::string& name, const MappedFile& file) {
+  constexpr size_t kLooked = 1u << 16;
+  const std::string_view beginning(reinterpret_cast<const char*>(file.data()),
+                                   std::min(file.size(), kLooked));
+  const std::optional<FileKind> kind = FindFileKind(beginning);
+  if (kind.has_value() && *kind != FileKind::kLog)
+    throw InputError(OtherKind(*kind, name, "an LCM event log"));
+  if (!BeginsAsText(file)) return;
+  const bool named = std::any_of(std::begin(kTableEndings), std::end(kTableEndings),
+                                 [&](std::string_view ending) { return name.ends_with(ending); });
+  throw InputError(
+      "found text, allowed an LCM event log; hydro-log import " +
+      (named ? name + " -o RUN.lcmlog makes one of a table with export's columns"
+             : "makes one of a table with export's columns, and hydro-diagnose reads others with a sidecar; "
+               "a table has to be named .csv or .mat: rename it"));
 }
 
 }  // namespace
@@ -89,11 +110,8 @@ int64_t EndOf(const LogEvent& event) {
 LogReader::LogReader(const std::string& file, OnDamage on_damage)
     : name_(file), file_(file), on_damage_(on_damage) {
   try {
+    RefuseOtherKinds(file, file_);
     verdict_ = ExamineLog(file_);
-    if (BeginsAsText(file_)) {
-      throw InputError("found text, allowed an LCM event log; hydro-log import " + file +
-                       " -o RUN.lcmlog makes one of a table");
-    }
   } catch (const InputError& error) {
     throw LogError(file + ": " + error.what());
   }

@@ -140,6 +140,13 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
     throw InputError(file + ": found no event in " + std::to_string(size) +
                      " bytes; an LCM event log is needed");
   }
+  // A log of no messages would look like a run in which nothing was sent. A whole one of none has nothing to mend.
+  const bool whole = result.lost.empty() && vouched.lost_messages == 0 &&
+                     result.verdict.completeness == Completeness::kComplete;
+  if (kept.empty() && !whole) {
+    throw InputError(file + ": found no message that can be kept in " + std::to_string(size) +
+                     " bytes, allowed a log with one or more");
+  }
   result.kept_events = static_cast<int64_t>(kept.size());
   for (const KeptEvent& place : kept) result.kept_bytes += place.end - place.begin;
   result.check_bytes = vouched.check_bytes;

@@ -1,8 +1,9 @@
 #include "page/ticks.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 
 namespace hydro::page {
 namespace {
@@ -79,8 +80,9 @@ std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixe
 
 std::string TickNumber(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.6g", std::abs(value));
-  std::string number = text;
+  // As printf("%.6g") in the C locale; in others that writes decimal commas.
+  std::string number(
+      text, std::to_chars(text, text + sizeof text, std::abs(value), std::chars_format::general, 6).ptr);
   if (const size_t at = number.find('e'); at != std::string::npos) {
     const int power = std::atoi(number.c_str() + at + 1);
     const std::string factor = number.substr(0, at);

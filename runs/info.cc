@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "bus/channels.h"
 #include "runs/run_config.h"
 #include "runs/sampling.h"
+#include "runs/senders.h"
 #include "runs/tuning_history.h"
 
 namespace hydro::runs {
@@ -50,7 +52,8 @@ class SequenceCount {
 ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
   ChannelInfo info;
   info.summary = summary;
-  const double seconds = Seconds(summary.first_utime, summary.last_utime);
+  const double seconds = Seconds(summary.first_utime, summary.last_utime) -
+                         SecondsOfSteps(log.clock_steps, summary.first_event, summary.last_event);
   if (summary.events > 1 && seconds > 0) info.rate_hz = static_cast<double>(summary.events - 1) / seconds;
   const bus::Channels channels(log.suffix);
   bus::AnyMessage([&]<class Message>(const bus::MessageRow<Message>&) {
@@ -220,6 +223,39 @@ std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   return distinct;
 }
 
+// What each of several runs has.
+std::vector<SenderInfo> SendersOf(const RunLog& log, const UnitSystem& units, bool si) {
+  std::vector<SenderInfo> senders;
+  for (const SenderMessages& run : RunsIn(log.messages)) {
+    SenderInfo& sender = senders.emplace_back();
+    sender.session = run.session;
+    UnitSystem own = units;
+    for (const run_description_t& description : run.messages.Of<run_description_t>()) {
+      if (description.session != run.session) continue;
+      own = ModelUnits(description, log.file);
+      sender.description = description.program + ", seed " + std::to_string(description.seed);
+    }
+    sender.ticks = TicksOf(run.messages);
+    sender.signals = SignalsOf(run.messages, own, si);
+  }
+  return senders;
+}
+
+// By the clock that stamped the messages, without its steps; a clock that goes back at the joint of two recordings leaves the
+// time between the earliest and the latest.
+double DurationOf(const RunLog& log) {
+  const double whole = Seconds(log.first_utime, log.last_utime);
+  if (log.clock_steps.empty()) return whole;
+  int64_t first_event = std::numeric_limits<int64_t>::max(), last_event = 0, first = 0, last = 0;
+  for (const ChannelSummary& channel : log.channels) {
+    if (channel.first_event < first_event) first = channel.first_utime;
+    if (channel.last_event >= last_event) last = channel.last_utime;
+    first_event = std::min(first_event, channel.first_event);
+    last_event = std::max(last_event, channel.last_event);
+  }
+  return Seconds(first, last) - SecondsOfSteps(log.clock_steps, first_event, last_event);
+}
+
 }  // namespace
 
 LogInfo Summarise(const RunLog& log, bool si) {
@@ -231,10 +267,10 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.other_suffixes = log.other_suffixes;
   info.bytes = log.bytes;
   info.events = log.events;
-  info.duration_s = Seconds(log.first_utime, log.last_utime);
+  info.clock_steps = log.clock_steps;
+  info.duration_s = DurationOf(log);
   info.first_undecodable = log.first_undecodable;
   for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
-  info.ticks = TicksOf(log.messages);
   info.loops = LoopsOf(log.messages.Of<loop_statistics_t>());
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
@@ -248,7 +284,13 @@ LogInfo Summarise(const RunLog& log, bool si) {
     info.model_name = ModelName(info.descriptions.front(), log.file);
     info.config = ConfigEntries(info.descriptions.front(), log.file);
   }
-  info.signals = SignalsOf(log.messages, units, si);
+  info.several_runs = HoldsSeveralRuns(log.messages);
+  if (info.several_runs) {
+    info.senders = SendersOf(log, units, si);
+  } else {
+    info.ticks = TicksOf(log.messages);
+    info.signals = SignalsOf(log.messages, units, si);
+  }
   return info;
 }
 

@@ -13,7 +13,8 @@ namespace hydro::runs {
 // How complete a channel's messages are, judged by each sender's sequence numbers.
 struct ChannelInfo {
   ChannelSummary summary;
-  double rate_hz = 0;        // events per second of receive time; 0: fewer than two, or no time passed
+  double rate_hz =
+      0;  // events per second of receive time without its clock's steps; 0: fewer than two, or no time passed
   bool numbered = false;     // its messages have sequence numbers; otherwise the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
   int64_t lost = 0;          // numbers missing between each sender's first and last
@@ -58,6 +59,14 @@ struct ProgramInfo {
   std::string version;
 };
 
+// One of several runs in a log.
+struct SenderInfo {
+  int64_t session = 0;
+  std::string description;  // "hydro-sim, seed 1"; empty where the run does not describe itself
+  TickInfo ticks;
+  std::vector<SignalInfo> signals;
+};
+
 struct LogInfo {
   std::string file;
   log::LogVerdict verdict;
@@ -66,11 +75,14 @@ struct LogInfo {
   std::vector<std::string> other_suffixes;  // of state channels, not read
   int64_t bytes = 0;
   int64_t events = 0;
-  double duration_s = 0;          // receive time from the first event to the last
+  double duration_s = 0;  // receive time from the first event to the last, without the steps of its clock
+  std::vector<ClockStep> clock_steps;
   std::string first_undecodable;  // as RunLog::first_undecodable; the channels' summaries have the count
   std::vector<ChannelInfo> channels;
-  TickInfo ticks;  // states = 0: the log has none
+  TickInfo ticks;  // states = 0: the log has none, or several runs
   std::vector<SignalInfo> signals;
+  bool several_runs = false;          // in the place of ticks and signals, `senders` has those of each
+  std::vector<SenderInfo> senders;    // empty: they cannot be told apart
   std::vector<LoopInfo> loops;        // by role and host
   std::vector<ProgramInfo> programs;  // those that introduced themselves
   std::vector<fault_t> faults;

@@ -93,6 +93,19 @@ Json TicksJson(const TickInfo& ticks) {
           {"missing_from_log", ticks.missing - ticks.announced}};
 }
 
+Json SignalsJson(const std::vector<SignalInfo>& signals) {
+  Json json = Json::object();
+  for (const SignalInfo& signal : signals) json[signal.name] = SignalJson(signal);
+  return json;
+}
+
+Json SenderJson(const SenderInfo& sender) {
+  return {{"session", sender.session},
+          {"description", sender.description},
+          {"ticks", TicksJson(sender.ticks)},
+          {"signals", SignalsJson(sender.signals)}};
+}
+
 Json FaultJson(const fault_t& fault) {
   return {{"tick", fault.tick},
           {"source", fault.source},
@@ -141,9 +154,16 @@ std::string InfoJson(const LogInfo& info) {
   for (const ChannelInfo& channel : info.channels)
     json["channels"][channel.summary.channel] = ChannelJson(channel);
   json["first_undecodable"] = info.first_undecodable;
-  json["ticks"] = TicksJson(info.ticks);
-  json["signals"] = Json::object();
-  for (const SignalInfo& signal : info.signals) json["signals"][signal.name] = SignalJson(signal);
+  json["clock_steps"] = ListJson(info.clock_steps, [](const ClockStep& step) {
+    return Json{{"at_time_s", step.at_time_s}, {"seconds", step.seconds}};
+  });
+  json["several_runs"] = info.several_runs;
+  if (info.several_runs) {
+    json["senders"] = ListJson(info.senders, SenderJson);
+  } else {
+    json["ticks"] = TicksJson(info.ticks);
+    json["signals"] = SignalsJson(info.signals);
+  }
   json["loops"] = ListJson(info.loops, LoopJson);
   json["faults"] = ListJson(info.faults, FaultJson);
   json["stops"] = ListJson(info.stops, StopJson);

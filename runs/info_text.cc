@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "base/number_text.h"
@@ -82,10 +83,25 @@ void AppendTicks(const TickInfo& ticks, std::string& text) {
          ticks.gaps, ticks.missing, ticks.announced, ticks.missing - ticks.announced);
 }
 
-void AppendSignals(const LogInfo& info, std::string& text) {
-  if (info.signals.empty()) return;
+// Where the clock that stamped the messages did not go as plant time did.
+void AppendClockSteps(const LogInfo& info, std::string& text) {
+  constexpr size_t kListed = 20;
+  for (const ClockStep& step : info.clock_steps) {
+    if (static_cast<size_t>(&step - info.clock_steps.data()) == kListed) {
+      Append(text, "clock: and {} more\n", info.clock_steps.size() - kListed);
+      break;
+    }
+    const std::string seconds = ShortNumber(std::abs(step.seconds), 3);
+    Append(text, "clock: {} at {} s of plant time; duration and rates leave it out\n",
+           step.seconds > 0 ? seconds + " s without a message" : "set back by " + seconds + " s",
+           Number(step.at_time_s));
+  }
+}
+
+void AppendSignals(const std::vector<SignalInfo>& signals, std::string& text) {
+  if (signals.empty()) return;
   Append(text, "{:<32} {:>12} {:>12} {:>12}\n", "signal", "min", "max", "last");
-  for (const SignalInfo& signal : info.signals) {
+  for (const SignalInfo& signal : signals) {
     const std::string name = signal.name + " (" + signal.unit + ")";
     if (signal.count == 0) {
       Append(text, "{:<32} {:>12}\n", name, "none");
@@ -93,6 +109,23 @@ void AppendSignals(const LogInfo& info, std::string& text) {
       Append(text, "{:<32} {:>12} {:>12} {:>12}\n", name, Number(signal.min), Number(signal.max),
              Number(signal.last));
     }
+  }
+}
+
+// Of each run its own: a table over several would be of none.
+void AppendRuns(const LogInfo& info, std::string& text) {
+  AppendTicks(info.ticks, text);
+  AppendClockSteps(info, text);
+  AppendSignals(info.signals, text);
+  if (!info.several_runs) return;
+  if (info.senders.empty())
+    text += "runs: states of several that cannot be told apart: their senders have one session\n";
+  for (const SenderInfo& sender : info.senders) {
+    Append(text, "run {} of {}, by sender {}: {}\n", &sender - info.senders.data() + 1, info.senders.size(),
+           HexNumber(static_cast<uint64_t>(sender.session), 16),
+           sender.description.empty() ? "does not describe itself" : sender.description);
+    AppendTicks(sender.ticks, text);
+    AppendSignals(sender.signals, text);
   }
 }
 
@@ -139,8 +172,7 @@ std::string InfoText(const LogInfo& info) {
   }
   AppendDescriptions(info, text);
   AppendChannels(info, text);
-  AppendTicks(info.ticks, text);
-  AppendSignals(info, text);
+  AppendRuns(info, text);
   AppendLoops(info, text);
   AppendEnds(info, text);
   return text;

@@ -68,6 +68,16 @@ std::string RowsOf(const LimbInfo& info) {
   return text;
 }
 
+// Joints whose rows stay empty, because a mean over several runs would be of none.
+std::string SeveralRunsOf(const LimbInfo& info) {
+  std::string text;
+  for (const JointInfo& joint : info.joints) {
+    if (joint.info.several_runs)
+      text += "joint " + Printable(joint.name) + " has states of several runs: --joint shows each\n";
+  }
+  return text;
+}
+
 // "2 joints: --joint NAME (hip, knee) for one alone"
 std::string HintOf(const LimbInfo& info) {
   return fmt::format("a limb with {} joints; --joint {} and so on for one alone\n", info.joints.size(),
@@ -86,7 +96,9 @@ std::string Dump(const Json& json) { return JsonText(json, 2) + "\n"; }
 
 }  // namespace
 
-std::string LimbInfoText(const LimbInfo& info) { return InfoText(info.limb) + HintOf(info) + RowsOf(info); }
+std::string LimbInfoText(const LimbInfo& info) {
+  return InfoText(info.limb) + HintOf(info) + RowsOf(info) + SeveralRunsOf(info);
+}
 
 std::string LimbSummaryText(const LimbInfo& info) {
   std::string text = HintOf(info) + RowsOf(info);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "runs/limb_configs.h"
@@ -124,7 +125,9 @@ MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSys
     return ReadTableRun(file, units.value_or(UnitSystem{}));
   }
   if (file.ends_with(".toml")) {
-    throw InputError(file + ": found a sidecar, allowed the run itself: a log, or the csv or mat beside it");
+    const std::string allowed = "the run itself: a log, or the csv or mat beside its sidecar";
+    RequireKind(FileKind::kLog, ReadTextFile(file), file, allowed);
+    throw InputError(file + ": found a TOML file, allowed " + allowed);
   }
   const RunLog log = ReadRunLog(file, {.joint = joint});
   tables::Table table = ExportRun(log);

@@ -1,5 +1,3 @@
-#include <set>
-
 #include "base/input_error.h"
 #include "base/saturating.h"
 #include "bus/channels.h"
@@ -8,6 +6,7 @@
 #include "runs/run_config.h"
 #include "runs/run_table.h"
 #include "runs/sampling.h"
+#include "runs/senders.h"
 
 namespace hydro::runs {
 namespace {
@@ -40,20 +39,8 @@ std::vector<const state_t*> OrderedStates(const RunLog& log) {
     throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).Of<state_t>() +
                      "; a table needs at least one");
   }
-  std::set<int64_t> sessions;
-  for (const state_t& state : log.messages.Of<state_t>()) sessions.insert(state.session);
-  std::vector<const state_t*> states = InOrder(log.messages.Of<state_t>());
-  for (size_t k = 1; k < states.size(); ++k) {
-    if (states[k]->tick != states[k - 1]->tick) continue;
-    throw InputError(log.file + ": found two different states of tick " + std::to_string(states[k]->tick) +
-                     " on " + bus::Channels(log.suffix).Of<state_t>() + ", from " +
-                     std::to_string(sessions.size()) + " sender(s); one run by one sender is needed");
-  }
-  if (sessions.size() > 1) {
-    throw InputError(log.file + ": found states from " + std::to_string(sessions.size()) + " senders on " +
-                     bus::Channels(log.suffix).Of<state_t>() + "; one run by one sender is needed");
-  }
-  return states;
+  RequireOneRun(log);
+  return InOrder(log.messages.Of<state_t>());
 }
 
 std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -45,10 +47,12 @@ LimbConfigs Summarise(log::LogReader& reader, RunLog& log) {
       configs.TakeFirst(event);
       channel.channel = std::string(event.channel);
       channel.first_utime = event.utime;
+      channel.first_event = event.index;
     }
     ++channel.events;
     channel.bytes += event.size;
     channel.last_utime = event.utime;
+    channel.last_event = event.index;
     log.first_utime = log.events == 0 ? event.utime : std::min(log.first_utime, event.utime);
     log.last_utime = log.events == 0 ? event.utime : std::max(log.last_utime, event.utime);
     ++log.events;
@@ -79,10 +83,15 @@ class Decoder {
       if (!log::DecodeAs(event, messages.emplace_back())) {
         messages.pop_back();
         LeaveOut(event, stack.log);
+      } else if constexpr (std::is_same_v<Message, state_t>) {
+        newest_time_ = messages.back().time;
       }
       return true;
     });
   }
+
+  // Plant time of the newest state.
+  std::optional<double> newest_time() const { return newest_time_; }
 
  private:
   struct Stack {
@@ -104,6 +113,7 @@ class Decoder {
   }
 
   Undecodable undecodable_;
+  std::optional<double> newest_time_;
   std::vector<Stack> stacks_;
   std::unordered_map<std::string_view, Stack*> by_channel_;  // the names lie in `stacks_`
 };
@@ -170,7 +180,13 @@ LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable und
   Decoder decoder(logs, undecodable);
   log::LogEvent event;
   reader.Rewind();
-  while (reader.Next(event)) decoder.Take(event);
+  ClockWatch clock;
+  while (reader.Next(event)) {
+    decoder.Take(event);
+    clock.Take(event.index, event.utime, decoder.newest_time());
+  }
+  all.limb.clock_steps = clock.steps();
+  for (RunLog& joint : all.joints) joint.clock_steps = clock.steps();
   return all;
 }
 

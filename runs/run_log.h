@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "log/log_reader.h"
+#include "runs/clock_steps.h"
 #include "runs/run_messages.h"
 #include "runs/stack_choice.h"
 
@@ -18,6 +19,8 @@ struct ChannelSummary {
   int64_t bytes = 0;        // of data
   int64_t first_utime = 0;  // us, when its first and last event were received
   int64_t last_utime = 0;
+  int64_t first_event = 0;  // those, counted as LogEvent::index
+  int64_t last_event = 0;
   int64_t undecodable = 0;  // not of this stack's type and version: left out
 };
 
@@ -37,6 +40,7 @@ struct RunLog {
   int64_t bytes = 0;                     // length of the file
   int64_t first_utime = 0;               // us, earliest and latest event received; 0 without events
   int64_t last_utime = 0;
+  std::vector<ClockStep> clock_steps;
   std::string first_undecodable;  // where the first left-out message is, and why; empty: none was
 };
 

@@ -1,20 +1,12 @@
 #include "runs/sidecar.h"
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <optional>
-#include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/text_file.h"
-#include "base/units.h"
-#include "base/word_list.h"
 #include "runs/measured_signals.h"
-#include "runs/run_delays.h"
+#include "runs/sidecar_columns.h"
 #include "runs/sidecar_search.h"
-#include "runs/signal_columns.h"
-#include "runs/signal_unit.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 #include "tables/table.h"
@@ -23,134 +15,6 @@ namespace hydro::runs {
 namespace {
 
 constexpr int kMostSkipped = 1'000'000;
-
-// What a key of [columns] may name.
-std::string ColumnsOf(const tables::Table& table) {
-  std::vector<std::string> names;
-  for (const tables::Column& column : table.columns) names.push_back(column.name);
-  return "a column of " + table.file + ": " + QuotedList(names);
-}
-
-// The factor to `ours` of the unit that an entry states; 1 where it states none.
-double ReadUnit(settings::SectionReader& section, const std::string& key, const std::string& ours) {
-  std::string unit;
-  if (!section.Text("unit", &unit)) return 1;
-  const std::optional<double> factor = UnitFactor(unit, ours);
-  if (factor.has_value()) return *factor;
-  std::string allowed = QuotedList(UnitsLike(ours));
-  if (key == "voltage") allowed += ", or no unit for a command that is not a voltage";
-  throw section.Error(
-      "unit", Quoted(unit) + (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit"),
-      allowed);
-}
-
-bool StatesUnit(const tables::Column& column) {
-  return !column.unit.empty() && column.unit != "-" && column.unit != "1";
-}
-
-// The factor to `ours` of the unit that the table's row of units has; 1 where it has none.
-double UnitOfRow(const settings::SectionReader& columns, const std::string& key, const std::string& ours,
-                 const tables::Column& column) {
-  if (!StatesUnit(column)) return 1;
-  const std::optional<double> factor = UnitFactor(column.unit, ours);
-  if (factor.has_value()) return *factor;
-  throw columns.Error(key, "the unit " + Quoted(column.unit) + " in the table's row of units",
-                      QuotedList(UnitsLike(ours)) + " there, or { column = " + Quoted(column.name) +
-                          ", ... } with a unit or a scale (scale = 1 for numbers in " + ours + ")");
-}
-
-// One entry of [columns]: a name, or { column, scale, offset, unit, delay }. `ours` is the signal's unit in
-// the model.
-std::optional<SignalColumn> ReadEntry(settings::SectionReader& columns, const std::string& key,
-                                      const std::string& ours, const tables::Table& table) {
-  const settings::TomlNode* node = columns.Take(key);
-  if (node == nullptr) return std::nullopt;
-  SignalColumn source;
-  std::string name;
-  bool converts = false;  // what the sidecar states wins over the row of units
-  if (node->is(settings::TomlNode::Kind::kString)) {
-    name = node->text;
-  } else if (node->is(settings::TomlNode::Kind::kTable)) {
-    settings::SectionReader section(*node, "columns." + key);
-    section.Require("column", "the name of a column of " + table.file);
-    section.Text("column", &name);
-    converts = section.Number("scale", &source.scale) || section.Has("unit");
-    section.Number("offset", &source.offset);
-    source.unit = ReadUnit(section, key, ours);
-    const bool delayed = section.Number("delay", &source.delay);
-    section.Finish();
-    if (delayed && key == "time") {
-      throw section.Error("delay", "it with time", "delay with the signals that are late against time");
-    }
-    if (source.scale == 0) throw section.Error("scale", "0", "a finite number other than 0");
-  } else {
-    throw columns.Error(key, node->Shown(),
-                        "the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = "
-                        "\"...\", delay = ... }");
-  }
-  source.column = table.Find(name);
-  if (source.column == nullptr) {
-    std::vector<std::string> names;
-    for (const tables::Column& column : table.columns) names.push_back(column.name);
-    throw columns.Error(key, Quoted(name) + table.WhyNot(name), ColumnsOf(table) + DidYouMean(name, names));
-  }
-  if (!converts) {
-    source.unit = UnitOfRow(columns, key, ours, *source.column);
-    source.by_row = StatesUnit(*source.column);
-  }
-  return source;
-}
-
-using Sources = std::array<std::optional<SignalColumn>, kSignals.size()>;
-
-// Adds to the run's layout which units of the row were used.
-void NoteUnits(const tables::Table& table, const SignalColumn& time, const Sources& sources,
-               MeasuredRun* run) {
-  const bool row = std::any_of(table.columns.begin(), table.columns.end(),
-                               [](const tables::Column& column) { return !column.unit.empty(); });
-  if (!row) return;
-  std::vector<std::string> used;
-  if (time.by_row) used.push_back("time in " + time.column->unit);
-  for (size_t i = 0; i < sources.size(); ++i) {
-    if (!sources[i].has_value() || !sources[i]->by_row) continue;
-    used.push_back(std::string(kSignals[i].ours) + " in " + sources[i]->column->unit);
-  }
-  run->layout += used.empty() ? ", whose units the sidecar replaces" : " (" + Joined(used) + ")";
-}
-
-void ReadColumns(settings::SectionReader columns, const tables::Table& table, MeasuredRun* run) {
-  columns.Require("time", ColumnsOf(table));
-  columns.Require("voltage", ColumnsOf(table));
-  const std::optional<SignalColumn> time = ReadEntry(columns, "time", "s", table);
-  Sources sources;
-  for (size_t i = 0; i < kSignals.size(); ++i) {
-    const SignalName& name = kSignals[i];
-    sources[i] = ReadEntry(columns, name.ours, run->units.UnitFor(name.unit, name.arm), table);
-  }
-  columns.Finish();
-  NoteUnits(table, *time, sources, run);
-
-  run->time = SampleTimes(table, *time);
-  run->time_source = time->Described();
-  std::vector<SignalDelay> delays;
-  for (size_t i = 0; i < kSignals.size(); ++i) {
-    if (!sources[i].has_value()) continue;
-    if (AllMissing(sources[i]->column->values)) {
-      throw columns.Error(kSignals[i].ours,
-                          Quoted(sources[i]->column->name) + ", which holds no value in any row",
-                          "a column with values, or leave " + std::string(kSignals[i].ours) + " out");
-    }
-    const bool command = kSignals[i].signal == &MeasuredRun::voltage;
-    MeasuredSignal& signal = run->*kSignals[i].signal;
-    signal.values = command ? CommandValues(table, *sources[i]) : SignalValues(table, *sources[i]);
-    signal.source = sources[i]->Described();
-    if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
-  }
-  if (!RemoveDelays(delays, run)) {
-    throw columns.Error("delay", "delays that leave fewer than two samples",
-                        "delays far below the run's length");
-  }
-}
 
 void ReadNoise(settings::SectionReader noise, MeasuredRun* run) {
   for (const SignalName& name : kSignals)
@@ -210,12 +74,10 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
   root.place = sidecar.file;
 
   settings::SectionReader document(root, "");
-  const tables::Table table = tables::ReadTable(file, ReadLayout(document, file));
+  tables::Table table = tables::ReadTable(file, ReadLayout(document, file), AskedBy(root));
   MeasuredRun run;
   run.file = file;
   run.sidecar = sidecar.file;
-  run.lines = table.lines;
-  run.layout = table.layout;
   run.units = units;
   ReadName(document, sidecar.shared, &run);
   std::string pattern;
@@ -228,7 +90,7 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
     throw document.Error("arm_angle_rad", "it with a shaft that is not clamped",
                          "arm_angle_rad with shaft = \"clamped\" only");
   }
-  ReadColumns(columns, table, &run);
+  ReadColumns(columns, &table, &run);
   ReadNoise(noise, &run);
   if (run.shaft == model::Shaft::kDriven && !run.arm_angle.measured()) {
     throw document.Error("shaft", "\"driven\" without columns.arm_angle",

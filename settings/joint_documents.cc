@@ -117,12 +117,10 @@ void CountSeedUp(size_t index, TomlNode* root) {
   const TomlNode* given = noise->Find("seed");
   TomlNode seed;
   seed.kind = TomlNode::Kind::kInteger;
-  seed.integer = given != nullptr ? given->integer : 1;
   const auto step = static_cast<int64_t>(index);
-  const bool fits = given == nullptr || (given->is(TomlNode::Kind::kInteger) && given->integer >= 0 &&
-                                         given->integer <= std::numeric_limits<int64_t>::max() - step);
-  if (!fits) return;
-  seed.integer += step;
+  const std::optional<int64_t> first = given != nullptr ? WholeNumber(*given) : 1;
+  if (!first || *first < 0 || *first > std::numeric_limits<int64_t>::max() - step) return;
+  seed.integer = *first + step;
   Put(noise, "seed", seed);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/units.h"
 #include "model/terms/parameter_info.h"
@@ -131,6 +132,7 @@ UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_
 ModelWithText LoadModelWithText(const std::string& file) {
   ModelWithText model;
   model.text = ReadTextFile(file);
+  RequireKind(FileKind::kModel, model.text, file, "a model");
   TomlNode root = ParseToml(model.text, file);
   root.place = file;
   if (IncludeDefinitions(&root, file)) model.text = FormatToml(root);

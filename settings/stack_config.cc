@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/file_kind.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "settings/agreed_entries.h"
@@ -64,7 +65,10 @@ void CheckHasNoJoints(const StackConfig& config) {
 }  // namespace
 
 TomlNode ReadConfigDocument(const std::string& file) {
-  TomlNode root = ParseToml(ReadTextFile(file), file);
+  const std::string text = ReadTextFile(file);
+  if (const auto kind = FindFileKind(text); kind == FileKind::kSidecar || kind == FileKind::kStudy)
+    throw InputError(file + ": " + OtherKind(*kind, file, "the configuration of a stack"));
+  TomlNode root = ParseToml(text, file);
   root.place = file;
   if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
     throw InputError(file +

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/input_error.h"
+#include "base/number_text.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "design/fastest_motion.h"
@@ -106,8 +107,9 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
-  std::printf("%lld ticks, %.6g s of plant time in %.3g s, %.3g times real time\n",
-              static_cast<long long>(result.ticks), result.duration, wall, result.duration / wall);
+  std::printf("%lld ticks, %s s of plant time in %s s, %s times real time\n",
+              static_cast<long long>(result.ticks), hydro::ShortNumber(result.duration, 6).c_str(),
+              hydro::ShortNumber(wall, 3).c_str(), hydro::ShortNumber(result.duration / wall, 3).c_str());
   return result.exit_code;
 }
 

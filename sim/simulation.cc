@@ -1,7 +1,10 @@
 #include "sim/simulation.h"
 
+#include <algorithm>
+
 #include "base/host_name.h"
 #include "base/input_error.h"
+#include "base/random.h"
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
 #include "limb/limb.h"
@@ -20,6 +23,13 @@ void CheckEnds(const settings::StackConfig& config) {
                    "--duration S)");
 }
 
+// A run has one session, whose states are then told from those of any other run. It comes from what is simulated, so that the
+// same simulation gives the same log.
+int64_t SessionOf(const settings::StackConfig& config) {
+  const uint64_t key = Scatter(NameKey(config.text) ^ Scatter(NameKey(config.model.text)));
+  return std::max<int64_t>(1, static_cast<int64_t>(key >> 1));
+}
+
 // What the limb says of itself; each joint speaks on channels of its own.
 void DescribeLimb(const settings::LimbConfig& config,
                   const std::function<void(const bus::RawMessage&)>& tap) {
@@ -27,6 +37,7 @@ void DescribeLimb(const settings::LimbConfig& config,
   bus::InProcessBus bus(&clock);
   bus.SubscribeAll(tap);
   run_description_t description = limb::DescriptionOf(config, "hydro-sim");
+  description.session = SessionOf(config.common);
   description.utime = clock.Utime();
   description.host = HostName();
   bus.Publish(bus::Channels(config.common.bus.channel_suffix).Of<run_description_t>(), description);
@@ -42,7 +53,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
   CheckEnds(config);
   settings::StackConfig lockstep = config;
   lockstep.time.mode = settings::TimeMode::kLockstep;
-  bus::SimulatedClock clock;
+  bus::SimulatedClock clock(SessionOf(config));
   bus::InProcessBus bus(&clock);
   if (tap) bus.SubscribeAll(tap);
   settings::StackConfig simulated = lockstep;
@@ -72,7 +83,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
 SimulationResult SimulateLimb(const settings::LimbConfig& config,
                               const std::function<void(const bus::RawMessage&)>& tap) {
   CheckEnds(config.common);
-  limb::Limb limb(config, {.joints = {}, .program = "hydro-sim"});
+  limb::Limb limb(config, {.joints = {}, .program = "hydro-sim", .session = SessionOf(config.common)});
   if (tap) {
     DescribeLimb(config, tap);
     for (auto& joint : limb.joints()) joint->bus().SubscribeAll(tap);

@@ -4,6 +4,7 @@
 
 #include "base/text_file.h"
 #include "base/word_list.h"
+#include "tables/asked_layout.h"
 #include "tables/csv_cells.h"
 #include "tables/csv_lines.h"
 #include "tables/decimal_sign.h"
@@ -14,7 +15,6 @@ namespace {
 
 constexpr size_t kLookedLines = 500;  // lines from the top
 constexpr size_t kJudged = 20;        // lines of numbers that must fit for the most part
-constexpr char kSeparators[] = {',', ';', '\t', ' '};
 
 // A way to read the top of a text: lines of numbers, with names above them.
 struct Reading {
@@ -105,19 +105,6 @@ std::optional<Reading> Read(const Lines& lines, const std::string& file, char se
   return std::nullopt;
 }
 
-const char* NameOf(char separator) {
-  switch (separator) {
-    case ';':
-      return "semicolons";
-    case '\t':
-      return "tabs";
-    case ' ':
-      return "blanks";
-    default:
-      return "commas";
-  }
-}
-
 // What separates cells in the first line, for messages where the numbers do not tell.
 char SeparatorOfFirst(const Lines& lines) {
   for (const Line& line : lines) {
@@ -131,7 +118,8 @@ char SeparatorOfFirst(const Lines& lines) {
 }
 
 // The one reading of the text; empty where none fits.
-std::optional<Reading> FindReading(const Lines& lines, const std::string& file, const CsvSettings& settings) {
+std::optional<Reading> FindReading(const Lines& lines, const std::string& file, const CsvSettings& settings,
+                                   const AskedColumns& asked) {
   std::vector<Reading> readings;
   const Line* nameless = nullptr;
   for (const char separator : kSeparators) {
@@ -155,8 +143,8 @@ std::optional<Reading> FindReading(const Lines& lines, const std::string& file, 
                      ": found cells that may be separated by " + Joined(names, " or by ") +
                      ", allowed one separator: set separator in the sidecar");
   }
-  // Numbers with commas between them and no names have always been read as names.
-  if (nameless != nullptr && !AllNumbers(CellsOf(*nameless, ','))) {
+  // Where no names are asked for, numbers with commas between them may be names: of years, or channels.
+  if (nameless != nullptr && !(asked.all() && AllNumbers(CellsOf(*nameless, ',')))) {
     throw InputError(
         file + ": line " + std::to_string(nameless->number) +
         ": found numbers without as many names in the line above, allowed a line of column names; "
@@ -168,17 +156,27 @@ std::optional<Reading> FindReading(const Lines& lines, const std::string& file, 
 
 }  // namespace
 
-CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSettings& settings) {
+CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSettings& settings,
+                     const AskedColumns& asked) {
   text = WithoutByteOrderMark(text);
   const size_t skipped = settings.skip_lines.value_or(0);
   // Tabs at the ends of lines matter only between tabs, and leave the lines of the others as they are.
   const Lines lines = LinesOf(text, '\t', skipped, kLookedLines);
+  if (!asked.all()) {
+    std::optional<CsvLayout> found = FindAskedLayout(lines, file, settings, asked);
+    if (found.has_value()) {
+      found->decimal = settings.decimal.value_or('.');
+      if (!settings.decimal.has_value() && found->first_row > 0)
+        found->decimal = FindDecimal(text, file, *found, found->first_row, asked);
+      return *found;
+    }
+  }
   CsvLayout layout;
   layout.separator = settings.separator.value_or(',');
   layout.decimal = settings.decimal.value_or('.');
   layout.skip_lines = skipped;
   layout.units_row = settings.units_row.value_or(false);
-  const std::optional<Reading> reading = FindReading(lines, file, settings);
+  const std::optional<Reading> reading = FindReading(lines, file, settings, asked);
   if (!reading.has_value()) {
     layout.separator = settings.separator.value_or(SeparatorOfFirst(lines));
     return layout;
@@ -192,7 +190,7 @@ CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSe
     layout.skip_lines = first;
   }
   if (!settings.decimal.has_value()) {
-    layout.decimal = FindDecimal(text, file, layout.separator, lines[reading->rows].number);
+    layout.decimal = FindDecimal(text, file, layout, lines[reading->rows].number);
   }
   return layout;
 }
@@ -203,6 +201,8 @@ std::string Described(const CsvLayout& layout) {
   if (layout.decimal != '.') parts.emplace_back("decimal commas");
   if (layout.skip_lines > 0) parts.push_back("names after line " + std::to_string(layout.skip_lines));
   if (layout.units_row) parts.emplace_back("a row of units");
+  for (const size_t line : layout.passed_over)
+    parts.push_back("line " + std::to_string(line) + " passed over, which is neither units nor numbers");
   return Joined(parts);
 }
 

@@ -7,6 +7,11 @@
 
 namespace hydro::tables {
 
+// What may stand between cells; ' ' is any run of blanks and tabs.
+inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
+
+const char* NameOf(char separator);
+
 struct Line {
   std::string_view text;
   size_t number = 0;  // from 1

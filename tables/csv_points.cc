@@ -13,7 +13,7 @@ namespace {
 
 size_t ColumnOf(const CsvText& text, const std::string& name) {
   std::vector<std::string> names;
-  for (const std::string_view column : text.names()) names.emplace_back(Trimmed(column));
+  for (const std::string& column : text.names()) names.emplace_back(Trimmed(column));
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     throw InputError(text.Place() + ": found no column " + Quoted(name) + ", allowed " + QuotedList(names) +

@@ -11,8 +11,40 @@ namespace hydro::tables {
 CsvText::CsvText(std::string_view text, std::string file, const CsvLayout& layout)
     : text_(text), file_(std::move(file)), layout_(layout) {
   text_ = WithoutByteOrderMark(text_);
+  if (layout_.names_line == 0) {
+    FindNames();
+    if (layout_.units_row) ReadUnits();
+    return;
+  }
+  SplitCells(TakeLineOf(layout_.names_line), layout_.separator, cells_);
+  for (const std::string_view cell : cells_) names_.push_back(CellText(cell));
+  const size_t names_line = line_;
+  if (layout_.units_line > 0) {
+    SplitCells(TakeLineOf(layout_.units_line), layout_.separator, cells_);
+    for (const std::string_view cell : cells_) units_.push_back(CellText(cell));
+    units_.resize(names_.size());
+  }
   std::string_view line;
+  while (taken_ + 1 < layout_.first_row && !text_.empty()) TakeRawLine(&line);
+  line_ = names_line;
+}
+
+std::string_view CsvText::TakeLineOf(size_t line) {
+  std::string_view text;
+  do {
+    // What comes before the names may be of any text, with any quotes.
+    any_quotes_ = taken_ + 1 < layout_.names_line;
+    TakeRawLine(&text);
+  } while (line_ < line && !text_.empty());
+  any_quotes_ = false;
+  return text;
+}
+
+void CsvText::FindNames() {
+  std::string_view line;
+  any_quotes_ = true;
   while (taken_ < layout_.skip_lines && !text_.empty()) TakeRawLine(&line);
+  any_quotes_ = false;
   comment_ = {};
   const bool found = TakeLine(&line);
   if (found) SplitCells(line, layout_.separator, cells_);
@@ -24,29 +56,29 @@ CsvText::CsvText(std::string_view text, std::string file, const CsvLayout& layou
   } else if (!found) {
     throw InputError(file_ + ": found no line of column names, allowed one above the rows");
   }
-  names_ = cells_;
-  if (layout_.units_row) ReadUnits();
+  for (const std::string_view cell : cells_) names_.push_back(CellText(cell));
 }
 
 void CsvText::ReadUnits() {
   const size_t line = line_;
   if (!TakeRow()) throw InputError(file_ + ": found no row of units, allowed one below the column names");
-  units_ = cells_;
-  cells_ = names_;
+  for (const std::string_view cell : cells_) units_.push_back(CellText(cell));
   line_ = line;
 }
 
 void CsvText::TakeRawLine(std::string_view* line) {
-  const size_t end = text_.find('\n');
-  *line = WithoutEnd(text_.substr(0, end), layout_.separator);
-  text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
-  ++taken_;
+  const size_t end = any_quotes_ ? text_.find('\n') : EndOfLine(text_);
+  const std::string_view whole = text_.substr(0, end);
+  *line = WithoutEnd(whole, layout_.separator);
+  unended_ = end == std::string_view::npos;
+  text_.remove_prefix(unended_ ? text_.size() : end + 1);
+  line_ = taken_ + 1;
+  taken_ = line_ + static_cast<size_t>(std::count(whole.begin(), whole.end(), '\n'));
 }
 
 bool CsvText::TakeLine(std::string_view* line) {
   while (!text_.empty()) {
     TakeRawLine(line);
-    line_ = taken_;
     if (line->starts_with('#')) {
       comment_ = *line;
       comment_line_ = line_;
@@ -83,6 +115,10 @@ bool CsvText::TakeRow() {
     return false;
   }
   SplitCells(line, layout_.separator, cells_);
+  if (pass_over_cut_ && unended_ && cells_.size() < names_.size()) {
+    cut_line_ = line_;
+    return false;
+  }
   if (cells_.size() != names_.size()) {
     throw InputError(Place() + ": found " + std::to_string(cells_.size()) + " cells, allowed " +
                      std::to_string(names_.size()) + ", as many as there are names");
@@ -100,8 +136,8 @@ std::optional<double> CsvText::Number(size_t column) const {
 std::string CsvText::Place() const { return file_ + ": line " + std::to_string(line_); }
 
 InputError CsvText::CellError(size_t column, const std::string& allowed) const {
-  return InputError(Place() + ", column " + std::string(names_[column]) + ": found " +
-                    Quoted(cells_[column]) + ", allowed " + allowed);
+  return InputError(Place() + ", column " + names_[column] + ": found " + Quoted(cells_[column]) +
+                    ", allowed " + allowed);
 }
 
 }  // namespace hydro::tables

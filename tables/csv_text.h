@@ -24,13 +24,19 @@ class CsvText {
   // the reader. Throws InputError when there is no line of names.
   CsvText(std::string_view text, std::string file, const CsvLayout& layout = {});
 
-  const std::vector<std::string_view>& names() const { return names_; }
+  const std::vector<std::string>& names() const { return names_; }
   // One a column, or none.
-  const std::vector<std::string_view>& units() const { return units_; }
+  const std::vector<std::string>& units() const { return units_; }
 
   // Advances to the next row; false when there is none left. Throws InputError for a row with more or fewer
   // cells than names, and when there is no row at all.
   bool Next();
+
+  // Whether the row is the last line of the text and has no line end: the file may have been cut there.
+  bool unended() const { return unended_; }
+  // With it, a row that is cut before its last cell is passed over and counts as the text's end; its line is kept here.
+  void PassOverCutRow() { pass_over_cut_ = true; }
+  size_t cut_line() const { return cut_line_; }
 
   std::string_view cell(size_t column) const { return cells_[column]; }
   // The cell as a number; empty if it is not one.
@@ -48,14 +54,17 @@ class CsvText {
   bool TakeLine(std::string_view* line);
   // Splits the next line into cells, as many as there are names; false when there is none.
   bool TakeRow();
+  void FindNames();
   void ReadUnits();
+  // Removes the lines before this one, and it.
+  std::string_view TakeLineOf(size_t line);
   bool AllNumbers() const;
 
   std::string_view text_;
   std::string file_;
   CsvLayout layout_;
-  std::vector<std::string_view> names_;
-  std::vector<std::string_view> units_;
+  std::vector<std::string> names_;
+  std::vector<std::string> units_;
   std::vector<std::string_view> cells_;
   std::string_view comment_;  // the last line with #
   std::string_view waiting_;  // a row that was read as the line of names
@@ -63,7 +72,11 @@ class CsvText {
   size_t line_ = 0;
   size_t comment_line_ = 0;
   size_t waiting_line_ = 0;
+  size_t cut_line_ = 0;
   bool any_row_ = false;
+  bool unended_ = false;
+  bool pass_over_cut_ = false;
+  bool any_quotes_ = false;  // a line ends at its line feed, whatever its quotes
 };
 
 }  // namespace hydro::tables

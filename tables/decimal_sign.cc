@@ -1,5 +1,6 @@
 #include "tables/decimal_sign.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "tables/csv_cells.h"
@@ -25,18 +26,36 @@ bool MayBeThousands(std::string_view cell) {
   return true;
 }
 
+// Which cells of a row are asked for; empty: all.
+std::vector<bool> AskedPlaces(std::string_view text, const CsvLayout& layout, const AskedColumns& asked) {
+  if (asked.all() || layout.names_line == 0) return {};
+  const Lines lines = LinesOf(text, layout.separator, layout.names_line - 1, 1);
+  std::vector<bool> places;
+  for (const std::string_view cell :
+       lines.empty() ? std::vector<std::string_view>{} : CellsOf(lines[0], layout.separator))
+    places.push_back(asked.Has(CellText(cell)));
+  return places;
+}
+
 }  // namespace
 
-char FindDecimal(std::string_view text, const std::string& file, char separator, size_t first) {
+char FindDecimal(std::string_view text, const std::string& file, const CsvLayout& layout, size_t first,
+                 const AskedColumns& asked) {
+  const char separator = layout.separator;
   // Between commas, only quotes can hold a decimal one.
   if (separator == ',' && text.find('"') == std::string_view::npos) return '.';
   size_t with_point = 0, with_comma = 0;  // the first lines that have them
   bool thousands = true;
+  const std::vector<bool> judged = AskedPlaces(text, layout, asked);
   std::vector<std::string_view> cells;
   for (const Line& line : LinesOf(text, separator, first - 1, std::string_view::npos)) {
     if (line.comment || line.text.find_first_of(".,") == std::string_view::npos) continue;
     SplitCells(line.text, separator, cells);
-    for (const std::string_view cell : cells) {
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const std::string_view cell = cells[i];
+      // A time of day has a sign of its own: 10:30:25,005.
+      if ((!judged.empty() && (i >= judged.size() || !judged[i])) || cell.find(':') != std::string_view::npos)
+        continue;
       if (cell.find(',') != std::string_view::npos) {
         if (with_comma == 0) with_comma = line.number;
         thousands = thousands && MayBeThousands(cell);

@@ -5,7 +5,9 @@
 #include <cctype>
 #include <filesystem>
 
+#include "base/file_kind.h"
 #include "base/input_error.h"
+#include "base/mapped_file.h"
 #include "base/text_file.h"
 
 namespace hydro::tables {
@@ -17,6 +19,13 @@ std::string EndingOf(const std::string& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
+}
+
+constexpr char kATable[] = "a table (CSV, or MAT named .mat)";
+
+std::optional<FileKind> KindOf(const MappedFile& file) {
+  constexpr size_t kLooked = 4096;
+  return FindFileKind({reinterpret_cast<const char*>(file.data()), std::min(file.size(), kLooked)});
 }
 
 }  // namespace
@@ -35,6 +44,8 @@ std::string Table::WhyNot(std::string_view name) const {
   return {};
 }
 
+void Table::Note(const std::string& what) { layout += (layout.empty() ? "" : ", ") + what; }
+
 std::string Table::Place(size_t row, std::string_view column) const {
   return file + ": " +
          (lines.empty() ? "row " + std::to_string(row + 1) : "line " + std::to_string(lines[row])) +
@@ -47,8 +58,25 @@ bool IsTable(const std::string& file) {
   return std::any_of(kEndings.begin(), kEndings.end(), [&](const char* one) { return ending == one; });
 }
 
-Table ReadTable(const std::string& file, const CsvSettings& settings) {
-  return EndingOf(file) == ".mat" ? ReadMat(file) : ReadCsv(file, settings);
+void RequireTableName(const std::string& file) {
+  if (IsTable(file)) return;
+  std::optional<FileKind> kind;
+  if (std::filesystem::is_regular_file(file)) kind = KindOf(MappedFile(file));
+  if (kind.has_value()) throw InputError(file + ": " + OtherKind(*kind, file, kATable));
+  throw InputError(
+      file +
+      ": found a name that tells no format of table; allowed are names that end in .csv, .tsv, .txt, .dat or "
+      ".mat: rename it");
+}
+
+Table ReadTable(const std::string& file, const CsvSettings& settings, const AskedColumns& asked) {
+  CheckIsFile(file);
+  const bool mat = EndingOf(file) == ".mat";
+  const std::optional<FileKind> kind = KindOf(MappedFile(file));
+  // MAT 7.3 is HDF5, with or without MATLAB's own header.
+  const bool fits = mat && (kind == FileKind::kMat || kind == FileKind::kHdf5);
+  if (kind.has_value() && !fits) throw InputError(file + ": " + OtherKind(*kind, file, kATable));
+  return mat ? ReadMat(file, asked) : ReadCsv(file, settings, asked);
 }
 
 Table ReadTableWithoutUnits(const std::string& file) {

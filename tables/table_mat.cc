@@ -14,11 +14,15 @@
 namespace hydro::tables {
 namespace {
 
-// As many as the vectors have that together hold most numbers: the signals.
-size_t RowsOfMost(const std::vector<MatVector>& vectors) {
+bool IsAsked(const MatVector& vector, const AskedColumns& asked) {
+  return asked.all() || asked.Has(vector.name);
+}
+
+// As many as the asked vectors have that together hold most numbers: the signals.
+size_t RowsOfMost(const std::vector<MatVector>& vectors, const AskedColumns& asked) {
   std::map<size_t, size_t> numbers;
   for (const MatVector& vector : vectors) {
-    if (vector.wrong.empty()) numbers[vector.values.size()] += vector.values.size();
+    if (vector.wrong.empty() && IsAsked(vector, asked)) numbers[vector.values.size()] += vector.values.size();
   }
   const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
   const auto most = std::max_element(numbers.begin(), numbers.end(), fewer);
@@ -46,10 +50,10 @@ void TakeAll(std::vector<MatVector>& vectors, Table* table) {
   }
 }
 
-// A file with structs is what somebody had in mind: settings and texts beside the signals. What is no signal is left out, and why is
-// kept for who asks for it.
-void TakeSignals(std::vector<MatVector>& vectors, Table* table) {
-  const size_t rows = RowsOfMost(vectors);
+// A file with structs is what somebody had in mind: settings and texts beside the signals. What is no signal is left
+// out, here and where only some vectors are asked for, and why is kept for who asks for it.
+void TakeSignals(std::vector<MatVector>& vectors, const AskedColumns& asked, Table* table) {
+  const size_t rows = RowsOfMost(vectors, asked);
   for (MatVector& vector : vectors) {
     std::string wrong = vector.wrong;
     if (wrong.empty() && vector.values.size() != rows) wrong = RowsWrong(vector, rows, "its signals have");
@@ -65,11 +69,12 @@ void TakeSignals(std::vector<MatVector>& vectors, Table* table) {
 
 }  // namespace
 
-Table ReadMat(const std::string& file) {
+Table ReadMat(const std::string& file, const AskedColumns& asked) {
   Table table;
   table.file = file;
   MatContents found = ReadMatContents(file);
-  found.structs ? TakeSignals(found.vectors, &table) : TakeAll(found.vectors, &table);
+  for (const MatVector& vector : found.vectors) table.names.push_back(vector.name);
+  found.structs || !asked.all() ? TakeSignals(found.vectors, asked, &table) : TakeAll(found.vectors, &table);
   if (table.rows() == 0) {
     const std::string example =
         table.left_out.empty() ? "" : ": " + table.left_out.front().name + ": " + table.left_out.front().why;

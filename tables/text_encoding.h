@@ -14,4 +14,8 @@ namespace hydro::tables {
 // at the end of UTF-16; `file` is for messages. What is no character becomes U+FFFD.
 std::optional<std::string> FromUtf16(std::string_view text, const std::string& file);
 
+// Where the text is not UTF-8: "found byte 0xb0, which is not UTF-8, allowed UTF-8: save the table as UTF-8 (...)"; empty where
+// all of it is.
+std::string NotUtf8(std::string_view text);
+
 }  // namespace hydro::tables

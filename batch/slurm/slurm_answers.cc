@@ -99,6 +99,29 @@ std::vector<QueuedArray> ParseQueue(const std::string& text) {
   return list;
 }
 
+std::string WayOut(const std::string& refusal) {
+  // sbatch's words (slurm_errno.c), and what changes them.
+  constexpr std::pair<const char*, const char*> kWays[] = {
+      {"QOS policy",
+       "the cluster limits how many jobs a user may have, their size and their time: take fewer and longer "
+       "jobs "
+       "(--cases-per-job), fewer processors (--cpus-per-job), a shorter --time-limit, or another QOS "
+       "(--sbatch=--qos=NAME); sacctmgr show qos lists the limits"},
+      {"nvalid qos",
+       "give one that you may use with --sbatch=--qos=NAME; sacctmgr show assoc user=$USER "
+       "format=account,qos lists them"},
+      {"nvalid partition", "give one with --partition; sinfo lists them"},
+      {"nvalid account", "give one with --account; sacctmgr show assoc user=$USER lists yours"},
+      {"time limit", "give a shorter one with --time-limit; sinfo lists each partition's"},
+      {"job array specification", "take fewer jobs with more cases in each (--cases-per-job)"},
+      {"node configuration",
+       "ask for less: --cpus-per-job, --sbatch=--mem=SIZE; sinfo -N -l lists what the nodes have"}};
+  for (const auto& [words, way] : kWays) {
+    if (refusal.find(words) != std::string::npos) return way;
+  }
+  return {};
+}
+
 std::optional<double> ParseTimeLimit(const std::string& text) {
   const size_t dash = text.find('-');
   double days = 0;

@@ -24,6 +24,10 @@ std::optional<int64_t> ParseSubmitted(const std::string& text);
 inline constexpr const char* kQueueFormat = "%F|%T|%r|%j";
 std::vector<QueuedArray> ParseQueue(const std::string& text);
 
+// What helps where sbatch refuses with these words: the option to change, and the command that lists what is allowed; empty where
+// nothing is known to help.
+std::string WayOut(const std::string& refusal);
+
 // s; "30", "30:00", "1:30:00", "2-12", "2-12:30" (sbatch --time). None for other texts.
 std::optional<double> ParseTimeLimit(const std::string& text);
 

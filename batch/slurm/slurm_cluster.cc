@@ -40,7 +40,9 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
   const bool later = line.find("contact") != std::string::npos ||
                      line.find("timed out") != std::string::npos ||
                      line.find("temporarily unavailable") != std::string::npos;
-  throw ClusterError(line.starts_with(program) ? Printable(line) : program + ": " + Printable(line), !later);
+  std::string said = line.starts_with(program) ? Printable(line) : program + ": " + Printable(line);
+  if (const std::string way = WayOut(answer.err); !later && !way.empty()) said += "; " + way;
+  throw ClusterError(said, !later);
 }
 
 bool Never() { return false; }

@@ -162,12 +162,12 @@ void ReadRows(SectionReader* section, RowList* list) {
 
 void ReadCsvRows(const std::string& csv, const std::string& name, RowList* list) {
   tables::CsvText text(csv, name);
-  for (const std::string_view key : text.names()) list->keys.emplace_back(key);
+  list->keys.insert(list->keys.end(), text.names().begin(), text.names().end());
   while (text.Next()) {
     std::vector<Value> values;
     for (size_t i = 0; i < list->keys.size(); ++i) {
       if (text.cell(i).empty()) throw text.CellError(i, "a value");
-      values.push_back(ValueOfCell(std::string(text.cell(i))));
+      values.push_back(ValueOfCell(tables::CellText(text.cell(i))));
     }
     list->rows.push_back(std::move(values));
   }

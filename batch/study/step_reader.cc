@@ -26,9 +26,9 @@ std::vector<int> ReadExitCodes(SectionReader* section) {
   const std::string allowed = "a list of whole numbers from 0 to 255";
   std::vector<int> codes;
   for (const TomlNode& item : node->items) {
-    if (!item.is(Kind::kInteger) || item.integer < 0 || item.integer > 255)
-      throw section->Error("exit_codes", item.Shown(), allowed);
-    codes.push_back(static_cast<int>(item.integer));
+    const std::optional<int64_t> code = settings::WholeNumber(item);
+    if (!code || *code < 0 || *code > 255) throw section->Error("exit_codes", item.Shown(), allowed);
+    codes.push_back(static_cast<int>(*code));
   }
   if (codes.empty()) throw section->Error("exit_codes", node->Shown(), allowed);
   return codes;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "batch/study/factor_reader.h"
@@ -41,13 +42,16 @@ TomlNode AsTable(const TomlNode& item) {
   return table;
 }
 
+settings::TomlNode ReadStudyDocument(const std::string& file) {
+  const std::string text = ReadTextFile(file);
+  RequireKind(FileKind::kStudy, text, file, "a study");
+  return settings::ParseToml(text, file);
+}
+
 class Reader {
  public:
   Reader(const std::string& file, std::vector<settings::AskedKey>* asked)
-      : file_(file),
-        root_(settings::ParseToml(ReadTextFile(file), file)),
-        top_(root_, "", asked),
-        kept_(root_) {}
+      : file_(file), root_(ReadStudyDocument(file)), top_(root_, "", asked), kept_(root_) {}
 
   Study Read() {
     study_.name = std::filesystem::path(file_).stem().string();

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <optional>
+#include <string_view>
 
 #include "base/number_text.h"
 #include "base/units.h"
@@ -24,11 +25,9 @@ std::optional<SiUnit> SiUnitOf(const Comparison& row) {
 std::string PaperInSi(const std::string& text, const SiUnit& unit) {
   const size_t begin = text.find_first_of("0123456789.");
   if (begin == std::string::npos) return text;
-  const char* start = text.c_str() + begin;
-  char* end = nullptr;
-  const double value = std::strtod(start, &end);
-  if (end == start || *end != '\0') return text + " " + unit.from;
-  return text.substr(0, begin) + ShortNumber(value * unit.factor);
+  const std::optional<double> value = ParseNumber(std::string_view(text).substr(begin));
+  if (!value.has_value()) return text + " " + unit.from;
+  return text.substr(0, begin) + ShortNumber(*value * unit.factor);
 }
 
 // Width on a terminal in characters (UTF-8).

@@ -13,6 +13,14 @@ using Kind = TomlNode::Kind;
 
 }  // namespace
 
+std::optional<int64_t> WholeNumber(const TomlNode& node) {
+  constexpr double kExact = 9007199254740992;  // 2^53: above it, a double has no units
+  if (node.is(Kind::kInteger)) return node.integer;
+  const bool whole =
+      node.is(Kind::kFloat) && std::abs(node.number) <= kExact && std::floor(node.number) == node.number;
+  return whole ? std::optional(static_cast<int64_t>(node.number)) : std::nullopt;
+}
+
 InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
                     const std::string& allowed) {
   return InputError(place + ": " + key + ": found " + found + ", allowed " + allowed);
@@ -71,12 +79,13 @@ bool SectionReader::Integer(const std::string& key, int64_t* out, int64_t min, i
   NoteStandard(key, std::to_string(*out));
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
-  if (!node->is(Kind::kInteger) || node->integer < min || node->integer > max) {
+  const std::optional<int64_t> whole = WholeNumber(*node);
+  if (!whole || *whole < min || *whole > max) {
     std::string allowed = "a whole number of at least " + std::to_string(min);
     if (max != std::numeric_limits<int64_t>::max()) allowed += " and at most " + std::to_string(max);
     throw Error(key, node->Shown(), allowed);
   }
-  *out = node->integer;
+  *out = *whole;
   return true;
 }
 

@@ -23,6 +23,9 @@ InputError KeyError(const std::string& place, const std::string& key, const std:
 InputError KeyError(const TomlNode& root, const std::string& dotted_key, const std::string& found,
                     const std::string& allowed);
 
+// The value of a whole number; 1.0 is one too, as programs and spreadsheets write it so. Empty for any other value.
+std::optional<int64_t> WholeNumber(const TomlNode& node);
+
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

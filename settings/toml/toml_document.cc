@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
+#include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "settings/toml/section_lists.h"
@@ -183,7 +185,36 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
   return node;
 }
 
+namespace {
+
+// Files that are no text of settings, whatever the first byte is that TOML does not allow.
+void RefuseOtherKinds(const std::string& text, const std::string& name) {
+  const std::optional<FileKind> kind = FindFileKind(std::string_view(text).substr(0, 64));
+  if (!kind.has_value() || *kind >= FileKind::kStack) return;
+  throw InputError(name + ": " + OtherKind(*kind, name, "a TOML file"));
+}
+
+// Whether the first two lines have cells, as many in both, as a table has.
+bool LooksLikeTable(const std::string& text) {
+  const size_t end = text.find('\n');
+  if (end == std::string::npos) return false;
+  const size_t next = std::min(text.find('\n', end + 1), text.size());
+  const auto count = [&](size_t from, size_t to, char separator) {
+    return std::count(text.begin() + static_cast<std::ptrdiff_t>(from),
+                      text.begin() + static_cast<std::ptrdiff_t>(to), separator);
+  };
+  if (count(0, end, '=') > 0) return false;
+  for (const char separator : {',', ';', '\t'}) {
+    const auto cells = count(0, end, separator);
+    if (cells > 0 && cells == count(end + 1, next, separator)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 TomlNode ParseToml(const std::string& text, const std::string& name) {
+  RefuseOtherKinds(text, name);
   if (const std::string place = DepthScan(text).FirstTooDeep(); !place.empty()) {
     throw InputError(name + ":" + place);
   }
@@ -191,6 +222,12 @@ TomlNode ParseToml(const std::string& text, const std::string& name) {
     return Convert(toml::parse(text, name), name);
   } catch (const toml::parse_error& error) {
     RefuseSingleBrackets(text, name, error.source().begin.line);
+    if (LooksLikeTable(text)) {
+      throw InputError(
+          name +
+          ":1: syntax: found a table, allowed a TOML file; hydro-diagnose reads it with a sidecar beside it, "
+          "hydro-log import makes a log of export's columns");
+    }
     std::string description(error.description());
     std::replace_if(
         description.begin(), description.end(), [](unsigned char c) { return c < 0x20; }, ' ');

@@ -100,6 +100,21 @@ TEST_F(WriteExportTest, Csv) {
                           "2 runs,0,2,1,-5"));
 }
 
+// Tests that missing numbers can be written as nan, and that other cells stay as they are.
+TEST_F(WriteExportTest, MissingAsNan) {
+  ExportedRun run = EveryKind(2);
+  run.sheets.erase(run.sheets.begin() + 1);
+  WriteExport({run}, Format::kCsv, "test", Path("empty"));
+  WriteExport({run}, Format::kCsv, "test", Path("nan"), Missing::kNan);
+  const std::string empty = log::ReadBytes(Path("empty")), nan = log::ReadBytes(Path("nan"));
+  EXPECT_NE(empty, nan);
+  EXPECT_THAT(nan, HasSubstr("nan"));
+  std::string without = nan;
+  for (size_t at = without.find("nan"); at != std::string::npos; at = without.find("nan"))
+    without.erase(at, 3);
+  EXPECT_EQ(without, empty);
+}
+
 // Tests texts in UTF-16: beyond the first 65,536 letters, and bytes that are no UTF-8.
 TEST(MatLayoutTest, Utf16) {
   EXPECT_EQ(Utf16("a\xc2\xb5\xe2\x98\x82"), u"aµ☂");

@@ -44,13 +44,13 @@ class YourToolsTest(unittest.TestCase):
     def test_page(self):
         found = {name: [language for language, _ in blocks] for name, blocks in sections()}
         self.assertEqual(found, {"pandas": ["sh", "python"], "Jupyter": ["sh", "python"], "MATLAB": ["sh", "matlab"],
-                                 "Octave": ["sh", "octave", "sh"], "PlotJuggler": ["sh"], "Foxglove": ["sh"]})
+                                 "Octave": ["sh", "octave", "sh", "octave"], "PlotJuggler": ["sh"], "Foxglove": ["sh"]})
 
     # Tests that the lines run, and print what a reader expects of this log.
     def test_lines(self):
         expected = {"pandas": ["largest error 0", "p1_psi"], "Jupyter": ["HYDRO_STATE", " psi pressure of side 1", "hydro-sim"],
                     "MATLAB": ["401 states, pressures in psi", "1000 ticks a second", "0.4 s"],
-                    "Octave": ["30 rows from 0.01 s", "complete", "30 "], "PlotJuggler": [], "Foxglove": []}
+                    "Octave": ["30 rows from 0.01 s", "complete", "30 ", "missing: 0 with empty cells, 1 with nan"], "PlotJuggler": [], "Foxglove": []}
         for name, blocks in sections():
             with self.subTest(name):
                 modules = [module for _, text in blocks for module in re.findall(r"^import (\w+)", text, re.MULTILINE)]

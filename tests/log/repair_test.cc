@@ -145,15 +145,37 @@ TEST_F(RepairTest, UndecodableMessages) {
   EXPECT_TRUE(result.lost.empty());
 }
 
-// Tests that a whole log loses nothing, and that an empty one is whole.
+// Tests that a whole log loses nothing, and that one of no messages is whole as well.
 TEST_F(RepairTest, WholeLog) {
   WriteRun(Path("log"), SampleRun(20));
   RepairResult result;
   EXPECT_EQ(Repaired(ReadBytes(Path("log")), &result), ReadEvents(Path("log")));
   EXPECT_TRUE(result.lost.empty());
   EXPECT_EQ(ReadBytes(Path("repaired")), ReadBytes(Path("log")));
-  EXPECT_TRUE(Repaired("", &result).empty());
-  EXPECT_TRUE(result.lost.empty());
+  WriteEvents(Path("log"), {});
+  EXPECT_TRUE(Repaired(ReadBytes(Path("log")), &result).empty());
+  EXPECT_FALSE(result.mended());
+}
+
+// Tests that a log of which no message can be kept is not mended into one that looks like a run of nothing, in place neither.
+TEST_F(RepairTest, NothingToKeep) {
+  WriteRun(Path("log"), SampleRun(20));
+  const std::string bytes = ReadBytes(Path("log"));
+  LogReader reader(Path("log"));
+  LogEvent first;
+  ASSERT_TRUE(reader.Next(first));
+  for (const std::string& damaged : {std::string(), bytes.substr(0, static_cast<size_t>(first.offset)),
+                                     bytes.substr(0, static_cast<size_t>(first.offset) + 40)}) {
+    WriteBytes(Path("damaged"), damaged);
+    EXPECT_THAT(
+        InputErrorOf([&] { RepairLog(Path("damaged"), Path("out")); }),
+        HasSubstr("found no message that can be kept in " + std::to_string(damaged.size()) + " bytes"));
+    EXPECT_THAT(InputErrorOf([&] { RepairInPlace(Path("damaged")); }),
+                HasSubstr("found no message that can be kept"));
+    EXPECT_EQ(ReadBytes(Path("damaged")), damaged);
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+    EXPECT_FALSE(std::filesystem::exists(Path("damaged.damaged")));
+  }
 }
 
 // Tests that a file without any event is bad input, and that nothing is written then.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "settings/toml/section_reader.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {
@@ -34,6 +35,34 @@ TEST(TomlDocumentTest, RefusesWhatIsNotToml) {
     EXPECT_THAT(error, HasSubstr("f.toml:2: syntax: ")) << text;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
+}
+
+// Tests that a file of another program is told what it is and who reads it, instead of which of its bytes is no TOML.
+TEST(TomlDocumentTest, FilesOfOtherPrograms) {
+  EXPECT_EQ(InputErrorOf([&] { ParseToml("\xed\xa1\xda\x01....", "run.lcmlog"); }),
+            "run.lcmlog: found an LCM event log, allowed a TOML file; hydro-log info run.lcmlog says what is "
+            "in it, "
+            "hydro-log export run.lcmlog -o RUN.csv makes a table of it");
+  EXPECT_THAT(InputErrorOf([&] { ParseToml("{\"a\": 1}", "a.json"); }),
+              HasSubstr("a.json: found JSON, allowed a TOML file"));
+  EXPECT_THAT(InputErrorOf([&] { ParseToml("t;u\n0;1\n", "a.csv"); }),
+              HasSubstr("a.csv:1: syntax: found a table"));
+}
+
+// Tests that a whole number may have a point, as programs write it, and no fraction.
+TEST(TomlDocumentTest, WholeNumbers) {
+  const TomlNode root =
+      ParseToml("a = 1.0\nb = -3\nc = 1.5\nd = 1e300\ne = inf\nf = \"1\"\ng = 2e3\n", "f.toml");
+  EXPECT_EQ(WholeNumber(*root.Find("a")), 1);
+  EXPECT_EQ(WholeNumber(*root.Find("b")), -3);
+  EXPECT_EQ(WholeNumber(*root.Find("g")), 2000);
+  for (const char* key : {"c", "d", "e", "f"}) EXPECT_EQ(WholeNumber(*root.Find(key)), std::nullopt) << key;
+  SectionReader section(root, "");
+  int64_t seed = 0;
+  EXPECT_TRUE(section.Integer("a", &seed, 0, 10));
+  EXPECT_EQ(seed, 1);
+  EXPECT_THAT(InputErrorOf([&] { section.Integer("g", &seed, 0, 10); }),
+              HasSubstr("found 2000, allowed a whole number of at least 0 and at most 10"));
 }
 
 std::string Repeated(const std::string& text, int times) {

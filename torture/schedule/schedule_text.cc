@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/file_kind.h"
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "process/safety/safety_table.h"
@@ -142,6 +143,7 @@ std::string ScheduleText(const Schedule& schedule) {
 }
 
 Schedule ReadSchedule(const std::string& file, const std::string& text) {
+  RequireKind(FileKind::kSchedule, text, file, "a schedule of faults");
   Schedule schedule;
   std::istringstream lines(text);
   std::string content;

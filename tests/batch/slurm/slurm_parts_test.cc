@@ -36,6 +36,22 @@ TEST(SlurmAnswersTest, Limits) {
   EXPECT_EQ(ParseLimits("").array_jobs, 1001);
 }
 
+// Tests that what sbatch refuses comes with the option that helps, and that nothing is made up for other words.
+TEST(SlurmAnswersTest, WaysOut) {
+  EXPECT_THAT(
+      WayOut("sbatch: error: QOSMaxSubmitJobPerUserLimit\nsbatch: error: Batch job submission failed: Job "
+             "violates "
+             "accounting/QOS policy (job submit limit, user's size and/or time limits)"),
+      ::testing::AllOf(::testing::HasSubstr("--cases-per-job"), ::testing::HasSubstr("--sbatch=--qos=NAME"),
+                       ::testing::HasSubstr("sacctmgr show qos")));
+  EXPECT_THAT(WayOut("Batch job submission failed: Invalid qos specification"),
+              ::testing::HasSubstr("--sbatch=--qos=NAME"));
+  EXPECT_THAT(WayOut("error: invalid partition specified: nowhere"), ::testing::HasSubstr("--partition"));
+  EXPECT_THAT(WayOut("Requested time limit is invalid (missing or exceeds some limit)"),
+              ::testing::HasSubstr("--time-limit"));
+  EXPECT_EQ(WayOut("Socket timed out on send/recv operation"), "");
+}
+
 // Tests the id that sbatch prints, alone, with a cluster's name, after other lines, or not at all.
 TEST(SlurmAnswersTest, Submitted) {
   EXPECT_THAT(ParseSubmitted("1234\n"), Optional(1234));

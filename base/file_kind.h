@@ -1,0 +1,42 @@
+// What a file is that was given to the wrong program, and who reads it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/input_error.h"
+
+namespace hydro {
+
+enum class FileKind {
+  kLog,  // an LCM event log
+  kMat,
+  kHdf5,
+  kMcap,
+  kPicture,
+  kPage,
+  kPdf,
+  kSpreadsheet,
+  kCompressed,
+  kProgram,
+  kJson,
+  kStack,    // TOML: a configuration of a stack
+  kLimb,     // of a limb
+  kModel,    // a model's parameters
+  kSidecar,  // of a measured table
+  kStudy,    // of hydro-batch
+  kSchedule  // of hydro-torture
+};
+
+// The kind by the beginning of the file, 4 KiB or more where there are as many; empty for tables and any other text, and for what
+// is not known.
+std::optional<FileKind> FindFileKind(std::string_view beginning);
+
+// "found an LCM event log, allowed `allowed`; hydro-log info FILE says what is in it, ...".
+std::string OtherKind(FileKind kind, const std::string& file, const std::string& allowed);
+
+// Throws InputError with that where a text is known to be of another kind than `kind`.
+void RequireKind(FileKind kind, std::string_view text, const std::string& file, const std::string& allowed);
+
+}  // namespace hydro

@@ -1,0 +1,30 @@
+// Whose states a log holds: those of one run, or of several that were joined, merged or recorded together.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/input_error.h"
+#include "runs/run_log.h"
+
+namespace hydro::runs {
+
+// The messages of one run.
+struct SenderMessages {
+  int64_t session = 0;  // of its plant or driver
+  RunMessages messages;
+};
+
+// Whether there are states of several senders, or two different states of one tick.
+bool HoldsSeveralRuns(const RunMessages& messages);
+
+// The runs, in the order of their first states. One, as it is, where there is one. A message of another process belongs to the run
+// of its session, else to the one that was recorded around its time. Empty where runs of one session are mixed and cannot be
+// told apart.
+std::vector<SenderMessages> RunsIn(const RunMessages& messages);
+
+// Throws InputError where a log, or a joint's part of it, holds several runs: every figure would be a mean over both.
+void RequireOneRun(const RunLog& log);
+void RequireOneRun(const LimbLog& log);
+
+}  // namespace hydro::runs

@@ -1,0 +1,265 @@
+#include "runs/sidecar_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/did_you_mean.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "base/units.h"
+#include "base/word_list.h"
+#include "runs/counters.h"
+#include "runs/measured_signals.h"
+#include "runs/run_delays.h"
+#include "runs/signal_columns.h"
+#include "runs/signal_unit.h"
+#include "runs/table_times.h"
+
+namespace hydro::runs {
+namespace {
+
+// What a key of [columns] may name.
+std::string ColumnsOf(const tables::Table& table) {
+  return "a column of " + table.file + ": " + QuotedList(table.names);
+}
+
+// The factor to `ours` of the unit that an entry states; 1 where it states none.
+double ReadUnit(settings::SectionReader& section, const std::string& key, const std::string& ours) {
+  std::string unit;
+  if (!section.Text("unit", &unit)) return 1;
+  const std::optional<double> factor = UnitFactor(unit, ours);
+  if (factor.has_value()) return *factor;
+  std::string allowed = QuotedList(UnitsLike(ours));
+  if (key == "voltage") allowed += ", or no unit for a command that is not a voltage";
+  throw section.Error(
+      "unit", Quoted(unit) + (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit"),
+      allowed);
+}
+
+bool StatesUnit(const tables::Column& column) {
+  return !column.unit.empty() && column.unit != "-" && column.unit != "1";
+}
+
+// The factor to `ours` of the unit that the table's row of units has; 1 where it has none.
+double UnitOfRow(const settings::SectionReader& columns, const std::string& key, const std::string& ours,
+                 const tables::Column& column) {
+  if (!StatesUnit(column)) return 1;
+  const std::optional<double> factor = UnitFactor(column.unit, ours);
+  if (factor.has_value()) return *factor;
+  throw columns.Error(key, "the unit " + Quoted(column.unit) + " in the table's row of units",
+                      QuotedList(UnitsLike(ours)) + " there, or { column = " + Quoted(column.name) +
+                          ", ... } with a unit or a scale (scale = 1 for numbers in " + ours + ")");
+}
+
+// The column of that name; `key` is what asks for it.
+const tables::Column* FindColumn(const settings::SectionReader& columns, const std::string& key,
+                                 const std::string& name, const tables::Table& table) {
+  const tables::Column* column = table.Find(name);
+  if (column != nullptr) return column;
+  if (!table.not_utf8.empty()) throw InputError(table.not_utf8);
+  throw columns.Error(key, Quoted(name) + table.WhyNot(name),
+                      ColumnsOf(table) + DidYouMean(name, table.names));
+}
+
+// An entry as it stands in the sidecar.
+struct Entry {
+  SignalColumn source;
+  std::string column;
+  bool converts = false;  // what the sidecar states wins over the row of units
+};
+
+// One entry of [columns]: a name, or { column, scale, offset, unit, delay }. `ours` is the signal's unit in
+// the model.
+std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::string& key,
+                               const std::string& ours, const tables::Table& table) {
+  const settings::TomlNode* node = columns.Take(key);
+  if (node == nullptr) return std::nullopt;
+  Entry entry;
+  if (node->is(settings::TomlNode::Kind::kString)) {
+    entry.column = node->text;
+    return entry;
+  }
+  if (!node->is(settings::TomlNode::Kind::kTable)) {
+    throw columns.Error(key, node->Shown(),
+                        "the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = "
+                        "\"...\", delay = ... }");
+  }
+  settings::SectionReader section(*node, "columns." + key);
+  section.Require("column", "the name of a column of " + table.file);
+  section.Text("column", &entry.column);
+  entry.converts = section.Number("scale", &entry.source.scale) || section.Has("unit");
+  section.Number("offset", &entry.source.offset);
+  entry.source.unit = ReadUnit(section, key, ours);
+  std::string date;
+  if (key == "time" && section.Text("date", &date)) {
+    const auto known = std::find(table.names.begin(), table.names.end(), date);
+    if (known == table.names.end())
+      throw section.Error("date", Quoted(date), ColumnsOf(table) + DidYouMean(date, table.names));
+  }
+  const bool delayed = section.Number("delay", &entry.source.delay);
+  section.Finish();
+  if (delayed && key == "time") {
+    throw section.Error("delay", "it with time", "delay with the signals that are late against time");
+  }
+  if (entry.source.scale == 0) throw section.Error("scale", "0", "a finite number other than 0");
+  return entry;
+}
+
+std::optional<SignalColumn> ReadSource(settings::SectionReader& columns, const std::string& key,
+                                       const std::string& ours, const tables::Table& table) {
+  std::optional<Entry> entry = ReadEntry(columns, key, ours, table);
+  if (!entry.has_value()) return std::nullopt;
+  SignalColumn& source = entry->source;
+  source.column = FindColumn(columns, key, entry->column, table);
+  if (!entry->converts) {
+    source.unit = UnitOfRow(columns, key, ours, *source.column);
+    source.by_row = StatesUnit(*source.column);
+  }
+  return source;
+}
+
+// Times of the clock are in s, whatever the sidecar or the row of units would make of numbers.
+void RequireSeconds(const settings::SectionReader& columns, const tables::Table& table, SignalColumn* time) {
+  const bool numbers =
+      table.time_kind == tables::TimeKind::kNumbers || table.time_kind == tables::TimeKind::kWholeNumbers;
+  if (numbers) return;
+  if (!time->by_row && (time->unit != 1 || time->scale != 1))
+    throw columns.Error("time", "a unit or a scale for dates or times of day", "neither: they are read in s");
+  time->unit = 1;
+  time->by_row = false;
+}
+
+// { every = S }: no column, S seconds from row to row.
+std::optional<double> ReadEvery(settings::SectionReader& columns) {
+  const settings::TomlNode* node = columns.Take("time");
+  if (node == nullptr || !node->is(settings::TomlNode::Kind::kTable) || node->Find("every") == nullptr)
+    return std::nullopt;
+  settings::SectionReader section(*node, "columns.time");
+  double every = 0;
+  section.Number("every", &every, settings::kPositive);
+  section.Finish();
+  return every;
+}
+
+using Sources = std::array<std::optional<SignalColumn>, kSignals.size()>;
+
+// Adds to the run's layout which units of the row were used.
+void NoteUnits(const tables::Table& table, const std::optional<SignalColumn>& time, const Sources& sources,
+               MeasuredRun* run) {
+  const bool row = std::any_of(table.columns.begin(), table.columns.end(),
+                               [](const tables::Column& column) { return !column.unit.empty(); });
+  if (!row) return;
+  std::vector<std::string> used;
+  if (time.has_value() && time->by_row) used.push_back("time in " + time->column->unit);
+  for (size_t i = 0; i < sources.size(); ++i) {
+    if (!sources[i].has_value() || !sources[i]->by_row) continue;
+    used.push_back(std::string(kSignals[i].ours) + " in " + sources[i]->column->unit);
+  }
+  run->layout += used.empty() ? ", whose units the sidecar replaces" : " (" + Joined(used) + ")";
+}
+
+// What few bits have done to the signals.
+void CountOnAndDoubt(const Sources& sources, tables::Table* table, MeasuredRun* run) {
+  const SignalColumn *command = nullptr, *speed = nullptr;
+  for (size_t i = 0; i < kSignals.size(); ++i) {
+    if (!sources[i].has_value()) continue;
+    const auto signal = kSignals[i].signal;
+    if (signal == &MeasuredRun::voltage) command = &*sources[i];
+    if (signal == &MeasuredRun::motor_speed) speed = &*sources[i];
+    const bool arm = signal == &MeasuredRun::arm_angle;
+    if (!arm && signal != &MeasuredRun::motor_angle) continue;
+    const double revolution = arm && run->units.linear_arm ? 0 : 2 * std::numbers::pi;
+    CountAngleOn(*sources[i], kSignals[i].ours, revolution, table);
+  }
+  if (command == nullptr || speed == nullptr) return;
+  run->caution = UnsignedCommand(*command, SignalValues(*table, *speed), *table);
+}
+
+// The run's times by the number of the row.
+void CountRows(double every, tables::Table* table, MeasuredRun* run) {
+  for (size_t row = 0; row < table->rows(); ++row) run->time.push_back(every * static_cast<double>(row));
+  run->time_source = {"(" + ShortestNumber(every) + " s a row)"};
+  table->Note("times from the number of the row, " + ShortestNumber(every) + " s apart");
+  if (run->time.size() < 2) throw InputError(table->file + ": found one row, allowed two or more");
+}
+
+}  // namespace
+
+tables::AskedColumns AskedBy(const settings::TomlNode& sidecar) {
+  tables::AskedColumns asked;
+  const settings::TomlNode* columns = sidecar.Find("columns");
+  if (columns == nullptr) return asked;
+  const auto text_of = [](const settings::TomlNode* node) {
+    return node != nullptr && node->is(settings::TomlNode::Kind::kString) ? node->text : std::string();
+  };
+  const auto name_of = [&](const std::string& key) {
+    const settings::TomlNode* node = columns->Find(key);
+    const bool table = node != nullptr && node->is(settings::TomlNode::Kind::kTable);
+    return table ? text_of(node->Find("column")) : text_of(node);
+  };
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && !asked.Has(name)) asked.names.push_back(name);
+    return name;
+  };
+  asked.time = add(name_of("time"));
+  const settings::TomlNode* time = columns->Find("time");
+  if (time != nullptr && time->is(settings::TomlNode::Kind::kTable))
+    asked.date = add(text_of(time->Find("date")));
+  for (const SignalName& name : kSignals) add(name_of(name.ours));
+  return asked;
+}
+
+void ReadColumns(settings::SectionReader columns, tables::Table* table, MeasuredRun* run) {
+  const std::optional<double> every = ReadEvery(columns);
+  std::optional<SignalColumn> time;
+  if (!every.has_value()) {
+    columns.Require("time", ColumnsOf(*table));
+    time = ReadSource(columns, "time", "s", *table);
+  }
+  columns.Require("voltage", ColumnsOf(*table));
+  Sources sources;
+  for (size_t i = 0; i < kSignals.size(); ++i) {
+    const SignalName& name = kSignals[i];
+    sources[i] = ReadSource(columns, name.ours, run->units.UnitFor(name.unit, name.arm), *table);
+  }
+  columns.Finish();
+  if (every.has_value()) {
+    CountRows(*every, table, run);
+  } else {
+    RequireSeconds(columns, *table, &*time);
+    MendTimes(*time, table);
+  }
+  CountOnAndDoubt(sources, table, run);
+  run->lines = table->lines;
+  run->layout = table->layout;
+  NoteUnits(*table, time, sources, run);
+
+  if (time.has_value()) {
+    run->time = SampleTimes(*table, *time);
+    run->time_source = time->Described();
+  }
+  std::vector<SignalDelay> delays;
+  for (size_t i = 0; i < kSignals.size(); ++i) {
+    if (!sources[i].has_value()) continue;
+    if (AllMissing(sources[i]->column->values)) {
+      throw columns.Error(kSignals[i].ours,
+                          Quoted(sources[i]->column->name) + ", which holds no value in any row",
+                          "a column with values, or leave " + std::string(kSignals[i].ours) + " out");
+    }
+    const bool command = kSignals[i].signal == &MeasuredRun::voltage;
+    MeasuredSignal& signal = run->*kSignals[i].signal;
+    signal.values = command ? CommandValues(*table, *sources[i]) : SignalValues(*table, *sources[i]);
+    signal.source = sources[i]->Described();
+    if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
+  }
+  if (!RemoveDelays(delays, run)) {
+    throw columns.Error("delay", "delays that leave fewer than two samples",
+                        "delays far below the run's length");
+  }
+}
+
+}  // namespace hydro::runs
