@@ -95,7 +95,8 @@ class FitProblem {
 
   // False if the solver can get nowhere because simulations fail.
   bool Solve(const FitOptions& options) {
-    FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is not an error
+    // A step that cannot be simulated is not an error. The flag is of the whole process: one thread sets it, before any solver reads it.
+    [[maybe_unused]] static const auto quiet = FLAGS_minloglevel = google::GLOG_FATAL;
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     if (!free_.empty() && runs_.size() > kFewRuns) EliminateStartsFirst(&solver);
