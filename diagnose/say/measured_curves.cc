@@ -137,6 +137,13 @@ OverVariable LeftOver(std::vector<CurvePoint> points) {
   return {squares > 0 && curve.size() > 0 ? curve.left / squares : 1, squares / noise};
 }
 
+// An angle that no sensor saw begins anywhere in each run, so that runs cannot be laid over each other.
+bool SeeAngles(const std::vector<LackingRun>& runs) {
+  return std::all_of(runs.begin(), runs.end(), [](const LackingRun& run) {
+    return run.motion.Of(GridChannel::kAngle).measured();
+  });
+}
+
 }  // namespace
 
 std::vector<MeasuredCurve> MeasuredCurves(const model::ModelDescription& given,
@@ -176,6 +183,7 @@ std::optional<MeasuredCurve> TermOf(const model::ModelDescription& model, const 
   model::ModelDescription without = model;
   std::erase_if(without.effects, is_it);
   const std::vector<LackingRun> lacking = LackingIn(model, runs, jobs);
+  if (IsWave(*description) && lacking.size() > 1 && !SeeAngles(lacking)) return std::nullopt;
   std::vector<BaseSeries> base;
   for (const LackingRun& run : lacking) base.push_back(run.base);
   const std::vector<BalanceSeries> effects = AlongRuns(without, lacking, base, jobs);

@@ -116,6 +116,18 @@ std::optional<MeasuredCurve> TermIn(const model::ModelDescription& truth, const 
   return diagnose::TermOf(truth, effect, PointersTo(runs), 2);
 }
 
+// Tests that cogging is drawn over an angle that was measured, and over none where runs may begin anywhere.
+TEST(TermOf, CoggingOverAMeasuredAngle) {
+  const model::ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
+  const auto term = TermIn(truth, "motor.cogging");
+  ASSERT_TRUE(term.has_value());
+  EXPECT_THAT(term->against, ::testing::StartsWith("motor_angle"));
+  std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.8, 3);
+  for (diagnose::RunData& run : runs) run.measured.motor_angle = {};
+  EXPECT_FALSE(diagnose::TermOf(truth, "motor.cogging", PointersTo(runs), 2).has_value());
+}
+
 // Tests that a drag is drawn as pump torque over motor speed: its own term is its equation, and what the runs
 // lack without it follows that.
 TEST(TermOf, ADragOverMotorSpeed) {
