@@ -17,6 +17,7 @@
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "diagnose/evidence/checklist.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/progress_bar.h"
@@ -261,6 +262,7 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
                                  held_out = ReadRuns(request.held_out, model.units);
   TellApart(request, &runs, &held_out);
   runs.insert(runs.end(), held_out.begin(), held_out.end());
+  for (const runs::MeasuredRun& run : runs) CheckUsable(run);
   for (const runs::MeasuredRun& run : runs) {
     std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);
     for (const ChecklistLine& line : Checklist(model, run, request.si))

@@ -25,7 +25,7 @@ constexpr double kShortest = 2;
 bool CanBeAligned(const Run& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
-         run.time.back() - run.time.front() >= kShortest;
+         run.time.back() - run.time.front() >= kShortest && MedianInterval(run.time) <= kSlowestSamples;
 }
 
 // The signals of a device, by name.

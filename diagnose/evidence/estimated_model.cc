@@ -50,10 +50,23 @@ std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, cons
   return sums;
 }
 
-// In the flows all is measured by D w: a displacement that the torques show scales the other flows.
-void ScaleFlows(double by, Parameters* p) {
-  p->beta /= by;
-  for (double Parameters::*member : {&Parameters::c, &Parameters::c_E, &Parameters::c_I}) p->*member *= by;
+// Whether any balance of the runs has a column of this value: a held arm shows nothing of its area.
+bool IsSeen(const ScanRuns& runs, const Rows& rows, double Parameters::*member) {
+  for (size_t i = 0; i < runs.meaning().size(); ++i) {
+    const ColumnMeaning& meaning = runs.meaning()[i];
+    const bool is_it =
+        meaning.kind == MeaningKind::kBase && model::BaseParameters()[meaning.base].member == member;
+    if (is_it && Acts(rows, static_cast<int>(i))) return true;
+  }
+  return false;
+}
+
+// In the flows all is measured by D w: a displacement that the torques show scales the other flows that the runs show.
+void ScaleFlows(const ScanRuns& runs, const Rows& rows, double by, Parameters* p) {
+  if (IsSeen(runs, rows, &Parameters::beta)) p->beta /= by;
+  for (double Parameters::*member : {&Parameters::c, &Parameters::c_E, &Parameters::c_I}) {
+    if (IsSeen(runs, rows, member)) p->*member *= by;
+  }
 }
 
 void SetBase(const ScanRuns& runs, const Rows& rows, const SetFit& fit, EstimatedModel* estimated) {
@@ -68,7 +81,7 @@ void SetBase(const ScanRuns& runs, const Rows& rows, const SetFit& fit, Estimate
     estimated->base.push_back(base);
   }
   const double displacement = given.D != 0 ? p.D / given.D : 1;
-  if (displacement != 1) ScaleFlows(displacement, &p);
+  if (displacement != 1) ScaleFlows(runs, rows, displacement, &p);
 }
 
 double Bounded(const model::ParameterInfo& info, double value) {

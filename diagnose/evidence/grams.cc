@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "model/terms/model_error.h"
+
 namespace hydro::diagnose {
 
 namespace {
@@ -39,7 +41,8 @@ void Check(const RowBlock& block, size_t columns) {
     throw std::invalid_argument("rows of a balance: sizes do not match");
   if (!block.X.allFinite() || !block.y.allFinite() || !block.noise_X.allFinite() ||
       !block.noise_y.allFinite())
-    throw std::invalid_argument("rows of a balance: a number is not finite");
+    throw model::ModelError(
+        "the model's values, or an effect's formula, give no finite number at the measured motion");
 }
 
 // The mean square of a column in a group.

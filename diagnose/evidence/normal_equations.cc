@@ -2,7 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <stdexcept>
+
+#include "model/terms/model_error.h"
 
 namespace hydro::diagnose {
 
@@ -15,7 +16,9 @@ namespace {
 PriorOfAmounts Inverted(const MatrixXd& covariance) {
   const Eigen::LLT<MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success)
-    throw std::invalid_argument("the prior of amounts is not positive definite");
+    throw model::ModelError(
+        "the model's values are beyond any machine's, or a signal is nothing throughout: nothing can be "
+        "measured by them");
   return {factor.solve(MatrixXd::Identity(covariance.rows(), covariance.cols())),
           2 * factor.matrixLLT().diagonal().array().log().sum()};
 }

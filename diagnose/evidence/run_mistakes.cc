@@ -17,8 +17,21 @@ using Mistakes = std::vector<RecordingMistake>;
 
 // Sets of which each is tried with one more mistake.
 constexpr size_t kExtended = 16;
-// s between samples: no recorder of such a machine is faster, and none slower that shows its motion.
-constexpr double kFastest = 5e-6, kSlowest = 0.25;
+// s between samples: no recorder of such a machine is faster.
+constexpr double kFastest = 5e-6;
+// Of a signal: standard deviations of its noise that it has to move by, up and down.
+constexpr double kSurelyMoves = 5;
+// Whether the motor surely moves: balances of a run at rest are those of noise, of which any unit explains some.
+bool Moves(const Run& run) {
+  for (const SignalOfRun signal : {&Run::motor_speed, &Run::motor_angle}) {
+    const runs::MeasuredSignal& measured = run.*signal;
+    if (!measured.measured()) continue;
+    const double steps = std::max(measured.noise.value_or(0), EstimateResolution(measured.values));
+    if (RangeOfValues(measured.values).size() > 2 * kSurelyMoves * steps) return true;
+  }
+  return false;
+}
+
 bool IsPossible(const Mistakes& mistakes, const RecordingMistake& one) {
   return std::none_of(mistakes.begin(), mistakes.end(),
                       [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
@@ -39,10 +52,11 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
     runs::MeasuredSignal& signal = run_.*one.signal;
     if (signal.measured() && !signal.noise.has_value()) signal.noise = EstimateNoise(signal.values);
   }
+  moves_ = Moves(run_);
   const double interval = MedianInterval(run_.time);
   std::erase_if(possible_, [&](const RecordingMistake& mistake) {
     const double step = mistake.time_factor * interval;
-    return mistake.time_factor != 1 && (step > kSlowest || step < kFastest);
+    return mistake.time_factor != 1 && (step > kSlowestSamples || step < kFastest);
   });
   const Mistakes shafts = OtherShafts(run_);
   possible_.insert(possible_.end(), shafts.begin(), shafts.end());
@@ -58,7 +72,7 @@ const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
     std::get<model::Shaft>(reading) = one.shaft.value_or(std::get<model::Shaft>(reading));
     if (one.unsigned_signal.has_value()) std::get<std::string>(reading) += NameOf(*one.unsigned_signal);
   }
-  if (std::get<double>(reading) * MedianInterval(run_.time) > kSlowest) return nullptr;
+  if (std::get<double>(reading) * MedianInterval(run_.time) > kSlowestSamples) return nullptr;
   const auto known = readings_.find(reading);
   if (known != readings_.end()) return &known->second;
   Run run = run_;
@@ -86,6 +100,7 @@ MistakeTrial RunMistakes::Try(const Mistakes& mistakes) const {
 }
 
 std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_is_up) const {
+  if (!moves_) return {};
   std::vector<MistakeTrial> all;
   std::vector<MistakeTrial> from = {{}};
   double best = 0;

@@ -46,6 +46,7 @@ class RunMistakes {
   runs::MeasuredRun run_;
   std::vector<RecordingMistake> possible_;
   double as_recorded_ = 0;
+  bool moves_ = false;  // the motor: nothing is said of a run at rest
   // By the times' factor, the shaft, and the signals that are read as signed numbers.
   mutable std::map<std::tuple<double, model::Shaft, std::string>, RecordingBalances> readings_;
 };

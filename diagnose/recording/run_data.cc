@@ -237,11 +237,30 @@ ValueRange RangeOfValues(const std::vector<double>& values) {
   return range;
 }
 
+namespace {
+
+// Between two rows there may be as many samples as the recording has ten times over, or as a minute has at 2 kHz: what follows puts a
+// recording on an even grid.
+void CheckGaps(const runs::MeasuredRun& run) {
+  constexpr double kTimesTheRows = 10, kAnyway = 120000;
+  const double interval = MedianInterval(run.time), rows = static_cast<double>(run.samples());
+  for (size_t i = 1; i < run.samples(); ++i) {
+    const double gap = run.time[i] - run.time[i - 1];
+    if (gap <= interval * (kTimesTheRows * rows + kAnyway)) continue;
+    Refuse(run.file, "time",
+           "no row between " + ShortNumber(run.time[i - 1]) + " and " + ShortNumber(run.time[i]) + " s",
+           "rows without a gap as long: make a table of what is before it and one of what is after it");
+  }
+}
+
+}  // namespace
+
 void CheckUsable(const runs::MeasuredRun& run) {
   if (run.samples() < kFewestSamples) {
     Refuse(run.file, "", std::to_string(run.samples()) + " samples",
            std::to_string(kFewestSamples) + " or more");
   }
+  CheckGaps(run);
   for (size_t place = 0; place < model::kChannels; ++place) {
     const runs::SignalName& row = SignalOf(static_cast<model::Channel>(place));
     if ((run.*row.signal).measured()) CheckShows(run, row);
@@ -250,6 +269,11 @@ void CheckUsable(const runs::MeasuredRun& run) {
 
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckUsable(run);
+  if (const double interval = MedianInterval(run.time); interval > kSlowestSamples) {
+    Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
+           "at most " + ShortNumber(kSlowestSamples) +
+               " s: slower ones show no motion of such a machine (is the column in ms or us? unit = \"ms\")");
+  }
   RunData data;
   data.name = run.name;
   data.stimulus = StimulusOf(run);

@@ -5,6 +5,9 @@
 
 namespace hydro::diagnose {
 
+// s between samples: slower recorders do not show the motion of such a machine.
+inline constexpr double kSlowestSamples = 0.25;
+
 // The median time between successive samples, s; 1 when there are fewer than two.
 double MedianInterval(const std::vector<double>& time);
 // The same over several recordings together.

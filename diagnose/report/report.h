@@ -32,7 +32,7 @@ std::string WithInterval(const Estimated& estimated);
 // "Cannot be judged from these runs: valve.relief and line.wave, because p1 and p2 were not recorded"
 std::string UnjudgedText(const Unjudged& unjudged);
 
-// What an explanation changes, in words: "pump.stribeck + another value of b", "nothing is missing".
+// What an explanation changes, in words: "pump.stribeck + another value of b", "no effect (other values at most)".
 std::string InWords(const WeightedSet& explanation);
 
 }  // namespace hydro::diagnose

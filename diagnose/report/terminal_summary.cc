@@ -145,7 +145,7 @@ std::string SectionOf(std::string heading) {
 }  // namespace
 
 std::string InWords(const WeightedSet& explanation) {
-  if (explanation.changes.empty()) return "nothing is missing";
+  if (explanation.changes.empty()) return "no effect (other values at most)";
   std::vector<std::string> parts;
   for (const std::string& change : explanation.changes) parts.push_back(ChangeInWords(change));
   return Joined(parts, " + ");

@@ -38,9 +38,9 @@ std::vector<std::string> EffectsOf(const Diagnosis& d) {
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
   std::vector<std::string> parameters;
   for (const ChangedParameter& changed : d.parameters) {
-    if (changed.resting) continue;
-    parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
-                         ShortNumber(changed.model));
+    const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
+    if (!changed.resting && now != before)
+      parameters.push_back(changed.fitted.name + " = " + now + " instead of " + before);
   }
   if (parameters.empty() && d.effects.empty()) {
     parameters.emplace_back("several together, none of which these runs show alone (see the remarks)");

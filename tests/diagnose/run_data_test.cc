@@ -109,6 +109,28 @@ TEST(PrepareRun, RestIsRest) {
   }
 }
 
+// Tests that a recording that cannot be put on an even grid is refused, with where and what to do: rows without end between two, and rows
+// too far apart to show a motion.
+TEST(PrepareRun, RefusesTimesWithoutMotion) {
+  const auto error = [](const runs::MeasuredRun& run) -> std::string {
+    try {
+      PrepareRun(run, testing::Table1());
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  runs::MeasuredRun gap = WithArm(model::Shaft::kFree);
+  for (size_t i = 300; i < gap.samples(); ++i) gap.time[i] += 1e7;
+  EXPECT_THAT(error(gap), ::testing::AllOf(HasSubstr("time: found no row between"), HasSubstr("1e+07")));
+  runs::MeasuredRun short_gap = WithArm(model::Shaft::kFree);
+  for (size_t i = 300; i < short_gap.samples(); ++i) short_gap.time[i] += 5;
+  EXPECT_EQ(error(short_gap), "");
+  runs::MeasuredRun slow = WithArm(model::Shaft::kFree);
+  for (double& time : slow.time) time *= 1e6;
+  EXPECT_THAT(error(slow), HasSubstr("unit = \"ms\""));
+}
+
 // Tests that a free arm is compared, and starts at a speed from the angle's slope.
 TEST(PrepareRun, Free) {
   const RunData data = PrepareRun(WithArm(model::Shaft::kFree), testing::Table1());

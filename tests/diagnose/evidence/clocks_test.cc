@@ -163,7 +163,7 @@ TEST(LayoutRemarks, SayHowTablesWereRead) {
   run.p1.noise = 0.5;
   run.units = kSiUnits;
   const RunData noisy = PrepareRun(run, testing::Table1());
-  EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa, 3.2 times the stated 0.5")));
+  EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa, 3 times the stated 0.5")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "diagnose/evidence/recording_balances.h"
 #include "tests/diagnose/noisy_rig.h"
@@ -132,6 +133,23 @@ TEST(RunMistakes, SignedNumbersReadAsUnsigned) {
                           .measured;
   one_way.voltage.source.scale = 0.01;
   EXPECT_LT(RunMistakes(kAsGiven, one_way).Search(NeverUp).front().Merit(), 0);
+}
+
+// Tests that nothing is said of a run at rest: noise in other units is noise.
+TEST(RunMistakes, NothingOfARunAtRest) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Recording run = Recorded(model::Shaft::kClamped);
+    run.motor_angle = {};
+    for (size_t k = 0; k < run.samples(); ++k) {
+      run.voltage.values[k] = 0.3 * std::sin(0.01 * static_cast<double>(k));
+      run.motor_speed.values[k] = 0.3 * normal(random);
+      run.p1.values[k] = 100 + 1.5 * normal(random);
+      run.p2.values[k] = 100 + 1.5 * normal(random);
+    }
+    EXPECT_TRUE(RunMistakes(kAsGiven, run).Search(NeverUp).empty()) << seed;
+  }
 }
 
 // Tests that a factor without a unit gains where it is right, and half of it less.

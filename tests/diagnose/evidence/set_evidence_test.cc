@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "made_rows.h"
+#include "model/terms/model_error.h"
 
 namespace hydro::testing {
 namespace {
@@ -255,13 +256,13 @@ TEST(SetEvidenceTest, Refuses) {
   Rows rows = MakeRows({});
   EXPECT_THROW(SetEvidence(rows).Log({"pump.unheard_of"}), std::out_of_range);
   rows.blocks[1].y[3] = NAN;
-  EXPECT_THROW(SetEvidence{rows}, std::invalid_argument);
+  EXPECT_THROW(SetEvidence{rows}, model::ModelError);
   rows = MakeRows({});
   rows.blocks[0].band.pop_back();
   EXPECT_THROW(SetEvidence{rows}, std::invalid_argument);
   rows = MakeRows({});
   rows.prior(0, 0) = 0;
-  EXPECT_THROW(SetEvidence{rows}, std::invalid_argument);
+  EXPECT_THROW(SetEvidence{rows}, model::ModelError);
 }
 
 // Tests the odds of changes: variants share theirs, closures are rare.

@@ -67,12 +67,17 @@ TEST(Sentence, NoImprovementIsClaimed) {
 // Tests that a value which the runs do not show apart from others is left to its remark.
 TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   diagnose::Diagnosis d = With(Verdict::kPartly);
-  diagnose::ChangedParameter b, J;
+  diagnose::ChangedParameter b, J, beta;
   b.fitted.name = "b";
   J.fitted.name = "J";
+  beta.fitted.name = "beta";
+  b.fitted.value = J.fitted.value = 1;
   J.resting = true;
-  d.parameters = {b, J};
-  EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = "))));
+  // Nor is a value of which a reader sees no change.
+  beta.model = 100000;
+  beta.fitted.value = 100000.01;
+  d.parameters = {b, J, beta};
+  EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = ")), Not(HasSubstr("beta = "))));
 }
 
 // Tests that a model that cannot follow the runs is said to be that, and no number stands for it.
