@@ -168,6 +168,8 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   if (prover.LeavesAGap(best)) {
     context.Report("what balances cannot show", 0.91);
     prover.Race(best, blind);
+    // What stands for one of them may be in its way.
+    if (!sets[best].Effects().empty()) prover.Race(prover.BestValues(), blind);
     best = prover.Choice();
   }
   best = prover.TakeGivenValues(best);

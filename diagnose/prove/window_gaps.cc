@@ -32,6 +32,8 @@ using Eigen::VectorXd;
 
 // Of the gap. Beyond it a window has diverged, and how far is chance.
 constexpr double kMostOfAWindow = 4;
+// Squared, in noise units: what predicts a billion of them has left what the equations hold for, and how far is no number.
+constexpr double kDiverged = 1e18;
 // Squared, in noise units: a median below it is the noise.
 constexpr double kAtTheNoise = 1.25;
 
@@ -48,7 +50,7 @@ WindowGap GapFrom(const Residuals& residuals, const RunData& window, const model
     gap.squared[static_cast<size_t>(window.signals[s].channel)] = sum / static_cast<double>(count);
     gap.sum += sum;
   }
-  gap.tested = gap.count > 0 && std::isfinite(gap.sum);
+  gap.tested = gap.count > 0 && gap.sum < kDiverged * static_cast<double>(gap.count);
   return gap;
 }
 
