@@ -121,7 +121,7 @@ TEST_F(ManyChannelsTest, TheCostGrowsWithTheirNumber) {
   };
   for (const auto& [kind, flood] : kFloods) {
     for (const auto& [name, work] : works) {
-      constexpr int kChannels = 1500;  // above kMostJoints, so that both are no limb
+      constexpr int kChannels = 1100;  // above kMostJoints, so that both are no limb
       const int64_t once = Cost(kChannels, flood, work), twice = Cost(2 * kChannels, flood, work);
       EXPECT_GT(once, kChannels) << "comparisons are counted";
       EXPECT_LT(static_cast<double>(twice), 2.6 * static_cast<double>(once) + 1000)
