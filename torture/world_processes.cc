@@ -147,7 +147,8 @@ void World::CheckLog(const SimulatedProcess& logger) {
   const auto log = logs_.find(logger.number());
   if (log == logs_.end()) return;  // it was killed before it had one
   disk_.CheckRoom();
-  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file there, or none.
+  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file
+  // there, or none.
   const bool sees_another =
       (log->second.lied || log->second.deleted) && logger.exit_code() == 1 && logger.failure().empty();
   if (!log->second.was_full && !sees_another) observer_.OnEnd(logger);

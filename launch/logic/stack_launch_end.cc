@@ -23,8 +23,8 @@ constexpr auto kQuestionPeriod = 300ms;  // while a process is not ready
 
 }  // namespace
 
-// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept waiting by one that
-// takes nothing any more.
+// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept
+// waiting by one that takes nothing any more.
 void StackLaunch::WriteRemainingOutput() {
   TimePoint until = TimePoint::max();
   std::optional<size_t> unread;

@@ -1,4 +1,5 @@
-// Anybody on a network without a key can make up channels: what a log costs must grow with their number, and not with its square.
+// Anybody on a network without a key can make up channels: what a log costs must grow with their number, and
+// not with its square.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -91,8 +92,8 @@ class ManyChannelsTest : public log::LogTest {
   }
 };
 
-// Tests everything that reads a log, on floods of each kind: twice the channels, twice the comparisons. A sorted list takes a little
-// more, twice as many channels to the square four times as many.
+// Tests everything that reads a log, on floods of each kind: twice the channels, twice the comparisons. A
+// sorted list takes a little more, twice as many channels to the square four times as many.
 TEST_F(ManyChannelsTest, TheCostGrowsWithTheirNumber) {
   const std::pair<const char*, std::function<void(const std::string&)>> works[] = {
       {"info",

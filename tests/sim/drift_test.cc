@@ -19,8 +19,8 @@ double Hours() {
   return given == nullptr ? 0.1 : ParseNumber(given).value();
 }
 
-// Tests that the last period of a periodic reference is as the second was, that each state has the time of its tick to the last
-// digit, and that no tick is missing: nothing drifts.
+// Tests that the last period of a periodic reference is as the second was, that each state has the time of
+// its tick to the last digit, and that no tick is missing: nothing drifts.
 TEST(DriftTest, TheLastPeriodIsAsTheSecond) {
   constexpr int64_t kRate = 1000, kPeriod = 4 * kRate;  // of 0.25 Hz
   settings::StackConfig config = testing::SmallStack();
@@ -45,11 +45,13 @@ TEST(DriftTest, TheLastPeriodIsAsTheSecond) {
     if (state.tick / kPeriod == 1) second[place] = state;
     if (state.tick < config.last_tick - kPeriod) return;
     angle = std::max(angle, std::fabs(state.arm_angle - second[place].arm_angle));
-    pressure = std::max({pressure, std::fabs(state.p1 - second[place].p1), std::fabs(state.p2 - second[place].p2)});
+    pressure =
+        std::max({pressure, std::fabs(state.p1 - second[place].p1), std::fabs(state.p2 - second[place].p2)});
   });
   EXPECT_EQ(result.exit_code, 0) << result.failure;
   EXPECT_EQ(ticks, config.last_tick + 1);
-  // Friction lets the second period differ a little from those that follow it; drift over hours would be larger by far.
+  // Friction lets the second period differ a little from those that follow it; drift over hours would be
+  // larger by far.
   EXPECT_LT(angle, 1e-3) << "rad, of 0.1";
   EXPECT_LT(pressure, 5) << "psi";
 }
