@@ -1,4 +1,5 @@
-// Long work on a thread that another may want to end: reading a log or a table, of which nobody knows how large it is.
+// Long work on a thread that another may want to end: reading a log or a table, of which nobody knows how
+// large it is.
 #pragma once
 
 #include <atomic>
@@ -11,7 +12,8 @@ class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// While one exists, the readers of logs and tables on this thread throw Interrupted soon after `wanted` has become true.
+// While one exists, the readers of logs and tables on this thread throw Interrupted soon after `wanted` has
+// become true.
 class Interruption {
  public:
   explicit Interruption(const std::atomic<bool>* wanted);

@@ -6,8 +6,9 @@
 
 namespace hydro {
 
-// Always UTF-8, never an exception: bytes of strings that are no UTF-8 become U+FFFD, numbers that are not finite null.
-// `indent`: blanks for each level; -1: all on one line. Every JSON that a program writes comes from here; a test says so.
+// Always UTF-8, never an exception: bytes of strings that are no UTF-8 become U+FFFD, numbers that are not
+// finite null. `indent`: blanks for each level; -1: all on one line. Every JSON that a program writes comes
+// from here; a test says so.
 std::string JsonText(const nlohmann::json& value, int indent = -1);
 std::string JsonText(const nlohmann::ordered_json& value, int indent = -1);
 

@@ -14,7 +14,8 @@
 namespace hydro::design {
 namespace {
 
-// An oscillation takes some ten steps of a microsecond or so: with these a tick of 1 ms takes about as long as it lasts.
+// An oscillation takes some ten steps of a microsecond or so: with these a tick of 1 ms takes about as long
+// as it lasts.
 constexpr double kMostInATick = 100;
 
 }  // namespace

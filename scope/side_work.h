@@ -23,7 +23,8 @@ class SideWork {
   // Runs `work` there; then what it returned runs on the server's thread. False: too much waits already.
   bool Do(std::function<std::function<void()>()> work);
 
-  // A folder of this process's own for its files, removed at the end; that of a killed process by the next scope.
+  // A folder of this process's own for its files, removed at the end; that of a killed process by the next
+  // scope.
   const std::string& folder() const { return folder_; }
   // The name of a file in it that has not been given before.
   std::string FreshFile(const std::string& ending);

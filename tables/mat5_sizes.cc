@@ -68,7 +68,7 @@ class Walk {
   void Array(const Element& array, int depth) {
     if (array.type != kMatrix)
       Fail(fmt::format("has an element of type {} where an array is needed", array.type));
-    if (array.data.empty()) return;
+    if (array.data.empty() && depth > 0) return;  // an empty cell or field
     if (depth > kDeepestArray) Fail(fmt::format("is nested more than {} deep", kDeepestArray));
     Bytes rest = array.data;
     const Element flags = Take(&rest);
@@ -90,7 +90,7 @@ class Walk {
       case kStruct:
         return Fields(rest, count, depth);
       case kSparse:
-        return Rest(rest, depth);
+        return Sparse(rest, (Number(flags.data, 0) & kComplex) != 0);
       default:
         Numbers(&rest, count);
         if ((Number(flags.data, 0) & kComplex) != 0) Numbers(&rest, count);
@@ -165,6 +165,14 @@ class Walk {
     Arrays(rest, count, names.data.size() / each, depth);
   }
 
+  // Rows, where each column begins, and the numbers: matio reads on for what is not there.
+  void Sparse(Bytes rest, bool complex) const {
+    const Element rows = Take(&rest), columns = Take(&rest), numbers = Take(&rest);
+    const bool indices = rows.type == kInt32 && columns.type == kInt32;
+    if (!indices || SizeOf(numbers.type) == 0 || (complex && SizeOf(Take(&rest).type) == 0))
+      Fail("is a sparse matrix without its numbers");
+  }
+
   // Elements of which only the sizes matter.
   void Rest(Bytes rest, int depth) {
     while (!rest.empty()) {
@@ -227,6 +235,7 @@ void CheckMat5Sizes(const std::string& file) {
       Bytes inside(bytes);
       const Element compressed = element;
       element = walk.Take(&inside);
+      if (!inside.empty()) walk.Fail("ends before what was compressed does");  // matio would read on
       // What is compressed is not padded, though its size need not be a multiple of 8.
       rest = left.subspan(kTagSize + compressed.data.size());
     }

@@ -129,7 +129,8 @@ MatContents ReadMatContents(const std::string& file) {
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
   }
-  // When a file is cut off, matio returns unfilled memory for the missing values; and it allocates what the dimensions say.
+  // When a file is cut off, matio returns unfilled memory for the missing values; and it allocates what the
+  // dimensions say.
   Mat_GetVersion(mat.get()) == MAT_FT_MAT5 ? CheckMat5Sizes(file) : CheckMat73Sizes(file);
   MatContents found;
   while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {

@@ -76,6 +76,9 @@ bool ActiveFault::BeginOnMachine() {
     case FaultKind::kDiskLie:
       if (world_.Find(Role::kLogger) != nullptr && world_.disk().Lie(random_)) world_.NoteLie();
       return true;
+    case FaultKind::kDiskDelete:
+      if (world_.Find(Role::kLogger) != nullptr) world_.DeleteLog();
+      return true;
     case FaultKind::kSensorNan:
     case FaultKind::kSensorStick:
     case FaultKind::kSensorSpike:

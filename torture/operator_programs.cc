@@ -20,7 +20,8 @@ class NoLocalProcesses : public launch::LocalProcesses {
   std::string Left() override { return ""; }
 };
 
-// Gains, limits and a reference; loops that would be unstable and a limit that would be loosened, which are refused. Empty: undo.
+// Gains, limits and a reference; loops that would be unstable and a limit that would be loosened, which are
+// refused. Empty: undo.
 constexpr std::array kChanges{"position.c2=900\nposition.c1=4000",
                               "pressure.damping_ratio=0.7",
                               "limits.arm_angle_rad=0.5",

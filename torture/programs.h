@@ -20,7 +20,8 @@ SimulatedProcess::Body RearmProgram(const settings::StackConfig& config);
 SimulatedProcess::Body StopProgram(const settings::StackConfig& config, bool watched);
 // hydro-set with one of several values, allowed ones and others, or an undo: `which`, 0 to 7.
 SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which);
-// Somebody with the stack's key, who answers each state with a motor command of that voltage, numbered from `first_sequence` on.
+// Somebody with the stack's key, who answers each state with a motor command of that voltage, numbered from
+// `first_sequence` on.
 SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds,
                                       int64_t first_sequence);
 

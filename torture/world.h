@@ -96,6 +96,8 @@ class World : public NetworkPort {
   void NoteLogFault(bool LogRecord::*what);
   // A bit of the newest log was changed.
   void NoteLie();
+  // Somebody deletes the newest log, whose logger goes on writing into what is no longer there.
+  void DeleteLog();
   Coverage& coverage() { return outcome_.coverage; }
 
   // NetworkPort:

@@ -133,12 +133,24 @@ void World::NoteLie() {
   }
 }
 
+void World::DeleteLog() {
+  const std::string before = disk_.newest();
+  if (!disk_.Delete()) return;
+  for (auto& [number, log] : logs_) {
+    if (log.file != before) continue;
+    log.file = disk_.newest();
+    log.deleted = true;
+  }
+}
+
 void World::CheckLog(const SimulatedProcess& logger) {
   const auto log = logs_.find(logger.number());
   if (log == logs_.end()) return;  // it was killed before it had one
   disk_.CheckRoom();
-  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file there.
-  const bool sees_another = log->second.lied && logger.exit_code() == 1 && logger.failure().empty();
+  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file
+  // there, or none.
+  const bool sees_another =
+      (log->second.lied || log->second.deleted) && logger.exit_code() == 1 && logger.failure().empty();
   if (!log->second.was_full && !sees_another) observer_.OnEnd(logger);
   const std::string wrong = WrongWith(log->second);
   if (!wrong.empty())

@@ -6,6 +6,8 @@
 #include <optional>
 #include <set>
 
+#include "batch/study/draw.h"
+
 namespace hydro::batch {
 namespace {
 
@@ -49,10 +51,10 @@ std::optional<SurfaceAxis> AxisOf(const Study& study, const std::string& key) {
     std::ranges::sort(values);
     const double low = Quantile(values, 0.01), high = Quantile(values, 0.99);
     if (!(high > low)) return std::nullopt;
-    for (int i = 0; i < kBins; ++i) axis.centres.push_back(low + (i + 0.5) * (high - low) / kBins);
+    for (int i = 0; i < kBins; ++i) axis.centres.push_back(Between(low, high, (i + 0.5) / kBins, false));
   }
   for (size_t i = 0; i + 1 < axis.centres.size(); ++i)
-    axis.edges.push_back(0.5 * (axis.centres[i] + axis.centres[i + 1]));
+    axis.edges.push_back(0.5 * axis.centres[i] + 0.5 * axis.centres[i + 1]);
   return axis;
 }
 
@@ -91,7 +93,7 @@ Surface WantedSurface(const Study& study) {
 double ValueAt(const std::vector<double>& values, double place) {
   const auto below = static_cast<size_t>(place);
   const size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+  return Between(values[below], values[above], place - static_cast<double>(below), false);
 }
 
 }  // namespace

@@ -28,11 +28,12 @@ struct Draw {
 // The value of draw `number`. The key model:NAME with kUncertainty gives what model::DrawnModel() gives that parameter.
 Value DrawnValue(const Draw& draw, int64_t seed, int64_t number);
 
-// Twelve significant digits: the last bits of exp and log differ between machines. What is not finite stays what it is.
+// Twelve significant digits: the last bits of exp and log differ between machines. What is not finite stays
+// what it is.
 double Rounded(double value);
 
-// The value at `part`, 0 to 1, of the way from one to the other, evenly or by equal factors (both above 0). Finite and between
-// them for any two finite numbers, also where their difference or ratio is none.
+// The value at `part`, 0 to 1, of the way from one to the other, evenly or by equal factors (both above 0).
+// Finite and between them for any two finite numbers, also where their difference or ratio is none.
 double Between(double from, double to, double part, bool logarithmic);
 
 }  // namespace hydro::batch

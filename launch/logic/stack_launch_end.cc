@@ -23,18 +23,19 @@ constexpr auto kQuestionPeriod = 300ms;  // while a process is not ready
 
 }  // namespace
 
-// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept waiting by one that
-// takes nothing any more.
+// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept
+// waiting by one that takes nothing any more.
 void StackLaunch::WriteRemainingOutput() {
   TimePoint until = TimePoint::max();
   std::optional<size_t> unread;
-  while (!children_.finished() && clock_.Now() < until) {
+  while (!children_.finished()) {
     if (killed_) {
       until = std::min(until, clock_.Now() + kFinalMessageTime);
     } else if (told_ && children_.unread() != unread) {
       unread = children_.unread();
       until = clock_.Now() + kUnreadTime;
     }
+    if (clock_.Now() >= until) return;
     children_.Wait(until);
     OnSignals();
   }

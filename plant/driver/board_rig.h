@@ -27,8 +27,8 @@ class BoardRig : public Rig {
   std::string role() const override { return "driver"; }
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return faults_; }
-  // Toggles the watchdog line once the board has accepted the voltage. Throws RigError "guardian_gone", before any voltage is
-  // put out, when a kill of this process would leave it.
+  // Toggles the watchdog line once the board has accepted the voltage. Throws RigError "guardian_gone",
+  // before any voltage is put out, when a kill of this process would leave it.
   double Drive(double voltage) override;
   OutputLeft Zero() noexcept override;
 

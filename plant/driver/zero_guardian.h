@@ -19,7 +19,8 @@ class ZeroGuardian {
   ZeroGuardian(const ZeroGuardian&) = delete;
   ZeroGuardian& operator=(const ZeroGuardian&) = delete;
 
-  // False from when the guardian has ended, or stood still (SIGSTOP), and so would not write: for the loop, in each tick.
+  // False from when the guardian has ended, or stood still (SIGSTOP), and so would not write: for the loop,
+  // in each tick.
   bool Watches();
 
   // Ends the guardian: the output is at zero and the device is about to be closed.

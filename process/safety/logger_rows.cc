@@ -60,7 +60,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "exit code 1 at the stop",
         .tests = "logger.DeletedLogTest.test_deleted_or_moved logger/LoggerAppTest.DeletedLog",
-        .not_injected = "nobody deletes the files of the simulated disk",
+        .injected = "disk_delete",
     },
     SafetyRow{
         .id = "log_damaged",

@@ -11,7 +11,8 @@
 namespace hydro {
 namespace {
 
-// The UTF-8 of a number by the definition, whether or not it is a character: 1 to 4 bytes, more than needed if asked for.
+// The UTF-8 of a number by the definition, whether or not it is a character: 1 to 4 bytes, more than needed
+// if asked for.
 std::string Encoded(uint32_t point, size_t bytes) {
   if (bytes == 1) return {static_cast<char>(point)};
   std::string text;
@@ -22,8 +23,8 @@ std::string Encoded(uint32_t point, size_t bytes) {
   return text;
 }
 
-// Tests each number up to beyond the last, in each length that can hold it: a character is one that is no surrogate, in the
-// shortest form, up to U+10FFFF.
+// Tests each number up to beyond the last, in each length that can hold it: a character is one that is no
+// surrogate, in the shortest form, up to U+10FFFF.
 TEST(Utf8Test, ExactlyTheCharactersAreTaken) {
   for (uint32_t point = 0; point < 0x140000; ++point) {
     const size_t shortest = point < 0x80 ? 1 : point < 0x800 ? 2 : point < 0x10000 ? 3 : 4;

@@ -65,8 +65,8 @@ TEST(DrawTest, HasTheMomentsOfItsDistribution) {
   EXPECT_NEAR(MomentsOf(choice, Same).mean, 0.25, six);
 }
 
-// Tests that a range whose ends have no finite difference or ratio gives finite values between them, in grids and draws, that
-// they increase, and that they fill the range.
+// Tests that a range whose ends have no finite difference or ratio gives finite values between them, in grids
+// and draws, that they increase, and that they fill the range.
 TEST(DrawTest, RangesThatOverflow) {
   const StudyFolder folder;
   const std::string head = "draws = 200\n[[step]]\nrun = [\"true\"]\n";

@@ -22,6 +22,8 @@ TEST(QuantileTest, InterpolatesBetweenValues) {
   EXPECT_EQ(Quantile({1, 2, 4}, 0.75), 3);
   EXPECT_EQ(Quantile({1, 2, 4}, 1), 4);
   EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+  EXPECT_EQ(Quantile({-1.6e308, 1.6e308}, 0), -1.6e308) << "their difference is no number";
+  EXPECT_EQ(Quantile({-1.6e308, 1.6e308}, 0.5), 0);
 }
 
 // Tests which cases count as the worst: the largest, or the smallest where that is said; of equal ones the first.

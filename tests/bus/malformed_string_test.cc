@@ -62,8 +62,8 @@ Message Example() {
   return message;
 }
 
-// Decodes the message with each number of 32 bits in it replaced: whatever is a length somewhere gets a value that no encoder
-// writes. A message that decodes can be sent on.
+// Decodes the message with each number of 32 bits in it replaced: whatever is a length somewhere gets a value
+// that no encoder writes. A message that decodes can be sent on.
 template <class Message>
 void ExpectNoHarm(std::string_view channel) {
   const Message message = Example<Message>();

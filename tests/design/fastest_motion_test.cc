@@ -19,7 +19,8 @@ settings::StackConfig With(double arm_inertia, double beta) {
   return config;
 }
 
-// Tests the arm between its two springs of fluid, where the pump is so heavy that it stands: 2 c^2 beta/V, eqs. (6) to (15).
+// Tests the arm between its two springs of fluid, where the pump is so heavy that it stands: 2 c^2 beta/V,
+// eqs. (6) to (15).
 TEST(FastestMotion, IsThatOfTheEquations) {
   settings::StackConfig config = With(1e-6, 2.47e5);
   config.limits.arm_angle_rad = 1e-6;  // mid-stroke only
@@ -29,8 +30,8 @@ TEST(FastestMotion, IsThatOfTheEquations) {
   EXPECT_NEAR(FastestMotion(config) / std::sqrt(2 * p.c * p.c * p.beta / (p.V_ms * p.J_a)), 1, 1e-3);
 }
 
-// Tests that what nobody can wait for is said, with the model's file and the parameters that it depends on; and that no shipped
-// stack or model that is merely stiff has such a remark.
+// Tests that what nobody can wait for is said, with the model's file and the parameters that it depends on;
+// and that no shipped stack or model that is merely stiff has such a remark.
 TEST(FastMotionRemark, SaysWhatTakesVeryLong) {
   EXPECT_EQ(FastMotionRemark(settings::Parsed(settings::kConfigText)), "");
   EXPECT_EQ(FastMotionRemark(With(23.3, 2.5e7)), "");

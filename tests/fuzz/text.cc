@@ -1,4 +1,5 @@
-// Text from outside: whatever its bytes are, what programs show and write of it is UTF-8, and JSON can be read.
+// Text from outside: whatever its bytes are, what programs show and write of it is UTF-8, and JSON can be
+// read.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>

@@ -102,7 +102,8 @@ TEST_F(LabelledOutputTest, QuietAndJson) {
                     "\n");
 }
 
-// Tests that a child that prints what is not UTF-8, a surrogate here, does not end the launcher: a line of JSON says which bytes.
+// Tests that a child that prints what is not UTF-8, a surrogate here, does not end the launcher: a line of
+// JSON says which bytes.
 TEST_F(LabelledOutputTest, WhatIsNoUtf8StaysJson) {
   LabelledOutput output(pipe_[1], pipe_[1], false);
   output.set_json();

@@ -168,8 +168,8 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   EXPECT_EQ(summary.FaultsLeft().size(), 1u);
 }
 
-// Tests that a fault whose sender's name changed on the way ends with that sender's own report of its end, and is
-// no fault that stays; and that joints without sessions are told apart by their names.
+// Tests that a fault whose sender's name changed on the way ends with that sender's own report of its end,
+// and is no fault that stays; and that joints without sessions are told apart by their names.
 TEST(RunSummaryTest, ASenderIsItsSession) {
   RunSummary summary;
   fault_t fault{};

@@ -121,7 +121,7 @@ TEST(SafetyPageTest, WritesBetweenItsMarks) {
                         "logger's reason (`logger_gone`, a warning) | at once | control goes on |"));
   EXPECT_THAT(page, HasSubstr("`fault_loops` `FaultLoopsTest.test_disk_full`; `tests/plant` "
                               "`PlantFaultsTest.LoggerFailed` | `disk_full` |"));
-  EXPECT_THAT(page, HasSubstr("| not reached: nobody deletes the files of the simulated disk |"));
+  EXPECT_THAT(page, HasSubstr("| not reached: the simulated network takes every message |"));
   EXPECT_THROW(WithSafetyTable("before\n" + end + begin, "p.md"), InputError);
 }
 

@@ -79,7 +79,8 @@ TEST_F(SideWorkTest, TheEndInterruptsReaders) {
   EXPECT_NO_THROW(tables::ReadTable(table)) << "on a thread that nobody wants to end";
 }
 
-// Tests that a scope removes what a killed one has left, and nothing of one that lives, or that has only just begun.
+// Tests that a scope removes what a killed one has left, and nothing of one that lives, or that has only just
+// begun.
 TEST_F(SideWorkTest, FoldersOfTheKilledAreRemoved) {
   const auto post = [](const std::function<void()>& done) { done(); };
   const std::filesystem::path dead = temporary_ / "hydro-scope.dead",

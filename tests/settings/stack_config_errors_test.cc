@@ -335,8 +335,8 @@ TEST(StackConfigErrorsTest, PressureReferencesMayBeLarge) {
       "");
 }
 
-// Tests that the time for a file of unknown keys does not depend on what each of them may have meant: with 30,000 of them that took
-// seconds (without sanitizers).
+// Tests that the time for a file of unknown keys does not depend on what each of them may have meant: with
+// 30,000 of them that took seconds (without sanitizers).
 TEST(StackConfigErrorsTest, ManyUnknownKeys) {
   std::string text;
   for (int i = 0; i < 30000; ++i) text += "unknown_key_" + std::to_string(i) + " = 1\n";

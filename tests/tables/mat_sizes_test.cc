@@ -98,7 +98,8 @@ class MatSizesTest : public log::LogTest {
   }
 };
 
-// Tests that a file that claims gigabytes in a few bytes is refused, with its name, before anything of that size is allocated.
+// Tests that a file that claims gigabytes in a few bytes is refused, with its name, before anything of that
+// size is allocated.
 TEST_F(MatSizesTest, ClaimsAreHeldAgainstTheFile) {
   const Mat5 mat;
   const std::string one = mat.Doubles({1});
@@ -131,6 +132,11 @@ TEST_F(MatSizesTest, ClaimsAreHeldAgainstTheFile) {
        "has an element of 4000000000 bytes where 0 are left"},
       {mat.Word(14) + mat.Word(4000000000u),
        "byte 128: found a variable that has an element of 4000000000 bytes"},
+      {Compressed(mat.Element(14, "") + mat.Array(6, {1, 1000000000}, "a", one).substr(8)),
+       "ends before what was compressed does"},
+      {mat.Element(14, ""), "ends within an element"},
+      {mat.Struct({1, 1}, "a", mat.Array(5, {1, 3}, "", mat.Element(1, std::string(24, 'x')))),
+       "ends within an element"},
       {Compressed(mat.Array(6, {1, 1000000000}, "a", one)), "1000000000 numbers by its dimensions"},
       {Compressed(mat.Array(9, {1, 1u << 28}, "a", mat.Element(2, std::string(1u << 26, '\0')))),
        "compressed from more than"},
@@ -143,8 +149,8 @@ TEST_F(MatSizesTest, ClaimsAreHeldAgainstTheFile) {
   EXPECT_LT(LargestMemory_kB() - before, 300'000) << "kB; the compressed zeros above are 64 MiB themselves";
 }
 
-// Tests that what is as large as it says is read: both byte orders, plain and compressed, in structs, and beside arrays of kinds
-// that are no signals.
+// Tests that what is as large as it says is read: both byte orders, plain and compressed, in structs, and
+// beside arrays of kinds that are no signals.
 TEST_F(MatSizesTest, WholeFilesAreRead) {
   for (const bool swapped : {false, true}) {
     const Mat5 mat(swapped);
@@ -169,7 +175,8 @@ TEST_F(MatSizesTest, WholeFilesAreRead) {
   EXPECT_EQ(table.columns[0].name, "d.f");
 }
 
-// Tests that the many equal numbers of a signal at rest, which compress to almost nothing, are a recording beside a time.
+// Tests that the many equal numbers of a signal at rest, which compress to almost nothing, are a recording
+// beside a time.
 TEST_F(MatSizesTest, ASignalAtRestIsNoClaim) {
   Table table;
   table.columns = {{"t", {}}, {"u", std::vector<double>(100000, 0)}};

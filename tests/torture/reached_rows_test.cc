@@ -68,11 +68,11 @@ TEST(ReachedRowsTest, ReportsWhatIsMissing) {
   for (const process::SafetyRow& row : process::SafetyTable()) reached.emplace(row.id);
   const std::string count = std::to_string(reached.size());
   EXPECT_EQ(RowsReport(reached), "rows of docs/safety.md reached: " + count + " of " + count + "\n");
-  reached.erase("log_deleted");
+  reached.erase("interface_down");
   reached.erase("stop");
   const std::string report = RowsReport(reached);
   EXPECT_THAT(report, HasSubstr(std::to_string(reached.size()) + " of " + count + "; not:\n"));
-  EXPECT_THAT(report, HasSubstr("\n  log_deleted: nobody deletes the files"));
+  EXPECT_THAT(report, HasSubstr("\n  interface_down: the simulated network takes every message"));
   EXPECT_THAT(report, HasSubstr("\n  stop: not in these runs; it needs stop\n"));
   EXPECT_THAT(report, Not(HasSubstr("model_error")));
 }

@@ -107,8 +107,9 @@ TEST(PrepareChange, RefusesWithTheReason) {
   }
 }
 
-// Tests that gains whose loops cannot be judged are refused with the reason, however small, for each reason that there is; that
-// what touches no loop is accepted; and that the way back to the configuration stays open.
+// Tests that gains whose loops cannot be judged are refused with the reason, however small, for each reason
+// that there is; that what touches no loop is accepted; and that the way back to the configuration stays
+// open.
 TEST(PrepareChange, RefusesWhatCannotBeJudged) {
   const struct {
     const char* effect;

@@ -413,8 +413,8 @@ TEST_F(LiveTuningTest, AControllerThatIsSilentEndsTheRequest) {
   ExpectNothingDecided();
 }
 
-// Tests values that are asked for while a latched fault holds zero volts: limits may be loosened then, nothing moves before the re-arm,
-// and after it the loops act by them.
+// Tests values that are asked for while a latched fault holds zero volts: limits may be loosened then,
+// nothing moves before the re-arm, and after it the loops act by them.
 TEST_F(LiveTuningTest, SetsDuringALatchedFault) {
   config_ += "[limits]\nrearm = \"explicit\"\nmotor_speed_rad_s = 20\n";
   std::vector<fault_t> faults;
@@ -455,7 +455,8 @@ TEST_F(LiveTuningTest, SetsDuringALatchedFault) {
   EXPECT_FALSE(AnswerTo(2)->accepted) << "it may move again";
 }
 
-// Tests that a request beside a stop, in whatever order they arrive, ends with the run, in order and at zero volts.
+// Tests that a request beside a stop, in whatever order they arrive, ends with the run, in order and at zero
+// volts.
 TEST_F(LiveTuningTest, SetsDuringAStop) {
   for (const int64_t later : {-3, -1, 0, 1, 3}) {
     at_.clear();

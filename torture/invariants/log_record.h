@@ -15,6 +15,7 @@ struct LogRecord {
   bool killed = false;            // it could not end its log
   bool was_full = false;          // the disk refused a write
   bool lied = false;              // the disk has changed what was written
+  bool deleted = false;           // somebody has taken it away from its name
 
   void Handle(std::string_view channel, const uint8_t* data, size_t size);
 };

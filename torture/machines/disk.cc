@@ -87,6 +87,16 @@ bool Disk::Lie(Random& random) const {
   return changed;
 }
 
+bool Disk::Delete() {
+  std::error_code failed;
+  const std::string gone = newest_ + ".gone";
+  if (newest_.empty() || newest_.ends_with(".gone")) return false;
+  std::filesystem::rename(newest_, gone, failed);
+  if (failed) return false;
+  newest_ = gone;
+  return true;
+}
+
 void Disk::Tear(int64_t least, int64_t most, Random& random) const {
   if (most <= least) return;
   const auto length = least + static_cast<int64_t>(random.Index(static_cast<uint64_t>(most - least)));

@@ -31,6 +31,9 @@ class Disk {
 
   // Flips a bit of the newest log; false where it has none.
   bool Lie(Random& random) const;
+  // Takes the newest log away from its name, which newest() then no longer is; false where there is none.
+  // What is open stays open.
+  bool Delete();
   // Cuts the newest log off between two sizes: of what its writer had handed over last, any part may be missing after a
   // loss of power.
   void Tear(int64_t least, int64_t most, Random& random) const;

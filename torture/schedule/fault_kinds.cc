@@ -31,6 +31,7 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kDiskSlow, "disk_slow", "logger", 0.01, 3, 0, 0, ""},
     {FaultKind::kDiskFull, "disk_full", "logger", 0.01, 1, 0, 0, ""},
     {FaultKind::kDiskLie, "disk_lie", "logger", 0, 0, 0, 0, ""},
+    {FaultKind::kDiskDelete, "disk_delete", "logger", 0, 0, 0, 0, ""},
     {FaultKind::kSensorNan, "sensor_nan", "plant", 0.001, 0.5, 0, 6, "which sensor"},
     {FaultKind::kSensorStick, "sensor_stick", "plant", 0.001, 1, 0, 6, "which sensor"},
     {FaultKind::kSensorSpike, "sensor_spike", "plant", 0.001, 0.003, 0, 6, "which sensor"},

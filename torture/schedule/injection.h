@@ -34,6 +34,7 @@ enum class FaultKind : uint8_t {
   kDiskSlow,
   kDiskFull,
   kDiskLie,
+  kDiskDelete,
   // Sensors.
   kSensorNan,
   kSensorStick,

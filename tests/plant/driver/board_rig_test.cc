@@ -342,7 +342,8 @@ TEST_F(BoardRigTest, Guardian) {
   }
 }
 
-// Tests that no voltage is put out once the guardian has been killed, or stands still: a kill of the driver would leave it.
+// Tests that no voltage is put out once the guardian has been killed, or stands still: a kill of the driver
+// would leave it.
 TEST_F(BoardRigTest, WithoutAGuardianNoVoltage) {
   for (const int signal : {SIGKILL, SIGSTOP}) {
     board_->nonzero_writes = 0;
