@@ -37,7 +37,8 @@ class Descriptor {
 
 MappedFile::MappedFile(const std::string& file) {
   // A named pipe that nobody writes to would be waited for. What a shell hands over (<(...), /dev/stdin) has a writer.
-  if (!file.starts_with("/dev/") && !file.starts_with("/proc/")) CheckIsFile(file);
+  const bool device = file.starts_with("/dev/") && !file.starts_with("/dev/shm/");
+  if (!device && !file.starts_with("/proc/")) CheckIsFile(file);
   const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor.get() < 0) ThrowCannotRead(file, errno);
   struct stat status;

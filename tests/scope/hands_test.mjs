@@ -223,7 +223,8 @@ test('the cursors have room', async () => {
   await page.locator('[data-cell="motor_speed.difference"]').waitFor();
   await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
   const { table, room } = await page.evaluate(() => {
-    for (const cell of document.querySelectorAll('#section-cursors td.number')) cell.textContent = '\u22122.842e\u221214';
+    for (const cell of document.querySelectorAll('#section-cursors td.number'))
+      cell.textContent = '\u22122.842e\u221214';
     return {
       table: document.querySelector('#section-cursors table').getBoundingClientRect().right,
       room: document.querySelector('#section-cursors .hint').parentElement.getBoundingClientRect().right,

@@ -38,7 +38,7 @@ class LiveTest(stack.TestCase):
         kept = recorded.until(lambda m: m["op"] == "bins")
         self.assertEqual(shown["bins"], kept["bins"])
         self.assertEqual(str(shown["channels"]), str(kept["channels"]))  # NaN where a tick is missing
-        said = [line for line in self.run_program("hydro-log", "info", log).stdout.split("config")[0].splitlines() if "scope" in line]
+        said = [line for line in self.run_program("hydro-log", "info", log).stdout.splitlines() if "scope" in line and not line.startswith("config")]
         self.assertEqual(len(said), 1, said)  # the stack knows of it by its stop alone
         self.assertIn("scope: STOP on the page of hydro-scope", said[0])
 

@@ -9,7 +9,6 @@ const kNarrow_px = 520;
 const kRight = 14;
 const kTimeAxis = 24;
 const kTimeLabel_px = 90; // between numbers of the time axis at least
-const kDigit_px = 6.4; // of kFont, a minus too
 const kBesideLabel_px = 12; // the tick, and the gaps on both sides of the number
 const kLabel_px = 12; // between numbers of a value axis at least: a low pane still has two
 const kMostLabels = 5;
@@ -19,10 +18,10 @@ for (let power = -7; power <= 8; power += 1)
   kSteps.push(Number(`1e${power}`), Number(`2e${power}`), Number(`5e${power}`));
 
 // How wide a value axis is: all numbers have their place, and charts above each other the same one. room: {px, grown()}, what all of
-// them share; it only grows.
-export function valueAxisSize(labels, least_px, room) {
-  const longest = Math.max(0, ...(labels ?? []).map((label) => String(label ?? '').length));
-  const needed = Math.ceil(longest * kDigit_px) + kBesideLabel_px;
+// them share; it only grows. widthOf(text): in pixels.
+export function valueAxisSize(labels, least_px, room, widthOf) {
+  const needed =
+    Math.ceil(Math.max(0, ...(labels ?? []).map((label) => widthOf(String(label ?? ''))))) + kBesideLabel_px;
   if (needed > Math.max(least_px, room.px)) {
     room.px = needed;
     room.grown();
@@ -42,7 +41,8 @@ export function chartAxes({ units, colours, time_axis, right, room }, width_px) 
   };
   const value = {
     ...common,
-    size: (u, labels) => valueAxisSize(labels, width_px < kNarrow_px ? kLeftNarrow : kLeft, room),
+    size: (u, labels) =>
+      valueAxisSize(labels, width_px < kNarrow_px ? kLeftNarrow : kLeft, room, (text) => inFont(u.ctx, text)),
     gap: 4,
     space: (u, axis, low, high, pixels) => Math.max(kLabel_px, Math.min(2 * kLabel_px, pixels / kMostLabels)),
     values: valueLabels,
@@ -73,6 +73,14 @@ export function chartAxes({ units, colours, time_axis, right, room }, width_px) 
       },
     ],
   };
+}
+
+function inFont(ctx, text) {
+  ctx.save();
+  ctx.font = kFont;
+  const { width } = ctx.measureText(text);
+  ctx.restore();
+  return width;
 }
 
 function valueLabels(u, splits) {

@@ -27,14 +27,15 @@ test('the time base steps 1-2-5', () => {
 test('numbers of a value axis', () => {
   let grown = 0;
   const room = { px: 0, grown: () => (grown += 1) };
-  assert.equal(valueAxisSize(['\u22121', '0', '1'], 46, room), 46);
-  assert.equal(valueAxisSize(null, 46, room), 46);
+  const widthOf = (text) => 7 * text.length;
+  assert.equal(valueAxisSize(['\u22121', '0', '1'], 46, room, widthOf), 46);
+  assert.equal(valueAxisSize(null, 46, room, widthOf), 46);
   assert.equal(grown, 0);
-  const wide = valueAxisSize(['\u22125000000', '0', '5000000'], 46, room);
-  assert.ok(wide >= 8 * 6.1 + 8, `${wide}`);
+  const wide = valueAxisSize(['\u22125000000', '0', '5000000'], 46, room, widthOf);
+  assert.ok(wide >= 8 * 7 + 8, `${wide}`);
   assert.equal(grown, 1);
-  assert.equal(valueAxisSize(['1'], 46, room), wide, 'the other charts stand below it');
-  assert.equal(valueAxisSize(['1'], 62, { px: 0, grown() {} }), 62);
+  assert.equal(valueAxisSize(['1'], 46, room, widthOf), wide, 'the other charts stand below it');
+  assert.equal(valueAxisSize(['1'], 62, { px: 0, grown() {} }, widthOf), 62);
 });
 
 // Tests that a sharp step begins where the reference is and jumps when a new reference is followed at full.
