@@ -74,11 +74,9 @@ std::optional<Counter> FindCounter(const std::vector<double>& values, double rev
     return width > 0.5 * period && width <= period * (1 + 1e-6) && in_one && RollsOver(values, period);
   };
   if (const std::optional<double> step = CommonStep(values)) {
-    for (const int bits : kBits) {
-      const double period = std::ldexp(*step, bits);
-      if (width < period && fits(period))
-        return Counter{period, "a counter of " + std::to_string(bits) + " bits"};
-    }
+    double period = *step;
+    while (period <= width) period *= 2;
+    if (fits(period)) return Counter{period, "a period of " + ShortestNumber(period)};
   }
   if (revolution > 0 && fits(revolution)) return Counter{revolution, "one revolution"};
   return std::nullopt;

@@ -69,8 +69,12 @@ TEST_F(SendersTest, TwoSenders) {
     const SenderInfo& sender = info.senders[k];
     EXPECT_EQ(sender.ticks.states, 20);
     for (const SignalInfo& signal : sender.signals) {
-      if (signal.name == "arm_angle") EXPECT_EQ(signal.min, k == 0 ? 0 : 100);
-      if (signal.name == "arm_ref") EXPECT_EQ(signal.max, k == 0 ? 15.2 : 115.2);
+      if (signal.name == "arm_angle") {
+        EXPECT_EQ(signal.min, k == 0 ? 0 : 100);
+      }
+      if (signal.name == "arm_ref") {
+        EXPECT_EQ(signal.max, k == 0 ? 15.2 : 115.2);
+      }
     }
   }
   EXPECT_THAT(InfoText(info),
@@ -128,7 +132,9 @@ TEST_F(SendersTest, ClockSteps) {
     EXPECT_NEAR(info.clock_steps[0].at_time_s, 0.05, 0.002);
     EXPECT_NEAR(info.duration_s, 0.1, 0.002);
     for (const ChannelInfo& channel : info.channels) {
-      if (channel.summary.channel == "HYDRO_STATE") EXPECT_NEAR(channel.rate_hz, 1000, 20);
+      if (channel.summary.channel == "HYDRO_STATE") {
+        EXPECT_NEAR(channel.rate_hz, 1000, 20);
+      }
     }
     EXPECT_THAT(InfoText(info),
                 HasSubstr(step > 0 ? "clock: 600 s without a message" : "clock: set back by 3 s"));
