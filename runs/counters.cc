@@ -11,7 +11,7 @@
 namespace hydro::runs {
 namespace {
 
-constexpr int kBits[] = {8, 10, 12, 13, 14, 16, 24, 32};
+constexpr int kBits[] = {8, 12, 16, 24, 32};  // of registers that hold a signed command
 
 // The largest number of which all values are multiples, as decimals in a table have one; empty where there is none.
 std::optional<double> CommonStep(const std::vector<double>& values) {

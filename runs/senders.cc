@@ -131,7 +131,7 @@ void RequireOneRun(const RunLog& log) {
   for (const std::string& remark : remarks) {
     if (remark.find("joined") != std::string::npos) remedy = "; " + remark + ": cut it there";
   }
-  throw InputError(log.file + ": found " + found + " on " + channel + ", allowed one run by one sender" +
+  throw InputError(log.file + ": found " + found + " on " + channel + "; one run by one sender is needed" +
                    remedy + "; hydro-log info " + log.file + " shows each");
 }
 

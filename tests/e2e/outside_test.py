@@ -11,7 +11,7 @@ import outcome
 import stack
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-OUTSIDE = os.path.join(os.path.dirname(ROOT), "shared", "outside")
+OUTSIDE = os.environ.get("HYDRO_OUTSIDE", os.path.join(os.path.dirname(ROOT), "shared", "outside"))
 CHECK = ["hydro-diagnose", "{0}.csv", "--model", "model.toml", "--check"]
 FEW = r"found \d+ samples, allowed 100 or more"
 

@@ -60,7 +60,7 @@ TEST_F(SendersTest, TwoSenders) {
   const RunLog log = Log(both);
   EXPECT_THAT(log::InputErrorOf([&] { RequireOneRun(log); }),
               AllOf(HasSubstr("found states of 2 runs, by as many senders, (two different states of tick 0)"),
-                    HasSubstr("allowed one run by one sender"), HasSubstr("hydro-log info")));
+                    HasSubstr("one run by one sender is needed"), HasSubstr("hydro-log info")));
   EXPECT_THAT(log::InputErrorOf([&] { ExportRun(log); }), HasSubstr("found states of 2 runs"));
   const LogInfo info = Summarise(log, false);
   ASSERT_EQ(info.senders.size(), 2u);
