@@ -58,10 +58,12 @@ TEST_F(SendersTest, TwoSenders) {
   RunMessages both = RunOf(11, 0);
   Append(RunOf(21, 100), &both);
   const RunLog log = Log(both);
-  EXPECT_THAT(log::InputErrorOf([&] { RequireOneRun(log); }),
-              AllOf(HasSubstr("found states of 2 runs, by as many senders, (two different states of tick 0)"),
-                    HasSubstr("one run by one sender is needed"), HasSubstr("hydro-log info")));
-  EXPECT_THAT(log::InputErrorOf([&] { ExportRun(log); }), HasSubstr("found states of 2 runs"));
+  EXPECT_THAT(
+      log::InputErrorOf([&] { RequireOneRun(log); }),
+      AllOf(HasSubstr("found states from 2 senders on HYDRO_STATE, 2 runs (two different states of tick 0)"),
+            HasSubstr("one run by one sender is needed"), HasSubstr("hydro-log info")));
+  EXPECT_THAT(log::InputErrorOf([&] { ExportRun(log); }),
+              HasSubstr("found states from 2 senders on HYDRO_STATE, 2 runs"));
   const LogInfo info = Summarise(log, false);
   ASSERT_EQ(info.senders.size(), 2u);
   EXPECT_TRUE(info.signals.empty());
@@ -91,8 +93,9 @@ TEST_F(SendersTest, OneSession) {
   EXPECT_TRUE(HoldsSeveralRuns(both));
   ASSERT_EQ(RunsIn(both).size(), 2u);
   EXPECT_EQ(RunsIn(both)[1].messages.Of<state_t>().front().arm_angle, 100);
-  EXPECT_THAT(log::InputErrorOf([&] { RequireOneRun(Log(both)); }),
-              HasSubstr("found states of two runs (two different states of tick 0)"));
+  EXPECT_THAT(
+      log::InputErrorOf([&] { RequireOneRun(Log(both)); }),
+      HasSubstr("found states of two runs with one session on HYDRO_STATE (two different states of tick 0)"));
   RunMessages mixed;
   const RunMessages a = RunOf(0, 0), b = RunOf(0, 100);
   for (size_t k = 0; k < 20; ++k) {
