@@ -42,7 +42,10 @@ LimbInfo SummariseLimb(const LimbLog& log, bool si) {
   LimbInfo all;
   all.limb = Summarise(log.limb, si);
   for (const RunLog& joint : log.joints) {
-    all.joints.push_back({NameOf(joint, log), Summarise(joint, si), TrackArm(joint)});
+    LogInfo info = Summarise(joint, si);
+    // A mean over several runs would be of none.
+    Tracking tracking = info.several_runs ? Tracking{} : TrackArm(joint);
+    all.joints.push_back({NameOf(joint, log), std::move(info), std::move(tracking)});
     AddEvents(all.joints.back(), &all.limb);
   }
   const auto by_tick = [](const auto& a, const auto& b) { return a.tick < b.tick; };

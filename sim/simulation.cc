@@ -24,7 +24,7 @@ void CheckEnds(const settings::StackConfig& config) {
 }
 
 // A run has one session, whose states are then told from those of any other run. It comes from what is simulated, so that the
-// same simulation gives the same log.
+// same simulation has the same one.
 int64_t SessionOf(const settings::StackConfig& config) {
   const uint64_t key = Scatter(NameKey(config.text) ^ Scatter(NameKey(config.model.text)));
   return std::max<int64_t>(1, static_cast<int64_t>(key >> 1));
