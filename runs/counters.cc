@@ -11,7 +11,7 @@
 namespace hydro::runs {
 namespace {
 
-constexpr int kBits[] = {8, 10, 12, 13, 14, 16, 24, 32};
+constexpr int kBits[] = {8, 12, 16, 24, 32};  // of registers that hold a signed command
 
 // The largest number of which all values are multiples, as decimals in a table have one; empty where there is none.
 std::optional<double> CommonStep(const std::vector<double>& values) {
@@ -74,11 +74,9 @@ std::optional<Counter> FindCounter(const std::vector<double>& values, double rev
     return width > 0.5 * period && width <= period * (1 + 1e-6) && in_one && RollsOver(values, period);
   };
   if (const std::optional<double> step = CommonStep(values)) {
-    for (const int bits : kBits) {
-      const double period = std::ldexp(*step, bits);
-      if (width < period && fits(period))
-        return Counter{period, "a counter of " + std::to_string(bits) + " bits"};
-    }
+    double period = *step;
+    while (period <= width) period *= 2;
+    if (fits(period)) return Counter{period, "a period of " + ShortestNumber(period)};
   }
   if (revolution > 0 && fits(revolution)) return Counter{revolution, "one revolution"};
   return std::nullopt;

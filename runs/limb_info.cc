@@ -42,7 +42,10 @@ LimbInfo SummariseLimb(const LimbLog& log, bool si) {
   for (const RunLog& joint : log.joints) {
     // A joint of the same name in another limb is told apart by its channels.
     const std::string& name = named[joint.joint] == 1 ? joint.joint : joint.suffix;
-    all.joints.push_back({name, Summarise(joint, si), TrackArm(joint)});
+    LogInfo info = Summarise(joint, si);
+    // A mean over several runs would be of none.
+    Tracking tracking = info.several_runs ? Tracking{} : TrackArm(joint);
+    all.joints.push_back({name, std::move(info), std::move(tracking)});
     AddEvents(all.joints.back(), &all.limb);
   }
   const auto by_tick = [](const auto& a, const auto& b) { return a.tick < b.tick; };

@@ -121,9 +121,10 @@ void RequireOneRun(const RunLog& log) {
   const std::optional<int64_t> tick = ContradictedTick(states);
   if (sessions.size() <= 1 && !tick.has_value()) return;
   const std::string channel = bus::Channels(log.suffix).Of<state_t>();
+  const std::string count = std::to_string(sessions.size());
   std::string found = sessions.size() > 1
-                          ? "states of " + std::to_string(sessions.size()) + " runs, by as many senders,"
-                          : std::string("states of two runs");
+                          ? "states from " + count + " senders on " + channel + ", " + count + " runs"
+                          : "states of two runs with one session on " + channel;
   if (tick.has_value()) found += " (two different states of tick " + std::to_string(*tick) + ")";
   std::vector<std::string> remarks = log.verdict.remarks;
   remarks.push_back(log.verdict.note);
@@ -131,8 +132,8 @@ void RequireOneRun(const RunLog& log) {
   for (const std::string& remark : remarks) {
     if (remark.find("joined") != std::string::npos) remedy = "; " + remark + ": cut it there";
   }
-  throw InputError(log.file + ": found " + found + " on " + channel + ", allowed one run by one sender" +
-                   remedy + "; hydro-log info " + log.file + " shows each");
+  throw InputError(log.file + ": found " + found + "; one run by one sender is needed" + remedy +
+                   "; hydro-log info " + log.file + " shows each");
 }
 
 void RequireOneRun(const LimbLog& log) {

@@ -22,6 +22,8 @@
 namespace hydro::runs {
 namespace {
 
+constexpr double kLongestStep = 86400;  // s from row to row
+
 // What a key of [columns] may name.
 std::string ColumnsOf(const tables::Table& table) {
   return "a column of " + table.file + ": " + QuotedList(table.names);
@@ -140,7 +142,7 @@ std::optional<double> ReadEvery(settings::SectionReader& columns) {
     return std::nullopt;
   settings::SectionReader section(*node, "columns.time");
   double every = 0;
-  section.Number("every", &every, settings::kPositive);
+  section.Number("every", &every, {.min = 0, .max = kLongestStep, .min_allowed = false});
   section.Finish();
   return every;
 }

@@ -42,22 +42,19 @@ bool Repeats(const tables::Table& table, size_t row) {
 }
 
 void LeaveOutRepeated(const tables::Column& time, tables::Table* table) {
-  size_t kept = 0, first = 0;
-  for (size_t row = 0; row < table->rows(); ++row) {
-    if (row > 0 && !std::isnan(time.values[row]) && Repeats(*table, row)) {
-      if (first == 0) first = row;
-      continue;
-    }
-    ++kept;
-  }
-  const size_t repeated = table->rows() - kept;
-  if (repeated == 0) return;
-  table->Note((repeated == 1 ? "a row" : std::to_string(repeated) + " rows") + " left out that repeat" +
-              (repeated == 1 ? "s" : "") + " the one before, time and all" +
-              (repeated == 1 ? " (" : " (the first: ") + RowName(*table, first) + ")");
   std::vector<bool> keep(table->rows(), true);
-  for (size_t row = 1; row < table->rows(); ++row)
-    keep[row] = std::isnan(time.values[row]) || !Repeats(*table, row);
+  size_t repeated = 0, first = 0;
+  for (size_t row = 1; row < table->rows(); ++row) {
+    if (std::isnan(time.values[row]) || !Repeats(*table, row)) continue;
+    keep[row] = false;
+    if (repeated++ == 0) first = row;
+  }
+  if (repeated == 0) return;
+  const std::string place = RowName(*table, first);
+  table->Note(repeated == 1
+                  ? "a row left out that repeats the one before, time and all (" + place + ")"
+                  : std::to_string(repeated) +
+                        " rows left out that repeat the one before, time and all (the first: " + place + ")");
   const auto thin = [&keep](auto* values) {
     size_t next = 0;
     for (size_t row = 0; row < keep.size(); ++row) {
@@ -110,7 +107,7 @@ std::string Counted(const char* what, size_t times, const tables::Table& table, 
 
 void CountOn(const SignalColumn& source, std::vector<double>& times, tables::Table* table) {
   const double step = UsualStep(times), to_seconds = std::abs(source.unit * source.scale);
-  if (step <= 0) return;
+  if (step <= 0 || source.unit * source.scale <= 0) return;
   double added = 0, before = times.empty() ? 0 : times.front();
   size_t rolled = 0, first_rolled = 0, set = 0, first_set = 0;
   std::string of;
@@ -230,6 +227,17 @@ void RequireNoBursts(const SignalColumn& source, const tables::Table& table) {
                    " } in the sidecar");
 }
 
+// Whether several rows have the time of the row before and other values: their times are rounded.
+bool SharesTimes(const tables::Column& time, const tables::Table& table) {
+  size_t equal = 0, changed = 0;
+  for (size_t row = 1; row < time.values.size(); ++row) {
+    if (time.values[row] != time.values[row - 1]) continue;
+    ++equal;
+    changed += !Repeats(table, row);
+  }
+  return changed > 0 && equal > 1;
+}
+
 }  // namespace
 
 void MendTimes(const SignalColumn& source, tables::Table* table) {
@@ -239,18 +247,8 @@ void MendTimes(const SignalColumn& source, tables::Table* table) {
   std::vector<double> times = column->values;
   CountOn(source, times, table);
   column->values = std::move(times);
-  const bool rounded = [&] {
-    const std::vector<double>& all = column->values;
-    size_t equal = 0, changed = 0;
-    for (size_t row = 1; row < all.size(); ++row) {
-      if (all[row] != all[row - 1]) continue;
-      ++equal;
-      changed += !Repeats(*table, row);
-    }
-    return changed > 0 && equal > 1;
-  }();
   // Where other rows share a time and differ, those that happen to be equal are samples too.
-  if (!rounded) LeaveOutRepeated(*column, table);
+  if (!SharesTimes(*column, *table)) LeaveOutRepeated(*column, table);
   RequireIncreasing(source, *table);
   RequireNoBursts(source, *table);
 }

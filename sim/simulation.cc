@@ -23,13 +23,6 @@ void CheckEnds(const settings::StackConfig& config) {
                    "--duration S)");
 }
 
-// A run has one session, whose states are then told from those of any other run. It comes from what is simulated, so that the
-// same simulation gives the same log.
-int64_t SessionOf(const settings::StackConfig& config) {
-  const uint64_t key = Scatter(NameKey(config.text) ^ Scatter(NameKey(config.model.text)));
-  return std::max<int64_t>(1, static_cast<int64_t>(key >> 1));
-}
-
 // What the limb says of itself; each joint speaks on channels of its own.
 void DescribeLimb(const settings::LimbConfig& config,
                   const std::function<void(const bus::RawMessage&)>& tap) {
@@ -45,6 +38,11 @@ void DescribeLimb(const settings::LimbConfig& config,
 }
 
 }  // namespace
+
+int64_t SessionOf(const settings::StackConfig& config) {
+  const uint64_t key = Scatter(NameKey(config.text) ^ Scatter(NameKey(config.model.text)));
+  return std::max<int64_t>(1, static_cast<int64_t>(key >> 1));
+}
 
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,

@@ -21,6 +21,10 @@ struct SimulationResult {
   std::string failure;  // why, empty when complete
 };
 
+// The session of a simulation of `config`, never 0: by it the states of a run are told from those of any other. It comes from
+// what is simulated, so that the same simulation has the same one.
+int64_t SessionOf(const settings::StackConfig& config);
+
 // Runs `config` to its end, in lockstep whatever time.mode says, and passes every message to `tap` (null:
 // nothing is even encoded). Throws InputError when the configuration has no duration or contradicts the
 // model. `tunings`: changes that were decided in another run, made again at the same ticks. `machine`: what

@@ -64,8 +64,9 @@ size_t Below(const Lines& lines, size_t from) {
 }
 
 // Whether the first line that looks like a row numbers the columns or channels: 1, 2, 3, with times below that begin
-// before its own.
-bool NumbersColumns(const Lines& lines, size_t row, const NamesLine& names, size_t time_place) {
+// before its own, or, below other lines that are no rows, with it.
+bool NumbersColumns(const Lines& lines, size_t row, const NamesLine& names, size_t time_place,
+                    bool below_others) {
   const std::vector<std::string_view> cells = CellsOf(lines[row], names.separator);
   if (cells.size() < 2) return false;
   for (size_t i = 0; i < cells.size(); ++i) {
@@ -79,7 +80,8 @@ bool NumbersColumns(const Lines& lines, size_t row, const NamesLine& names, size
   if (time_place >= below.size()) return false;
   std::optional<double> time = ParseNumber(below[time_place]);
   if (!time) time = ParseDecimalComma(below[time_place]);
-  return time && *time <= static_cast<double>(*ParseInteger(cells[time_place]));
+  const auto own = static_cast<double>(*ParseInteger(cells[time_place]));
+  return time && (*time < own || (below_others && *time == own));
 }
 
 // How many of the cells that say something are units.
@@ -105,6 +107,7 @@ size_t FindUnits(const Lines& lines, const std::vector<size_t>& between, const N
   if (settings.units_row == true) return lines[between.front()].number;
   bool perhaps = false;
   for (const size_t at : between) {
+    if (IsRow(lines[at], names)) continue;  // the numbers of columns: "1" is a unit too
     const UnitCount count = CountUnits(AskedCells(lines[at], names));
     if (count.all()) return lines[at].number;
     perhaps = perhaps || count.units > 0;
@@ -139,7 +142,7 @@ CsvLayout LayoutBelow(const Lines& lines, const NamesLine& names, const std::str
   const auto time = std::find_if(cells.begin(), cells.end(),
                                  [&](std::string_view cell) { return CellText(cell) == asked.time; });
   if (row < lines.size() && time != cells.end() &&
-      NumbersColumns(lines, row, names, static_cast<size_t>(time - cells.begin()))) {
+      NumbersColumns(lines, row, names, static_cast<size_t>(time - cells.begin()), !between.empty())) {
     between.push_back(row);
     row = Below(lines, row);
   }

@@ -100,7 +100,7 @@ bool CsvText::AllNumbers() const {
 bool CsvText::Next() {
   Interruption::Check();
   if (!TakeRow()) {
-    if (any_row_) return false;
+    if (any_row_ || cut_line_ > 0) return false;
     throw InputError(file_ + ": found no rows, allowed one or more below the column names");
   }
   any_row_ = true;

@@ -11,6 +11,7 @@
 #include "runs/run_config.h"
 #include "runs/run_table.h"
 #include "runs/sampling.h"
+#include "runs/senders.h"
 #include "tests/log/log_fixture.h"
 
 namespace hydro::runs {
@@ -203,6 +204,25 @@ TEST_F(LimbLogTest, ARowForEachJoint) {
     EXPECT_EQ(json["joints"]["knee"]["faults"].size(), 1u);
     EXPECT_EQ(json["faults"].size(), 2u);
   }
+}
+
+// Tests that a joint with states of several runs has no figures over them, and that its limb is refused where one run is wanted.
+TEST_F(LimbLogTest, SeveralRunsOfAJoint) {
+  RunMessages two = log::SampleRun(5);
+  for (state_t state : log::SampleRun(5).Of<state_t>()) {
+    state.session = 21;
+    state.arm_angle += 100;
+    two.Of<state_t>().push_back(state);
+  }
+  Write({{"_hip", log::SampleRun(3)}, {"_knee", two}});
+  const LimbLog log = ReadLimbLog(Path("log"), {});
+  EXPECT_THAT(log::InputErrorOf([&] { RequireOneRun(log); }),
+              HasSubstr("found states from 2 senders on HYDRO_STATE_knee"));
+  const LimbInfo info = SummariseLimb(log, false);
+  EXPECT_TRUE(info.joints[0].tracking.has_reference);
+  EXPECT_FALSE(info.joints[1].tracking.has_reference);
+  EXPECT_EQ(info.joints[1].info.senders.size(), 2u);
+  EXPECT_THAT(LimbInfoText(info), HasSubstr("joint knee has states of several runs: --joint shows each"));
 }
 
 // Tests that what a limb leaves out on purpose is neither missing nor lost, and that what is missing besides is.

@@ -190,7 +190,7 @@ TEST(SignalUnitTest, Factors) {
   EXPECT_DOUBLE_EQ(UnitFactor("lbf/in^2", "psi").value(), 1);
   EXPECT_EQ(UnitFactor("rpm", "psi"), std::nullopt);
   EXPECT_EQ(UnitFactor("", "psi"), std::nullopt);
-  EXPECT_THAT(UnitsLike("ms"), ElementsAre("s", "ms", "us", "min", "h"));
+  EXPECT_THAT(UnitsLike("ms"), ElementsAre("s", "ms", "us", "ns", "min", "h"));
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ using testing::Not;
 class TableTimesTest : public log::LogTest {
  protected:
   // A run of a table with the columns t, u and w, with these entries of [columns] for time and besides.
-  MeasuredRun Read(const std::string& rows, const std::string& time = "\"t\"", const std::string& more = "") {
+  MeasuredRun Read(const std::string& rows, const std::string& time = "\"t\"",
+                   const std::string& more = "motor_speed = \"w\"\n") {
     log::WriteBytes(Path("run.csv"), "t,u,w\n" + rows);
     log::WriteBytes(
         Path("run.toml"),
@@ -81,9 +82,7 @@ TEST_F(TableTimesTest, RollOvers) {
     const double period = std::ldexp(1, one.bits), step = 500, first = period - 20 * step;
     const MeasuredRun run = Read(Rows(400, [&](int row) {
       double counts = std::fmod(first + step * row, period);
-      if (one.is_signed)
-        counts = std::fmod(first - period / 2 + step * row, period) -
-                 (first - period / 2 + step * row >= period / 2 ? period : 0);
+      if (one.is_signed) counts = std::remainder(first + step * row - period / 2, period);
       return counts * one.count;
     }));
     ASSERT_EQ(run.samples(), 400u) << one.bits;
@@ -162,8 +161,8 @@ TEST_F(TableTimesTest, AnglesThatRollOver) {
   };
   const MeasuredRun encoder = read(4096, "motor_angle = { column = \"w\", scale = 0.001 }\n");
   EXPECT_NEAR(encoder.motor_angle.values[299], 0.04 * 299, 1e-9);
-  EXPECT_THAT(encoder.layout,
-              HasSubstr("motor_angle counted on where it rolls over (2 times, the first in line 105"));
+  EXPECT_THAT(encoder.layout, HasSubstr("motor_angle counted on where it rolls over (2 times, the first in "
+                                        "line 105, column w: a period of 4096"));
   const MeasuredRun degrees = read(360, "motor_angle = { column = \"w\", unit = \"deg\" }\n");
   EXPECT_NEAR(degrees.motor_angle.values[299], 40 * 299 * M_PI / 180, 1e-6);
   const MeasuredRun speed = read(4096, "motor_speed = \"w\"\n");
@@ -185,7 +184,7 @@ TEST_F(TableTimesTest, UnsignedCommands) {
   };
   EXPECT_THAT(read(655.36, 0), AllOf(HasSubstr("line 152, column u: voltage jumps by 65536 counts (655.36)"),
                                      HasSubstr("a signed number read as unsigned")));
-  EXPECT_THAT(read(256, 0), HasSubstr("voltage jumps by 256 counts"));
+  EXPECT_THAT(read(6.4, 0), HasSubstr("voltage jumps by 256 counts (6.4)"));
   EXPECT_EQ(read(0, 0), "");
   EXPECT_EQ(read(0, 2.5), "");  // it counts from the middle of its range
 }

@@ -131,6 +131,19 @@ void Watch(bus::Bus& bus, const std::string& channel, std::vector<std::string>& 
   });
 }
 
+// Tests that every simulation has a session, the same for the same one, and that another seed, reference or model gives another.
+TEST(SimulationTest, Sessions) {
+  const settings::StackConfig config = Step();
+  settings::StackConfig other_text = config, other_model = config;
+  other_text.text += "# ";
+  other_model.model.text += "# ";
+  EXPECT_GT(SessionOf(config), 0);
+  EXPECT_EQ(SessionOf(config), SessionOf(Step()));
+  EXPECT_NE(SessionOf(config), SessionOf(other_text));
+  EXPECT_NE(SessionOf(config), SessionOf(other_model));
+  EXPECT_GT(SessionOf(settings::StackConfig{}), 0);
+}
+
 // Tests that logging changes nothing: without a tap, where nothing is encoded, every state and every command
 // is to the last bit what a tap records.
 TEST(SimulationTest, LoggingDoesNotDisturb) {
@@ -140,7 +153,7 @@ TEST(SimulationTest, LoggingDoesNotDisturb) {
   const SimulationResult with = Simulate(config, recording.Tap());
 
   config.time.mode = settings::TimeMode::kLockstep;
-  bus::SimulatedClock clock;
+  bus::SimulatedClock clock(SessionOf(config));
   bus::InProcessBus bus(&clock);
   std::map<std::string, std::vector<std::string>> seen;
   Watch<state_t>(bus, "HYDRO_STATE", seen["HYDRO_STATE"]);
