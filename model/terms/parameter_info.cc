@@ -64,7 +64,7 @@ const std::vector<BaseParameter>& BaseParameters() {
                {"k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)", -1}),
       Positive(&Parameters::J_a, kDataSheet, {"J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)", -2}),
       AnySign(&Parameters::mgl, kDataSheet,
-              {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15)", -1}),
+              {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15); a linear arm's weight", -1}),
   };
   return parameters;
 }
