@@ -122,6 +122,7 @@ class Setter {
   void List() const {
     const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
                                       [](double value) { return fmt::format("{:g}", value); });
+    const settings::StackConfig config = ConfigInForce(*client_.run(), *client_.in_force());
     constexpr const char* kRow = "{:<34} {:<22} {:<22} {:<41} {:<14} {}";
     Print(said_, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
                              "what it does"));
@@ -129,7 +130,7 @@ class Setter {
       const auto value = values.find(std::string(row.key));
       Print(said_,
             fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "(default)" : value->second,
-                        row.unit, row.range, row.acts_in, row.what));
+                        tuning::UnitOf(row, config), row.range, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
     Print(said_,

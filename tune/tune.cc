@@ -97,7 +97,8 @@ std::string TunedText(const settings::StackConfig& given, const settings::StackC
   for (const auto& key : GainKeys(tuned)) {
     if (std::find(old.begin(), old.end(), key) == old.end()) keys.push_back(key);
   }
-  return settings::EditToml(before, given.file, keys, {});
+  return settings::EditToml(before, given.file, keys,
+                            settings::FormerNamesIn(settings::ParseToml(before, given.file), keys));
 }
 
 // Before the search, with gains that all differ from the given ones.
@@ -156,8 +157,8 @@ void Refuse(const settings::StackConfig& config, const std::string& why) {
 int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal) {
   CheckRange("--jobs", request.jobs, 1, 64);
   CheckRange("--samples", request.samples, 0, 100);
-  const Goals goals = ParseGoals(request.goals);
   const settings::StackConfig config = Load(request);
+  const Goals goals = ParseGoals(request.goals, config.model.description.units.UnitFor("rad", 1));
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
   if (!request.output.empty()) CheckCanBeChanged(config, request.output);
