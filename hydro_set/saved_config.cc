@@ -6,6 +6,8 @@
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "settings/moved_paths.h"
+#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/toml_edit.h"
 #include "tuning/change_check.h"
 #include "tuning/tunable_keys.h"

@@ -14,7 +14,7 @@
 #include "runs/signal_columns.h"
 #include "runs/signal_unit.h"
 #include "settings/model_file.h"
-#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 

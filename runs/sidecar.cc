@@ -15,7 +15,7 @@
 #include "runs/sidecar_search.h"
 #include "runs/signal_columns.h"
 #include "runs/signal_unit.h"
-#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 #include "tables/table.h"

@@ -11,7 +11,7 @@
 #include "settings/limb_processes.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
-#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
 #include "settings/toml/section_lists.h"

@@ -9,7 +9,6 @@
 #include "settings/joint_documents.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
-#include "settings/quantity_keys.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
 #include "settings/stack_sections.h"

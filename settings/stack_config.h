@@ -13,7 +13,7 @@
 #include "model/terms/actuator_options.h"
 #include "model/terms/description.h"
 #include "settings/driver_section.h"
-#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro::settings {

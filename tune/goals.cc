@@ -4,7 +4,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 
 namespace hydro::tune {
 namespace {

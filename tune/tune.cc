@@ -13,6 +13,7 @@
 #include "base/text_file.h"
 #include "settings/limb_config.h"
 #include "settings/moved_paths.h"
+#include "settings/read_quantities.h"
 #include "settings/stack_config.h"
 #include "settings/toml/toml_edit.h"
 #include "tune/refusal.h"

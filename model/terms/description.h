@@ -31,7 +31,7 @@ struct ParametersOf {
   T p_3{};     // psi, accumulator pressure
   T k_2{};     // in-lbf/psi, arm torque per pressure difference, eq. (15)
   T J_a{};     // lbf-in-s^2, inertia of the arm, eq. (15)
-  T mgl{};     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); of a linear arm its weight along its path
+  T mgl{};  // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); of a linear arm its weight along its path
 };
 using Parameters = ParametersOf<double>;
 

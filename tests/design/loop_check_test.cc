@@ -156,12 +156,10 @@ TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
 
 // The same for the pressure loop with a free arm and a pressure as reference.
 TEST(LoopCheck, CriticalPressureGainIsWhereTheStackBeginsToOscillate) {
-  const std::vector<std::string> base = {"model.initial_pressure=1500",
-                                         "limits.pressure=inf",
-                                         "reference.signal=pressure",
-                                         "reference.steps=[[0.01, 1e-4], [0.012, 0]]",
-                                         "plant.rate_hz=1000",
-                                         "time.duration_s=0.51"};
+  const std::vector<std::string> base = {
+      "model.initial_pressure=1500", "limits.pressure=inf",
+      "reference.signal=pressure",   "reference.steps=[[0.01, 1e-4], [0.012, 0]]",
+      "plant.rate_hz=1000",          "time.duration_s=0.51"};
   const double critical = CheckLoops(Retuned(base, Smooth())).cases.front().pressure.gain;
   const auto gains = pressure_ctrl::DerivePressureGains(Smooth().parameters, 0, 150, 0.5, 2);
   for (const double factor : {0.97, 1.03}) {

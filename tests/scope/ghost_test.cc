@@ -12,14 +12,11 @@
 namespace hydro::scope {
 namespace {
 
-const std::vector<std::string> kQuiet = {"time.mode=lockstep",
-                                         "time.duration_s=3",
-                                         "noise.p1=0",
-                                         "noise.p2=0",
-                                         "noise.arm_angle=0",
-                                         "noise.arm_speed=0",
-                                         "noise.motor_speed=0",
-                                         "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
+const std::vector<std::string> kQuiet = {
+    "time.mode=lockstep",  "time.duration_s=3",
+    "noise.p1=0",          "noise.p2=0",
+    "noise.arm_angle=0",   "noise.arm_speed=0",
+    "noise.motor_speed=0", "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
 
 std::vector<GhostSample> Samples(const settings::StackConfig& config) {
   std::vector<GhostSample> samples;

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "model/terms/parameter_info.h"
+#include "settings/read_quantities.h"
 #include "tests/model_in_units.h"
 #include "tests/settings/texts.h"
 

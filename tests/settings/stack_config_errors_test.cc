@@ -162,7 +162,8 @@ const std::vector<Malformed>& Table() {
       {InSection("pressure", "compressed_sides = 3"), "stack.toml:6: ",
        "pressure.compressed_sides: found 3, allowed a whole number of at least 1 and at most 2"},
       {InSection("pressure", "reference_feedforward = \"yes\""), "stack.toml:6: ",
-       "pressure.reference_feedforward: found \"yes\", allowed true, false or a finite number: the gain, volts per pressure"},
+       "pressure.reference_feedforward: found \"yes\", allowed true, false or a finite number: the gain, "
+       "volts per pressure"},
       {InSection("pressure", "reference_feedforward = nan"),
        "stack.toml:6: ", "pressure.reference_feedforward: found nan"},
       {InSection("pressure", "arm_speed_feedforward = 1"),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "design/loop_check.h"
 #include "settings/model_file.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
@@ -57,9 +58,12 @@ struct Motion {
   std::vector<state_t> states;
 };
 
+settings::StackConfig ConfigOf(const std::string& config_text, const model::ModelDescription& model) {
+  return settings::ParseStackConfig(config_text, "stack.toml", settings::FormatModel(model), "model.toml");
+}
+
 Motion MotionOf(const std::string& config_text, const model::ModelDescription& model) {
-  const settings::StackConfig config =
-      settings::ParseStackConfig(config_text, "stack.toml", settings::FormatModel(model), "model.toml");
+  const settings::StackConfig config = ConfigOf(config_text, model);
   Motion motion;
   motion.exit_code = Simulate(config, [&](const bus::RawMessage& message) {
                        if (!std::string(message.channel).starts_with("HYDRO_STATE")) return;
@@ -127,6 +131,33 @@ TEST(SameInAllUnits, EveryShippedModel) {
         ASSERT_EQ(other.states.size(), first.states.size()) << model.name << " in " << units.length;
         EXPECT_LT(Difference(first, model.units, other, units), 1e-9)
             << model.name << (linear ? ", linear, in " : " in ") << units.length;
+      }
+    }
+  }
+}
+
+// Tests that the loops of every shipped model are judged alike: the same margins, within what eigenvalues lose to
+// rounding where numbers are large.
+TEST(SameInAllUnits, LoopsAreJudgedAlike) {
+  for (model::ModelDescription model : ShippedModels()) {
+    for (const bool linear : {false, true}) {
+      model.units.linear_arm = linear;
+      const design::LoopCheck first = design::CheckLoops(ConfigOf(ConfigText(linear), model));
+      ASSERT_TRUE(first.pressure && first.position) << model.name;
+      for (const UnitSystem& system : hydro::testing::kSystems) {
+        const UnitSystem units = hydro::testing::WithArm(system, linear);
+        const design::LoopCheck other =
+            design::CheckLoops(ConfigOf(ConfigText(linear), hydro::testing::InUnits(model, units)));
+        ASSERT_TRUE(other.pressure && other.position) << model.name << " in " << units.length;
+        EXPECT_EQ(other.stable(), first.stable());
+        for (const auto loop : {&design::LoopCheck::pressure, &design::LoopCheck::position}) {
+          const design::LoopMargins &wanted = (first.*loop)->worst, &found = (other.*loop)->worst;
+          const std::string where = model.name + " in " + std::string(units.length);
+          EXPECT_NEAR(found.gain / wanted.gain, 1, 1e-6) << where;
+          EXPECT_NEAR(found.phase_deg / wanted.phase_deg, 1, 1e-6) << where;
+          EXPECT_NEAR(found.spectral_radius, wanted.spectral_radius, 1e-9) << where;
+          EXPECT_NEAR(found.damping_ratio, wanted.damping_ratio, 1e-6) << where;
+        }
       }
     }
   }

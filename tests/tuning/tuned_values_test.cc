@@ -79,8 +79,7 @@ TEST(TunedValues, ALimitMayBeInfiniteAndAFeedforwardNegative) {
 
 // Tests that the names which older logs have for values are taken for the present ones.
 TEST(TunedValues, FormerNamesAreRead) {
-  const settings::StackConfig config = settings::Parsed(settings::kConfigText);
-  TunedValues values = ValuesOf(config);
+  TunedValues values = ValuesOf(testing::SmallStack());
   tuned_settings_t message{};
   message.names = {"limits.pressure_psi", "pressure.reference_feedforward_V_psi", "noise.arm_angle_rad"};
   message.values = {1234, -0.002, 0.5};
