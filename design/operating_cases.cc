@@ -76,6 +76,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   }
   OperatingCase result;
   result.model = model::Linearise(equations, 0, 0, mode, state);
+  result.scales = equations.scales();
   if (running.high_pressure && free) {
     // What leaks there would make the pressures depend on the arm's angle as they never do in equilibrium.
     const auto column =

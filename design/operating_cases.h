@@ -10,9 +10,10 @@
 namespace hydro::design {
 
 struct OperatingCase {
-  std::string name;          // "both sides compress, arm at 0 rad"
-  model::LinearModel model;  // the pump slips
-  int actuator_angle = -1;   // the state of the actuator's own angle; -1: the arm is not free
+  std::string name;            // "both sides compress, arm at 0 rad"
+  model::LinearModel model;    // the pump slips
+  std::vector<double> scales;  // Equations::scales() of its states
+  int actuator_angle = -1;     // the state of the actuator's own angle; -1: the arm is not free
 };
 
 // rad: how far from mid-stroke a free arm works. limits.arm_angle_rad; its default, V_ms/c but for 2 %, is no place to work at, since

@@ -1,6 +1,7 @@
 #include "settings/read_quantities.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/number_text.h"
@@ -154,11 +155,14 @@ double NumberOf(const std::string& text, const std::string& unit, const std::str
   given.remove_prefix(std::min(given.find_first_not_of(' '), given.size()));
   const std::optional<hydro::Unit> own = ParseUnit(given);
   const std::optional<hydro::Unit> wanted = ParseUnit(unit);
-  if (!number || !own || !wanted || own->powers != wanted->powers) {
+  const bool fits = number && own && wanted && own->powers == wanted->powers;
+  const double factor = !fits || own->size == wanted->size ? 1 : own->size / wanted->size;
+  // What overflows would read as "no limit".
+  if (!fits || !std::isfinite(factor * *number)) {
     throw KeyError(place, key, Quoted(text),
                    "a number (in " + unit + "), or a text of a number and a unit: " + UnitsLike(unit));
   }
-  return own->size == wanted->size ? *number : *number * (own->size / wanted->size);
+  return factor * *number;
 }
 
 void ReadQuantities(TomlNode* root, const UnitSystem& units, FormerNames former) {

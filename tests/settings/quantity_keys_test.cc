@@ -126,6 +126,7 @@ TEST(QuantityKeys, OtherUnitsAreRefused) {
       "unit: Pa, hPa, kPa, MPa, mbar, bar, psi");
   EXPECT_THAT(error("pressure = \"30 furlong\"\n"), HasSubstr("found \"30 furlong\""));
   EXPECT_THAT(error("pressure = \"30\"\n"), HasSubstr("found \"30\""));
+  EXPECT_THAT(error("pressure = \"1e308 MPa\"\n"), HasSubstr("found \"1e308 MPa\"")) << "beyond all numbers";
   EXPECT_THAT(error("pressure = \"1.2.3 Pa\"\n"), ::testing::IsEmpty())
       << "for the key's reader, which says what is allowed";
   EXPECT_THAT(InputErrorOf([] {
