@@ -1,6 +1,7 @@
 #include "base/units.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -36,6 +37,7 @@ constexpr NamedUnit kUnits[] = {
     {"rev", {2 * std::numbers::pi, {0, 0, 0, 0, 1}}},
     {"rpm", {kRpm, {0, 0, -1, 0, 1}}},
     {"N", {1, {1, 1, -2}}},
+    {"daN", {10, {1, 1, -2}}},  // daN/cm^2 is bar
     {"kN", {1e3, {1, 1, -2}}},
     {"lbf", {kPoundForce, {1, 1, -2}}},
     {"lb", {kPoundForce, {1, 1, -2}}},  // the paper's "in-lb"
@@ -174,6 +176,12 @@ std::optional<std::vector<UnitPower>> UnitPowers(std::string_view text) {
   UnitReader reader(text);
   if (!reader.Whole().has_value()) return std::nullopt;
   return std::move(reader.parts());
+}
+
+std::string UnitInName(const std::string& unit) {
+  std::string name;
+  for (const char c : unit) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return name;
 }
 
 std::vector<std::string_view> UnitNames() {

@@ -30,6 +30,9 @@ struct Unit {
 // is not a unit.
 std::optional<Unit> ParseUnit(std::string_view text);
 
+// "rad_s" for "rad/s", for names.
+std::string UnitInName(const std::string& unit);
+
 // A unit of the table to a power.
 struct UnitPower {
   std::string_view name;

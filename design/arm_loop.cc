@@ -11,7 +11,7 @@
 namespace hydro::design {
 namespace {
 
-constexpr double kStartPressure = 500;  // psi, above p_3: both valves closed
+constexpr double kStartShare = 0.08;  // of T_pmax/D, above p_3: both valves closed
 
 // Rows of the loop with a free arm.
 enum Row { kSpeed, kDifference, kAlpha, kAlphaRate };
@@ -33,7 +33,8 @@ Loop ClosePressureLoop(const model::ModelDescription& model, const model::Actuat
   const model::Equations equations(model, options);
   std::vector<double> state(model::kMaxStates);
   model::Mode mode;
-  equations.Start(kStartPressure, state.data(), &mode);
+  const model::Parameters& p = model.parameters;
+  equations.Start(p.p_3 + kStartShare * p.T_pmax / p.D, state.data(), &mode);
   mode.pump = 1;
   if (compressed_sides == 1) {
     mode.valve_1 = 1;

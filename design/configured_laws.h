@@ -17,7 +17,7 @@ pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackC
 // Eq. (17).
 position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackConfig& config);
 
-// The braking curve before it; empty without position.braking_rad_s2. Its largest speed is 0.95 of limits.motor_speed_rad_s.
+// The braking curve before it; empty without position.braking_rad_s2. Its largest speed is 0.95 of limits.motor_speed.
 std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config);
 
 // The same from numbers: `braking` in rad/s^2, infinity for none; `motor_speed`: its limit, rad/s.

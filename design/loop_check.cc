@@ -9,6 +9,7 @@
 #include "design/configured_laws.h"
 #include "design/linear_stack.h"
 #include "design/operating_cases.h"
+#include "design/paper_units.h"
 #include "model/effects/sensor_signal.h"
 
 namespace hydro::design {
@@ -70,23 +71,26 @@ LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::Posit
   return margins;
 }
 
-void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& pressure,
+void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& given,
            LoopCheck* check) {
+  const PaperUnits paper(config.model.description.units);
+  const pressure_ctrl::PressureLawSettings pressure = paper.Law(given);
   const bool closes_position = config.reference.signal == settings::ReferenceSignal::kArmAngle;
   const StackTiming timing = TimingOf(config);
-  const position_ctrl::PositionLawSettings position = PositionLawSettingsFor(config);
+  const position_ctrl::PositionLawSettings position = paper.Law(PositionLawSettingsFor(config));
   const bool moves_arm = config.model.shaft == model::Shaft::kFree && !config.model.bypass;
   for (const OperatingCase& point : OperatingCases(config)) {
     CheckedCase& checked = check->cases.emplace_back();
     checked.name = point.name;
-    model::LinearModel held = point.model;
+    const model::LinearModel model = paper.Model(point.model, point.scales);
+    model::LinearModel held = model;
     FreezeArmAngle(point.actuator_angle, &held);
     const LinearStack alone(held, timing, pressure, nullptr);
     checked.pressure =
         MarginsOf([&](double factor) { return alone.Poles(factor, 0); }, alone.period(), Drift::kIgnored);
     Add(checked.pressure, point.name, &check->pressure);
     if (!closes_position || !moves_arm) continue;
-    const LinearStack both(point.model, timing, pressure, &position);
+    const LinearStack both(model, timing, pressure, &position);
     checked.position = PositionMargins(both, position);
     Add(*checked.position, point.name, &check->position);
     check->position->margins_known = both.position_sampled_once();

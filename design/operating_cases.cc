@@ -14,7 +14,7 @@ namespace {
 constexpr double kMotorSpeed = 10;      // rad/s; nothing in the paper's equations depends on it
 constexpr double kPressureShare = 0.1;  // of T_pmax/D, above p_3
 
-constexpr double kUsualShare = 0.5;  // of V_ms/c, without limits.arm_angle_rad
+constexpr double kUsualShare = 0.5;  // of V_ms/c, without limits.arm_angle
 
 enum class Sides { kBoth, kSecond, kFirst };
 
@@ -76,6 +76,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   }
   OperatingCase result;
   result.model = model::Linearise(equations, 0, 0, mode, state);
+  result.scales = equations.scales();
   if (running.high_pressure && free) {
     // What leaks there would make the pressures depend on the arm's angle as they never do in equilibrium.
     const auto column =

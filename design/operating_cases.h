@@ -10,17 +10,18 @@
 namespace hydro::design {
 
 struct OperatingCase {
-  std::string name;          // "both sides compress, arm at 0 rad"
-  model::LinearModel model;  // the pump slips
-  int actuator_angle = -1;   // the state of the actuator's own angle; -1: the arm is not free
+  std::string name;            // "both sides compress, arm at 0 rad"
+  model::LinearModel model;    // the pump slips
+  std::vector<double> scales;  // Equations::scales() of its states
+  int actuator_angle = -1;     // the state of the actuator's own angle; -1: the arm is not free
 };
 
-// rad: how far from mid-stroke a free arm works. limits.arm_angle_rad; its default, V_ms/c but for 2 %, is no place to work at, since
+// rad: how far from mid-stroke a free arm works. limits.arm_angle; its default, V_ms/c but for 2 %, is no place to work at, since
 // a side with hardly any fluid is so stiff that hardly a loop is stable there: without the limit it is half of V_ms/c, or
 // as far as the reference goes if that is more.
 double LargestArmAngle(const settings::StackConfig& config);
 
-// The same of its parts: `limit`, of limits.arm_angle_rad; `farthest`, of where the arm starts and where the reference goes.
+// The same of its parts: `limit`, of limits.arm_angle; `farthest`, of where the arm starts and where the reference goes.
 double LargestArmAngle(const model::Parameters& parameters, double limit, double farthest);
 
 // The arm at mid-stroke and at LargestArmAngle on either side (where a clamped arm is; at the middle and the ends of a

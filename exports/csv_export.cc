@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "base/new_folder.h"
 #include "base/number_text.h"
+#include "base/units.h"
 #include "exports/output.h"
 #include "exports/sheet_units.h"
 #include "exports/write_export.h"

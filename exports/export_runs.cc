@@ -156,10 +156,6 @@ ExportedRun Export(const Recording& recording, const std::string& name, const Se
   Describe(recording, units, selection.si, &run);
   if (WantsTable(selection)) AddTable(recording, selection, say, &run);
   const bool table = !run.sheets.empty();
-  if (table && !selection.si && units != UnitSystem{}) {
-    say(recording.log.file + ": the table's values are in the units of the run's model (pressures in " +
-        units.UnitFor("psi") + "), whatever its columns are called; --si names them");
-  }
   std::vector<std::string> channels = ChosenChannels(selection, recording.log);
   const std::string states(bus::RowOf<state_t>().channel);
   const bool only_times =

@@ -1,7 +1,6 @@
 #include "exports/sheet_units.h"
 
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -53,33 +52,30 @@ std::string PaperUnit(const std::string& run_column) {
   return ending == nullptr ? "" : std::string(ending->second);
 }
 
-std::string UnitInName(const std::string& unit) {
-  std::string name;
-  for (const char c : unit) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return name;
+std::string UnitOfField(const UnitSystem& units, const definitions::Field& field) {
+  return field.unit.empty() ? "" : units.UnitFor(field.unit, ArmPower(field.name));
 }
 
 void SetUnits(const UnitSystem& units, bool si, Sheet* sheet) {
   for (SheetColumn& column : sheet->columns) {
     definitions::Field& field = column.field;
     if (field.unit.empty()) continue;
-    field.unit = units.UnitFor(field.unit, ArmPower(field.name));
+    field.unit = UnitOfField(units, field);
     const std::optional<SiUnit> to = si ? FindSiUnit(field.unit, kLargePressure) : std::nullopt;
     if (to.has_value()) {
       Scale(to->factor, &column.values);
       field.unit = to->to;
     }
-    if (si && sheet->is_table && field.unit != PaperUnit(field.name))
-      field.name = Renamed(field.name, field.unit);
+    if (sheet->is_table && field.unit != PaperUnit(field.name)) field.name = Renamed(field.name, field.unit);
   }
 }
 
-void ShowInSi(const UnitSystem& units, tables::Table* table) {
+void SetUnits(const UnitSystem& units, bool si, tables::Table* table) {
   for (tables::Column& column : table->columns) {
     const std::string paper = PaperUnit(column.name);
     if (paper.empty()) continue;
     const std::string unit = units.UnitFor(paper, ArmPower(column.name));
-    const std::optional<SiUnit> to = FindSiUnit(unit, kLargePressure);
+    const std::optional<SiUnit> to = si ? FindSiUnit(unit, kLargePressure) : std::nullopt;
     if (to.has_value()) {
       for (double& value : column.values) value *= to->factor;
     }

@@ -12,14 +12,14 @@ namespace hydro::exports {
 // The unit in which the paper has a column of the run's table, from its name: "psi" for "p1_psi"; empty: none.
 std::string PaperUnit(const std::string& run_column);
 
-// Sets the columns' units to what their values are in, by the units of the run's model; with `si` converts them, and the names of the
-// table's columns say so.
+// What a message's field is in where it comes from a stack in these units; "" where it has no unit.
+std::string UnitOfField(const UnitSystem& units, const definitions::Field& field);
+
+// Sets the columns' units to what their values are in, by the units of the run's model; with `si` converts them. The names of the
+// table's columns say what they are in.
 void SetUnits(const UnitSystem& units, bool si, Sheet* sheet);
 
-// The same for a table that runs::ExportRun() made, in SI.
-void ShowInSi(const UnitSystem& units, tables::Table* table);
-
-// "rad_s" for "rad/s", for names.
-std::string UnitInName(const std::string& unit);
+// The same for a table that runs::ExportRun() made.
+void SetUnits(const UnitSystem& units, bool si, tables::Table* table);
 
 }  // namespace hydro::exports

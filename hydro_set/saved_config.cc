@@ -6,6 +6,8 @@
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "settings/moved_paths.h"
+#include "settings/quantity_keys.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/toml_edit.h"
 #include "tuning/rearm_forecast.h"
 #include "tuning/tunable_keys.h"
@@ -18,9 +20,9 @@ bool Concerned(const std::string& key) {
   return tuning::FindTunable(key) != nullptr || key.starts_with("reference.") || key.starts_with("pressure.");
 }
 
-std::map<std::string, std::string> Entries(const std::string& text, const std::string& name) {
+std::map<std::string, std::string> Entries(const settings::TomlNode& document) {
   std::map<std::string, std::string> entries;
-  for (const auto& [key, value] : settings::TomlEntries(settings::ParseToml(text, name))) {
+  for (const auto& [key, value] : settings::TomlEntries(document)) {
     if (Concerned(key)) entries.emplace(key, value);
   }
   return entries;
@@ -49,15 +51,22 @@ std::string SavedText(const std::string& file, const std::string& joint, const s
     return settings::EditToml(config.text, file, settings::MovedPaths(given, output), {});
   }
   const std::string text = ReadTextFile(file);
-  const auto before = Entries(text, file), after = Entries(config.text, file);
+  settings::TomlNode document = settings::ParseToml(text, file);
+  std::map<std::string, std::string> written;  // by present name, as the file has it
+  for (const auto& [key, value] : settings::TomlEntries(document)) written[settings::PresentName(key)] = key;
+  // A text with a unit that says the same number stays.
+  settings::ReadQuantities(&document, config.model.description.units);
+  const auto before = Entries(document), after = Entries(settings::ParseToml(config.text, file));
   std::vector<settings::TomlEntry> changed = settings::MovedPaths(settings::LoadStackConfig(file), output);
   std::vector<std::string> removed;
   for (const auto& [key, value] : after) {
     const auto was = before.find(key);
-    if (was == before.end() || was->second != value) changed.emplace_back(key, value);
+    if (was != before.end() && was->second == value) continue;
+    changed.emplace_back(key, value);
+    if (was != before.end() && written[key] != key) removed.push_back(written[key]);
   }
   for (const auto& [key, value] : before) {
-    if (!after.contains(key)) removed.push_back(key);
+    if (!after.contains(key)) removed.push_back(written[key]);
   }
   return settings::EditToml(text, file, changed, removed);
 }

@@ -15,6 +15,7 @@
 #include "hydro_set/tuning_client.h"
 #include "runs/tuning_history.h"
 #include "tuning/change_check.h"
+#include "tuning/rearm_forecast.h"
 #include "tuning/tunable_keys.h"
 
 namespace hydro::hydro_set {
@@ -122,6 +123,7 @@ class Setter {
   void List() const {
     const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
                                       [](double value) { return fmt::format("{:g}", value); });
+    const settings::StackConfig config = tuning::ConfigInForce(*client_.run(), *client_.in_force());
     constexpr const char* kRow = "{:<34} {:<22} {:<22} {:<41} {:<14} {}";
     Print(said_, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
                              "what it does"));
@@ -129,7 +131,7 @@ class Setter {
       const auto value = values.find(std::string(row.key));
       Print(said_,
             fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "(default)" : value->second,
-                        row.unit, row.range, row.acts_in, row.what));
+                        tuning::UnitOf(row, config), row.range, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
     Print(said_,

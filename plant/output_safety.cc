@@ -48,7 +48,7 @@ OutputSafety::OutputSafety(process::Participant& participant, const settings::St
 void OutputSafety::CheckMeasured(const state_t& state) {
   const double pressure = std::fmax(state.p1, state.p2);
   Set(Cause::kPressureLimit, pressure > limits_.pressure_psi, [&] {
-    return Finding{fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure_psi)",
+    return Finding{fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure)",
                                state.tick, state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi,
                                fmt::arg("unit", units_.UnitFor("psi"))),
                    pressure, limits_.pressure_psi};
@@ -56,14 +56,14 @@ void OutputSafety::CheckMeasured(const state_t& state) {
   const double speed = std::fabs(state.motor_speed);
   Set(Cause::kMotorSpeedLimit, speed > limits_.motor_speed_rad_s, [&] {
     return Finding{fmt::format("tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s "
-                               "(limits.motor_speed_rad_s)",
+                               "(limits.motor_speed)",
                                state.tick, speed, limits_.motor_speed_rad_s),
                    speed, limits_.motor_speed_rad_s};
   });
   const double angle = std::fabs(state.arm_angle);
   Set(Cause::kArmAngleLimit, angle > limits_.arm_angle_rad, [&] {
     return Finding{fmt::format("tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
-                               "(limits.arm_angle_rad)",
+                               "(limits.arm_angle)",
                                state.tick, state.arm_angle, limits_.arm_angle_rad,
                                fmt::arg("unit", units_.UnitFor("rad", 1))),
                    angle, limits_.arm_angle_rad};

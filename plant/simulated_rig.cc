@@ -16,6 +16,7 @@ SimulatedRig::SimulatedRig(const settings::StackConfig& config, std::unique_ptr<
       seed_(config.seed),
       rate_hz_(config.plant.rate_hz),
       largest_angle_(config.limits.arm_angle_rad),
+      units_(config.model.description.units),
       machine_(std::move(machine)) {}
 
 model::Measurement SimulatedRig::Read(int64_t tick) {
@@ -34,9 +35,9 @@ RigError SimulatedRig::Explained(const model::ModelError& error, int64_t tick, b
   const double angle = machine_->Measure().arm_angle;
   if (!late || !(std::fabs(angle) > largest_angle_)) return {"model_error", error.what()};
   return {"arm_angle_limit",
-          fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
-                      "(limits.arm_angle_rad), and left its cylinder while the plant was late",
-                      tick, angle, largest_angle_)};
+          fmt::format("before tick {} the arm was at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
+                      "(limits.arm_angle), and left its cylinder while the plant was late",
+                      tick, angle, largest_angle_, fmt::arg("unit", units_.UnitFor("rad", 1)))};
 }
 
 }  // namespace hydro::plant

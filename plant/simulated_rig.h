@@ -42,8 +42,9 @@ class SimulatedRig : public Rig {
   bool exact_;  // the sensors have none
   int64_t seed_;
   double rate_hz_;
-  double largest_angle_;  // rad
-  int64_t read_ = -1;     // tick
+  double largest_angle_;
+  UnitSystem units_;
+  int64_t read_ = -1;  // tick
   std::unique_ptr<SimulatedMachine> machine_;
   std::vector<RigFault> no_faults_;
 };

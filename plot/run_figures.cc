@@ -7,6 +7,7 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "base/units.h"
 
 namespace hydro::plot {
 namespace {
@@ -22,19 +23,25 @@ const std::vector<double>& ColumnOf(const tables::Table& run, const std::string&
   return column->values;
 }
 
-// The unit of a quantity by its column's name, which hydro-log export ends otherwise with --si; without such a column the first.
+// The unit of a quantity, with which hydro-log export ends its column's name: that of the run's model, or with --si another. `like`
+// are units of the same kind; without such a column the first.
 std::string UnitOf(const tables::Table& run, const std::string& quantity,
-                   const std::vector<std::string>& units) {
-  const auto found = std::find_if(units.begin(), units.end(), [&](const std::string& unit) {
-    return run.Find(quantity + "_" + unit) != nullptr;
-  });
-  return found == units.end() ? units.front() : *found;
+                   const std::vector<std::string_view>& like) {
+  for (const std::string_view first : like) {
+    for (const std::string_view unit : UnitNames()) {
+      if (ParseUnit(unit)->powers == ParseUnit(first)->powers &&
+          run.Find(quantity + "_" + std::string(unit)) != nullptr) {
+        return std::string(unit);
+      }
+    }
+  }
+  return std::string(like.front());
 }
 
-std::string PressureUnit(const tables::Table& run) { return UnitOf(run, "p1", {"psi", "MPa", "kPa", "Pa"}); }
+std::string PressureUnit(const tables::Table& run) { return UnitOf(run, "p1", {"psi"}); }
 
 // A length is the coordinate of a cylinder.
-std::string ArmUnit(const tables::Table& run) { return UnitOf(run, "arm_angle", {"rad", "mm", "m", "in"}); }
+std::string ArmUnit(const tables::Table& run) { return UnitOf(run, "arm_angle", {"rad", "m"}); }
 
 // A picture over time needs two times, and each after the one before.
 const std::vector<double>& TimesOf(const tables::Table& run) {

@@ -44,13 +44,13 @@ double Farthest(const Cubic& c) {
   return farthest;
 }
 
-std::string TooFar(const std::string& where, double angle, double largest_angle) {
-  return where + "found arm angle " + ShortNumber(angle) +
-         " rad, allowed |alpha| <= " + ShortNumber(largest_angle) + " (limits.arm_angle_rad)";
+std::string TooFar(const std::string& where, double angle, double largest_angle, const std::string& unit) {
+  return where + "found " + (unit == "rad" ? "arm angle " : "arm position ") + ShortNumber(angle) + " " +
+         unit + ", allowed |alpha| <= " + ShortNumber(largest_angle) + " " + unit + " (limits.arm_angle)";
 }
 
 // Why a plan cannot be followed; empty: it can.
-std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
+std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle, const std::string& unit) {
   if (plan.count < 1 || plan.count > kMostPoints) {
     return "found " + std::to_string(plan.count) + " points, allowed 1 to " + std::to_string(kMostPoints);
   }
@@ -62,12 +62,14 @@ std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
     }
     if (i > 0 && plan.time[i] <= plan.time[i - 1])
       return where + "its time must be above that of the point before";
-    if (std::fabs(plan.arm_angle[i]) > largest_angle) return TooFar(where, plan.arm_angle[i], largest_angle);
+    if (std::fabs(plan.arm_angle[i]) > largest_angle) {
+      return TooFar(where, plan.arm_angle[i], largest_angle, unit);
+    }
   }
   for (size_t i = 0; i + 1 < plan.time.size(); ++i) {
     const double farthest = Farthest(Behind(plan, i));
     if (!(farthest <= largest_angle)) {
-      return TooFar("behind point " + std::to_string(i) + ", by its speeds: ", farthest, largest_angle);
+      return TooFar("behind point " + std::to_string(i) + ", by its speeds: ", farthest, largest_angle, unit);
     }
   }
   return "";
@@ -95,7 +97,9 @@ void PlanFollower::Reset() {
 
 void PlanFollower::SetLargestAngle(double largest_angle) {
   limits_.largest_angle = largest_angle;
-  const auto beyond = [&](const Current& plan) { return !WhatIsWrong(plan.plan, largest_angle).empty(); };
+  const auto beyond = [&](const Current& plan) {
+    return !WhatIsWrong(plan.plan, largest_angle, limits_.unit).empty();
+  };
   next_.erase(std::remove_if(next_.begin(), next_.end(), beyond), next_.end());
   if (current_ && beyond(*current_)) current_.reset();
 }
@@ -113,7 +117,8 @@ std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
       return "another planner is followed already; allowed is one";
     }
   }
-  if (std::string wrong = WhatIsWrong(plan, limits_.largest_angle); !wrong.empty()) return wrong;
+  if (std::string wrong = WhatIsWrong(plan, limits_.largest_angle, limits_.unit); !wrong.empty())
+    return wrong;
   if (plan.tick > tick && Seconds(plan.tick - tick) > kAhead_s) {
     return "it names tick " + std::to_string(plan.tick) + " at tick " + std::to_string(tick) +
            ", allowed is up to a second ahead";

@@ -14,8 +14,9 @@ struct PlanLimits {
   double timeout_s = 0.2;  // of plant time: a plan older than this is followed no further
   double delay_s =
       0.01;  // of plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay
-  double largest_speed = 0;  // rad/s, of the reference; infinity: none
-  double largest_angle = 0;  // rad, |alpha|; the reference never leaves it
+  double largest_speed = 0;  // of the reference, per s; infinity: none
+  double largest_angle = 0;  // |alpha|; the reference never leaves it
+  std::string unit = "rad";  // of both, as in messages
 };
 
 // Where the arm should be.

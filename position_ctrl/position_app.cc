@@ -43,6 +43,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       torque_per_pressure_(config.model.description.parameters.k_2),
       section_(config.position),
       parameters_(config.model.description.parameters),
+      units_(config.model.description.units),
       start_angle_(config.model.arm_angle_rad),
       rate_hz_(config.plant.rate_hz),
       values_(tuning::ValuesOf(config)),

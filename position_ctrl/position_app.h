@@ -74,6 +74,7 @@ class PositionApp : public process::App {
   const double torque_per_pressure_;  // k_2
   const settings::PositionSection section_;
   const model::Parameters parameters_;
+  const UnitSystem units_;
   const double start_angle_;  // rad
   const double rate_hz_;
   tuning::TunedValues values_;  // in force

@@ -34,7 +34,8 @@ void PositionApp::Follow(const settings::TrajectorySpec& reference) {
                    PlanLimits{.timeout_s = reference.timeout_s,
                               .delay_s = reference.delay_s,
                               .largest_speed = reference.max_speed_rad_s,
-                              .largest_angle = PlannersReach()},
+                              .largest_angle = PlannersReach(),
+                              .unit = units_.UnitFor("rad", 1)},
                    rate_hz_);
 }
 

@@ -62,27 +62,27 @@ bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Cl
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
   });
   const double pressure = std::fmax(state.p1, state.p2);
-  safe &= CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure,
-                     values_.limits.pressure_psi, [&] {
-                       return fmt::format(
-                           "tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure_psi)",
-                           state.tick, state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi,
-                           fmt::arg("unit", units_.UnitFor("psi")));
-                     });
+  safe &=
+      CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure,
+                 values_.limits.pressure_psi, [&] {
+                   return fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure)",
+                                      state.tick, state.p1 > state.p2 ? 1 : 2, pressure,
+                                      values_.limits.pressure_psi, fmt::arg("unit", units_.UnitFor("psi")));
+                 });
   const double speed = std::fabs(state.motor_speed);
-  safe &= CheckLimit(
-      !(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed,
-      values_.limits.motor_speed_rad_s, [&] {
-        return fmt::format(
-            "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
-            state.tick, speed, values_.limits.motor_speed_rad_s);
-      });
+  safe &=
+      CheckLimit(!(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed,
+                 values_.limits.motor_speed_rad_s, [&] {
+                   return fmt::format(
+                       "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed)",
+                       state.tick, speed, values_.limits.motor_speed_rad_s);
+                 });
   const double angle = std::fabs(state.arm_angle);
   safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle,
                      values_.limits.arm_angle_rad, [&] {
                        return fmt::format(
                            "tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
-                           "(limits.arm_angle_rad)",
+                           "(limits.arm_angle)",
                            state.tick, state.arm_angle, values_.limits.arm_angle_rad,
                            fmt::arg("unit", units_.UnitFor("rad", 1)));
                      });
@@ -121,7 +121,7 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
                 [&] {
                   return fmt::format(
                       "tick {}: pressure reference {:.6g} {unit}, allowed are +/- {:.6g} {unit} "
-                      "(limits.arm_torque_in_lbf / k_2)",
+                      "(limits.arm_torque / k_2)",
                       pressure_command_->tick, reference, largest, fmt::arg("unit", units_.UnitFor("psi")));
                 });
   safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),

@@ -44,20 +44,28 @@ std::string Target(const Tracking& tracking) {
   return *tracking.at_target ? "reached" : "NOT reached";
 }
 
+// Joints may turn or move along a line.
+std::string WithUnit(const Tracking& tracking, double value, int decimals) {
+  const std::string unit = " " + tracking.units.UnitFor("rad", 1);
+  return (tracking.units.linear_arm ? ShortNumber(value, decimals)
+                                    : fmt::format("{:.{}f}", value, decimals)) +
+         unit;
+}
+
 std::string RowsOf(const LimbInfo& info) {
   size_t width = 16;
   for (const JointInfo& joint : info.joints) width = std::max(width, joint.name.size());
-  std::string text = fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint",
-                                 width, "states", "every", "time s", "lost", "skipped", "final error rad",
-                                 "rms error rad", "target", "faults");
+  std::string text =
+      fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint", width, "states",
+                  "every", "time s", "lost", "skipped", "final error", "rms error", "target", "faults");
   for (const JointInfo& joint : info.joints) {
     const TickInfo& ticks = joint.info.ticks;
     const bool has = joint.tracking.has_reference;
     text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n",
                         Printable(joint.name), width, ticks.states, ticks.sampled,
                         ticks.last_time_s - ticks.first_time_s, Lost(joint), ticks.announced,
-                        has ? fmt::format("{:.5f}", joint.tracking.final_error_rad) : "-",
-                        has ? fmt::format("{:.4f}", joint.tracking.rms_error_rad) : "-",
+                        has ? WithUnit(joint.tracking, joint.tracking.final_error_rad, 5) : "-",
+                        has ? WithUnit(joint.tracking, joint.tracking.rms_error_rad, 4) : "-",
                         Target(joint.tracking), Faults(joint));
   }
   const auto sampled = std::find_if(info.joints.begin(), info.joints.end(),

@@ -15,6 +15,7 @@
 #include "runs/signal_columns.h"
 #include "runs/signal_unit.h"
 #include "settings/model_file.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 
@@ -86,9 +87,10 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
   run.name = std::filesystem::path(table.file).stem().string();
   run.model_text = model_text;
   if (!model_text.empty()) run.units = settings::ParseModelUnits(model_text, table.file + " (model)");
+  settings::ReadQuantities(&root, run.units, settings::FormerNames::kAsMeant);
   settings::SectionReader model = document.Section("model");
   model.Choice("shaft", kShafts, &run.shaft);
-  model.Number("arm_angle_rad", &run.arm_angle_rad);
+  model.Number("arm_angle", &run.arm_angle_rad);
   model.Boolean("bypass", &run.bypass);
 
   run.time = SampleTimes(table, {.column = table.Find("time_s")});

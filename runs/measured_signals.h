@@ -13,7 +13,7 @@ namespace hydro::runs {
 struct SignalName {
   MeasuredSignal MeasuredRun::*signal;
   const char* ours;      // in a sidecar
-  const char* exported;  // in a table of hydro-log export
+  const char* exported;  // in a table of ExportRun(), with the paper's unit
   // In [noise] of a configuration; null: not a sensor's.
   const char* standard_deviation;
   const char* resolution;
@@ -24,16 +24,15 @@ struct SignalName {
 inline constexpr std::array<SignalName, 8> kSignals = {{
     {&MeasuredRun::voltage, "voltage", "voltage_V", nullptr, nullptr, "V"},
     {&MeasuredRun::pressure_ref, "pressure_ref", "pressure_ref_psi", nullptr, nullptr, "psi"},
-    {&MeasuredRun::motor_speed, "motor_speed", "motor_speed_rad_s", "motor_speed_rad_s",
-     "motor_speed_resolution_rad_s", "rad/s"},
-    {&MeasuredRun::motor_angle, "motor_angle", "motor_angle_rad", "motor_angle_rad",
-     "motor_angle_resolution_rad", "rad"},
-    {&MeasuredRun::arm_angle, "arm_angle", "arm_angle_rad", "arm_angle_rad", "arm_angle_resolution_rad",
-     "rad", 1},
-    {&MeasuredRun::arm_speed, "arm_speed", "arm_speed_rad_s", "arm_speed_rad_s", "arm_speed_resolution_rad_s",
-     "rad/s", 1},
-    {&MeasuredRun::p1, "p1", "p1_psi", "p1_psi", "p1_resolution_psi", "psi"},
-    {&MeasuredRun::p2, "p2", "p2_psi", "p2_psi", "p2_resolution_psi", "psi"},
+    {&MeasuredRun::motor_speed, "motor_speed", "motor_speed_rad_s", "motor_speed", "motor_speed_resolution",
+     "rad/s"},
+    {&MeasuredRun::motor_angle, "motor_angle", "motor_angle_rad", "motor_angle", "motor_angle_resolution",
+     "rad"},
+    {&MeasuredRun::arm_angle, "arm_angle", "arm_angle_rad", "arm_angle", "arm_angle_resolution", "rad", 1},
+    {&MeasuredRun::arm_speed, "arm_speed", "arm_speed_rad_s", "arm_speed", "arm_speed_resolution", "rad/s",
+     1},
+    {&MeasuredRun::p1, "p1", "p1_psi", "p1", "p1_resolution", "psi"},
+    {&MeasuredRun::p2, "p2", "p2_psi", "p2", "p2_resolution", "psi"},
 }};
 
 inline const std::vector<std::pair<std::string, model::Shaft>> kShafts = {

@@ -1,5 +1,6 @@
 #include "base/input_error.h"
 #include "base/saturating.h"
+#include "base/units.h"
 #include "bus/channels.h"
 #include "runs/measured_run.h"
 #include "runs/message_order.h"
@@ -74,6 +75,17 @@ double PressureReference(const motor_command_t* motor, const pressure_command_t*
 }
 
 }  // namespace
+
+std::string RunColumnIn(const UnitSystem& units, const std::string& column) {
+  constexpr std::pair<std::string_view, std::string_view> kEndings[] = {
+      {"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_psi", "psi"}};
+  for (const auto& [ending, paper] : kEndings) {
+    if (!column.ends_with(ending)) continue;
+    const std::string unit = units.UnitFor(std::string(paper), column.starts_with("arm_") ? 1 : 0);
+    return column.substr(0, column.size() - ending.size()) + "_" + UnitInName(unit);
+  }
+  return column;
+}
 
 tables::Table ExportRun(const RunLog& log) {
   const std::vector<const state_t*> states = OrderedStates(log);

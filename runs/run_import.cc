@@ -5,10 +5,12 @@
 #include "base/host_name.h"
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "base/units.h"
 #include "bus/channels.h"
 #include "log/log_writer.h"
 #include "runs/measured_run.h"
 #include "runs/run_table.h"
+#include "settings/model_file.h"
 
 namespace hydro::runs {
 namespace {
@@ -16,15 +18,57 @@ namespace {
 constexpr double kLatestTime = 1e12;              // s; in us it still fits the log's 64 bits
 constexpr double kLastTick = 9007199254740992.0;  // 2^53: above, a double does not hold every whole number
 
-void CheckColumns(const tables::Table& table) {
+// Whether a run in these units would be exported with columns of these names.
+bool NamesAllOf(const UnitSystem& units, const tables::Table& table) {
+  std::vector<std::string> names;
+  names.reserve(kRunColumns.size());
+  for (const char* column : kRunColumns) names.push_back(RunColumnIn(units, column));
+  return std::all_of(table.columns.begin(), table.columns.end(), [&](const tables::Column& column) {
+    return std::find(names.begin(), names.end(), column.name) != names.end();
+  });
+}
+
+// The usual systems, and then all others.
+std::vector<UnitSystem> Systems() {
+  std::vector<UnitSystem> systems = {UnitSystem{}, kSiUnits, {"mm", "N"}, {"cm", "daN"}};
+  for (const std::string_view length : UnitNames()) {
+    for (const std::string_view force : UnitNames()) {
+      const bool fits = ParseUnit(length)->powers == ParseUnit("m")->powers && force != "lb" &&
+                        ParseUnit(force)->powers == ParseUnit("N")->powers;
+      if (fits) systems.push_back({length, force});
+    }
+  }
+  for (size_t i = 0, turning = systems.size(); i < turning; ++i) {
+    systems.push_back({systems[i].length, systems[i].force, true});
+  }
+  return systems;
+}
+
+// The units in which the table's columns are named.
+UnitSystem UnitsOfColumns(const tables::Table& table) {
+  for (const UnitSystem& units : Systems()) {
+    if (NamesAllOf(units, table)) return units;
+  }
   for (const tables::Column& column : table.columns) {
     if (std::find(kRunColumns.begin(), kRunColumns.end(), column.name) != kRunColumns.end()) continue;
     std::string allowed;
     for (const char* name : kRunColumns) allowed += (allowed.empty() ? "" : ", ") + std::string(name);
-    throw InputError(table.file + ": found the column '" + column.name + "'; allowed are " + allowed);
+    throw InputError(table.file + ": found the column '" + column.name + "'; allowed are " + allowed +
+                     ", or all of them in other units of one system, such as p1_Pa");
   }
-  if (table.Find("time_s") == nullptr)
+  return {};
+}
+
+// The table with the paper's names; throws InputError for columns that no exported table has.
+tables::Table WithPaperNames(const tables::Table& table, const UnitSystem& units) {
+  tables::Table named = table;
+  for (tables::Column& column : named.columns) {
+    column.name = *std::find_if(kRunColumns.begin(), kRunColumns.end(),
+                                [&](const char* paper) { return RunColumnIn(units, paper) == column.name; });
+  }
+  if (named.Find("time_s") == nullptr)
     throw InputError(table.file + ": found no column time_s; it is needed");
+  return named;
 }
 
 void CheckTimes(const tables::Table& table, const std::vector<double>& times) {
@@ -83,7 +127,8 @@ int64_t Utime(double time) { return std::llround(time * 1e6); }
 
 bool SameBits(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
 
-run_description_t Describe(const tables::Table& table, const std::string& version, double rate_hz) {
+run_description_t Describe(const tables::Table& table, const std::string& version, double rate_hz,
+                           const UnitSystem& units) {
   run_description_t description{};
   description.utime = 0;
   description.config_file = table.file;
@@ -91,6 +136,8 @@ run_description_t Describe(const tables::Table& table, const std::string& versio
   description.version = version;
   description.host = HostName();
   description.rate_hz = rate_hz;
+  // Of the model nothing but its units is known.
+  description.model_text = settings::UnitsText(units);
   return description;
 }
 
@@ -203,11 +250,12 @@ class Import {
 
 }  // namespace
 
-void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file) {
-  CheckColumns(table);
+void ImportRun(const tables::Table& given, const std::string& program_version, const std::string& log_file) {
+  const UnitSystem units = UnitsOfColumns(given);
+  const tables::Table table = WithPaperNames(given, units);
   const std::vector<double>& times = table.Find("time_s")->values;
   CheckTimes(table, times);
-  const run_description_t description = Describe(table, program_version, Rate(times, Ticks(table)));
+  const run_description_t description = Describe(table, program_version, Rate(times, Ticks(table)), units);
   log::LogWriter log(log_file, Opening::kTemporary);
   Import import(table, log);
   import.AppendDescription(description);

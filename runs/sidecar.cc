@@ -7,6 +7,7 @@
 #include "runs/measured_signals.h"
 #include "runs/sidecar_columns.h"
 #include "runs/sidecar_search.h"
+#include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 #include "tables/table.h"
@@ -28,13 +29,37 @@ void ReadNoise(settings::SectionReader noise, MeasuredRun* run) {
   }
 }
 
-// How the shaft was held, and the valve. Returns whether there is an angle.
-bool ReadSetup(settings::SectionReader& document, MeasuredRun* run) {
+// A text of a number and a unit becomes a number in the model's.
+void ReadText(const std::string& key, const std::string& unit, settings::TomlNode* node) {
+  if (node == nullptr || !node->is(settings::TomlNode::Kind::kString)) return;
+  const std::string place = node->place;
+  *node = settings::NumberNode(settings::NumberOf(node->text, unit, place, key));
+  node->place = place;
+}
+
+void ReadTexts(const UnitSystem& units, settings::TomlNode* root) {
+  ReadText("arm_angle", units.UnitFor("rad", 1), root->Find("arm_angle"));
+  settings::TomlNode* noise = root->Find("noise");
+  if (noise == nullptr) return;
+  for (const SignalName& name : kSignals) {
+    ReadText("noise." + std::string(name.ours), units.UnitFor(name.unit, name.arm), noise->Find(name.ours));
+  }
+}
+
+// How the shaft was held, and the valve. Returns the key of its angle; empty: there is none.
+std::string ReadSetup(settings::SectionReader& document, MeasuredRun* run) {
   document.Require("shaft", "\"clamped\", \"free\" or \"driven\"");
   document.Choice("shaft", kShafts, &run->shaft);
-  const bool angle = document.Number("arm_angle_rad", &run->arm_angle_rad);
   document.Boolean("bypass", &run->bypass);
-  return angle;
+  const bool present = document.Number("arm_angle", &run->arm_angle_rad);
+  if (!document.Number("arm_angle_rad", &run->arm_angle_rad)) return present ? "arm_angle" : "";
+  if (present) throw document.Error("arm_angle_rad", "it beside arm_angle", "one of the two");
+  if (run->units.linear_arm) {
+    const std::string unit = run->units.UnitFor("rad", 1);
+    throw document.Error("arm_angle_rad", "a key in rad, and a model whose arm is in " + unit,
+                         "arm_angle, a number in " + unit + " or a text such as \"30 mm\"");
+  }
+  return "arm_angle_rad";
 }
 
 // What the sidecar states about the text of a CSV; the rest is found.
@@ -72,6 +97,7 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
   const SidecarFile sidecar = FindSidecar(file);
   settings::TomlNode root = settings::ParseToml(ReadTextFile(sidecar.file), sidecar.file);
   root.place = sidecar.file;
+  ReadTexts(units, &root);
 
   settings::SectionReader document(root, "");
   tables::Table table = tables::ReadTable(file, ReadLayout(document, file), AskedBy(root));
@@ -82,13 +108,13 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
   ReadName(document, sidecar.shared, &run);
   std::string pattern;
   document.Text("tables", &pattern);  // FindSidecar has used it
-  const bool angle = ReadSetup(document, &run);
+  const std::string angle = ReadSetup(document, &run);
   settings::SectionReader columns = document.Section("columns");
   settings::SectionReader noise = document.Section("noise");
   document.Finish();
-  if (angle && run.shaft != model::Shaft::kClamped) {
-    throw document.Error("arm_angle_rad", "it with a shaft that is not clamped",
-                         "arm_angle_rad with shaft = \"clamped\" only");
+  if (!angle.empty() && run.shaft != model::Shaft::kClamped) {
+    throw document.Error(angle, "it with a shaft that is not clamped",
+                         angle + " with shaft = \"clamped\" only");
   }
   ReadColumns(columns, &table, &run);
   ReadNoise(noise, &run);

@@ -1,8 +1,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/json_text.h"
+#include "base/number_text.h"
 #include "base/saturating.h"
 #include "base/text_file.h"
 #include "base/units.h"
@@ -25,9 +27,36 @@ int64_t LostMessages(const LogInfo& info) {
   return lost;
 }
 
-std::string Angle(double rad, bool si) {
-  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, Degrees(rad)) : fmt::format("{:.4f} rad", rad);
-}
+// How values of the arm are shown: an angle in rad, with `si` in degrees too; a linear arm's position in its
+// model's unit of length, with `si` in mm.
+class ArmText {
+ public:
+  ArmText(const UnitSystem& units, bool si) : units_(units), si_(si), unit_(units.UnitFor("rad", 1)) {
+    const std::optional<SiUnit> shown = si && units.linear_arm ? FindSiUnit(unit_, 1) : std::nullopt;
+    if (!shown) return;
+    unit_ = shown->to;
+    factor_ = shown->factor;
+  }
+
+  std::string Place(double value) const {
+    const std::string text = Number(value, 4);
+    return si_ && !units_.linear_arm ? fmt::format("{} ({:.2f} deg)", text, Degrees(value)) : text;
+  }
+  std::string Error(double value) const { return Number(value, 5); }
+  std::string Size(double value) const { return Number(value, 4); }
+
+ private:
+  // Of an angle that many decimals; a length may be in um or ft.
+  std::string Number(double value, int decimals) const {
+    return units_.linear_arm ? ShortNumber(factor_ * value, decimals) + " " + unit_
+                             : fmt::format("{:.{}f} {}", value, decimals, unit_);
+  }
+
+  UnitSystem units_;
+  bool si_;
+  std::string unit_;
+  double factor_ = 1;
+};
 
 }  // namespace
 
@@ -64,21 +93,21 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
   if (!caution.empty()) line("log: {}", caution);
   const std::string where = log::EndIsOpen(info.verdict) ? "where this log ends (the run may go on): " : "";
   if (tracking.has_reference) {
+    const ArmText arm(tracking.units, si);
     if (tracking.at_target) {
-      line("{}arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad", where,
-           *tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
-           tracking.rms_error_rad);
+      line("{}arm {} its target {}: final error {}, rms error over the run {}", where,
+           *tracking.at_target ? "at" : "NOT at", arm.Place(tracking.target_rad),
+           arm.Error(tracking.final_error_rad), arm.Size(tracking.rms_error_rad));
     } else {
-      line(
-          "{}the reference still moves at the end: error there {:.5f} rad, rms error over the run {:.4f} rad",
-          where, tracking.final_error_rad, tracking.rms_error_rad);
+      line("{}the reference still moves at the end: error there {}, rms error over the run {}", where,
+           arm.Error(tracking.final_error_rad), arm.Size(tracking.rms_error_rad));
     }
     for (const StepResponse& step : tracking.steps) {
-      line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad", step.time_s,
-           Angle(step.to_rad, si), step.overshoot_percent,
+      line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {}", step.time_s,
+           arm.Place(step.to_rad), step.overshoot_percent,
            step.settling_time_s ? fmt::format("within 2 % after {:.2f} s", *step.settling_time_s)
                                 : std::string("not within 2 %"),
-           step.final_error_rad);
+           arm.Error(step.final_error_rad));
     }
     if (tracking.steps_left_out > 0) {
       line(
@@ -107,20 +136,22 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
       {"lost_messages", LostMessages(info)},
       {"log", {{"verdict", NameOf(info.verdict.completeness)}, {"caution", log::Caution(info.verdict)}}}};
   if (tracking.has_reference) {
+    // "_rad", or of a linear arm "_mm"
+    const std::string unit = "_" + UnitInName(tracking.units.UnitFor("rad", 1));
     Json steps = Json::array();
     for (const StepResponse& step : tracking.steps) {
       steps.push_back(
           {{"time_s", step.time_s},
-           {"from_rad", step.from_rad},
-           {"to_rad", step.to_rad},
+           {"from" + unit, step.from_rad},
+           {"to" + unit, step.to_rad},
            {"overshoot_percent", step.overshoot_percent},
            {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
-           {"final_error_rad", step.final_error_rad}});
+           {"final_error" + unit, step.final_error_rad}});
     }
     json["tracking"] = {{"at_target", tracking.at_target ? Json(*tracking.at_target) : Json(nullptr)},
-                        {"target_rad", tracking.target_rad},
-                        {"final_error_rad", tracking.final_error_rad},
-                        {"rms_error_rad", tracking.rms_error_rad},
+                        {"target" + unit, tracking.target_rad},
+                        {"final_error" + unit, tracking.final_error_rad},
+                        {"rms_error" + unit, tracking.rms_error_rad},
                         {"steps", steps}};
   }
   json["loops"] = Json::parse(InfoJson(info)).value("loops", Json::array());

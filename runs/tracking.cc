@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/units.h"
+#include "runs/run_config.h"
+
 namespace hydro::runs {
 namespace {
 
-constexpr double kShortestRest = 0.2;         // s
-constexpr double kEndTime = 0.1;              // s
-constexpr double kSmallestTolerance = 0.001;  // rad
-constexpr double kLeastStep = 0.01;           // rad, of one that begins with the run
+constexpr double kShortestRest = 0.2;       // s
+constexpr double kEndTime = 0.1;            // s
+constexpr double kSmallestAngle = 0.001;    // rad: a smaller error is none
+constexpr double kSmallestDistance = 1e-4;  // m, of a linear arm
+constexpr double kLeastStep = 10;           // of those, of a step that begins with the run
 constexpr size_t kMostSteps = 100;
 
 struct Samples {
@@ -18,6 +22,15 @@ struct Samples {
   std::vector<double> angles;
   size_t size() const { return times.size(); }
 };
+
+UnitSystem UnitsOf(const RunLog& log) {
+  const auto& descriptions = log.messages.Of<run_description_t>();
+  return descriptions.empty() ? UnitSystem{} : ModelUnits(descriptions.front(), log.file);
+}
+
+double SmallestTolerance(const UnitSystem& units) {
+  return units.linear_arm ? kSmallestDistance / ParseUnit(units.length)->size : kSmallestAngle;
+}
 
 // Reference (held since its tick) and angle at each state that has both.
 Samples ReadSamples(const RunLog& log) {
@@ -55,7 +68,7 @@ double MeanErrorAtEnd(const Samples& samples) {
 }
 
 // Between two changes at least kShortestRest apart it rests; elsewhere it moves: a ramp, a curve, or the way back after a hold.
-std::vector<StepResponse> Steps(const Samples& samples, int* left_out) {
+std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* left_out) {
   std::vector<size_t> changes{0};  // and both ends
   for (size_t i = 1; i < samples.size(); ++i) {
     if (samples.references[i] != samples.references[i - 1]) changes.push_back(i);
@@ -68,7 +81,8 @@ std::vector<StepResponse> Steps(const Samples& samples, int* left_out) {
   const auto is_step = [&](size_t k) { return k > 0 && k <= last && (k == 1 || rests(k - 1)) && rests(k); };
   std::vector<StepResponse> steps;
   // A reference that never changes, away from where the arm was: a step with which the run began.
-  if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep && rests(0)) {
+  if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep * tolerance &&
+      rests(0)) {
     steps.push_back(MeasureStep(samples.times, samples.angles, 0, samples.size(), samples.angles[0],
                                 samples.references[0]));
   }
@@ -89,6 +103,8 @@ std::vector<StepResponse> Steps(const Samples& samples, int* left_out) {
 
 Tracking TrackArm(const RunLog& log) {
   Tracking tracking;
+  tracking.units = UnitsOf(log);
+  const double tolerance = SmallestTolerance(tracking.units);
   const Samples samples = ReadSamples(log);
   if (samples.size() == 0) return tracking;
   tracking.has_reference = true;
@@ -101,7 +117,7 @@ Tracking TrackArm(const RunLog& log) {
   tracking.rms_error_rad = std::sqrt(squares / static_cast<double>(samples.size()));
   tracking.target_rad = samples.references.back();
   tracking.final_error_rad = MeanErrorAtEnd(samples);
-  tracking.steps = Steps(samples, &tracking.steps_left_out);
+  tracking.steps = Steps(samples, tolerance, &tracking.steps_left_out);
   double scale = *high - *low;
   if (!tracking.steps.empty()) {
     scale = 0;
@@ -116,8 +132,7 @@ Tracking TrackArm(const RunLog& log) {
     }
   }
   if (at_rest) {
-    tracking.at_target =
-        std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, kSmallestTolerance);
+    tracking.at_target = std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, tolerance);
   }
   return tracking;
 }

@@ -5,18 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "base/unit_system.h"
 #include "runs/info.h"
 #include "runs/run_log.h"
 #include "runs/step_response.h"
 
 namespace hydro::runs {
 
+// The arm's values are in the unit of its coordinate: rad, or that of length of a linear arm.
 struct Tracking {
+  UnitSystem units;            // of the run's model
   bool has_reference = false;  // the log has arm-angle references and measured arm angles
   double rms_error_rad = 0;    // over the run
   double final_error_rad = 0;  // arm minus reference, the mean of the last 0.1 s
   double target_rad = 0;       // last reference
-  // |final error| within 2 % of the largest step, at least 0.001 rad. None: the reference is still moving.
+  // |final error| within 2 % of the largest step, at least 0.001 rad or 0.1 mm. None: the reference is still moving.
   std::optional<bool> at_target;
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
   int steps_left_out = 0;           // whose response a hold, a ramp or a curve of the reference ended

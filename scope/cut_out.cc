@@ -72,11 +72,9 @@ void CutTable(const CutSource& source, double t0, double t1, bool si, const std:
   const runs::RunLog log = runs::ReadRunLog(log_file, {.suffix = source.suffix}, runs::Undecodable::kLeftOut);
   tables::Table table = runs::ExportRun(log);
   const auto& descriptions = log.messages.Of<run_description_t>();
-  if (si) {
-    const UnitSystem units =
-        descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), log_file);
-    exports::ShowInSi(units, &table);
-  }
+  const UnitSystem units =
+      descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), log_file);
+  exports::SetUnits(units, si, &table);
   tables::WriteCsv(table, table_file);
 }
 

@@ -36,6 +36,9 @@ bool FoxgloveConversation::Speaks(const std::string& subprotocol) {
 FoxgloveConversation::FoxgloveConversation(RunTable* runs) : runs_(*runs) {
   json channels = json::array();
   const bool live = runs_.live() != nullptr;
+  const UnitSystem units = live && runs_.live()->listened != nullptr
+                               ? runs_.live()->listened->model.description.units
+                               : UnitSystem{};
   for (size_t i = 0; live && i < FoxgloveTopics().size(); ++i) {
     const FoxgloveTopic& topic = FoxgloveTopics()[i];
     channels.push_back({{"id", i + 1},
@@ -43,7 +46,7 @@ FoxgloveConversation::FoxgloveConversation(RunTable* runs) : runs_(*runs) {
                         {"encoding", "cdr"},
                         {"schemaName", topic.schema_name},
                         {"schemaEncoding", "ros2msg"},
-                        {"schema", topic.schema}});
+                        {"schema", topic.SchemaIn(units)}});
   }
   replies_.push_back(Text({{"op", "serverInfo"},
                            {"name", "hydro-scope " + settings::ProgramVersion()},

@@ -6,6 +6,7 @@
 #include "definitions/encoded_values.h"
 #include "definitions/message_definition.h"
 #include "definitions/ros_message.h"
+#include "exports/sheet_units.h"
 
 namespace hydro::scope {
 namespace {
@@ -18,11 +19,17 @@ FoxgloveTopic Topic() {
   topic.topic = definitions::RosTopic(definition.channel);
   topic.channel = definition.channel;
   topic.schema_name = definitions::RosType(definition.type);
-  topic.schema = definitions::RosSchema(definition.fields, definition.constants);
   return topic;
 }
 
 }  // namespace
+
+std::string FoxgloveTopic::SchemaIn(const UnitSystem& units) const {
+  const definitions::MessageDefinition& definition = *definitions::DefinitionOf(channel);
+  std::vector<definitions::Field> fields = definition.fields;
+  for (definitions::Field& field : fields) field.unit = exports::UnitOfField(units, field);
+  return definitions::RosSchema(fields, definition.constants);
+}
 
 bool FoxgloveTopic::Encode(const uint8_t* data, int size, std::string* cdr) const {
   const definitions::MessageDefinition& definition = *definitions::DefinitionOf(channel);

@@ -7,13 +7,17 @@
 #include <string_view>
 #include <vector>
 
+#include "base/unit_system.h"
+
 namespace hydro::scope {
 
 struct FoxgloveTopic {
   std::string topic;    // "/hydro/state"
   std::string channel;  // of LCM, without the stack's suffix
   std::string schema_name;
-  std::string schema;  // a ROS 2 message definition
+
+  // A ROS 2 message definition; its comments say in which units the fields of such a stack are.
+  std::string SchemaIn(const UnitSystem& units) const;
 
   // Writes the message as CDR, little endian. False: the bytes are no such message.
   bool Encode(const uint8_t* data, int size, std::string* cdr) const;

@@ -34,9 +34,9 @@ json Limits(const Run& run) {
   const double voltage = parameters.T_pmax / parameters.k_1;
   if (std::isfinite(voltage)) limits["voltage_V"] = voltage;
   const settings::LimitsSection& given = run.config->limits;
-  if (std::isfinite(given.pressure_psi)) limits["pressure_psi"] = given.pressure_psi;
-  if (std::isfinite(given.arm_angle_rad)) limits["arm_angle_rad"] = given.arm_angle_rad;
-  if (std::isfinite(given.motor_speed_rad_s)) limits["motor_speed_rad_s"] = given.motor_speed_rad_s;
+  if (std::isfinite(given.pressure_psi)) limits["pressure"] = given.pressure_psi;
+  if (std::isfinite(given.arm_angle_rad)) limits["arm_angle"] = given.arm_angle_rad;
+  if (std::isfinite(given.motor_speed_rad_s)) limits["motor_speed"] = given.motor_speed_rad_s;
   limits["return_s"] = given.return_s;
   return limits;
 }

@@ -9,6 +9,7 @@
 #include "base/text_file.h"
 #include "hydro_set/saved_config.h"
 #include "runs/tuning_history.h"
+#include "tuning/rearm_forecast.h"
 #include "tuning/tunable_keys.h"
 
 namespace hydro::scope {
@@ -81,12 +82,13 @@ void LiveTuning::Describe() {
   json entries = json::array();
   try {
     const auto values = hydro_set::ValuesInForce(*client_.run(), in_force, NumberText);
+    const settings::StackConfig config = tuning::ConfigInForce(*client_.run(), in_force);
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
       if (value == values.end()) continue;
       entries.push_back({{"key", row.key},
                          {"value", ValueOf(value->second)},
-                         {"unit", row.unit},
+                         {"unit", tuning::UnitOf(row, config)},
                          {"range", row.range},
                          {"what", row.what},
                          {"acts_in", row.acts_in}});

@@ -73,7 +73,7 @@ SensorSection ReadSensor(SectionReader section, const std::vector<std::pair<std:
     ReadPlausible(section, &sensor);
   } else if (sensor.source == Source::kCounter) {
     ReadLine(section, &sensor.line);
-    ReadScale(section, &sensor.scale, &sensor.offset, "rad per count");
+    ReadScale(section, &sensor.scale, &sensor.offset, "the signal's unit per count");
   }
   section.Number("low_pass_hz", &sensor.low_pass_hz, kNotNegative);
   section.Finish();

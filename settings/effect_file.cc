@@ -139,10 +139,12 @@ model::StateText ReadState(SectionReader section, const std::string& name) {
   section.Require("rate", "a formula for its rate per second");
   section.Text("start", &state.start);
   if (const TomlNode* node = section.Take("scale")) {
-    const bool named = node->is(TomlNode::Kind::kString) &&
-                       (node->text == "pressure" || node->text == "flow" || node->text == "torque");
+    const bool named =
+        node->is(TomlNode::Kind::kString) &&
+        (node->text == "pressure" || node->text == "flow" || node->text == "torque" || node->text == "arm");
     if (!named && !(node->is_number() && kPositive.Holds(node->AsDouble()))) {
-      throw section.Error("scale", node->Shown(), R"("pressure", "flow", "torque" or a number above 0)");
+      throw section.Error("scale", node->Shown(),
+                          R"("pressure", "flow", "torque", "arm" or a number above 0)");
     }
     state.scale = named ? node->text : NumberText(node->AsDouble());
   }
@@ -150,6 +152,7 @@ model::StateText ReadState(SectionReader section, const std::string& name) {
       "is",
       {std::pair("p_3", std::string("p_3")), std::pair("actuator_angle", std::string("actuator_angle"))},
       &state.is);
+  if (state.is == "actuator_angle" && !section.Has("scale")) state.scale = "arm";
   section.Finish();
   return state;
 }

@@ -11,6 +11,7 @@
 #include "settings/limb_processes.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
+#include "settings/read_quantities.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
 #include "settings/toml/section_lists.h"
@@ -56,9 +57,14 @@ model::ArmLink ReadLink(SectionReader section) {
   return link;
 }
 
+std::string NamesOf(const UnitSystem& units) {
+  return std::string(units.length) + " and " + std::string(units.force);
+}
+
 // A joint turns each link.
-std::optional<model::ArmDescription> ArmOf(const TomlNode& root, const std::vector<JointConfig>& joints) {
+std::optional<model::ArmDescription> ArmOf(TomlNode root, const std::vector<JointConfig>& joints) {
   if (root.Find("arm") == nullptr) return std::nullopt;
+  ReadQuantities(&root, joints.front().config.model.description.units, FormerNames::kAsMeant);
   SectionReader document(root, "");
   SectionReader section = document.Section("arm");
   model::ArmDescription arm;
@@ -78,10 +84,25 @@ std::optional<model::ArmDescription> ArmOf(const TomlNode& root, const std::vect
       throw KeyError(link.place, "arm.link", link.Shown(), "sections [[arm.link]]");
     arm.links.push_back(ReadLink(section.Item(link, "arm.link")));
   }
+  const UnitSystem& units = joints.front().config.model.description.units;
   for (const JointConfig& joint : joints) {
-    if (joint.config.model.shaft != model::Shaft::kDriven) continue;
-    throw KeyError(root, "arm", "it with the joint " + joint.name + ", whose shaft is driven",
-                   "shafts that are free, or clamped");
+    const ModelSection& model = joint.config.model;
+    if (model.shaft == model::Shaft::kDriven) {
+      throw KeyError(root, "arm", "it with the joint " + joint.name + ", whose shaft is driven",
+                     "shafts that are free, or clamped");
+    }
+    if (model.description.units.linear_arm) {
+      throw KeyError(
+          root, "arm",
+          "it with the joint " + joint.name + ", whose arm moves along a line (" + model.file + ")",
+          "joints that turn, with models whose arm is in rad");
+    }
+    if (model.description.units != units) {
+      throw KeyError(root, "arm",
+                     "joints in different units: " + joints.front().name + " in " + NamesOf(units) + ", " +
+                         joint.name + " in " + NamesOf(model.description.units),
+                     "models in one system of units, in which the links are given too");
+    }
   }
   try {
     arm.Check();

@@ -129,6 +129,13 @@ UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_
   return ReadUnits(document);
 }
 
+std::string UnitsText(const UnitSystem& units) {
+  if (units == UnitSystem{}) return "";
+  TomlNode root;
+  root.members.push_back({"units", UnitsNode(units)});
+  return FormatToml(root);
+}
+
 ModelWithText LoadModelWithText(const std::string& file) {
   ModelWithText model;
   model.text = ReadTextFile(file);

@@ -23,6 +23,9 @@ ModelWithText LoadModelWithText(const std::string& file);
 // units that are not known.
 UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages);
 
+// A text that states these units alone; empty: the paper's, which need no words.
+std::string UnitsText(const UnitSystem& units);
+
 // The TOML text of a model; ParseModel gives the same description back, bit by bit.
 std::string FormatModel(const model::ModelDescription& description);
 

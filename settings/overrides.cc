@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text_file.h"
+#include "settings/quantity_keys.h"
 #include "settings/trajectory_spec.h"
 
 namespace hydro::settings {
@@ -64,13 +65,21 @@ TomlNode* FindJoint(TomlNode* joints, const std::string& name, const std::string
                    (names.empty() ? "no joint: the configuration has none with a name" : QuotedList(names)));
 }
 
+// The same path with the key's present name, also behind "joint.NAME.".
+std::string PresentPath(const std::string& path) {
+  size_t begin = 0;
+  if (path.starts_with("joint.")) begin = std::min(path.find('.', 6), path.size() - 1) + 1;
+  return path.substr(0, begin) + PresentName(path.substr(begin));
+}
+
 void ApplyOne(const std::string& option, TomlNode* root) {
   const std::string place = "--set " + Quoted(option).substr(1, Quoted(option).size() - 2);
   const size_t equals = option.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw InputError(place + ": found " + Quoted(option) + ", allowed section.key=value");
   }
-  const std::string path = Trimmed(option.substr(0, equals));
+  const std::string given = Trimmed(option.substr(0, equals));
+  const std::string path = PresentPath(given);
   TomlNode* node = root;
   for (size_t begin = 0; begin <= path.size();) {
     const size_t end = std::min(path.find('.', begin), path.size());
@@ -96,6 +105,7 @@ void ApplyOne(const std::string& option, TomlNode* root) {
   }
   *node = ParseValue(option.substr(equals + 1));
   SetOrigin(node, place);
+  if (path != given) node->former = given.substr(given.rfind('.') + 1);
 }
 
 bool FromOption(const TomlNode& section, const std::string& key) {
@@ -141,7 +151,7 @@ void DropAlternatives(TomlNode* root) {
   TomlNode* model = section(root, "model");
   if (model != nullptr && FromOption(*model, "shaft")) {
     const TomlNode* shaft = model->Find("shaft");
-    const char* unfit = shaft->is(NodeKind::kString) && shaft->text == "driven" ? "arm_angle_rad" : "motion";
+    const char* unfit = shaft->is(NodeKind::kString) && shaft->text == "driven" ? "arm_angle" : "motion";
     const TomlNode* node = model->Find(unfit);
     const bool motion_by_option =
         node != nullptr && std::any_of(node->members.begin(), node->members.end(),

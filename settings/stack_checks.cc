@@ -20,19 +20,25 @@ void CheckPair(const TomlNode& root, const std::string& present, const std::stri
                  "k_p with k_v, or natural_frequency_rad_s with damping_ratio");
 }
 
+// "0.9 rad (51.6 deg)", "30 mm"; `number` is `value` as text.
+std::string ArmText(const std::string& number, double value, const UnitSystem& units) {
+  const std::string text = number + " " + units.UnitFor("rad", 1);
+  return units.linear_arm ? text : text + " (" + ShortNumber(Degrees(value)) + " deg)";
+}
+
 // The arm angle that `what` takes must leave V_1, V_2 > 0: V_ms - c |alpha| > 0, eqs. (6), (7).
-// `allowed` is limits.arm_angle_rad.
-void CheckAngle(const TomlNode& root, const std::string& key, double angle, const model::Parameters& p,
-                double allowed) {
-  const double limit = p.V_ms / p.c;
-  const double most = std::min(allowed, limit);
+// `allowed` is limits.arm_angle.
+void CheckAngle(const TomlNode& root, const std::string& key, double angle,
+                const model::ModelDescription& model, double allowed) {
+  const double limit = model.parameters.V_ms / model.parameters.c;
   if (std::abs(angle) < limit && std::abs(angle) <= allowed) return;
   throw KeyError(root, key,
-                 "arm angle " + ShortestNumber(angle) + " rad (" + ShortNumber(Degrees(angle)) + " deg)",
-                 allowed < limit ? "|alpha| <= " + ShortestNumber(most) + " rad (" +
-                                       ShortNumber(Degrees(most)) + " deg; limits.arm_angle_rad)"
-                                 : "|alpha| < " + ShortNumber(most) + " rad (" + ShortNumber(Degrees(most)) +
-                                       " deg), the end of the stroke (V_ms/c)");
+                 (model.units.linear_arm ? "arm position " : "arm angle ") +
+                     ArmText(ShortestNumber(angle), angle, model.units),
+                 allowed < limit ? "|alpha| <= " + ArmText(ShortestNumber(allowed), allowed, model.units) +
+                                       ", which is limits.arm_angle"
+                                 : "|alpha| < " + ArmText(ShortNumber(limit), limit, model.units) +
+                                       ", the end of the stroke (V_ms/c)");
 }
 
 // The key that gives a trajectory the value `extreme`.
@@ -48,10 +54,10 @@ std::string KeyOf(const TrajectorySpec& spec, double extreme) {
 }
 
 void CheckAngles(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
-                 const model::Parameters& p, double allowed) {
+                 const model::ModelDescription& model, double allowed) {
   const auto trajectory = MakeTrajectory(spec);
   for (const double extreme : {trajectory->Max(), trajectory->Min()}) {
-    CheckAngle(root, section + KeyOf(spec, extreme), extreme, p, allowed);
+    CheckAngle(root, section + KeyOf(spec, extreme), extreme, model, allowed);
   }
 }
 
@@ -144,11 +150,11 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
 
   const PositionSection& position = config.position;
   if (position.braking_rad_s2 && position.derivative_on_error) {
-    throw KeyError(root, "position.braking_rad_s2", "it beside derivative = \"error\"",
+    throw KeyError(root, "position.braking", "it beside derivative = \"error\"",
                    "it with derivative = \"measurement\", because the curve changes the error");
   }
   if (position.braking_rad_s2 && !(position.c1 > 0 && position.c2 > 0)) {
-    throw KeyError(root, "position.braking_rad_s2", "it without c1 and c2",
+    throw KeyError(root, "position.braking", "it without c1 and c2",
                    "it with c1 and c2 above 0, whose ratio is the curve's slope at the target");
   }
 
@@ -162,9 +168,9 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
     throw KeyError(root, "model.motion", "it with a shaft that is not driven",
                    "[model.motion] with shaft = \"driven\" only");
   }
-  if (driven && root.Find("model") != nullptr && root.Find("model")->Find("arm_angle_rad") != nullptr) {
-    throw KeyError(root, "model.arm_angle_rad", "it with a driven shaft",
-                   "arm_angle_rad with shaft = \"free\" or \"clamped\"; [model.motion] says where a driven "
+  if (driven && root.Find("model") != nullptr && root.Find("model")->Find("arm_angle") != nullptr) {
+    throw KeyError(root, "model.arm_angle", "it with a driven shaft",
+                   "arm_angle with shaft = \"free\" or \"clamped\"; [model.motion] says where a driven "
                    "shaft is");
   }
   if (driven && !MakeTrajectory(*model.motion)->continuous()) {
@@ -178,26 +184,34 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
   const ModelSection& model = checked->model;
   const model::Parameters& p = model.description.parameters;
   const TomlNode* limits = root.Find("limits");
-  const bool given = limits != nullptr && limits->Find("arm_angle_rad") != nullptr;
+  const bool given = limits != nullptr && limits->Find("arm_angle") != nullptr;
+  const TomlNode* position = root.Find("position");
+  const std::string unit = model.description.units.UnitFor("psi");
+  if (unit != "psi") {  // the defaults are the paper's
+    const double psi = kPsi / ParseUnit(unit)->size;
+    if (limits == nullptr || limits->Find("pressure") == nullptr) checked->limits.pressure_psi *= psi;
+    if (position == nullptr || position->Find("dac_range") == nullptr) checked->position.dac_range_psi *= psi;
+  }
   // A shaft that something else holds or moves is not ours to stop.
   if (!given && model.shaft == model::Shaft::kFree)
     checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
   const StackConfig& config = *checked;
   const double allowed = config.limits.arm_angle_rad;
-  CheckAngle(root, "model.arm_angle_rad", model.arm_angle_rad, p, allowed);
-  if (model.motion) CheckAngles(root, "model.motion", *model.motion, p, allowed);
+  CheckAngle(root, "model.arm_angle", model.arm_angle_rad, model.description, allowed);
+  if (model.motion) CheckAngles(root, "model.motion", *model.motion, model.description, allowed);
   if (config.reference.signal == ReferenceSignal::kArmAngle) {
-    CheckAngles(root, "reference", config.reference.trajectory, p, allowed);
+    CheckAngles(root, "reference", config.reference.trajectory, model.description, allowed);
   }
   const double pressure = model.initial_pressure_psi;
   if (pressure < 0 || (pressure < p.p_3 && !model::ReplacesValves(model.description.effects))) {
-    throw KeyError(root, "model.initial_pressure_psi", ShortestNumber(pressure),
-                   "at least p_3 = " + ShortestNumber(p.p_3) + ", below which the one-way valves open");
+    throw KeyError(
+        root, "model.initial_pressure", ShortestNumber(pressure) + " " + unit,
+        "at least p_3 = " + ShortestNumber(p.p_3) + " " + unit + ", below which the one-way valves open");
   }
   const double start = std::isnan(pressure) ? p.p_3 : pressure;
   if (config.limits.pressure_psi <= start) {
-    throw KeyError(root, "limits.pressure_psi", ShortestNumber(config.limits.pressure_psi),
-                   "above " + ShortestNumber(start) + ", the pressure at the start");
+    throw KeyError(root, "limits.pressure", ShortestNumber(config.limits.pressure_psi) + " " + unit,
+                   "above " + ShortestNumber(start) + " " + unit + ", the pressure at the start");
   }
 }
 

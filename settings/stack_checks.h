@@ -14,11 +14,11 @@ int64_t WholeMultiple(double value, double unit);
 // Checks the times against the tick and fills in the intervals in ticks and the last tick. Throws InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);
 
-// How much of V_ms/c, where V_1 or V_2 is 0, a free arm may use when limits.arm_angle_rad is not given.
+// How much of V_ms/c, where V_1 or V_2 is 0, a free arm may use when limits.arm_angle is not given.
 inline constexpr double kArmAngleShare = 0.98;
 
 // Checks pressures and arm angles against the model, once its description is known, and fills in the default
-// of limits.arm_angle_rad. Throws InputError.
+// of limits.arm_angle. Throws InputError.
 void CheckAgainstModel(const TomlNode& root, StackConfig* config);
 
 // Checks the gains and how the shaft is held. Throws InputError.

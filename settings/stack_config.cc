@@ -35,7 +35,8 @@ StackConfig ReadDocument(TomlNode* root, const std::string& file) {
 }
 
 StackConfig WithModel(TomlNode* root, const std::string& config_name, const std::string& model_text,
-                      const std::string& model_name) {
+                      const std::string& model_name, FormerNames former) {
+  ReadQuantities(root, ParseModelUnits(model_text, model_name), former);
   StackConfig config = ReadDocument(root, config_name);
   config.model.resolved_file = model_name;
   config.model.text = model_text;
@@ -43,6 +44,15 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
   return config;
+}
+
+// The paper's where there is no such file, of which its reader tells.
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
+  const TomlNode* model = root.Find("model");
+  const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
+  if (name == nullptr || !name->is(TomlNode::Kind::kString) || name->text.empty()) return {};
+  const std::string path = PathBeside(file, name->text);
+  return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
 }
 
 // What the model file is relative to is what people get wrong.
@@ -70,6 +80,7 @@ TomlNode ReadConfigDocument(const std::string& file) {
     throw InputError(file + ": " + OtherKind(*kind, file, "the configuration of a stack"));
   TomlNode root = ParseToml(text, file);
   root.place = file;
+  UsePresentNames(&root);
   if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
     throw InputError(file +
                      ": found a model ([parameters]), allowed the configuration of a stack, which names its "
@@ -81,6 +92,7 @@ TomlNode ReadConfigDocument(const std::string& file) {
 
 StackConfig StackOf(TomlNode* root, const std::string& file) {
   CheckKeysHaveSections(*root);
+  ReadQuantities(root, UnitsOfModelIn(*root, file));
   StackConfig config = ReadDocument(root, file);
   if (config.model.file.empty()) {
     throw KeyError(*root, "model.file", "nothing", "the path of a model file");
@@ -113,13 +125,13 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name) {
   TomlNode root = ParseToml(config_text, config_name);
-  return WithModel(&root, config_name, model_text, model_name);
+  return WithModel(&root, config_name, model_text, model_name, FormerNames::kAsMeant);
 }
 
-StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes) {
+StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes, FormerNames former) {
   TomlNode root = ParseToml(config.text, config.file);
   ApplyOverrides(changes, &root);
-  return WithModel(&root, config.file, config.model.text, config.model.resolved_file);
+  return WithModel(&root, config.file, config.model.text, config.model.resolved_file, former);
 }
 
 std::vector<std::string> JointSuffixes(const StackConfig& config) {

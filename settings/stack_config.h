@@ -13,6 +13,7 @@
 #include "model/terms/actuator_options.h"
 #include "model/terms/description.h"
 #include "settings/driver_section.h"
+#include "settings/read_quantities.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro::settings {
@@ -223,7 +224,8 @@ StackConfig ParseStackConfig(const std::string& config_text, const std::string& 
 
 // `config` with some entries changed, each "section.key=value" as with --set, and the same model. Throws
 // InputError.
-StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes);
+StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes,
+                    FormerNames former = FormerNames::kMustBeTrue);
 
 // A section [reference] alone, as TOML. Throws InputError.
 ReferenceSection ParseReference(const std::string& text);

@@ -5,6 +5,7 @@
 
 #include "settings/bus_url.h"
 #include "settings/process_sections.h"
+#include "settings/quantity_keys.h"
 #include "settings/scope_section.h"
 #include "settings/trajectory_spec.h"
 
@@ -21,9 +22,9 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
       "shaft",
       {{"free", model::Shaft::kFree}, {"clamped", model::Shaft::kClamped}, {"driven", model::Shaft::kDriven}},
       &model->shaft);
-  section.Number("arm_angle_rad", &model->arm_angle_rad);
+  section.Number("arm_angle", &model->arm_angle_rad);
   section.Boolean("bypass", &model->bypass);
-  section.Number("initial_pressure_psi", &model->initial_pressure_psi);
+  section.Number("initial_pressure", &model->initial_pressure_psi);
   SectionReader motion = section.Section("motion");
   section.Finish();
   if (!section.Has("motion")) return;
@@ -105,7 +106,7 @@ void ReadPressure(SectionReader section, PressureSection* pressure) {
       pressure->reference_feedforward_V_psi = feedforward->AsDouble();
     } else {
       throw section.Error("reference_feedforward", feedforward->Shown(),
-                          "true, false or a finite number in V/psi");
+                          "true, false or a finite number: the gain, volts per pressure");
     }
   }
   section.Boolean("arm_speed_feedforward", &pressure->arm_speed_feedforward);
@@ -118,19 +119,19 @@ void ReadPosition(SectionReader section, PositionSection* position) {
   section.Number("c2", &position->c2, kNotNegative);
   section.Choice<bool>("derivative", {{"error", true}, {"measurement", false}},
                        &position->derivative_on_error);
-  section.Number("braking_rad_s2", &position->braking_rad_s2, kPositive);
+  section.Number("braking", &position->braking_rad_s2, kPositive);
   section.Integer("dac_bits", &position->dac_bits, 0, 32);
-  section.Number("dac_range_psi", &position->dac_range_psi, kPositive);
+  section.Number("dac_range", &position->dac_range_psi, kPositive);
   section.Finish();
 }
 
 // `hardware`: a motor that may hurt somebody does not start again unasked.
 void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
   if (hardware) limits->rearm = Rearm::kExplicit;
-  section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
-  section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
-  section.Number("arm_angle_rad", &limits->arm_angle_rad, kPositiveOrNone);
-  section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
+  section.Number("pressure", &limits->pressure_psi, kPositiveOrNone);
+  section.Number("motor_speed", &limits->motor_speed_rad_s, kPositiveOrNone);
+  section.Number("arm_angle", &limits->arm_angle_rad, kPositiveOrNone);
+  section.Number("arm_torque", &limits->arm_torque_in_lbf, kPositiveOrNone);
   section.Number("stale_input_s", &limits->stale_input_s, kWait);
   section.Number("pressure_ramp_s", &limits->pressure_ramp_s, {.min = 0, .max = 1e6});
   section.Number("return_s", &limits->return_s, {.min = 0, .max = 1e6});
@@ -143,18 +144,18 @@ void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
 }
 
 void ReadNoise(SectionReader section, NoiseSection* noise, int64_t* seed) {
-  section.Number("p1_psi", &noise->p1_psi, kNotNegative);
-  section.Number("p2_psi", &noise->p2_psi, kNotNegative);
-  section.Number("motor_angle_rad", &noise->motor_angle_rad, kNotNegative);
-  section.Number("motor_speed_rad_s", &noise->motor_speed_rad_s, kNotNegative);
-  section.Number("arm_angle_rad", &noise->arm_angle_rad, kNotNegative);
-  section.Number("arm_speed_rad_s", &noise->arm_speed_rad_s, kNotNegative);
-  section.Number("p1_resolution_psi", &noise->p1_resolution_psi, kNotNegative);
-  section.Number("p2_resolution_psi", &noise->p2_resolution_psi, kNotNegative);
-  section.Number("motor_angle_resolution_rad", &noise->motor_angle_resolution_rad, kNotNegative);
-  section.Number("motor_speed_resolution_rad_s", &noise->motor_speed_resolution_rad_s, kNotNegative);
-  section.Number("arm_angle_resolution_rad", &noise->arm_angle_resolution_rad, kNotNegative);
-  section.Number("arm_speed_resolution_rad_s", &noise->arm_speed_resolution_rad_s, kNotNegative);
+  section.Number("p1", &noise->p1_psi, kNotNegative);
+  section.Number("p2", &noise->p2_psi, kNotNegative);
+  section.Number("motor_angle", &noise->motor_angle_rad, kNotNegative);
+  section.Number("motor_speed", &noise->motor_speed_rad_s, kNotNegative);
+  section.Number("arm_angle", &noise->arm_angle_rad, kNotNegative);
+  section.Number("arm_speed", &noise->arm_speed_rad_s, kNotNegative);
+  section.Number("p1_resolution", &noise->p1_resolution_psi, kNotNegative);
+  section.Number("p2_resolution", &noise->p2_resolution_psi, kNotNegative);
+  section.Number("motor_angle_resolution", &noise->motor_angle_resolution_rad, kNotNegative);
+  section.Number("motor_speed_resolution", &noise->motor_speed_resolution_rad_s, kNotNegative);
+  section.Number("arm_angle_resolution", &noise->arm_angle_resolution_rad, kNotNegative);
+  section.Number("arm_speed_resolution", &noise->arm_speed_resolution_rad_s, kNotNegative);
   section.Integer("seed", seed, 0, std::numeric_limits<int64_t>::max());
   section.Finish();
 }
@@ -193,6 +194,10 @@ void CheckKeysHaveSections(const TomlNode& root) {
     std::vector<std::string> meant;
     for (const char* section :
          {"model", "bus", "time", "plant", "pressure", "position", "limits", "noise", "logger", "scope"}) {
+      if (const QuantityKey* quantity = FindQuantity(std::string(section) + "." + key)) {
+        meant.push_back(std::string(section) + "." + std::string(quantity->key));
+        continue;
+      }
       // The readers know their keys: one that is unknown is the first thing they say.
       TomlNode alone, table;
       table.members.push_back({key, node});

@@ -19,7 +19,7 @@ const std::map<std::string, std::vector<std::string>>& KeysOfKinds() {
       {"square", {"offset", "amplitude", "frequency_hz", "start_s"}},
       {"chirp", {"offset", "amplitude", "first_frequency_hz", "last_frequency_hz", "duration_s", "start_s"}},
       {"csv", {"file", "column", "interpolation", "points"}},
-      {"planner", {"initial", "timeout_s", "delay_s", "max_speed_rad_s"}},
+      {"planner", {"initial", "timeout_s", "delay_s", "max_speed"}},
   };
   return keys;
 }
@@ -109,7 +109,7 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
     section.Number("initial", &spec.initial);
     section.Number("timeout_s", &spec.timeout_s, {.min = 0, .max = 1e6, .min_allowed = false});
     section.Number("delay_s", &spec.delay_s, {.min = 0, .max = 10});
-    section.Number("max_speed_rad_s", &spec.max_speed_rad_s,
+    section.Number("max_speed", &spec.max_speed_rad_s,
                    {.min = 0, .min_allowed = false, .infinity_allowed = true});
     return spec;
   }

@@ -36,7 +36,7 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
 
 settings::StackConfig OtherConfig(const settings::StackConfig& config) {
   settings::TomlNode stack = settings::ParseToml(config.text, config.file);
-  settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque_in_lbf=400"}, &stack);
+  settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque=400"}, &stack);
   return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
                                     config.model.resolved_file);
 }

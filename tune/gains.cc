@@ -81,7 +81,7 @@ std::vector<std::pair<std::string, std::string>> GainKeys(const settings::StackC
   add("position.c2", config.position.c2);
   keys.emplace_back("position.derivative",
                     config.position.derivative_on_error ? "\"error\"" : "\"measurement\"");
-  if (config.position.braking_rad_s2) add("position.braking_rad_s2", *config.position.braking_rad_s2);
+  if (config.position.braking_rad_s2) add("position.braking", *config.position.braking_rad_s2);
   return keys;
 }
 

@@ -30,10 +30,11 @@ int main(int argc, char** argv) {
       "--joint", &request.joint,
       "NAME of a configuration with [[joint]] sections, the joint to tune; -o then writes the stack of this "
       "joint alone");
-  line.AddOption("--goal", &request.goals,
-                 "NAME=VALUE bandwidth_hz, settling_s (within 2 %, of step_rad), overshoot_percent, or "
-                 "step_rad, the step "
-                 "to tune for; several may be given. Without a goal: as fast as the margins allow");
+  line.AddOption(
+      "--goal", &request.goals,
+      "NAME=VALUE bandwidth_hz, settling_s (within 2 %, of step), overshoot_percent, or step, the step "
+      "to tune for, in the unit of the arm (0.1, \"5 deg\", \"30 mm\"); several may be given. Without a "
+      "goal: as fast as the margins allow");
   line.AddOption("--interval", &request.interval,
                  "S the position loop's sampling interval T (the configuration's)");
   line.AddOption("-o,--output", &request.output,

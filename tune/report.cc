@@ -74,7 +74,8 @@ std::string RatioText(double ratio) {
 }
 
 std::string StepsText(const TuningReport& report) {
-  std::string text = fmt::format("  {:>8} {:>9}", "step rad", "bound s");
+  const UnitSystem& units = report.judge->config().model.description.units;
+  std::string text = fmt::format("  {:>8} {:>9}", "step " + units.UnitFor("rad", 1), "bound s");
   for (const Proposal& proposal : report.proposals) text += fmt::format("  | {:^30}", proposal.name);
   text += fmt::format("\n  {:>8} {:>9}", "", "");
   for (size_t i = 0; i < report.proposals.size(); ++i) {

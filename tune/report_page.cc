@@ -14,10 +14,14 @@
 namespace hydro::tune {
 namespace {
 
+std::string ArmUnit(const TuningReport& report) {
+  return report.judge->config().model.description.units.UnitFor("rad", 1);
+}
+
 page::Panel RatioPanel(const TuningReport& report) {
   page::Panel panel;
   panel.title = "Settling time over the shortest possible";
-  panel.x = {.label = "step, rad"};
+  panel.x = {.label = "step, " + ArmUnit(report)};
   panel.y = {.label = "ratio", .min = 0.9};
   panel.rules.push_back({.label = "bang-bang bound", .vertical = false, .value = 1});
   for (size_t i = 0; i < report.proposals.size(); ++i) {
@@ -35,9 +39,9 @@ page::Panel ResponsePanel(const TuningReport& report) {
   page::Panel panel;
   const StepJudge& judge = *report.judge;
   const double step = judge.goal_step();
-  panel.title = fmt::format("A step of {:.3g} rad", step);
+  panel.title = fmt::format("A step of {:.3g} {}", step, ArmUnit(report));
   panel.x = {.label = "time, s"};
-  panel.y = {.label = "angle, rad"};
+  panel.y = {.label = (ArmUnit(report) == "rad" ? "angle, " : "position, ") + ArmUnit(report)};
   for (size_t i = 0; i < report.proposals.size(); ++i) {
     StepRun run;
     judge.Try(report.proposals[i].tried.gains, judge.Nominal(step), &run);

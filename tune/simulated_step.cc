@@ -17,7 +17,7 @@ namespace hydro::tune {
 StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   const double interval = config.position.sample_interval_s;
   // With a weight the arm first comes to rest where it hangs.
-  const double rest = config.model.description.parameters.mgl > 0 ? 1.5 : 0.1;
+  const double rest = config.model.description.parameters.mgl != 0 ? 1.5 : 0.1;
   const double start = std::ceil(rest / interval) * interval;
   config.reference.signal = settings::ReferenceSignal::kArmAngle;
   config.reference.trajectory = {};
@@ -40,13 +40,13 @@ StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
     angle.push_back(state.arm_angle);
   });
   if (result.exit_code != 0) {
-    throw std::runtime_error(
-        fmt::format("the simulated step of {} rad failed: {}", step.step, result.failure));
+    throw std::runtime_error(fmt::format("the simulated step of {} {} failed: {}", step.step,
+                                         config.model.description.units.UnitFor("rad", 1), result.failure));
   }
   const runs::StepResponse to_target = runs::MeasureStep(time, angle, 0, time.size(), 0, step.step);
   double from = 0;
   double to = step.step;
-  if (config.model.description.parameters.mgl > 0) {
+  if (config.model.description.parameters.mgl != 0) {
     from = angle.front();
     to += to_target.final_error_rad;
   }

@@ -27,7 +27,7 @@ constexpr double kStepShares[] = {0.05, 0.07, 0.1, 0.14, 0.2, 0.3};
 constexpr double kPaperTravel = 0.8578;
 
 std::vector<double> StepsFor(const settings::StackConfig& config, const Goals& goals) {
-  if (goals.step_rad) return {0.8 * *goals.step_rad, *goals.step_rad, 1.25 * *goals.step_rad};
+  if (goals.step) return {0.8 * *goals.step, *goals.step, 1.25 * *goals.step};
   const model::Parameters& p = config.model.description.parameters;
   const double travel = p.V_ms / p.c;
   // The same numbers on every actuator of about the paper's travel.
@@ -72,7 +72,7 @@ double StepVerdict::score() const {
 
 StepJudge::StepJudge(settings::StackConfig config, const JudgeSettings& settings)
     : config_(std::move(config)), steps_(StepsFor(config_, settings.goals)) {
-  goal_step_ = settings.goals.step_rad.value_or(steps_[2]);
+  goal_step_ = settings.goals.step.value_or(steps_[2]);
   config_.noise = settings.noise ? UsualNoise(config_) : settings::NoiseSection();
   models_.push_back(config_.model.description);
   for (int i = 1; i <= settings.samples; ++i) models_.push_back(SampleOf(config_.model.description, i));
@@ -112,7 +112,7 @@ StepTrial StepJudge::Trial(const Gains& gains, const StepCase& step) const {
   trial.start = step.start;
   trial.step = step.step;
   trial.duration = kNeverSettled * step.shortest;
-  if (config_.model.description.parameters.mgl > 0) {
+  if (config_.model.description.parameters.mgl != 0) {
     // The arm first comes to rest where it hangs.
     const double sample = trial.tick * trial.interval;
     trial.rest = std::ceil(1.5 / sample) * sample;
@@ -132,7 +132,7 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
   // With a weight the arm hangs below its reference; what it settles to is then its own end.
   const double from = response.angle.front();
   double to = step.step;
-  if (models_[step.model].parameters.mgl > 0) {
+  if (models_[step.model].parameters.mgl != 0) {
     to = runs::MeasureStep(response.time, response.angle, 0, response.time.size(), from, step.step)
              .final_error_rad +
          step.step;

@@ -14,6 +14,7 @@
 #include "base/text_file.h"
 #include "settings/limb_config.h"
 #include "settings/moved_paths.h"
+#include "settings/read_quantities.h"
 #include "settings/stack_config.h"
 #include "settings/toml/toml_document.h"
 #include "settings/toml/toml_edit.h"
@@ -123,7 +124,10 @@ std::string TunedText(const TuneRequest& request, const settings::StackConfig& g
   for (const auto& key : GainKeys(tuned)) {
     if (std::find(old.begin(), old.end(), key) == old.end()) keys[key.first] = key.second;
   }
-  return settings::EditToml(before, given.file, {keys.begin(), keys.end()}, removed);
+  const std::vector<settings::TomlEntry> written(keys.begin(), keys.end());
+  for (std::string& name : settings::FormerNamesIn(settings::ParseToml(before, given.file), written))
+    removed.push_back(std::move(name));
+  return settings::EditToml(before, given.file, written, removed);
 }
 
 // Before the search, with gains that all differ from the given ones.
@@ -182,8 +186,8 @@ void Refuse(const settings::StackConfig& config, const std::string& why) {
 int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal) {
   CheckRange("--jobs", request.jobs, 1, 64);
   CheckRange("--samples", request.samples, 0, 100);
-  const Goals goals = ParseGoals(request.goals);
   const settings::StackConfig config = Load(request);
+  const Goals goals = ParseGoals(request.goals, config.model.description.units.UnitFor("rad", 1));
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
   if (!request.folder.empty()) {

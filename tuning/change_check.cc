@@ -11,6 +11,7 @@
 #include "base/word_list.h"
 #include "design/loop_check.h"
 #include "design/operating_cases.h"
+#include "settings/quantity_keys.h"
 #include "settings/toml/toml_entries.h"
 #include "tuning/reference_range.h"
 #include "tuning/tunable_keys.h"
@@ -21,7 +22,9 @@ namespace {
 
 constexpr size_t kMostChanges = 64;
 
-std::string KeyOf(const std::string& change) { return Trimmed(change.substr(0, change.find('='))); }
+std::string KeyOf(const std::string& change) {
+  return settings::PresentName(Trimmed(change.substr(0, change.find('='))));
+}
 
 std::map<std::string, std::string> TunableEntries(const settings::StackConfig& config) {
   std::map<std::string, std::string> entries;
@@ -35,17 +38,19 @@ struct Limit {
   const char* key;
   double settings::LimitsSection::*value;
 };
-constexpr std::array kLimits{Limit{"limits.pressure_psi", &settings::LimitsSection::pressure_psi},
-                             Limit{"limits.motor_speed_rad_s", &settings::LimitsSection::motor_speed_rad_s},
-                             Limit{"limits.arm_angle_rad", &settings::LimitsSection::arm_angle_rad},
-                             Limit{"limits.arm_torque_in_lbf", &settings::LimitsSection::arm_torque_in_lbf}};
+constexpr std::array kLimits{Limit{"limits.pressure", &settings::LimitsSection::pressure_psi},
+                             Limit{"limits.motor_speed", &settings::LimitsSection::motor_speed_rad_s},
+                             Limit{"limits.arm_angle", &settings::LimitsSection::arm_angle_rad},
+                             Limit{"limits.arm_torque", &settings::LimitsSection::arm_torque_in_lbf}};
 
-std::string LoosenedLimit(const settings::LimitsSection& before, const settings::LimitsSection& after) {
+std::string LoosenedLimit(const settings::LimitsSection& before, const settings::LimitsSection& after,
+                          const UnitSystem& units) {
   for (const Limit& limit : kLimits) {
+    const std::string unit = " " + settings::UnitOfKey(limit.key, units, "");
     const double was = before.*limit.value, is = after.*limit.value;
     if (!(is > was)) continue;
-    return std::string(limit.key) + ": found " + ShortestNumber(is) + ", allowed up to " +
-           ShortestNumber(was) +
+    return std::string(limit.key) + ": found " + ShortestNumber(is) + unit + ", allowed up to " +
+           ShortestNumber(was) + unit +
            ", which is in force: a limit is loosened only while a fault holds zero volts (limits.rearm = "
            "\"explicit\"), before "
            "the re-arm, or by a restart";
@@ -176,7 +181,8 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
     change.text = error.what();
     return change;
   }
-  if (!situation.held) change.text = LoosenedLimit(in_force.limits, next->limits);
+  if (!situation.held)
+    change.text = LoosenedLimit(in_force.limits, next->limits, next->model.description.units);
   if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
   if (!change.text.empty()) return change;
   std::string margins;

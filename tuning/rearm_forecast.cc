@@ -159,7 +159,7 @@ settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_se
   settings::StackConfig configured =
       settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
   if (in_force.changes.empty()) return configured;
-  return settings::Changed(configured, ParseChanges(in_force.changes));
+  return settings::Changed(configured, ParseChanges(in_force.changes), settings::FormerNames::kAsMeant);
 }
 
 RearmForecast ForecastRearm(const HeardOfStack& heard) {

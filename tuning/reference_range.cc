@@ -9,9 +9,10 @@
 namespace hydro::tuning {
 namespace {
 
-std::string Beyond(const std::string& what, double found, double allowed, const std::string& why) {
-  return "reference: found " + what + " of " + ShortNumber(found) + ", allowed " + ShortNumber(allowed) +
-         " (" + why + ")";
+std::string Beyond(const std::string& what, double found, double allowed, const std::string& unit,
+                   const std::string& why) {
+  return "reference: found " + what + " of " + ShortNumber(found) + " " + unit + ", allowed " +
+         ShortNumber(allowed) + " " + unit + " (" + why + ")";
 }
 
 // Per s, of the kinds that swing smoothly; 0 for others, whose jumps nothing follows at once anyway.
@@ -27,31 +28,34 @@ double FastestSwing(const settings::TrajectorySpec& spec) {
 
 std::string WhatTheRigCannotFollow(const settings::StackConfig& config) {
   const model::Parameters& p = config.model.description.parameters;
+  const UnitSystem& units = config.model.description.units;
   const auto reference = settings::MakeTrajectory(config.reference.trajectory);
   const double largest = std::max(std::fabs(reference->Min()), std::fabs(reference->Max()));
-  // psi: what the motor holds against the pump at rest, or the limit of either side
+  // What the motor holds against the pump at rest, or the limit of either side
   const double pressure = std::min(p.T_pmax / p.D, config.limits.pressure_psi);
   switch (config.reference.signal) {
     case settings::ReferenceSignal::kArmAngle: {  // the angle itself is checked with the configuration
       const double speed = config.limits.motor_speed_rad_s * p.D / p.c;
       const double fastest = FastestSwing(config.reference.trajectory);
       if (fastest > speed)
-        return Beyond("a speed", fastest, speed, "limits.motor_speed_rad_s at the arm, rad/s");
+        return Beyond("a speed", fastest, speed, units.UnitFor("rad/s", 1), "limits.motor_speed at the arm");
       return "";
     }
     case settings::ReferenceSignal::kPressure:
       if (largest > pressure)
-        return Beyond("a pressure", largest, pressure, "T_pmax/D and limits.pressure_psi, psi");
+        return Beyond("a pressure", largest, pressure, units.UnitFor("psi"), "T_pmax/D and limits.pressure");
       return "";
     case settings::ReferenceSignal::kTorque: {
       const double torque = std::min(pressure * p.k_2, config.limits.arm_torque_in_lbf);
       if (largest > torque) {
-        return Beyond("a torque", largest, torque, "k_2 T_pmax/D and limits.arm_torque_in_lbf, in-lbf");
+        return Beyond(units.linear_arm ? "a force" : "a torque", largest, torque, units.UnitFor("in-lbf", -1),
+                      "k_2 T_pmax/D and limits.arm_torque");
       }
       return "";
     }
     case settings::ReferenceSignal::kVoltage:
-      if (largest > p.T_pmax / p.k_1) return Beyond("a voltage", largest, p.T_pmax / p.k_1, "T_pmax/k_1, V");
+      if (largest > p.T_pmax / p.k_1)
+        return Beyond("a voltage", largest, p.T_pmax / p.k_1, "V", "T_pmax/k_1");
       return "";
   }
   return "";

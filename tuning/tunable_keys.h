@@ -6,11 +6,12 @@
 #include <string>
 #include <string_view>
 
+#include "settings/stack_config.h"
+
 namespace hydro::tuning {
 
 struct TunableKey {
   std::string_view key;      // of the configuration, e.g. "position.c2"
-  std::string_view unit;     // "" where the value is a word or a list
   std::string_view range;    // for a person, what is allowed; "> 0" and ">= 0": any finite number there
   std::string_view what;     // for a person, what it does
   std::string_view acts_in;  // role of the process that acts by it: pressure_ctrl, position_ctrl, plant
@@ -18,7 +19,10 @@ struct TunableKey {
 
 std::span<const TunableKey> TunableKeys();
 
-// The row of `key`; null: it takes a restart.
+// The unit of its values in a stack: "Pa", "s, rad" of pairs; "" where the value is a word or a plain number.
+std::string UnitOf(const TunableKey& row, const settings::StackConfig& config);
+
+// The row of `key`, also by its former name; null: it takes a restart.
 const TunableKey* FindTunable(std::string_view key);
 
 // Why `key` cannot be changed while the stack runs, and what is meant or allowed instead, as one line.

@@ -8,6 +8,7 @@
 
 #include "base/number_text.h"
 #include "design/configured_laws.h"
+#include "settings/quantity_keys.h"
 
 namespace hydro::tuning {
 namespace {
@@ -23,7 +24,7 @@ constexpr std::array kValues{
           [](TunedValues& v, double x) { v.pressure.gains.k_p = x; }},
     Value{"pressure.k_v", [](const TunedValues& v) { return v.pressure.gains.k_v; },
           [](TunedValues& v, double x) { v.pressure.gains.k_v = x; }},
-    Value{"pressure.reference_feedforward_V_psi",
+    Value{"pressure.reference_feedforward",
           [](const TunedValues& v) { return v.pressure.reference_feedforward; },
           [](TunedValues& v, double x) { v.pressure.reference_feedforward = x; }},
     Value{"pressure.arm_speed_ratio", [](const TunedValues& v) { return v.pressure.arm_speed_ratio; },
@@ -35,44 +36,46 @@ constexpr std::array kValues{
     Value{"position.derivative_on_error",
           [](const TunedValues& v) { return v.position.derivative_on_error ? 1.0 : 0.0; },
           [](TunedValues& v, double x) { v.position.derivative_on_error = x != 0; }},
-    Value{"position.braking_rad_s2", [](const TunedValues& v) { return v.braking; },
+    Value{"position.braking", [](const TunedValues& v) { return v.braking; },
           [](TunedValues& v, double x) { v.braking = x; }},
-    Value{"limits.pressure_psi", [](const TunedValues& v) { return v.limits.pressure_psi; },
+    Value{"limits.pressure", [](const TunedValues& v) { return v.limits.pressure_psi; },
           [](TunedValues& v, double x) { v.limits.pressure_psi = x; }},
-    Value{"limits.motor_speed_rad_s", [](const TunedValues& v) { return v.limits.motor_speed_rad_s; },
+    Value{"limits.motor_speed", [](const TunedValues& v) { return v.limits.motor_speed_rad_s; },
           [](TunedValues& v, double x) { v.limits.motor_speed_rad_s = x; }},
-    Value{"limits.arm_angle_rad", [](const TunedValues& v) { return v.limits.arm_angle_rad; },
+    Value{"limits.arm_angle", [](const TunedValues& v) { return v.limits.arm_angle_rad; },
           [](TunedValues& v, double x) { v.limits.arm_angle_rad = x; }},
-    Value{"limits.arm_torque_in_lbf", [](const TunedValues& v) { return v.limits.arm_torque_in_lbf; },
+    Value{"limits.arm_torque", [](const TunedValues& v) { return v.limits.arm_torque_in_lbf; },
           [](TunedValues& v, double x) { v.limits.arm_torque_in_lbf = x; }},
-    Value{"noise.p1_psi", [](const TunedValues& v) { return v.noise.p1_psi; },
+    Value{"noise.p1", [](const TunedValues& v) { return v.noise.p1_psi; },
           [](TunedValues& v, double x) { v.noise.p1_psi = x; }},
-    Value{"noise.p2_psi", [](const TunedValues& v) { return v.noise.p2_psi; },
+    Value{"noise.p2", [](const TunedValues& v) { return v.noise.p2_psi; },
           [](TunedValues& v, double x) { v.noise.p2_psi = x; }},
-    Value{"noise.motor_angle_rad", [](const TunedValues& v) { return v.noise.motor_angle_rad; },
+    Value{"noise.motor_angle", [](const TunedValues& v) { return v.noise.motor_angle_rad; },
           [](TunedValues& v, double x) { v.noise.motor_angle_rad = x; }},
-    Value{"noise.motor_speed_rad_s", [](const TunedValues& v) { return v.noise.motor_speed_rad_s; },
+    Value{"noise.motor_speed", [](const TunedValues& v) { return v.noise.motor_speed_rad_s; },
           [](TunedValues& v, double x) { v.noise.motor_speed_rad_s = x; }},
-    Value{"noise.arm_angle_rad", [](const TunedValues& v) { return v.noise.arm_angle_rad; },
+    Value{"noise.arm_angle", [](const TunedValues& v) { return v.noise.arm_angle_rad; },
           [](TunedValues& v, double x) { v.noise.arm_angle_rad = x; }},
-    Value{"noise.arm_speed_rad_s", [](const TunedValues& v) { return v.noise.arm_speed_rad_s; },
+    Value{"noise.arm_speed", [](const TunedValues& v) { return v.noise.arm_speed_rad_s; },
           [](TunedValues& v, double x) { v.noise.arm_speed_rad_s = x; }},
 };
 
-const Value* Find(std::string_view name) {
+// Also by the name in older logs.
+const Value* Find(const std::string& name) {
+  const bool gain = name == "pressure.reference_feedforward_V_psi";
+  const std::string present = gain ? "pressure.reference_feedforward" : settings::PresentName(name);
   for (const Value& value : kValues) {
-    if (value.name == name) return &value;
+    if (value.name == present) return &value;
   }
   return nullptr;
 }
 
 // A limit may be infinite; a feed-forward may have either sign; nothing else is below 0.
 std::string WhatIsWrong(const std::string& name, double value) {
-  const bool limit = name.starts_with("limits.") || name == "position.braking_rad_s2";
-  const bool good =
-      limit ? value > 0
-            : std::isfinite(value) && (value >= 0 || name == "pressure.reference_feedforward_V_psi" ||
-                                       name == "pressure.arm_speed_ratio");
+  const bool limit = name.starts_with("limits.") || name == "position.braking";
+  const bool good = limit ? value > 0
+                          : std::isfinite(value) && (value >= 0 || name == "pressure.reference_feedforward" ||
+                                                     name == "pressure.arm_speed_ratio");
   return good ? ""
               : name + ": found " + ShortestNumber(value) + ", allowed " +
                     (limit ? "a number above 0" : "a finite number of at least 0");
@@ -115,7 +118,8 @@ std::string Read(const tuned_settings_t& message, double k_2, TunedValues* value
   for (size_t i = 0; i < count; ++i) {
     const Value* value = Find(message.names[i]);
     if (value == nullptr) return message.names[i] + ": not known to this version";
-    if (std::string wrong = WhatIsWrong(message.names[i], message.values[i]); !wrong.empty()) return wrong;
+    if (std::string wrong = WhatIsWrong(std::string(value->name), message.values[i]); !wrong.empty())
+      return wrong;
     value->set(changed, message.values[i]);
   }
   changed.position.pressure_limit = changed.limits.arm_torque_in_lbf / k_2;

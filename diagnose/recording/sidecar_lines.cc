@@ -52,8 +52,8 @@ std::string ShaftLine(const Run& run, model::Shaft shaft) {
   for (const auto& [name, one] : runs::kShafts) {
     if (one != shaft) continue;
     std::string line = "shaft = \"" + name + "\"";
-    if (run.shaft == model::Shaft::kClamped) line += " and no arm_angle_rad";
-    if (shaft == model::Shaft::kClamped) line += " and arm_angle_rad = the angle at which it is held";
+    if (run.shaft == model::Shaft::kClamped) line += " and no arm_angle";
+    if (shaft == model::Shaft::kClamped) line += " and arm_angle = the angle at which it is held";
     return line;
   }
   return "";

@@ -133,13 +133,13 @@ std::string Configuration(const Trial& trial, const Rig& rig) {
   std::string text = "# An experiment that distinguishes models which the recorded runs do not.\n\n[model]\n";
   text += "file = \"model.toml\"\n";
   text += std::string("shaft = \"") + (trial.shaft == model::Shaft::kFree ? "free" : "clamped") + "\"\n";
-  text += Key("arm_angle_rad", trial.arm_angle);
+  text += Key("arm_angle", trial.arm_angle);
   text += std::string("bypass = ") + (trial.bypass ? "true" : "false") + "\n\n[time]\nmode = \"lockstep\"\n";
   text += Key("duration_s", kDuration) + "\n[plant]\n" + Key("rate_hz", kRate);
   text += "\n[pressure]\nk_p = 0.0\nk_v = 0.0\n\n";
   text += "[reference]\nsignal = \"voltage\"  # bypasses both loops\n" + trial.reference;
   // Limits somewhat above the prediction: a fault would end the run.
-  if (rig.pressure > 0) text += "\n[limits]\n" + Key("pressure_psi", std::ceil(1.2 * rig.pressure));
+  if (rig.pressure > 0) text += "\n[limits]\n" + Key("pressure", std::ceil(1.2 * rig.pressure));
   return text;
 }
 

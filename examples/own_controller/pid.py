@@ -5,7 +5,7 @@ import sys
 import hydro_bus
 from hydro import pressure_command_t
 
-TARGET, C1, C2, MOST = 0.3, 6000.0, 1200.0, 135.0  # rad, psi/rad, psi s/rad; psi, below limits.arm_torque_in_lbf / k_2
+TARGET, C1, C2, MOST = 0.3, 6000.0, 1200.0, 135.0  # rad, psi/rad, psi s/rad; psi, below limits.arm_torque / k_2
 
 
 def answer(state, command):  # state: arm_angle, arm_speed, motor_speed, p1, p2, time, tick, ...

@@ -67,14 +67,14 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
   for (size_t i = 0; i < kCauses.size(); ++i) {
     const Cause& cause = kCauses[i];
     model::ModelDescription model = figure.model;
-    std::vector<std::string> settings = {"position.derivative=measurement", "limits.pressure_psi=inf"};
+    std::vector<std::string> settings = {"position.derivative=measurement", "limits.pressure=inf"};
     if (!cause.friction) model.parameters.T_s = 0;
     if (!cause.saturation) model.parameters.T_pmax = kNoLimit;
     if (!cause.speed_coupling) settings.push_back("pressure.arm_speed_feedforward=true");
     if (!cause.arm_flow) {
       // Then both sides compress as well: p_1 stays above p_3.
       model.parameters.c *= 1e-9;
-      settings.push_back("model.initial_pressure_psi=5000");
+      settings.push_back("model.initial_pressure=5000");
     }
     causes.runs[i] = RunArm(options.run_stack, fmt::format("fig10-{}", cause.key),
                             Figure10Stack(figure, settings), model, kFigure10Step);
@@ -101,8 +101,7 @@ std::string RetunedStack(const RetunedStep& r, int64_t seed) {
   std::vector<std::string> settings = {fmt::format("reference.steps=[[{}, {}]]", kStepStart, r.step),
                                        "time.duration_s=2.1"};
   if (r.noise) {  // as in config/demo.toml
-    for (const char* noise : {"p1_psi=1", "p2_psi=1", "motor_speed_rad_s=0.1", "arm_angle_rad=0.00002",
-                              "arm_speed_rad_s=0.0002"}) {
+    for (const char* noise : {"p1=1", "p2=1", "motor_speed=0.1", "arm_angle=0.00002", "arm_speed=0.0002"}) {
       settings.push_back(std::string("noise.") + noise);
     }
     settings.push_back(fmt::format("noise.seed={}", seed));

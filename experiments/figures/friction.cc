@@ -49,8 +49,8 @@ std::string Config(double duration, const std::string& reference, int64_t seed) 
       "[pressure]\nk_p = 0.0\nk_v = 0.0\n"
       "[position]\nsample_interval_s = 0.001\n"
       "[reference]\nsignal = \"voltage\"\n{}"
-      "[limits]\nmotor_speed_rad_s = 628.3\n"
-      "[noise]\nseed = {}\nmotor_speed_rad_s = {}\nmotor_speed_resolution_rad_s = {}\n"
+      "[limits]\nmotor_speed = 628.3\n"
+      "[noise]\nseed = {}\nmotor_speed = {}\nmotor_speed_resolution = {}\n"
       "motor_angle_resolution_rad = {}\n",
       duration, reference, seed, kSpeedNoise, kSpeedStep, kEncoderStep);
 }

@@ -36,7 +36,7 @@ runs::MeasuredRun Measure(const ExperimentOptions& options, size_t index, const 
       "[pressure]\nk_p = 0.0\nk_v = 0.0\n"
       "[position]\nsample_interval_s = 0.001\n"
       "[reference]\nsignal = \"voltage\"\nkind = \"steps\"\nsteps = [[{}, {}], [{}, 0.0]]\n"
-      "[noise]\nseed = {}\np1_psi = {}\np2_psi = {}\np1_resolution_psi = {}\np2_resolution_psi = {}\n",
+      "[noise]\nseed = {}\np1 = {}\np2 = {}\np1_resolution = {}\np2_resolution = {}\n",
       kLeakageDuration, kTorqueStart, kTorques[index] / p.k_1, kRelease,
       options.seed + static_cast<int64_t>(index), kPressureNoise, kPressureNoise, kPressureStep,
       kPressureStep);

@@ -8,8 +8,8 @@ std::string ClampedLoopConfig(const ClampedLoop& loop) {
   return fmt::format(R"([model]
 file = "model.toml"
 shaft = "clamped"
-arm_angle_rad = {}
-initial_pressure_psi = {}
+arm_angle = {}
+initial_pressure = {}
 [time]
 mode = "lockstep"
 duration_s = {}
@@ -22,7 +22,7 @@ k_v = {}
 [position]
 sample_interval_s = {}
 [limits]
-pressure_psi = inf
+pressure = inf
 [reference]
 signal = "pressure"
 {})",

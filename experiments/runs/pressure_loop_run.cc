@@ -12,7 +12,7 @@ namespace hydro::experiments {
 namespace {
 
 std::string Configuration(const PressureLoopSetup& setup) {
-  const std::string shaft = setup.motion.empty() ? std::string("shaft = \"clamped\"\narm_angle_rad = 0.0\n")
+  const std::string shaft = setup.motion.empty() ? std::string("shaft = \"clamped\"\narm_angle = 0.0\n")
                                                  : "shaft = \"driven\"\n[model.motion]\n" + setup.motion;
   return fmt::format(R"([model]
 file = "table1.toml"
@@ -33,8 +33,8 @@ sample_interval_s = {}
 [reference]
 {}
 [noise]
-p1_psi = {}
-p2_psi = {}
+p1 = {}
+p2 = {}
 seed = {}
 )",
                      shaft, setup.duration, setup.rate, kLoopNaturalFrequency, kLoopDampingRatio,

@@ -16,7 +16,7 @@ class Accumulator : public EffectOf<Accumulator> {
   int states() const override { return 1; }
   int p_3_state() const override { return first_state(); }
   std::vector<std::string> StateNames() const override { return {"p3"}; }
-  void Scales(double pressure, double, double, double* scale) const override { scale[0] = pressure; }
+  void Scales(const StateSizes& of, double* scale) const override { scale[0] = of.pressure; }
 
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {

@@ -12,7 +12,7 @@ class Lag : public EffectOf<Lag> {
   int states() const override { return 1; }
   int switches() const override { return 1; }
   std::vector<std::string> StateNames() const override { return {"lagged_torque"}; }
-  void Scales(double, double, double torque, double* scale) const override { scale[0] = torque; }
+  void Scales(const StateSizes& of, double* scale) const override { scale[0] = of.torque; }
 
   template <class T>
   void OwnProperties(Terms<T>& x) const {

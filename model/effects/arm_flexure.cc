@@ -16,7 +16,7 @@ class Flexure : public EffectOf<Flexure> {
   int states() const override { return 1; }
   int actuator_angle_state() const override { return first_state(); }
   std::vector<std::string> StateNames() const override { return {"actuator_angle"}; }
-  void Scales(double, double, double, double* scale) const override { scale[0] = 1e-3; }
+  void Scales(const StateSizes& of, double* scale) const override { scale[0] = of.arm; }
 
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {

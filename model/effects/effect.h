@@ -27,6 +27,14 @@ namespace hydro::model {
 // and vanes.
 const std::vector<double>& PeriodsTried();
 
+// Sizes of states of a model, in its units, below which absolute rather than relative errors count.
+struct StateSizes {
+  double pressure = 0;
+  double flow = 0;
+  double torque = 0;
+  double arm = 0;  // of an angle or position at the arm
+};
+
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -47,7 +55,7 @@ class Effect {
   // For each state it adds: the name with its unit, and the size below which absolute rather than relative
   // errors count.
   virtual std::vector<std::string> StateNames() const { return {}; }
-  virtual void Scales(double /*pressure*/, double /*flow*/, double /*torque*/, double* /*scale*/) const {}
+  virtual void Scales(const StateSizes& /*of*/, double* /*scale*/) const {}
 
   // True when its valves replace the ideal one-way valves.
   virtual bool replaces_valves() const { return false; }

@@ -17,20 +17,13 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
   // Applied when every property of the liquid is known.
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
-    const double atmosphere = Atmosphere(*x.parameters);
+    const double atmosphere = x.atmosphere;
     x.beta_1 = x.beta_1 / (1.0 + x.beta_1 * x.own[0] * Compressibility(x.p1, atmosphere));
     x.beta_2 = x.beta_2 / (1.0 + x.beta_2 * x.own[0] * Compressibility(x.p2, atmosphere));
   }
 
  private:
   static constexpr double kExponent = 1.4;
-
-  // The only number with a unit in the equations: psi as in the paper, or Pa. Liquids have a beta near 2e5
-  // psi, which is 1.4e9 Pa, so 1e7 separates the two.
-  template <class T>
-  static double Atmosphere(const ParametersOf<T>& base) {
-    return base.beta > T(1e7) ? 101325 : 14.6959;
-  }
 
   // For air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
   // smoothly and stays above it, so a vacuum is soft but not an error; at p = 100 psi this adds 1e-5.

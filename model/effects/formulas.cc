@@ -38,14 +38,16 @@ class FormulaEffect : public EffectOf<FormulaEffect> {
     for (const StateText& state : formulas_->text().states) names.push_back(state.name);
     return names;
   }
-  void Scales(double pressure, double flow, double torque, double* scale) const override {
+  void Scales(const StateSizes& of, double* scale) const override {
     for (const StateText& state : formulas_->text().states) {
       if (state.scale == "pressure")
-        *scale++ = pressure;
+        *scale++ = of.pressure;
       else if (state.scale == "flow")
-        *scale++ = flow;
+        *scale++ = of.flow;
       else if (state.scale == "torque")
-        *scale++ = torque;
+        *scale++ = of.torque;
+      else if (state.scale == "arm")
+        *scale++ = of.arm;
       else
         *scale++ = ParseNumber(state.scale).value_or(1e-3);
     }

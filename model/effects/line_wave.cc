@@ -36,9 +36,9 @@ class Wave : public EffectOf<Wave> {
     state[i + 2] += x.waves[2];
     state[i + 3] += x.waves[3] / impedance;
   }
-  void Scales(double pressure, double flow, double, double* scale) const override {
-    scale[0] = scale[2] = pressure;
-    scale[1] = scale[3] = flow;
+  void Scales(const StateSizes& of, double* scale) const override {
+    scale[0] = scale[2] = of.pressure;
+    scale[1] = scale[3] = of.flow;
   }
   template <class T>
   T OwnFixedVolume(const ParametersOf<T>& base, const T* own) const {

@@ -11,9 +11,7 @@ class PressureLag : public EffectOf<PressureLag> {
  public:
   int states() const override { return 2; }
   std::vector<std::string> StateNames() const override { return {"read_p1", "read_p2"}; }
-  void Scales(double pressure, double, double, double* scale) const override {
-    scale[0] = scale[1] = pressure;
-  }
+  void Scales(const StateSizes& of, double* scale) const override { scale[0] = scale[1] = of.pressure; }
 
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {

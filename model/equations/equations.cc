@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/units.h"
 #include "model/effects/catalogue.h"
 #include "model/equations/evaluate.h"
 #include "model/equations/read_sensors.h"
@@ -28,6 +29,18 @@ void CheckBounds(const ParameterInfo& info, const UnitSystem& units, double valu
   throw ModelError("parameter " + owner + info.name + " = " + Number(value) + " " + info.UnitIn(units) +
                    "; allowed is " + (info.min_allowed ? "from " : "above ") + Number(info.min) +
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
+}
+
+// The only number with a unit in the equations. It is 14.6959 psi in every system, so that the same rig moves
+// in the same way whatever its units; 101325 Pa is that to 4 in a million.
+double Atmosphere(const ModelDescription& description) {
+  constexpr double kPsiOfAir = 14.6959;
+  const bool named = description.units != UnitSystem{};
+  // A model that does not say its units may be in SI all the same: no liquid has a beta of 1e7 psi.
+  const double unit = named                               ? ParseUnit(description.units.UnitFor("psi"))->size
+                      : description.parameters.beta > 1e7 ? 1
+                                                          : kPsi;
+  return unit == kPsi ? kPsiOfAir : kPsiOfAir * kPsi / unit;
 }
 
 // Not inlined: one copy serves every caller that needs derivatives.
@@ -108,8 +121,11 @@ void CheckParameters(const EffectDescription& effect, const EffectInfo& known, c
 
 }  // namespace
 
-Equations::Equations(const ModelDescription& description, const ActuatorOptions& options) {
+Equations::Equations(const ModelDescription& description, const ActuatorOptions& options)
+    : units_(description.units) {
   data_.parameters = description.parameters;
+  data_.linear_arm = units_.linear_arm;
+  data_.atmosphere = Atmosphere(description);
   data_.shaft = options.shaft;
   data_.bypass = options.bypass;
   data_.arm_angle = options.arm_angle;
@@ -123,6 +139,11 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
 
   const double pressure = 0.01 * p.T_pmax / p.D;
   const double speed = pressure * std::sqrt(2 * p.V_ms / (p.beta * p.J));
+  const StateSizes sizes = {.pressure = pressure,
+                            .flow = p.D * speed,
+                            .torque = 0.01 * p.T_pmax,
+                            // An angle has its own size; a stroke has that of its cylinder.
+                            .arm = data_.linear_arm ? 1e-3 * p.V_ms / p.c : 1e-3};
   scales_ = {0.01 * p.V_ms / p.D, speed, pressure, pressure};
   if (data_.shaft == Shaft::kFree) {
     scales_.push_back(0.01 * p.V_ms / p.c);
@@ -134,7 +155,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   for (size_t i = 0; i < effects.size(); ++i) {
     if (!options.repeated_effects && i > 0 && effects[i - 1].id == effects[i].id)
       throw ModelError("effect \"" + effects[i].id + "\" is there twice");
-    AddEffect(effects[i], description.units, pressure, p.D * speed);
+    AddEffect(effects[i], sizes);
   }
   data_.states = static_cast<int>(scales_.size());
   CompleteNumbers<double>(data_, &data_);
@@ -151,11 +172,10 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   }
 }
 
-void Equations::AddEffect(const EffectDescription& effect, const UnitSystem& units, double pressure,
-                          double flow) {
+void Equations::AddEffect(const EffectDescription& effect, const StateSizes& sizes) {
   const EffectInfo* known = FindEffect(effect);
   if (known == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
-  CheckParameters(effect, *known, units);
+  CheckParameters(effect, *known, units_);
   data_.effects.push_back(BuildEffect(effect));
   const int first_parameter = static_cast<int>(data_.own.size());
   for (const ParameterInfo& info : known->parameters) {
@@ -175,7 +195,7 @@ void Equations::AddEffect(const EffectDescription& effect, const UnitSystem& uni
   if (made.p_3_state() >= 0) data_.p_3_state = made.p_3_state();
   if (made.actuator_angle_state() >= 0) data_.actuator_angle_state = made.actuator_angle_state();
   if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
-  made.Scales(pressure, flow, 0.01 * data_.parameters.T_pmax, scales_.data() + first);
+  made.Scales(sizes, scales_.data() + first);
 }
 
 std::vector<std::string> Equations::StateNames() const {
@@ -191,8 +211,9 @@ void Equations::Start(double pressure, double* state, Mode* mode) const {
   if (std::isnan(pressure)) pressure = data_.parameters.p_3;
   const double least = data_.ideal_valves ? data_.parameters.p_3 : 0;
   if (!(pressure >= least) || !std::isfinite(pressure)) {
-    throw ModelError("initial pressure " + Number(pressure) + " psi is below " +
-                     (data_.ideal_valves ? "the accumulator's p_3 = " : "") + Number(least) + " psi");
+    const std::string unit = " " + units_.UnitFor("psi");
+    throw ModelError("initial pressure " + Number(pressure) + unit + " is below " +
+                     (data_.ideal_valves ? "the accumulator's p_3 = " : "") + Number(least) + unit);
   }
   *mode = Mode{};
   std::fill(state, state + data_.states, 0.0);
@@ -264,7 +285,7 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
     power.shaft_in = -(x.arm_torque - LoadTorque(data_, time)) * x.arm_speed;
   } else if (data_.shaft == Shaft::kFree) {
     power.kinetic += p.J_a * x.arm_speed * rate[kArmSpeed];
-    power.gravity = p.mgl * std::cos(x.arm_angle) * x.arm_speed;
+    power.gravity = p.mgl * (data_.linear_arm ? 1 : std::cos(x.arm_angle)) * x.arm_speed;
   } else {
     power.shaft_in = -p.k_2 * dp * x.arm_speed;
   }
@@ -285,7 +306,7 @@ Equations::ArmTorque Equations::FindArmTorque(double time, double voltage, const
   if (x.arm_torque != 0) return found;
   // Held, or just in balance? What holds it gives way to no other load either.
   const double torque = data_.load.torque;
-  data_.load.torque += std::max(1.0, std::abs(torque));
+  data_.load.torque += std::max(data_.parameters.k_2 * scales_[kP1], std::abs(torque));
   Evaluate(time, voltage, mode, state, rate, &x);
   data_.load.torque = torque;
   found.held = x.arm_torque == 0;
@@ -347,9 +368,11 @@ void Equations::CheckVolumes(double arm_angle) const {
   const double V_2 = p.V_ms + p.c * arm_angle - data_.fixed_volume;
   if (V_1 > 0 && V_2 > 0) return;
   const bool first = !(V_1 > 0);
-  throw ModelError("arm angle " + Number(arm_angle) + " rad leaves " + (first ? "V_1 = " : "V_2 = ") +
-                   Number(first ? V_1 : V_2) + " in^3" + (data_.fixed_volume > 0 ? " at the actuator" : "") +
-                   "; V_1, V_2 > 0 needs |alpha| < " + Number((p.V_ms - data_.fixed_volume) / p.c) + " rad");
+  const std::string unit = " " + units_.UnitFor("rad", 1);
+  throw ModelError((data_.linear_arm ? "arm position " : "arm angle ") + Number(arm_angle) + unit +
+                   " leaves " + (first ? "V_1 = " : "V_2 = ") + Number(first ? V_1 : V_2) + " " +
+                   units_.UnitFor("in^3") + (data_.fixed_volume > 0 ? " at the actuator" : "") +
+                   "; V_1, V_2 > 0 needs |alpha| < " + Number((p.V_ms - data_.fixed_volume) / p.c) + unit);
 }
 
 void Equations::Command(double time, double voltage) {

@@ -20,6 +20,7 @@
 namespace hydro::model {
 
 class Effect;
+struct StateSizes;
 template <class T>
 class StateHistory;
 
@@ -39,6 +40,8 @@ struct NumbersOf {
 struct EquationData : NumbersOf<double> {
   Shaft shaft = Shaft::kFree;
   bool bypass = false;
+  bool linear_arm = false;                         // a cylinder: its weight is the same wherever it stands
+  double atmosphere = 0;                           // in the model's unit of pressure
   double arm_angle = 0;                            // clamped
   double begin = 0;                                // s, where the time of effects is 0
   const trajectory::Trajectory* motion = nullptr;  // driven
@@ -141,9 +144,10 @@ class Equations {
 
  private:
   // `pressure` and `flow`: magnitudes that matter, for the scales of the effect's states.
-  void AddEffect(const EffectDescription& effect, const UnitSystem& units, double pressure, double flow);
+  void AddEffect(const EffectDescription& effect, const StateSizes& sizes);
 
   EquationData data_;
+  UnitSystem units_;
   std::vector<double> scales_;
 };
 

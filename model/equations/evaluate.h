@@ -96,6 +96,7 @@ template <Form kForm, class T>
     x.mode = &mode;
     x.arm_free = ArmMovesFreely<kForm>(m);
     x.bypass = m.bypass;
+    x.atmosphere = m.atmosphere;
     x.actuator_speed = x.arm_speed;
     x.parameters = &p;
     x.state = y;
@@ -121,7 +122,7 @@ template <Form kForm, class T>
   if (ArmIsLoaded<kForm>(m)) [[unlikely]] {
     x.arm_torque += T(LoadTorque(m, time));
   } else if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) {
-    x.arm_torque -= p.mgl * cos(x.arm_angle);
+    x.arm_torque -= m.linear_arm ? p.mgl : T(p.mgl * cos(x.arm_angle));
   }
   if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);

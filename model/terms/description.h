@@ -31,7 +31,7 @@ struct ParametersOf {
   T p_3{};     // psi, accumulator pressure
   T k_2{};     // in-lbf/psi, arm torque per pressure difference, eq. (15)
   T J_a{};     // lbf-in-s^2, inertia of the arm, eq. (15)
-  T mgl{};     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15)
+  T mgl{};  // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); of a linear arm its weight along its path
 };
 using Parameters = ParametersOf<double>;
 
@@ -51,7 +51,7 @@ struct ModelDescription {
   std::string name;
   Parameters parameters;
   std::vector<EffectDescription> effects;  // in the file's order
-  UnitSystem units = {};                   // of all values; the equations do not use them
+  UnitSystem units = {};                   // of all values; the equations need to know what the arm's is
   // How well base parameters are known, where stated: name -> relative standard deviation. The equations do not
   // use it; fits do.
   std::map<std::string, double> uncertainty = {};

@@ -63,8 +63,9 @@ const std::vector<BaseParameter>& BaseParameters() {
       Positive(&Parameters::k_2, kDataSheet,
                {"k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)", -1}),
       Positive(&Parameters::J_a, kDataSheet, {"J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)", -2}),
-      AnySign(&Parameters::mgl, kDataSheet,
-              {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15)", -1}),
+      AnySign(
+          &Parameters::mgl, kDataSheet,
+          {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15); a linear arm's weight", -1}),
   };
   return parameters;
 }

@@ -18,6 +18,7 @@ struct Terms {
   const Mode* mode = nullptr;
   bool arm_free = false;  // the shaft is neither clamped nor driven
   bool bypass = false;    // the two sides are connected
+  double atmosphere = 0;  // pressure of the air around, from which the model's pressures count
   const ParametersOf<T>* parameters = nullptr;
   const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on

@@ -24,7 +24,7 @@ constexpr std::array kRows{
     },
     SafetyRow{
         .id = "pressure_command_excessive",
-        .fault = "pressure command above `limits.arm_torque_in_lbf` / k_2",
+        .fault = "pressure command above `limits.arm_torque` / k_2",
         .detected = "pressure loop",
         .codes = "excessive_pressure_command",
         .within = {"5 ticks", 5},

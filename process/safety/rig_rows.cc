@@ -100,9 +100,8 @@ constexpr std::array kRows{
     },
     SafetyRow{
         .id = "limit_exceeded",
-        .fault =
-            "a pressure above `limits.pressure_psi`, a motor above `limits.motor_speed_rad_s`, an arm beyond "
-            "`limits.arm_angle_rad`",
+        .fault = "a pressure above `limits.pressure`, a motor above `limits.motor_speed`, an arm beyond "
+                 "`limits.arm_angle`",
         .detected = "plant and pressure loop",
         .codes = "pressure_limit motor_speed_limit arm_angle_limit",
         .within = {"the tick in which it is measured", 0},

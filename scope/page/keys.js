@@ -30,7 +30,7 @@ export function keyTable(actions) {
     { keys: ['g'], name: 'G', what: 'ghost on or off', act: actions.ghost },
     { keys: [',', '.'], name: ', .', what: 'a log: one sample back, on', act: actions.sample },
     { keys: ['v'], name: 'V', what: 'say the values, for a screen reader', act: actions.say },
-    { keys: ['u'], name: 'U', what: 'inch and psi, or SI', act: actions.units },
+    { keys: ['u'], name: 'U', what: 'the units of the model, or SI', act: actions.units },
     { keys: ['d'], name: 'D', what: 'light, dark or as the system', act: actions.theme },
     { keys: ['?', 'h'], name: '?', what: 'this help', act: actions.help },
   ];

@@ -22,6 +22,7 @@ struct TomlNode {
   bool boolean = false;             // kBoolean
   std::string place;                // "file:line", or the option that set it
   bool from_option = false;         // true: from --set
+  std::string former = {};          // the key's name before another took its place (quantity_keys.h)
 
   bool is(Kind k) const { return kind == k; }
   bool is_number() const { return kind == Kind::kInteger || kind == Kind::kFloat; }

@@ -57,9 +57,9 @@ TEST(ConfiguredLaws, RefusesABrakingCurveThatCannotBe) {
         [&] { settings::Parsed(settings::Replaced(settings::kConfigText, "c2 = 350", to)); });
   };
   EXPECT_THAT(error("c2 = 350\nbraking_rad_s2 = 3\nderivative = \"error\""),
-              HasSubstr("position.braking_rad_s2: found it beside derivative"));
-  EXPECT_THAT(error("braking_rad_s2 = 3"), HasSubstr("c1 and c2 above 0"));
-  EXPECT_THAT(error("c2 = 350\nbraking_rad_s2 = 0"), HasSubstr("position.braking_rad_s2"));
+              HasSubstr("position.braking: found it beside derivative"));
+  EXPECT_THAT(error("braking = 3"), HasSubstr("c1 and c2 above 0"));
+  EXPECT_THAT(error("c2 = 350\nbraking_rad_s2 = 0"), HasSubstr("position.braking"));
 }
 
 }  // namespace

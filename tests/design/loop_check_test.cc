@@ -98,7 +98,7 @@ TEST(LoopCheck, TakesEffectsIntoAccount) {
         model::EffectDescription{"valve.check", {{"cracking", 10}, {"conductance", 0.001}}, {}},
         model::EffectDescription{"pump.stribeck", {{"static_excess", 0.5}, {"speed", 3}}, {}}}) {
     model.effects = {effect};
-    const LoopCheck check = CheckLoops(Retuned({"limits.arm_angle_rad=0.3"}, model));
+    const LoopCheck check = CheckLoops(Retuned({"limits.arm_angle=0.3"}, model));
     EXPECT_EQ(check.unjudged, "") << effect.id;
     EXPECT_EQ(check.cases.size(), 18U) << effect.id;
   }
@@ -136,7 +136,7 @@ Swing SwingOf(const tables::Table& run, const std::string& column, double early,
 // Tests the critical factor of the position loop, at mid-stroke with both sides compressing, on the stack in simulation:
 // with 3 % less gain a small oscillation decays, with 3 % more it grows as fast as the spectral radius says.
 TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
-  const std::vector<std::string> base = {"model.initial_pressure_psi=1500", "limits.pressure_psi=inf",
+  const std::vector<std::string> base = {"model.initial_pressure=1500", "limits.pressure=inf",
                                          "reference.steps=[[0.1, 1e-5]]", "time.duration_s=2.1"};
   const double critical = CheckLoops(Retuned(base, Smooth())).cases.front().position->gain;
   EXPECT_GT(critical, 4);
@@ -146,7 +146,7 @@ TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
     settings.push_back("position.c2=" + std::to_string(900 * critical * factor));
     const tables::Table run = experiments::RunStackInProcess(
         {"stack", ShippedStackText("retuned", settings), settings::FormatModel(Smooth())});
-    const Swing swing = SwingOf(run, "arm_angle_rad", 0.6, 1.6, 0.2);
+    const Swing swing = SwingOf(run, "arm_angle", 0.6, 1.6, 0.2);
     const LoopMargins predicted = *CheckLoops(Retuned(settings, Smooth())).cases.front().position;
     EXPECT_EQ(predicted.stable, factor < 1);
     EXPECT_EQ(swing.late > swing.early, factor > 1) << swing.early << " " << swing.late;
@@ -158,12 +158,10 @@ TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
 
 // The same for the pressure loop with a free arm and a pressure as reference.
 TEST(LoopCheck, CriticalPressureGainIsWhereTheStackBeginsToOscillate) {
-  const std::vector<std::string> base = {"model.initial_pressure_psi=1500",
-                                         "limits.pressure_psi=inf",
-                                         "reference.signal=pressure",
-                                         "reference.steps=[[0.01, 1e-4], [0.012, 0]]",
-                                         "plant.rate_hz=1000",
-                                         "time.duration_s=0.51"};
+  const std::vector<std::string> base = {
+      "model.initial_pressure=1500", "limits.pressure=inf",
+      "reference.signal=pressure",   "reference.steps=[[0.01, 1e-4], [0.012, 0]]",
+      "plant.rate_hz=1000",          "time.duration_s=0.51"};
   const double critical = CheckLoops(Retuned(base, Smooth())).cases.front().pressure.gain;
   const auto gains = pressure_ctrl::DerivePressureGains(Smooth().parameters, 0, 150, 0.5, 2);
   for (const double factor : {0.97, 1.03}) {
@@ -173,7 +171,7 @@ TEST(LoopCheck, CriticalPressureGainIsWhereTheStackBeginsToOscillate) {
     text = settings::Replaced(text, "damping_ratio = 0.5", "k_v = " + std::to_string(gains.k_v));
     const tables::Table run =
         experiments::RunStackInProcess({"stack", text, settings::FormatModel(Smooth())});
-    const Swing swing = SwingOf(run, "motor_speed_rad_s", 0.1, 0.4, 0.1);
+    const Swing swing = SwingOf(run, "motor_speed", 0.1, 0.4, 0.1);
     EXPECT_EQ(swing.late > swing.early, factor > 1) << swing.early << " " << swing.late;
     const LoopMargins predicted =
         CheckLoops(settings::ParseStackConfig(text, "stack.toml", settings::FormatModel(Smooth()), "m"))
@@ -188,7 +186,7 @@ TEST(LoopCheck, CriticalPressureGainIsWhereTheStackBeginsToOscillate) {
 
 // Tests the places that are looked at.
 TEST(OperatingCases, FollowTheShaftAndItsLimits) {
-  EXPECT_THAT(OperatingCases(Retuned({"limits.arm_angle_rad=0.25"}))[3].name, HasSubstr("arm at -0.25 rad"));
+  EXPECT_THAT(OperatingCases(Retuned({"limits.arm_angle=0.25"}))[3].name, HasSubstr("arm at -0.25 rad"));
   EXPECT_THAT(OperatingCases(Retuned({"reference.steps=[[0.1, 0.6]]"}))[3].name,
               HasSubstr("arm at -0.6 rad"));
   EXPECT_EQ(OperatingCases(Retuned({"model.bypass=true"})).size(), 3U);

@@ -39,7 +39,7 @@ class AgreementTest(fault_case.FaultCase):
         self.check_refused("pressure_ctrl", "position.c1 is 60000 there, 6000 here", "--set", "position.c1=60000")
 
     def test_other_limit(self):
-        self.check_refused("position_ctrl", "limits.pressure_psi is inf there, 2000 here", "--set", "limits.pressure_psi=inf")
+        self.check_refused("position_ctrl", "limits.pressure is inf there, 2000 here", "--set", "limits.pressure=inf")
 
     def test_other_time(self):
         self.check_refused("position_ctrl", "time.speed is 2 there, not given here", "--set", "time.speed=2")
@@ -57,7 +57,7 @@ class AgreementTest(fault_case.FaultCase):
     # Tests that what may differ does: the noise, the integrator, and where the same model lies.
     def test_may_differ(self):
         shutil.copy(stack.config("models/table1.toml"), self.path("copy.toml"))
-        self.start_with("plant", "--set", "noise.p1_psi=7", "--set", 'plant.integrator="fast"', "--set",
+        self.start_with("plant", "--set", "noise.p1=7", "--set", 'plant.integrator="fast"', "--set",
                         f'model.file="{self.path("copy.toml")}"')
         self.log = stack.LiveLog(self, self.log_file)
         self.wait_for_voltage()

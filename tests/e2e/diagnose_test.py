@@ -104,8 +104,8 @@ class DiagnoseTest(stack.TestCase):
         """A table of a simulated run, its columns multiplied by these factors, with a sidecar."""
         log, table = self.path("bench.lcmlog"), self.path("bench-export.csv")
         if not os.path.exists(log):
-            self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1.5", "--set", "noise.p1_psi=1.5", "--set",
-                             "noise.p2_psi=1.5", "--set", "noise.motor_speed_rad_s=0.3", "-o", log)
+            self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1.5", "--set", "noise.p1=1.5", "--set",
+                             "noise.p2=1.5", "--set", "noise.motor_speed=0.3", "-o", log)
             self.run_program("hydro-log", "export", log, "-o", table)
         with open(table, encoding="utf-8") as file:
             names, *rows = [line.split(",") for line in file.read().split()]
@@ -157,8 +157,8 @@ class DiagnoseTest(stack.TestCase):
     def test_reports(self):
         log = self.path("run.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1.5", "--set",
-                         "noise.p1_psi=1.5", "--set", "noise.p2_psi=1.5", "--set",
-                         "noise.motor_speed_rad_s=0.3", "--set", "noise.arm_angle_rad=0.0002", "-o", log)
+                         "noise.p1=1.5", "--set", "noise.p2=1.5", "--set",
+                         "noise.motor_speed=0.3", "--set", "noise.arm_angle=0.0002", "-o", log)
         reports = []
         for out, jobs in (("a", 1), ("b", 2)):
             run = self.run_program("hydro-diagnose", log, "--model", TABLE1, "--out", self.path(out), "--jobs",

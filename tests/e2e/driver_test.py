@@ -215,7 +215,7 @@ class WaysOutTest(DriverCase):
 
     # Tests a stop message from another process, here the pressure loop's when the motor exceeds its speed limit.
     def test_stop_message(self):
-        self.leave("stop message", lambda *_: None, 1, "limits.motor_speed_rad_s=200", driven=False)
+        self.leave("stop message", lambda *_: None, 1, "limits.motor_speed=200", driven=False)
         self.assertTrue(any("fault motor_speed_limit" in p.stderr for p in self.processes))
 
 

@@ -221,7 +221,7 @@ class MotorCommandTest(fault_case.FaultCase):
 class PressureCommandTest(fault_case.FaultCase):
     """The test plays the position loop: 50 psi at each sample, except for what `bad` sends for a while from tick BAD on."""
 
-    LIMIT = 500 / 3.68  # psi, limits.arm_torque_in_lbf / k_2 of demo.toml
+    LIMIT = 500 / 3.68  # psi, limits.arm_torque / k_2 of demo.toml
     SPAN = 100  # ticks
 
     def run_with(self, bad):

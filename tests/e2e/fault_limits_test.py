@@ -41,16 +41,16 @@ class LimitTest(fault_case.FaultCase):
     def test_pressure(self):
         for push in (100, -100):
             with self.subTest(push=push):
-                self.run_to_limit("limits.pressure_psi", "pressure_limit", lambda s: max(s.p1, s.p2), 115, push)
+                self.run_to_limit("limits.pressure", "pressure_limit", lambda s: max(s.p1, s.p2), 115, push)
 
     def test_motor_speed(self):
-        self.run_to_limit("limits.motor_speed_rad_s", "motor_speed_limit", lambda s: abs(s.motor_speed), 30, -100)
+        self.run_to_limit("limits.motor_speed", "motor_speed_limit", lambda s: abs(s.motor_speed), 30, -100)
 
     # Tests the arm: long before V_1 or V_2 is 0, of which the model itself would die.
     def test_arm_angle(self):
         for push in (100, -100):
             with self.subTest(push=push):
-                self.run_to_limit("limits.arm_angle_rad", "arm_angle_limit", lambda s: abs(s.arm_angle), 0.05, push)
+                self.run_to_limit("limits.arm_angle", "arm_angle_limit", lambda s: abs(s.arm_angle), 0.05, push)
 
     # Tests that a run whose arm is driven to its end is stopped by the default of that limit, 0.98 V_ms/c.
     def test_arm_angle_default(self):
@@ -89,7 +89,7 @@ class RearmTest(fault_case.FaultCase):
     # Tests that the voltage stays zero long after the pressure has fallen, that a re-arm ends this, and that exceeding
     # the limit again raises the fault again.
     def test_pressure(self):
-        self.start_explicit("--set", "limits.pressure_psi=115", config=self.config_with(PUSH.format(100)))
+        self.start_explicit("--set", "limits.pressure=115", config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("pressure_limit", source="plant")
         self.assertEqual(fault.latched, 1)
 
@@ -177,7 +177,7 @@ class RearmTest(fault_case.FaultCase):
 
     # Tests that a limit that is still exceeded prevents a re-arm.
     def test_refused_while_the_cause_persists(self):
-        self.start_explicit("--set", "limits.arm_angle_rad=0.05", config=self.config_with(PUSH.format(100)))
+        self.start_explicit("--set", "limits.arm_angle=0.05", config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("arm_angle_limit", source="plant")
         self.wait_for_states(100)
         self.assertRegex(self.rearm(1).stderr, "arm_angle_limit persists: tick .* the arm is at")
@@ -238,7 +238,7 @@ class RearmTest(fault_case.FaultCase):
 
     # Tests that a run that ends at zero volts, never re-armed, has failed.
     def test_ends_latched(self):
-        self.start_explicit("--set", "limits.pressure_psi=115", duration=1.2,
+        self.start_explicit("--set", "limits.pressure=115", duration=1.2,
                             config=self.config_with(PUSH.format(100)))
         self.assertEqual(self.run_["plant"].wait(), 1, self.run_["plant"].report())
         self.assertRegex(self.run_["plant"].stderr, "stopped by .*pressure_limit and not re-armed")

@@ -98,7 +98,7 @@ class LimbTest(stack.TestCase):
     def test_a_fault_of_one_joint(self):
         log_file = self.path("run.lcmlog")
         launch = self.launch(LIMB, "--time", "realtime", "--duration", "1.5", "--log", log_file, *PATIENT, "--set",
-                             "limits.rearm=explicit", "--set", "joint.knee.limits.motor_speed_rad_s=2", "--set",
+                             "limits.rearm=explicit", "--set", "joint.knee.limits.motor_speed=2", "--set",
                              "limb.telemetry_hz=every_tick")
         self.assertEqual(launch.wait(60), 1, launch.report())
         logs = {joint: event_log.Log(log_file, f"_{joint}") for joint in JOINTS}
@@ -168,7 +168,7 @@ class LimbTest(stack.TestCase):
     # Tests that joints whose processes nobody has launched together end together all the same when one passes its limit.
     def test_ends_without_a_launcher(self):
         options = ("--time", "realtime", "--duration", "0", "--set", f"bus.url={self.url}", "--set", "limits.stale_input_s=5")
-        low = ("--set", "joint.hip.limits.motor_speed_rad_s=20")
+        low = ("--set", "joint.hip.limits.motor_speed=20")
         limbs = [self.start("hydro-limb", LIMB, *options, *low, "--joints", joint, "--expect", f"joint:{other}")
                  for joint, other in (JOINTS, reversed(JOINTS))]
         for limb in limbs:
@@ -295,7 +295,7 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
     def test_others_go_on(self):
         config = two_limbs(self)
         launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "2", "--log", self.log_of(host), "--set",
-                                         "limb.on_joint_fault=others_go_on", "--set", "joint.hip.limits.motor_speed_rad_s=2",
+                                         "limb.on_joint_fault=others_go_on", "--set", "joint.hip.limits.motor_speed=2",
                                          *PATIENT, config=config) for host in ("desk", "rig")}
         self.assertEqual(launches["rig"].wait(60), 1, launches["rig"].report())
         self.assertEqual(launches["desk"].wait(60), 1, launches["desk"].report())

@@ -193,7 +193,7 @@ class PlannerTest(fault_case.FaultCase):
         planner.course = Far()
         fault = self.wait_for_fault("refused_arm_plan", source="position_ctrl")
         self.assertRegex(fault.text, r"not followed; the newest: point 0: found arm angle 2 rad, allowed \|alpha\| <= 0\.[0-9]+ "
-                                     r"\(limits.arm_angle_rad\)")
+                                     r"\(limits.arm_angle\)")
         planner.course = course
         self.wait_for_fault("refused_arm_plan", active=False)
         self.log.wait_for_tick(fault.tick + 500)

@@ -16,7 +16,7 @@ RETURN = 5.0  # s after the last fault in which control returns, as torture/worl
 PATIENCE = 0.4  # s of the operator, as torture/programs.cc
 REQUESTS = 6  # of the operator, half a second apart, as torture/world_end.cc
 CONFIG = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "torture", "torture.toml")
-OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque_in_lbf=400")  # as torture/torture_config.cc
+OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque=400")  # as torture/torture_config.cc
 
 
 class RealTorture:

@@ -149,7 +149,7 @@ class TuneTest(stack.TestCase):
         path = self.path("tuned.toml")
         for goal, says in (("settling_s=0.2", r"settling_s=0\.2: the motor's torque T_pmax = 40 moves the arm by 0\.1 rad, .* in ([\d.]+) s at best"),
                            ("bandwidth_hz=30", r"bandwidth_hz=30: sampled every 0\.005 s, .* reaches ([\d.]+) Hz"),
-                           ("step_rad=2", r"do not fit into the arm's travel of \+/- 0\.429 rad: at most step_rad=([\d.]+) can")):
+                           ("step_rad=2", r"do not fit into the arm's travel of \+/- 0\.429 rad: at most step=([\d.]+) can")):
             done = self.tune("--goal", goal, "--samples", 1, "-o", path, "--out", self.path("report"), expect=1)
             self.assertEqual(done.stdout, "")
             line = [line for line in done.stderr.splitlines() if not re.match(r"hydro-tune: \d+ %, ", line)]

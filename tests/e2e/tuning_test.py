@@ -49,7 +49,7 @@ class TuningTest(fault_case.FaultCase):
         self.start_moving()
         for changes, says in (
                 (("position.c2=9000",), "refused: would be unstable: .*position loop: UNSTABLE"),
-                (("limits.pressure_psi=9000", "position.c2=900"), "refused: limits.pressure_psi: found 9000, allowed up to 2000"),
+                (("limits.pressure=9000", "position.c2=900"), "refused: limits.pressure: found 9000 psi, allowed up to 2000 psi"),
                 (("--undo",), "refused: nothing to undo")):
             done = self.set(*changes, expect=1)
             self.assertRegex(done.stderr, says)

@@ -200,7 +200,7 @@ TEST(SheetUnitsTest, ModelInSi) {
   Sheet si = sheet;
   SetUnits(kSiUnits, false, &sheet);
   EXPECT_EQ(sheet.columns[0].field.unit, "Pa");
-  EXPECT_EQ(sheet.columns[0].field.name, "p1_psi") << "the column's name is fixed";
+  EXPECT_EQ(sheet.columns[0].field.name, "p1_Pa") << "a column's name says what it holds";
   SetUnits(kSiUnits, true, &si);
   EXPECT_EQ(si.columns[0].field.name, "p1_MPa");
   EXPECT_EQ(std::get<std::vector<double>>(si.columns[0].values)[0], 2);

@@ -35,8 +35,8 @@ c2 = 200.0
 kind = "steps"
 steps = [[0.05, 0.1]]
 [noise]
-p1_psi = 1.0
-motor_speed_rad_s = 0.1
+p1 = 1.0
+motor_speed = 0.1
 )";
 
 // A simulated run, recorded into a file and read back.

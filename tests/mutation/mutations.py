@@ -142,7 +142,7 @@ MUTATIONS = [
         ("bypass.volumes", "(x.V_1 / x.beta_1 + x.V_2 / x.beta_2)", "(x.V_1 / x.beta_1 - x.V_2 / x.beta_2)"),
         # (15).
         ("eq15.pressure", "x.arm_torque = p.k_2 * (x.p2 - x.p1);", "x.arm_torque = p.k_2 * (x.p1 - x.p2);"),
-        ("eq15.gravity", "x.arm_torque -= p.mgl", "x.arm_torque += p.mgl"),
+        ("eq15.gravity", "x.arm_torque -= m.linear_arm", "x.arm_torque += m.linear_arm"),
         ("eq15.sine", "p.mgl * cos(x.arm_angle)", "p.mgl * cos(x.arm_angle + 1.570796326794897)"),
         ("eq15.whole", "= x.arm_torque * n.inverse_J_a;", "= -x.arm_torque * n.inverse_J_a;"),
         ("eq15.angle", "rate[kArmAngle] = x.arm_speed;", "rate[kArmAngle] = -x.arm_speed;"),

@@ -450,7 +450,7 @@ TEST_F(PlantAppTest, SleepingThroughALimitNamesTheLimit) {
   ASSERT_FALSE(faults_.empty());
   EXPECT_EQ(faults_.back().code, "arm_angle_limit");
   EXPECT_TRUE(faults_.back().latched);
-  EXPECT_THAT(failure_, HasSubstr("allowed is |alpha| <= 0.8 rad (limits.arm_angle_rad)"));
+  EXPECT_THAT(failure_, HasSubstr("allowed is |alpha| <= 0.8 rad (limits.arm_angle)"));
 }
 
 // Tests that a configuration with an arm angle that the model cannot have is bad input, not a failed run.

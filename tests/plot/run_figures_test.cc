@@ -50,6 +50,19 @@ TEST(RunFigures, Si) {
   EXPECT_EQ(arm.panels[0].title, "Arm position");
 }
 
+// Tests that the table of a stack in any units is drawn in them.
+TEST(RunFigures, AnyUnits) {
+  for (const auto& [pressure_unit, arm_unit] : {std::pair("Pa", "m"), {"bar", "cm"}, {"MPa", "um"}}) {
+    tables::Table run = SmallRun();
+    for (tables::Column& column : run.columns) {
+      if (column.name.ends_with("_psi")) column.name.replace(column.name.size() - 3, 3, pressure_unit);
+      if (column.name.starts_with("arm_")) column.name.replace(column.name.size() - 3, 3, arm_unit);
+    }
+    EXPECT_EQ(PressureFigure(run).panels[0].y.label, pressure_unit);
+    EXPECT_EQ(ArmFigure(run).panels[0].y.label, arm_unit);
+  }
+}
+
 // Tests that any other table is refused, naming the column that it lacks.
 TEST(RunFigures, ColumnMissing) {
   tables::Table run = SmallRun();

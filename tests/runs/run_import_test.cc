@@ -4,7 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "base/input_error.h"
 #include "base/read_files.h"
+#include "runs/run_config.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
@@ -84,6 +86,39 @@ TEST_F(RunImportTest, EverySubsetOfColumnsComesBack) {
 TEST_F(RunImportTest, ExportedRunComesBack) {
   log::WriteRun(Path("run"), log::SampleRun(50));
   ExpectComesBack(ExportRun(ReadRunLog(Path("run"))));
+}
+
+// Tests that tables in the units of other systems, as export writes them, come back bit by bit in logs that say their units.
+TEST_F(RunImportTest, OtherUnitsComeBack) {
+  const UnitSystem systems[] = {kSiUnits, {"mm", "N"}, {"cm", "daN"}, {"mm", "N", true}, {"in", "lbf", true}};
+  for (const UnitSystem& units : systems) {
+    SCOPED_TRACE(RunColumnIn(units, "arm_speed_rad_s") + ", " + RunColumnIn(units, "p1_psi"));
+    const tables::Table paper = RandomTable(5, 20, ~0u);
+    tables::Table named = paper;
+    for (tables::Column& column : named.columns) column.name = RunColumnIn(units, column.name);
+    EXPECT_EQ(named.columns[9].name, "p1_" + units.UnitFor("psi"));
+    const RunLog log = Import(named);
+    EXPECT_EQ(ModelUnits(log.messages.Of<run_description_t>().at(0), "log"), units);
+    const tables::Table back = ExportRun(log);
+    for (size_t k = 0; k < paper.columns.size(); ++k) {
+      for (size_t row = 0; row < paper.rows(); ++row) {
+        const double given = paper.columns[k].values[row], found = back.columns[k].values[row];
+        EXPECT_TRUE(given == found || (std::isnan(given) && std::isnan(found))) << named.columns[k].name;
+      }
+    }
+    std::filesystem::remove(Path("log"));
+  }
+}
+
+// Tests that columns of no one system are refused.
+TEST_F(RunImportTest, MixedUnitsAreRefused) {
+  try {
+    ImportCsv("time_s,p1_Pa,p2_psi\n0,1,1\n1,1,1\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("found the column 'p1_Pa'"));
+    EXPECT_THAT(error.what(), HasSubstr("or all of them in other units of one system"));
+  }
 }
 
 // Tests that the log plays at the pace of the measurement and describes itself.

@@ -1,5 +1,6 @@
 #include "runs/tracking.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -133,6 +134,40 @@ TEST(TrackingTest, ConstantReference) {
                          500, [](double) { return 0.202; }, constant))
                 .at_target,
             false);
+}
+
+// The description of a run whose model has a linear arm in that unit.
+run_description_t InUnits(const std::string& length) {
+  run_description_t description{};
+  description.model_text =
+      "units = { length = \"" + length + "\", force = \"N\", arm = \"" + length + "\" }\n";
+  return description;
+}
+
+// Tests that a linear arm is judged and shown in its own unit: 0.05 mm from its target it is there, 0.2 mm from it not, whether its
+// position is in mm or in m.
+TEST(TrackingTest, ALinearArmHasLengths) {
+  for (const auto& [length, mm] : {std::pair("mm", 1.0), {"m", 1e-3}}) {
+    for (const double error : {0.05, 0.2}) {
+      RunLog log = MakeRun(
+          500, [&](double) { return (2 + error) * mm; }, [&](double) { return 2 * mm; });
+      log.messages.Of<run_description_t>().push_back(InUnits(length));
+      const Tracking tracking = TrackArm(log);
+      EXPECT_EQ(tracking.at_target, error < 0.1) << length << " " << error;
+    }
+    RunLog log = MakeRun(
+        4000, [&](double t) { return t < 1 ? 0 : 30 * mm; }, [&](double t) { return t < 1 ? 0 : 30 * mm; });
+    log.messages.Of<run_description_t>().push_back(InUnits(length));
+    const Tracking tracking = TrackArm(log);
+    const std::string own = SummaryText(tracking, Summarise(log, false), false);
+    EXPECT_THAT(own, ::testing::HasSubstr(mm == 1 ? "to 30 mm: overshoot" : "to 0.03 m: overshoot"));
+    EXPECT_THAT(own, ::testing::Not(::testing::HasSubstr("rad")));
+    const std::string si = SummaryText(tracking, Summarise(log, true), true);
+    EXPECT_THAT(si, ::testing::HasSubstr("at its target 30 mm: final error 0 mm"));
+    EXPECT_THAT(si, ::testing::Not(::testing::HasSubstr("deg")));
+    EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)),
+                ::testing::HasSubstr("\"target_" + std::string(length) + "\": "));
+  }
 }
 
 // Tests that a run without arm-angle references says so instead of dividing by zero.

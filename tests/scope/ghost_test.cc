@@ -12,14 +12,11 @@
 namespace hydro::scope {
 namespace {
 
-const std::vector<std::string> kQuiet = {"time.mode=lockstep",
-                                         "time.duration_s=3",
-                                         "noise.p1_psi=0",
-                                         "noise.p2_psi=0",
-                                         "noise.arm_angle_rad=0",
-                                         "noise.arm_speed_rad_s=0",
-                                         "noise.motor_speed_rad_s=0",
-                                         "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
+const std::vector<std::string> kQuiet = {
+    "time.mode=lockstep",  "time.duration_s=3",
+    "noise.p1=0",          "noise.p2=0",
+    "noise.arm_angle=0",   "noise.arm_speed=0",
+    "noise.motor_speed=0", "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
 
 std::vector<GhostSample> Samples(const settings::StackConfig& config) {
   std::vector<GhostSample> samples;
@@ -76,7 +73,7 @@ TEST(GhostTest, WrongFrictionShows) {
 // Tests that residuals are in units of the noise: with the right model and noise alone they are about 1.
 TEST(GhostTest, ResidualsAreInUnitsOfTheNoise) {
   auto overrides = kQuiet;
-  overrides[2] = "noise.p1_psi=2";
+  overrides[2] = "noise.p1=2";
   const auto config = DemoConfig(overrides);
   for (const bool stated : {true, false}) {
     auto known = config;
@@ -142,7 +139,7 @@ TEST(GhostTest, FollowsAClampedShaft) {
   auto overrides = kQuiet;
   overrides.back() = "reference.steps=[[0.1, 20], [1, -20]]";
   overrides.insert(overrides.end(),
-                   {"model.shaft=clamped", "model.arm_angle_rad=0.2", "reference.signal=pressure"});
+                   {"model.shaft=clamped", "model.arm_angle=0.2", "reference.signal=pressure"});
   const auto config = DemoConfig(overrides);
   EXPECT_LT(Worst(config, Samples(config), 0.5), 0.05);
 }

@@ -78,7 +78,7 @@ const runs = () => [
     rate_hz: kRate,
     session: 'm1',
     channels: kChannels,
-    limits: { voltage_V: 10, pressure_psi: 2000 },
+    limits: { voltage_V: 10, pressure: 2000 },
   },
   {
     run: 1,

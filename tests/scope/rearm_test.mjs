@@ -13,7 +13,7 @@ before(async () => {
   const explicit = 'limits.rearm=explicit';
   const stack = await bench.launch(bench.file('run.lcmlog'), [
     explicit,
-    'limits.motor_speed_rad_s=150',
+    'limits.motor_speed=150',
     'limits.return_s=2', // slow enough that the limit is not passed again
     'reference.frequency_hz=0.02',
   ]);

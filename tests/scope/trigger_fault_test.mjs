@@ -38,7 +38,7 @@ test('a fault', async () => {
   await until(page, (last) => hydroScope.display.last > last + 2.2, from);
   assert.equal(await captures(), before, 'caught something without a fault');
 
-  stack('hydro-set', `limits.motor_speed_rad_s=${limit}`);
+  stack('hydro-set', `limits.motor_speed=${limit}`);
   await until(page, (n) => hydroScope.trigger.captures > n, before);
   const seen = await page.evaluate(() => {
     const { t, t1, bins } = hydroScope.display.capture;

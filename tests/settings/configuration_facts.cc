@@ -198,7 +198,7 @@ std::string StandardOf(const AskedKey& asked) {
 const std::vector<HandWritten>& HandWrittenDefaults() {
   static const std::vector<HandWritten> keys = {
       {"model.file", "required, but not of a configuration that a log holds with its model"},
-      {"model.initial_pressure_psi", "the model's p_3"},
+      {"model.initial_pressure", "the model's p_3"},
       {"model.motion", "a section that may be missing"},
       {"pressure.rate_hz", "a word or a number"},
       {"pressure.reference_feedforward", "a truth value or a number"},
@@ -206,7 +206,7 @@ const std::vector<HandWritten>& HandWrittenDefaults() {
       {"reference.points", "a list; with it the file and column are not required"},
       {"reference.file", "required unless there are points"},
       {"reference.column", "required unless there are points"},
-      {"limits.arm_angle_rad", "from the model's V_ms and c"},
+      {"limits.arm_angle", "from the model's V_ms and c"},
       {"limits.rearm", "with a [driver] another"},
       {"driver.watchdog", "a section that may be missing"},
       {"driver.motor_angle", "a section that may be missing"},

@@ -47,10 +47,10 @@ TEST_F(ConfigurationPageTest, FactsComeFromTheReaders) {
   EXPECT_EQ(FactsOf(facts_, "plant", "rate_hz").allowed, "above 0, at most 1000000");
   EXPECT_EQ(FactsOf(facts_, "plant", "command_delay_ticks").allowed, "0 or 1");
   EXPECT_EQ(FactsOf(facts_, "plant", "integrator").standard, "`\"auto\"`");
-  EXPECT_EQ(FactsOf(facts_, "limits", "motor_speed_rad_s").standard, "`inf`");
-  EXPECT_EQ(FactsOf(facts_, "limits", "motor_speed_rad_s").allowed, "above 0 or `inf`");
+  EXPECT_EQ(FactsOf(facts_, "limits", "motor_speed").standard, "`inf`");
+  EXPECT_EQ(FactsOf(facts_, "limits", "motor_speed").allowed, "above 0 or `inf`");
   EXPECT_EQ(FactsOf(facts_, "limits", "rearm").standard, "");
-  EXPECT_EQ(FactsOf(facts_, "position", "braking_rad_s2").standard, "none");
+  EXPECT_EQ(FactsOf(facts_, "position", "braking").standard, "none");
   EXPECT_EQ(FactsOf(facts_, "driver.voltage", "scale").standard, "required");
   EXPECT_EQ(FactsOf(facts_, "driver", "p1").allowed, "section with `source` `\"analog\"`");
   EXPECT_EQ(FactsOf(facts_, "bus", "channel_suffix").standard, "`\"\"`");

@@ -124,7 +124,7 @@ TEST_F(LimbConfigTest, JointAloneMissesTheOthers) {
 
 // Tests that the text of the whole limb, read again, describes the same limb.
 TEST_F(LimbConfigTest, TextDescribesItself) {
-  const LimbConfig limb = Load(kJoints, {"position.c2=123", "joint.knee.limits.pressure_psi=900"});
+  const LimbConfig limb = Load(kJoints, {"position.c2=123", "joint.knee.limits.pressure=900"});
   const LimbConfig again = LoadLimbConfig(File(limb.common.text));
   EXPECT_EQ(again.common.text, limb.common.text);
   for (size_t i = 0; i < 2; ++i) EXPECT_EQ(again.joints[i].config.agreed, limb.joints[i].config.agreed);
@@ -219,6 +219,24 @@ TEST_F(LimbConfigTest, ErrorsNameTheJoint) {
   // Steps that all share, and that go too far for the knee alone.
   EXPECT_THAT(Error(text + "[joint.limits]\narm_angle_rad = 0.05\n"),
               ContainsRegex("limb.toml:[0-9]+: joint knee: reference.steps: found arm angle"));
+}
+
+// Tests that an arm is for joints that turn, all in one system of units, and that its values may have units of their own.
+TEST_F(LimbConfigTest, AnArmIsOfJointsThatTurn) {
+  const std::string link = "[[arm.link]]\nmass = 0.02\nlength = \"38.1 cm\"\ncentre = 7\ninertia = 0.4\n";
+  const std::string arm = "[arm]\ngravity = \"9.80665 m/s^2\"\n" + link + link;
+  const LimbConfig limb = Load(std::string(kJoints) + arm);
+  EXPECT_NEAR(limb.arm->gravity, 386.089, 1e-3);
+  EXPECT_DOUBLE_EQ(limb.arm->links[1].length, 15);
+  const std::string linear = "units = { length = \"in\", force = \"lbf\", arm = \"in\" }\n";
+  Write("linear.toml", linear + kModelText);
+  EXPECT_THAT(
+      Error(std::string(kJoints) + "[joint.model]\nfile = \"linear.toml\"\n" + arm),
+      HasSubstr("arm: found it with the joint knee, whose arm moves along a line (linear.toml), allowed "
+                "joints that turn"));
+  Write("other.toml", "units = { length = \"in\", force = \"N\" }\n" + std::string(kModelText));
+  EXPECT_THAT(Error(std::string(kJoints) + "[joint.model]\nfile = \"other.toml\"\n" + arm),
+              HasSubstr("arm: found joints in different units: hip in in and lbf, knee in in and N"));
 }
 
 // Tests that an arm has a link for each joint, is read, and is checked.

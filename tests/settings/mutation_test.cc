@@ -31,7 +31,7 @@ signal = 'pressure'
 kind = "chirp"
 amplitude = 3.0e2
 [limits]
-motor_speed_rad_s = inf
+motor_speed = inf
 [noise]
 seed = 0x7F
 [[process]]

@@ -27,7 +27,7 @@ TEST_F(OverridesTest, ValuesAreTomlOrBareWords) {
   const StackConfig config =
       Load({"time.mode=lockstep", "time.duration_s=2", "plant.integrator=\"erk\"",
             "bus.url=udpm://239.255.76.67:7700?ttl=0", "pressure.arm_speed_feedforward=true",
-            "reference.steps=[[0.5, 0.2], [1, 0]]", "noise.p1_psi = 1.5", "position.c1=1_000"});
+            "reference.steps=[[0.5, 0.2], [1, 0]]", "noise.p1 = 1.5", "position.c1=1_000"});
   EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
   EXPECT_EQ(config.last_tick, 2000);
   EXPECT_EQ(config.plant.integrator, model::Integrator::kErk);
@@ -69,7 +69,7 @@ TEST_F(OverridesTest, ChosenAlternativeDropsTheOther) {
   const std::string driven =
       Write("driven.toml",
             Replaced(kConfigText, "[plant]", "shaft = \"driven\"\n[model.motion]\nkind = \"sine\"\n[plant]"));
-  EXPECT_FALSE(LoadStackConfig(driven, {"model.shaft=clamped", "model.arm_angle_rad=0.1"}).model.motion);
+  EXPECT_FALSE(LoadStackConfig(driven, {"model.shaft=clamped", "model.arm_angle=0.1"}).model.motion);
 }
 
 // Tests that contradictions within the file, or among options, remain errors.

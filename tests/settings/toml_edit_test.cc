@@ -36,12 +36,12 @@ TEST(EditToml, ReplacesAValueOfSeveralLines) {
 
 TEST(EditToml, AddsAndRemoves) {
   const std::string edited =
-      EditToml(kText, "x.toml", {{"position.derivative", "'error'"}, {"limits.pressure_psi", "1500"}},
+      EditToml(kText, "x.toml", {{"position.derivative", "'error'"}, {"limits.pressure", "1500"}},
                {"position.c2", "reference.steps"});
   std::string expected = Replaced(kText, "c2 = 350  # damping # \"twice\"\n", "");
   expected = Replaced(expected, "# a comment\n", "# a comment\nderivative = 'error'\n");
   expected = Replaced(expected, "steps = [\n  [0.2, 0.3],  # first\n  [2.2, -0.2],\n]  # all\n", "");
-  EXPECT_EQ(edited, expected + "\n[limits]\npressure_psi = 1500\n");
+  EXPECT_EQ(edited, expected + "\n[limits]\npressure = 1500\n");
 }
 
 TEST(EditToml, FindsDottedKeys) {

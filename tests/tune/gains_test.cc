@@ -30,7 +30,7 @@ TEST(Gains, ChangeTheLawsAndSwitchTheFeedForwardsOn) {
 }
 
 TEST(Gains, HaveABrakingCurveOrNone) {
-  const settings::StackConfig config = Retuned({"position.braking_rad_s2=3"});
+  const settings::StackConfig config = Retuned({"position.braking=3"});
   EXPECT_EQ(GainsOf(config).deceleration, 3);
   EXPECT_EQ(With(config, GainsOf(config)).position.braking_rad_s2, 3);
   const Gains fixed = {.natural_frequency = 150, .damping_ratio = 0.5, .c1 = 1, .c2 = 1};

@@ -16,20 +16,22 @@ std::string Refused(const Goals& goals, const std::vector<std::string>& override
 }
 
 TEST(Refusal, NamesTheMotorsTorqueAndWhatItCanDo) {
-  EXPECT_THAT(Refused({.settling_s = 0.2}),
-              HasSubstr("settling_s=0.2: the motor's torque T_pmax = 40 moves the arm by 0.1 rad, and to "
-                        "within 2 % of it, in 0.3302 s at best"));
+  EXPECT_THAT(
+      Refused({.settling_s = 0.2}),
+      HasSubstr("settling_s=0.2: the motor's torque T_pmax = 40 in-lbf moves the arm by 0.1 rad, and to "
+                "within 2 % of it, in 0.3302 s at best"));
   EXPECT_EQ(Refused({.settling_s = 0.34}), "");
-  EXPECT_THAT(Refused({.settling_s = 0.1, .step_rad = 0.4}, {"limits.motor_speed_rad_s=200"}),
-              HasSubstr("limits.motor_speed_rad_s = 200 rad/s and"));
+  EXPECT_THAT(Refused({.settling_s = 0.1, .step = 0.4}, {"limits.motor_speed=200"}),
+              HasSubstr("limits.motor_speed = 200 rad/s and"));
 }
 
 TEST(Refusal, NamesSamplingTravelAndFriction) {
   EXPECT_THAT(Refused({.bandwidth_hz = 100}), HasSubstr("sampled every 0.005 s"));
-  EXPECT_THAT(Refused({.step_rad = 1}), HasSubstr("at most step_rad=0.686"));
+  EXPECT_THAT(Refused({.step = 1}), HasSubstr("at most step=0.686"));
   model::ModelDescription stuck = experiments::ShippedModel("table1");
   stuck.parameters.T_s = 41;
-  EXPECT_THAT(Refused({}, {}, stuck), HasSubstr("T_s = 41 is not below the motor's torque T_pmax = 40"));
+  EXPECT_THAT(Refused({}, {}, stuck),
+              HasSubstr("T_s = 41 in-lbf is not below the motor's torque T_pmax = 40 in-lbf"));
 }
 
 TEST(Refusal, NamesWhatTheBestGainsReach) {

@@ -12,7 +12,7 @@ const auto kSilent = [](double) {};
 
 // Tests that a search keeps its margins, does not depend on the number of threads, and betters what it starts from.
 TEST(SearchGains, IsTheSameOnAnyNumberOfThreads) {
-  const Goals goals = {.step_rad = 0.1};
+  const Goals goals = {.step = 0.1};
   const StepJudge judge(Retuned(), {.goals = goals, .samples = 0});
   const Gains pressure = ChoosePressureLoop(judge.config());
   const SearchResult one = SearchGains(judge, goals, pressure, false, 1, kSilent);
@@ -33,11 +33,11 @@ TEST(SearchGains, IsTheSameOnAnyNumberOfThreads) {
 
 // Tests that a goal is met with a wider margin than the fastest gains have.
 TEST(SearchGains, MeetsGoalsWithTheWidestMargins) {
-  const Goals goals = {.settling_s = 0.5, .step_rad = 0.1};
+  const Goals goals = {.settling_s = 0.5, .step = 0.1};
   const StepJudge judge(Retuned(), {.goals = goals, .samples = 0});
   const Gains pressure = ChoosePressureLoop(judge.config());
   const SearchResult calm = SearchGains(judge, goals, pressure, false, 2, kSilent);
-  const SearchResult fast = SearchGains(judge, {.step_rad = 0.1}, pressure, false, 2, kSilent);
+  const SearchResult fast = SearchGains(judge, {.step = 0.1}, pressure, false, 2, kSilent);
   EXPECT_EQ(Misses(goals, calm.best), 0);
   EXPECT_LE(calm.best.steps.settling, 0.5);
   EXPECT_GT(calm.best.check.position->worst.gain, fast.best.check.position->worst.gain);
@@ -46,7 +46,7 @@ TEST(SearchGains, MeetsGoalsWithTheWidestMargins) {
 
 TEST(ChoosePressureLoop, TakesASlowerOneWhereTheDelaysNeedIt) {
   EXPECT_EQ(ChoosePressureLoop(Retuned()).natural_frequency, 150);
-  const Gains slow = ChoosePressureLoop(Retuned({"plant.rate_hz=1000", "limits.arm_angle_rad=0.6"}));
+  const Gains slow = ChoosePressureLoop(Retuned({"plant.rate_hz=1000", "limits.arm_angle=0.6"}));
   EXPECT_LT(slow.natural_frequency, 150);
   EXPECT_THROW(ChoosePressureLoop(
                    Retuned({"plant.rate_hz=100", "time.duration_s=1", "position.sample_interval_s=0.01"})),

@@ -36,7 +36,7 @@ TEST(StepJudge, FindsTheRatiosOfTheRetunedLoop) {
 }
 
 TEST(StepJudge, TriesTheStepsThatAreAskedFor) {
-  const StepJudge judge(Retuned(), {.goals = {.step_rad = 0.2}});
+  const StepJudge judge(Retuned(), {.goals = {.step = 0.2}});
   EXPECT_EQ(judge.steps(), (std::vector<double>{0.2 * 0.8, 0.2, 0.2 * 1.25}));
   EXPECT_EQ(judge.goal_step(), 0.2);
   EXPECT_EQ(StepJudge(Retuned(), {}).goal_step(), 0.1);
@@ -64,7 +64,7 @@ TEST(StepJudge, SamplesWhatTheModelDoesNotKnow) {
 }
 
 TEST(StepJudge, MarksRunsThatALimitWouldEnd) {
-  const StepJudge slow(Retuned({"limits.motor_speed_rad_s=200"}), {.goals = {.step_rad = 0.3}});
+  const StepJudge slow(Retuned({"limits.motor_speed=200"}), {.goals = {.step = 0.3}});
   EXPECT_GT(slow.Judge(GainsOf(slow.config())).ratio, kStopped);
 }
 
@@ -90,7 +90,7 @@ TEST(StepJudge, AddsNoiseWhenAsked) {
   const StepJudge noisy(Retuned(), {.noise = true});
   EXPECT_EQ(plain.config().noise.p1_psi, 0);
   EXPECT_NEAR(noisy.config().noise.p1_psi, 1, 0.01);
-  const StepJudge own(Retuned({"noise.p2_psi=3"}), {.noise = true});
+  const StepJudge own(Retuned({"noise.p2=3"}), {.noise = true});
   EXPECT_EQ(own.config().noise.p1_psi, 0);
   EXPECT_EQ(own.config().noise.p2_psi, 3);
   const Gains gains = GainsOf(plain.config());

@@ -4,6 +4,7 @@
 
 #include "pressure_ctrl/law/pressure_law.h"
 #include "settings/trajectory_spec.h"
+#include "tests/model_in_units.h"
 #include "tests/settings/texts.h"
 #include "tuning/tunable_keys.h"
 
@@ -88,15 +89,15 @@ TEST(PrepareChange, RefusesWithTheReason) {
       {{"position.c2=-1"}, "found -1, allowed"},
       {{"pressure.natural_frequency_rad_s=1"}, "must be above the open loop's"},
       {{"position.c1=10500", "position.c2=5000"}, "would be unstable: "},
-      {{"limits.pressure_psi=2500"},
-       "limits.pressure_psi: found 2500, allowed up to 2000, which is in force"},
-      {{"limits.pressure_psi=inf"}, "allowed up to 2000"},
-      {{"noise.p1_psi=1"}, "noise.p1_psi: the rig is a real one"},
+      {{"limits.pressure=2500"},
+       "limits.pressure: found 2500 psi, allowed up to 2000 psi, which is in force"},
+      {{"limits.pressure=inf"}, "allowed up to 2000"},
+      {{"noise.p1=1"}, "noise.p1: the rig is a real one"},
       {{"reference.steps=[[0, 2.5]]"}, "reference.steps: found arm angle 2.5 rad"},
-      {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (2.865 deg; limits.arm_angle_rad)"},
-      {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2",
+      {{"limits.arm_angle=0.05"}, "allowed |alpha| <= 0.05 rad (2.865 deg), which is limits.arm_angle"},
+      {{"limits.motor_speed=100", "reference.kind=sine", "reference.amplitude=0.2",
         "reference.frequency_hz=2"},
-       "reference: found a speed of 2.513, allowed 0.2161 (limits.motor_speed_rad_s at the arm, rad/s)"},
+       "reference: found a speed of 2.513 rad/s, allowed 0.2161 rad/s (limits.motor_speed at the arm)"},
       {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
   };
   for (const auto& c : cases) {
@@ -147,9 +148,9 @@ TEST(PrepareChange, RefusesWhatCannotBeJudged) {
 TEST(PrepareChange, AllOrNone) { EXPECT_EQ(Prepared({"position.c2=400", "position.c1=-1"}).config, nullptr); }
 
 TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
-  EXPECT_NE(Prepared({"limits.pressure_psi=1500"}).config, nullptr);
-  EXPECT_EQ(Prepared({"limits.pressure_psi=2500"}).config, nullptr);
-  EXPECT_NE(Prepared({"limits.pressure_psi=2500"}, {.held = true}).config, nullptr);
+  EXPECT_NE(Prepared({"limits.pressure=1500"}).config, nullptr);
+  EXPECT_EQ(Prepared({"limits.pressure=2500"}).config, nullptr);
+  EXPECT_NE(Prepared({"limits.pressure=2500"}, {.held = true}).config, nullptr);
 }
 
 // Tests that a reference which takes the arm where the loops are not stable is refused like gains that are not stable there.
@@ -212,6 +213,51 @@ TEST(TunableKeys, AreKeysOfTheConfiguration) {
   }
 }
 
+settings::StackConfig InSi(const std::string& config) {
+  const model::ModelDescription model = settings::ParseModel(settings::kModelText, "model.toml");
+  return Parsed(config, settings::FormatModel(testing::InUnits(model, kSiUnits)));
+}
+
+// Tests that units are those of the running stack's model and of its reference's signal, and come from no other list.
+TEST(TunableKeys, UnitsAreThoseOfTheModel) {
+  const settings::StackConfig si = InSi(kFast);
+  settings::StackConfig pressure = si;
+  pressure.reference.signal = settings::ReferenceSignal::kPressure;
+  const auto unit = [](const char* key, const settings::StackConfig& config) {
+    return UnitOf(*FindTunable(key), config);
+  };
+  EXPECT_EQ(unit("limits.pressure", Parsed(kFast)), "psi");
+  EXPECT_EQ(unit("limits.pressure", si), "Pa");
+  EXPECT_EQ(unit("limits.arm_torque", si), "N m");
+  EXPECT_EQ(unit("pressure.k_p", si), "V/Pa");
+  EXPECT_EQ(unit("position.c2", si), "Pa s/rad");
+  EXPECT_EQ(unit("reference.steps", si), "s, rad");
+  EXPECT_EQ(unit("reference.amplitude", pressure), "Pa");
+  EXPECT_EQ(unit("reference.frequency_hz", pressure), "Hz");
+  EXPECT_EQ(unit("pressure.damping_ratio", si), "");
+  for (const TunableKey& row : TunableKeys()) {
+    EXPECT_EQ(UnitOf(row, si).find("psi"), std::string::npos) << row.key;
+  }
+}
+
+// Tests that a change may be a text with a unit, and may name a key as it was once called where that is true.
+TEST(PrepareChange, TakesTextsWithUnits) {
+  const settings::StackConfig si = InSi(kFast);
+  const auto prepared = [](const settings::StackConfig& config, const std::string& line) {
+    return PrepareChange(config, config, {line}, {});
+  };
+  const PreparedChange bar = prepared(si, "limits.pressure=100 bar");
+  ASSERT_NE(bar.config, nullptr) << bar.text;
+  EXPECT_EQ(bar.message.changes, "limits.pressure = 1e+07\n");
+  EXPECT_DOUBLE_EQ(ValueOf(bar.message, "limits.pressure"), 1e7);
+  EXPECT_THAT(prepared(si, "limits.pressure=200 bar").text, HasSubstr("found 20000000 Pa, allowed up to"));
+  EXPECT_THAT(prepared(si, "limits.pressure=30 mm").text, HasSubstr("limits.pressure: found \"30 mm\""));
+  EXPECT_THAT(prepared(si, "limits.pressure_psi=1500").text, HasSubstr("a key in psi, and a model in Pa"));
+  const PreparedChange former = Prepared({"limits.pressure_psi=1500"});
+  ASSERT_NE(former.config, nullptr) << former.text;
+  EXPECT_EQ(former.message.changes, "limits.pressure = 1500\n");
+}
+
 // Tests that the table's ranges are those of the configuration, at both sides of their ends.
 TEST(TunableKeys, RangesAreThoseOfTheConfiguration) {
   int checked = 0;
@@ -230,7 +276,7 @@ TEST(TunableKeys, RangesAreThoseOfTheConfiguration) {
     EXPECT_TRUE(refused("-1e-9")) << key;
     EXPECT_EQ(refused("0"), positive) << key;
     const bool above_the_start =
-        key == "limits.pressure_psi";  // besides, it must allow the pressure at the start
+        key == "limits.pressure";  // besides, it must allow the pressure at the start
     EXPECT_FALSE(refused(above_the_start ? "101" : "1e-9")) << key;
   }
   EXPECT_GT(checked, 15);

@@ -296,7 +296,7 @@ TEST_F(LiveTuningTest, ADecisionThatDiffersFromItsProposalChangesNothingElse) {
 TEST_F(LiveTuningTest, ATighterTorqueLimitTripsNothing) {
   std::vector<fault_t> faults;
   listen_ = [&] { bus_->Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& f) { faults.push_back(f); }); };
-  at_[510] = [&] { Ask(1, "limits.arm_torque_in_lbf=1000"); };
+  at_[510] = [&] { Ask(1, "limits.arm_torque=1000"); };
   ASSERT_EQ(Run(0.3), 0);
   const tuning_answer_t* answer = AnswerTo(1);
   ASSERT_NE(answer, nullptr);
@@ -312,7 +312,7 @@ TEST_F(LiveTuningTest, WhatIsRefusedChangesNothing) {
   ASSERT_EQ(Run(0.3), 0);
   const std::vector<motor_command_t> undisturbed = commands_;
   at_[500] = [&] { Ask(1, "position.c1=10500\nposition.c2=5000"); };
-  at_[600] = [&] { Ask(2, "limits.pressure_psi=9000\nposition.c2=400"); };
+  at_[600] = [&] { Ask(2, "limits.pressure=9000\nposition.c2=400"); };
   at_[700] = [&] { Ask(3, "nonsense"); };
   at_[800] = [&] { Ask(4, "", tuning_request_t::UNDO); };
   ASSERT_EQ(Run(0.3), 0);
@@ -529,7 +529,7 @@ TEST_F(LiveTuningTest, StrangeRequests) {
 
 // Tests that another run that follows the decisions of this one is the same, bit by bit.
 TEST_F(LiveTuningTest, AnotherRunFollowsTheDecisions) {
-  at_[500] = [&] { Ask(1, "position.c1=9000\nposition.c2=400\nnoise.p1_psi=0.5"); };
+  at_[500] = [&] { Ask(1, "position.c1=9000\nposition.c2=400\nnoise.p1=0.5"); };
   at_[1000] = [&] { Ask(2, "reference.steps=[[0, 0.15]]"); };
   at_[1500] = [&] { Ask(3, "", tuning_request_t::UNDO); };
   ASSERT_EQ(Run(0.5), 0);

@@ -48,9 +48,9 @@ TEST(TunedValues, AreAllTakenOrNone) {
   } cases[] = {{"pressure.k_p", NAN, "pressure.k_p: found nan, allowed a finite number of at least 0"},
                {"pressure.k_p", -1, "found -1"},
                {"position.c2", INFINITY, "position.c2: found inf"},
-               {"limits.pressure_psi", 0, "limits.pressure_psi: found 0, allowed a number above 0"},
-               {"limits.pressure_psi", NAN, "found nan"},
-               {"noise.p1_psi", -0.1, "noise.p1_psi"}};
+               {"limits.pressure", 0, "limits.pressure: found 0, allowed a number above 0"},
+               {"limits.pressure", NAN, "found nan"},
+               {"noise.p1", -0.1, "noise.p1"}};
   for (const auto& c : cases) {
     tuned_settings_t message = Message();
     Set(&message, "position.c1", 77);
@@ -70,11 +70,24 @@ TEST(TunedValues, AreAllTakenOrNone) {
 
 TEST(TunedValues, ALimitMayBeInfiniteAndAFeedforwardNegative) {
   tuned_settings_t message = Message();
-  Set(&message, "limits.motor_speed_rad_s", INFINITY);
-  Set(&message, "pressure.reference_feedforward_V_psi", -0.001);
+  Set(&message, "limits.motor_speed", INFINITY);
+  Set(&message, "pressure.reference_feedforward", -0.001);
   TunedValues values{};
   EXPECT_EQ(Read(message, 4, &values), "");
   EXPECT_EQ(values.pressure.reference_feedforward, -0.001);
+}
+
+// Tests that the names which older logs have for values are taken for the present ones.
+TEST(TunedValues, FormerNamesAreRead) {
+  TunedValues values = ValuesOf(testing::SmallStack());
+  tuned_settings_t message{};
+  message.names = {"limits.pressure_psi", "pressure.reference_feedforward_V_psi", "noise.arm_angle_rad"};
+  message.values = {1234, -0.002, 0.5};
+  message.count = 3;
+  EXPECT_EQ(Read(message, 1, &values), "");
+  EXPECT_EQ(values.limits.pressure_psi, 1234);
+  EXPECT_EQ(values.pressure.reference_feedforward, -0.002);
+  EXPECT_EQ(values.noise.arm_angle_rad, 0.5);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 import { byId, setText } from '../dom.js';
 import { withPane } from '../settings/layout.js';
 import { baseName } from '../settings/run_name.js';
+import { modelUnits } from '../settings/units.js';
 import { duration, runTime } from '../settings/numbers.js';
 import { kDivisions } from '../plot/time_window.js';
 
@@ -58,7 +59,7 @@ export class Toolbar {
       byId('clock'),
       `${runTime(display.mode === 'follow' || scope.live ? (scope.live ? display.last : (display.head ?? display.last)) : Math.min(display.window.t1, display.last), 100)} s`,
     );
-    setChoice(byId('units'), 'Units', scope.preferences.si ? 'SI' : 'in · psi');
+    setChoice(byId('units'), 'Units', scope.preferences.si ? 'SI' : modelUnits(scope.run));
     setChoice(byId('theme'), 'Colours', kThemeNames[scope.preferences.theme]);
   }
 

@@ -76,7 +76,7 @@ TEST(Trials, AreWrittenAsConfigurations) {
   EXPECT_THAT(text, HasSubstr("duration_s = 3\n"));
   EXPECT_THAT(text, HasSubstr("rate_hz = 1000\n"));
   EXPECT_THAT(text, HasSubstr("kind = \"square\"\noffset = 0\namplitude = 2.4\nfrequency_hz = 0.7\n"));
-  EXPECT_THAT(text, HasSubstr("pressure_psi = 615\n"));
+  EXPECT_THAT(text, HasSubstr("pressure = 615\n"));
   diagnose::Rig unknown = SmallRig();
   unknown.pressure = 0;
   EXPECT_THAT(diagnose::Configuration(trials.front(), unknown), Not(HasSubstr("[limits]")));

@@ -1,0 +1,186 @@
+#include "settings/read_quantities.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "base/units.h"
+#include "settings/quantity_keys.h"
+#include "settings/toml/section_reader.h"
+
+namespace hydro::settings {
+namespace {
+
+// The sections whose texts are read.
+constexpr std::string_view kQuantitySections[] = {"model",    "model.motion", "time",      "plant",
+                                                  "pressure", "position",     "reference", "limits",
+                                                  "noise",    "limb",         "arm",       "arm.link"};
+
+// The part of a text that is its number.
+std::string_view NumberPart(std::string_view text) {
+  size_t length = 0;
+  const auto is = [&](std::string_view characters) {
+    return length < text.size() && characters.find(text[length]) != std::string_view::npos;
+  };
+  const auto digits = [&] {
+    while (is("0123456789.")) ++length;
+  };
+  if (is("+-")) ++length;
+  digits();
+  // "2e3 Pa" has an exponent; of "2 ..." a unit that begins with e there is none.
+  if (length > 0 && is("eE")) {
+    const size_t mantissa = length++;
+    if (is("+-")) ++length;
+    const size_t before = length;
+    digits();
+    if (length == before) length = mantissa;
+  }
+  return text.substr(0, length);
+}
+
+bool BeginsWithNumber(const std::string& text) { return ParseNumber(NumberPart(text)).has_value(); }
+
+// "Pa, kPa, MPa, bar, psi": what a person may choose from.
+std::string UnitsLike(const std::string& unit) {
+  std::string names = unit;
+  const std::optional<hydro::Unit> own = ParseUnit(unit);
+  for (const std::string_view name : UnitNames()) {
+    if (name != unit && name != "lb" && own && ParseUnit(name)->powers == own->powers)
+      names += ", " + std::string(name);
+  }
+  return names;
+}
+
+// Calls `change(section, table)` for each section that is there; [[arm.link]] is a list of them.
+template <class Change>
+void ForEachSection(TomlNode* root, const Change& change) {
+  using Kind = TomlNode::Kind;
+  for (const std::string_view name : kQuantitySections) {
+    const std::string section(name);
+    TomlNode* node = root;
+    for (size_t begin = 0; begin < section.size() && node != nullptr;) {
+      const size_t end = std::min(section.find('.', begin), section.size());
+      node = node->is(Kind::kTable) ? node->Find(section.substr(begin, end - begin)) : nullptr;
+      begin = end + 1;
+    }
+    if (node == nullptr) continue;
+    if (node->is(Kind::kTable)) change(section, node);
+    if (!node->is(Kind::kArray)) continue;
+    for (TomlNode& item : node->items) {
+      if (item.is(Kind::kTable)) change(section, &item);
+    }
+  }
+}
+
+void Rename(const QuantityKey& quantity, TomlNode* table) {
+  const std::string old(quantity.old), present(quantity.key);
+  const auto found = std::find_if(table->members.begin(), table->members.end(),
+                                  [&](const TomlMember& member) { return member.first == old; });
+  if (found == table->members.end()) return;
+  if (table->Find(present) != nullptr) {
+    throw KeyError(found->second.place, std::string(quantity.section) + "." + old,
+                   "it beside " + present + ", its present name", "one of the two");
+  }
+  found->first = present;
+  found->second.former = old;
+}
+
+// A former name is in the paper's unit.
+void CheckFormerName(const std::string& section, const std::string& key, const TomlNode& node,
+                     const UnitSystem& units) {
+  const QuantityKey& quantity = *FindQuantity(section + "." + key);
+  const std::string unit = quantity.UnitIn(units), dotted = section + "." + node.former;
+  if (node.is(TomlNode::Kind::kString) && BeginsWithNumber(node.text)) {
+    throw KeyError(node.place, dotted, Quoted(node.text), "the line " + key + " = " + Quoted(node.text));
+  }
+  if (unit == quantity.unit) return;
+  const std::string shown = node.Shown();
+  throw KeyError(node.place, dotted, "a key in " + std::string(quantity.unit) + ", and a model in " + unit,
+                 "the line " + key + " = " + shown + " if that is in " + unit + ", or " + key + " = \"" +
+                     shown + " " + std::string(quantity.unit) + "\"");
+}
+
+// Also in lists, whose pairs begin with a time.
+void Convert(const std::string& dotted, const std::string& unit, TomlNode* node) {
+  if (node->is(TomlNode::Kind::kArray)) {
+    for (size_t i = 0; i < node->items.size(); ++i) {
+      const bool pair = node->items[i].is(TomlNode::Kind::kArray) && node->items[i].items.size() == 2;
+      if (!pair) continue;
+      const std::string name = dotted + "[" + std::to_string(i) + "]";
+      Convert(name, "s", &node->items[i].items[0]);
+      Convert(name, unit, &node->items[i].items[1]);
+    }
+  }
+  // A word is for the key's reader: "every_tick", or a mistake of which it says what is allowed.
+  if (!node->is(TomlNode::Kind::kString) || !BeginsWithNumber(node->text)) return;
+  TomlNode number = NumberNode(NumberOf(node->text, unit, node->place, dotted));
+  number.place = node->place;
+  number.from_option = node->from_option;
+  *node = std::move(number);
+}
+
+}  // namespace
+
+void UsePresentNames(TomlNode* root) {
+  ForEachSection(root, [](const std::string& section, TomlNode* table) {
+    for (const QuantityKey& one : QuantityKeys()) {
+      if (one.section == section && !one.old.empty()) Rename(one, table);
+    }
+  });
+  TomlNode* joints = root->Find("joint");
+  if (joints == nullptr || !joints->is(TomlNode::Kind::kArray)) return;
+  for (TomlNode& joint : joints->items) UsePresentNames(&joint);
+}
+
+std::vector<std::string> FormerNamesIn(const TomlNode& document,
+                                       const std::vector<std::pair<std::string, std::string>>& written) {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : written) {
+    const QuantityKey* quantity = FindQuantity(key);
+    if (quantity == nullptr || quantity->old.empty()) continue;
+    const TomlNode* section = document.Find(std::string(quantity->section));
+    if (section == nullptr || section->Find(std::string(quantity->old)) == nullptr) continue;
+    names.push_back(std::string(quantity->section) + "." + std::string(quantity->old));
+  }
+  return names;
+}
+
+double NumberOf(const std::string& text, const std::string& unit, const std::string& place,
+                const std::string& key) {
+  const std::string_view digits = NumberPart(text);
+  const std::optional<double> number = ParseNumber(digits);
+  std::string_view given = std::string_view(text).substr(digits.size());
+  given.remove_prefix(std::min(given.find_first_not_of(' '), given.size()));
+  const std::optional<hydro::Unit> own = ParseUnit(given);
+  const std::optional<hydro::Unit> wanted = ParseUnit(unit);
+  const bool fits = number && own && wanted && own->powers == wanted->powers;
+  const double factor = !fits || own->size == wanted->size ? 1 : own->size / wanted->size;
+  // What overflows would read as "no limit".
+  if (!fits || !std::isfinite(factor * *number)) {
+    throw KeyError(place, key, Quoted(text),
+                   "a number (in " + unit + "), or a text of a number and a unit: " + UnitsLike(unit));
+  }
+  return factor * *number;
+}
+
+void ReadQuantities(TomlNode* root, const UnitSystem& units, FormerNames former) {
+  UsePresentNames(root);
+  const TomlNode* reference = root->Find("reference");
+  const TomlNode* signal =
+      reference == nullptr || !reference->is(TomlNode::Kind::kTable) ? nullptr : reference->Find("signal");
+  const std::string of = signal == nullptr ? "arm_angle" : signal->text;
+  ForEachSection(root, [&](const std::string& section, TomlNode* table) {
+    for (auto& [key, node] : table->members) {
+      if (!node.former.empty() && former == FormerNames::kMustBeTrue) {
+        CheckFormerName(section, key, node, units);
+      }
+      node.former.clear();
+      const std::string dotted = section + "." + key, unit = UnitOfKey(dotted, units, of);
+      if (!unit.empty()) Convert(dotted, unit, &node);
+    }
+  });
+}
+
+}  // namespace hydro::settings
