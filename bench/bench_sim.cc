@@ -110,6 +110,7 @@ void MeasureLogged(const settings::StackConfig& config, int runs) {
   std::vector<double> seconds;
   seconds.reserve(static_cast<size_t>(runs));
   for (int i = 0; i < runs; ++i) {
+    std::filesystem::remove(file);  // no log is written over another
     seconds.push_back(SecondsOf([&] {
       log::LogWriter writer(file, Opening::kTemporary);
       sim::Simulate(config, [&](const bus::RawMessage& m) {
