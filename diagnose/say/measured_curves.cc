@@ -139,9 +139,8 @@ OverVariable LeftOver(std::vector<CurvePoint> points) {
 
 // An angle that no sensor saw begins anywhere in each run, so that runs cannot be laid over each other.
 bool SeeAngles(const std::vector<LackingRun>& runs) {
-  return std::all_of(runs.begin(), runs.end(), [](const LackingRun& run) {
-    return run.motion.Of(GridChannel::kAngle).measured();
-  });
+  return std::all_of(runs.begin(), runs.end(),
+                     [](const LackingRun& run) { return run.motion.Of(GridChannel::kAngle).measured(); });
 }
 
 }  // namespace

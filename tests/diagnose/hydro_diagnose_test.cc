@@ -350,8 +350,9 @@ TEST(TerminalSummary, Likely) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.set_90 = 1;
   diagnosis.explanations = {{{"amp.lag", "value.b"}, 0.93}, {{}, 0.07}, {{"amp.delay"}, 0}};
-  EXPECT_THAT(TerminalSummary(diagnosis, "out", false),
-              HasSubstr("likely:     amp.lag + another value of b 93 %, no effect (other values at most) 7 %\n"));
+  EXPECT_THAT(
+      TerminalSummary(diagnosis, "out", false),
+      HasSubstr("likely:     amp.lag + another value of b 93 %, no effect (other values at most) 7 %\n"));
   diagnosis.explanations[1].weight = 0.001;
   EXPECT_THAT(TerminalSummary(diagnosis, "out", false), HasSubstr("another value of b 93 %\n"));
   diagnosis.explanations.assign(6, {{"run.T_s"}, 0.15});

@@ -144,8 +144,9 @@ TEST(ReportHtml, SaysWhatMayExplainTheRuns) {
                   "<tr class=\"taken\"><td>pump.stribeck</td><td class=\"number\">81 %</td>"
                   "<td>yes</td><td>what was found</td></tr>"));
   EXPECT_TRUE(Has(page, "an unknown curve over motor speed in pump torque"));
-  EXPECT_TRUE(
-      Has(page, "<tr><td>no effect (other values at most)</td><td class=\"number\">1 %</td><td></td><td></td></tr>"));
+  EXPECT_TRUE(Has(
+      page,
+      "<tr><td>no effect (other values at most)</td><td class=\"number\">1 %</td><td></td><td></td></tr>"));
   EXPECT_FALSE(Has(page, "The likeliest of them is not"));
   diagnosis.set_90 = 1;
   EXPECT_TRUE(Has(ReportHtml(diagnosis, false), "they tell it from all others"));
