@@ -276,10 +276,9 @@ class BalanceMaker {
       for (const double size : SizesOf(&Factors::arm_angle)) {
         Put(
             &open, [size](const Factors& f) { return IsSize(f.arm_angle, size) ? 1.0 : 0.0; },
-            Series(
-                [=, this](const model::KnownMotion& at) {
-                  return -p_.mgl * (model_.units.linear_arm ? 1 : std::cos(size * at.arm_angle));
-                }),
+            Series([=, this](const model::KnownMotion& at) {
+              return -p_.mgl * (model_.units.linear_arm ? 1 : std::cos(size * at.arm_angle));
+            }),
             Relative(model_, &model::Parameters::mgl));
       }
     } else {
