@@ -9,6 +9,8 @@
 #include "base/parallel.h"
 #include "diagnose/balances/latent_pressures.h"
 #include "diagnose/balances/test_functions.h"
+#include "model/balances.h"
+#include "model/terms/model_error.h"
 
 namespace hydro::diagnose {
 
@@ -174,6 +176,20 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
   return doubles;
 }
 
+// Whether the model may have the effect where the runs hold the arm: a line leaves less of a side's volume to the stroke.
+bool CanStand(const model::ModelDescription& given, const EffectVariant& variant,
+              const std::vector<RunMotion>& runs) {
+  if (variant.kind != EffectVariant::Kind::kWhole) return true;
+  model::ModelDescription with = given;
+  with.effects.push_back(variant.at);
+  try {
+    for (const RunMotion& run : runs) model::BalanceEquations(with, run.options);
+  } catch (const model::ModelError&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
@@ -196,6 +212,8 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
     base_[r] = SeriesOf(given, motions_[r]);
     noisy_base_[r] = SeriesOf(given, noisy_[r]);
   });
+  std::erase_if(setup_.variants,
+                [&](const EffectVariant& variant) { return !CanStand(given, variant, motions_); });
   std::vector<double> durations;
   for (const RunMotion& run : motions_) durations.push_back(run.step * static_cast<double>(run.size()));
   std::nth_element(durations.begin(), durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2),

@@ -15,7 +15,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 tables::Table SmallRun() {
-  tables::Table run{"run.csv", {}, {}, "", {}};
+  tables::Table run;
+  run.file = "run.csv";
   for (const char* name : {"time_s", "voltage_V", "pressure_ref_psi", "arm_ref_rad", "motor_speed_rad_s",
                            "arm_angle_rad", "p1_psi"}) {
     run.columns.push_back({name, {0, 1, 2}});

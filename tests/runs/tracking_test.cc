@@ -147,7 +147,8 @@ run_description_t InUnits(const std::string& length) {
 // Tests that a linear arm is judged and shown in its own unit: 0.05 mm from its target it is there, 0.2 mm from it not, whether its
 // position is in mm or in m.
 TEST(TrackingTest, ALinearArmHasLengths) {
-  for (const auto& [length, mm] : {std::pair("mm", 1.0), {"m", 1e-3}}) {
+  for (const std::string length : {"mm", "m"}) {
+    const double mm = length == "mm" ? 1 : 1e-3;
     for (const double error : {0.05, 0.2}) {
       RunLog log = MakeRun(
           500, [&](double) { return (2 + error) * mm; }, [&](double) { return 2 * mm; });

@@ -64,7 +64,7 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
   EXPECT_TRUE(config.position.braking_rad_s2.has_value());
   EXPECT_EQ(config.model.description.name, "Table 1");
 
-  const StepJudge judge(config, {.goals = {.step_rad = 0.1}, .samples = 0});
+  const StepJudge judge(config, {.goals = {.step = 0.1}, .samples = 0});
   const StepResult step = SimulateStep(config, judge.Nominal(0.1));
   ASSERT_TRUE(step.settled);
   char row[100];
@@ -124,7 +124,7 @@ TEST_F(TuneProgram, RefusesGoalsWithTheLimitAndWritesNothing) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(
       outcome.err,
-      HasSubstr("T_pmax = 40 moves the arm by 0.1 rad, and to within 2 % of it, in 0.3302 s at best"));
+      HasSubstr("T_pmax = 40 in-lbf moves the arm by 0.1 rad, and to within 2 % of it, in 0.3302 s at best"));
   EXPECT_FALSE(std::filesystem::exists(tuned));
 }
 

@@ -159,5 +159,25 @@ TEST(ScanRuns, WithoutSpeedAndAngleOnlyTheArmIsLeft) {
   EXPECT_EQ(BalancesOf(rows), std::vector{BalanceKind::kArm});
 }
 
+// Tests that an arm may be held where an effect leaves no room for it: the effect is not judged there, and the rest is.
+TEST(ScanRuns, AnArmHeldFarOut) {
+  model::ModelDescription given = PlainMachine();
+  diagnose::ScanOptions options = OptionsWith(1);
+  options.changes.push_back({"line.wave", {}, ""});
+  const auto waves = [&](double angle) {
+    std::vector<runs::MeasuredRun> chosen = {Measured().front()};
+    chosen[0].shaft = model::Shaft::kClamped;
+    chosen[0].arm_angle_rad = angle;
+    chosen[0].arm_angle = chosen[0].arm_speed = {};
+    const std::vector<diagnose::RunData> runs = Prepared(chosen, given.parameters);
+    diagnose::ScanRuns scan(given, diagnose::PointersTo(runs), options);
+    EXPECT_FALSE(scan.MakeRows({}).blocks.empty());
+    const auto& variants = scan.setup().variants;
+    return std::count_if(variants.begin(), variants.end(),
+                         [](const auto& variant) { return variant.change.effect == "line.wave"; });
+  };
+  EXPECT_GT(waves(0), waves(0.95 * given.parameters.V_ms / given.parameters.c));
+}
+
 }  // namespace
 }  // namespace hydro::testing
