@@ -154,7 +154,9 @@ PlannedPoint PlanFollower::At(int64_t tick) {
   PlannedPoint point = Wanted(tick);
   if (silent(tick)) point = {.angle = reference_, .torque = point.torque};
   point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);
-  const double step = limits_.largest_speed * Seconds(last_tick_ ? tick - *last_tick_ : 0);
+  // Ticks that go back, as after a restart of the plant, are no time for the reference to move in.
+  const double step =
+      limits_.largest_speed * Seconds(last_tick_ ? std::max<int64_t>(0, tick - *last_tick_) : 0);
   if (last_tick_ && std::isfinite(step))
     point.angle = std::clamp(point.angle, reference_ - step, reference_ + step);
   // Last, whatever the reference was before.

@@ -85,8 +85,8 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
       "log",
       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
       LostMessages(info));
-  const std::string advice =
-      timing::SkippedTicksAdvice(info.ticks.announced, info.ticks.states + info.ticks.announced, "CONFIG");
+  const std::string advice = timing::SkippedTicksAdvice(
+      info.ticks.announced, SaturatingSum(info.ticks.states, info.ticks.announced), "CONFIG");
   if (!advice.empty()) line("{}", advice);
   if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));
   const std::string caution = log::Caution(info.verdict);

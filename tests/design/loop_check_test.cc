@@ -146,7 +146,7 @@ TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
     settings.push_back("position.c2=" + std::to_string(900 * critical * factor));
     const tables::Table run = experiments::RunStackInProcess(
         {"stack", ShippedStackText("retuned", settings), settings::FormatModel(Smooth())});
-    const Swing swing = SwingOf(run, "arm_angle", 0.6, 1.6, 0.2);
+    const Swing swing = SwingOf(run, "arm_angle_rad", 0.6, 1.6, 0.2);
     const LoopMargins predicted = *CheckLoops(Retuned(settings, Smooth())).cases.front().position;
     EXPECT_EQ(predicted.stable, factor < 1);
     EXPECT_EQ(swing.late > swing.early, factor > 1) << swing.early << " " << swing.late;
@@ -171,7 +171,7 @@ TEST(LoopCheck, CriticalPressureGainIsWhereTheStackBeginsToOscillate) {
     text = settings::Replaced(text, "damping_ratio = 0.5", "k_v = " + std::to_string(gains.k_v));
     const tables::Table run =
         experiments::RunStackInProcess({"stack", text, settings::FormatModel(Smooth())});
-    const Swing swing = SwingOf(run, "motor_speed", 0.1, 0.4, 0.1);
+    const Swing swing = SwingOf(run, "motor_speed_rad_s", 0.1, 0.4, 0.1);
     EXPECT_EQ(swing.late > swing.early, factor > 1) << swing.early << " " << swing.late;
     const LoopMargins predicted =
         CheckLoops(settings::ParseStackConfig(text, "stack.toml", settings::FormatModel(Smooth()), "m"))

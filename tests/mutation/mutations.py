@@ -497,9 +497,9 @@ MUTATIONS = [
     ),
     *_rows(
         "tuning/change_check.cc",
-        ("tuning.looser_limit", "if (!situation.held) change.text = LoosenedLimit", "if (situation.held) change.text = LoosenedLimit"),
+        ("tuning.looser_limit", "if (!situation.held)\n    change.text = LoosenedLimit", "if (situation.held)\n    change.text = LoosenedLimit"),
         ("tuning.beyond_the_rig", "change.text = WhatTheRigCannotFollow(*next);", ""),
-        ("tuning.unstable", "if (!LoopsPermit(in_force, *next, &margins)) {", "if (LoopsPermit(in_force, *next, &margins)) {"),
+        ("tuning.unstable", "change.text = WhyTheLoopsForbid(configured, in_force, *next, &margins);", ""),
         ("tuning.real_noise", "&& !situation.simulated", "&& situation.simulated"),
     ),
     *_rows(

@@ -209,7 +209,8 @@ TEST_F(LimbLogTest, ARowForEachJoint) {
 // Tests that a joint with states of several runs has no figures over them, and that its limb is refused where one run is wanted.
 TEST_F(LimbLogTest, SeveralRunsOfAJoint) {
   RunMessages two = log::SampleRun(5);
-  for (state_t state : log::SampleRun(5).Of<state_t>()) {
+  const RunMessages first = two;
+  for (state_t state : first.Of<state_t>()) {
     state.session = 21;
     state.arm_angle += 100;
     two.Of<state_t>().push_back(state);

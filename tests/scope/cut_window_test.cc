@@ -16,7 +16,13 @@ TEST(CutWindowTest, KeepsTheWindow) {
   for (const RecordedMessage& message : Record(DemoConfig({"time.mode=lockstep", "time.duration_s=2"}))) {
     store.Add({message.channel, message.data.data(), message.data.size(), message.utime}, 0);
   }
-  CutWindow window("", 0, 0.5, 0.75);
+  int64_t session = 0;
+  store.Take().ForEach([&](const MessageStore::Message& message) {
+    state_t state;
+    if (message.channel == "HYDRO_STATE" && state.decode(message.data, 0, static_cast<int>(message.size)) > 0)
+      session = state.session;
+  });
+  CutWindow window("", session, 0.5, 0.75);
   std::map<std::string, int> kept;
   store.Take().ForEach([&](const MessageStore::Message& message) {
     if (window.Keeps(message.channel, message.data, static_cast<int>(message.size)))
