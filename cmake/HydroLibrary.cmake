@@ -100,6 +100,7 @@ function(hydro_install_headers)
   list(REMOVE_DUPLICATES folders)
   foreach(folder ${folders})
     file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
+    list(FILTER headers EXCLUDE REGEX "/base/json_text\\.h$")  # of hydro_json, which is not installed
     cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
     hydro_install_public(${room} ${headers})
   endforeach()

@@ -219,8 +219,8 @@ double EstimateNoise(const std::vector<double>& all) {
   // A signal that stands in every second row or fewer has samples of its own: between them nothing is missing.
   constexpr double kOwnSamples = 0.75;
   std::vector<double> values = all;
-  if (static_cast<double>(CountValid(all)) < kOwnSamples * static_cast<double>(all.size()))
-    std::erase_if(values, [](double value) { return std::isnan(value); });
+  const bool sparse = static_cast<double>(CountValid(all)) < kOwnSamples * static_cast<double>(all.size());
+  if (sparse) std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return 0;
   const double rounding = EstimateResolution(values) / std::sqrt(12.0);
   std::vector<double> whole = values;
@@ -250,8 +250,9 @@ double EstimateNoise(const std::vector<double>& all) {
     }
     noise = SpectralNoise(filled, segments);
   }
-  // The smaller of two estimates would be too small by chance: three of the standard deviations that correlated differences have.
-  const double chance = 3 * std::sqrt(1.5 / static_cast<double>(values.size()));
+  // The smaller of two estimates would be too small by chance: three of the standard deviations that correlated differences have. Of a
+  // signal that is slower than the recorder the motion fills the spectrum, and its quietest samples are believed as they are.
+  const double chance = sparse ? 0 : 3 * std::sqrt(1.5 / static_cast<double>(values.size()));
   const double quiet = QuietNoise(values);
   return std::max(quiet < (1 - chance) * noise ? quiet : noise, rounding);
 }

@@ -15,6 +15,7 @@ class LimitTest(fault_case.FaultCase):
     """With the default, limits.rearm = "restart": the run ends with exit code 1."""
 
     def run_to_limit(self, option, code, measured, limit, push=100):
+        self.log_file = self.path(f"run{push}.lcmlog")
         self.start_stack("--set", f"{option}={limit}", config=self.config_with(PUSH.format(push)))
         for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
             self.assertEqual(self.run_[role].wait(), 1, self.run_[role].report())

@@ -192,7 +192,7 @@ class PlannerTest(fault_case.FaultCase):
         self.log.wait_for("HYDRO_STATE", lambda s: s.time >= course.start + 0.3, "the arm moves")
         planner.course = Far()
         fault = self.wait_for_fault("refused_arm_plan", source="position_ctrl")
-        self.assertRegex(fault.text, r"not followed; the newest: point 0: found arm angle 2 rad, allowed \|alpha\| <= 0\.[0-9]+ "
+        self.assertRegex(fault.text, r"not followed; the newest: point 0: found arm angle 2 rad, allowed \|alpha\| <= 0\.[0-9]+ rad "
                                      r"\(limits.arm_angle\)")
         planner.course = course
         self.wait_for_fault("refused_arm_plan", active=False)

@@ -11,9 +11,9 @@ import stack
 STEP = 0.1  # rad, of retuned.toml, from mid-stroke at 0.1 s
 BAND = 0.02  # of the step, around the target: what "settled" means to hydro-tune
 SEARCH = 120  # s that a search may take on a busy machine
-QUICK = ("--goal", f"step_rad={STEP}", "--samples", 1)
+QUICK = ("--goal", f"step={STEP}", "--samples", 1)
 GAINS = {"k_p", "k_v", "natural_frequency_rad_s", "damping_ratio", "reference_feedforward", "arm_speed_feedforward", "c1", "c2",
-         "braking_rad_s2"}
+         "braking"}
 
 
 def read(path):
@@ -147,9 +147,9 @@ class TuneTest(stack.TestCase):
     # written.
     def test_goals_beyond_the_limits(self):
         path = self.path("tuned.toml")
-        for goal, says in (("settling_s=0.2", r"settling_s=0\.2: the motor's torque T_pmax = 40 moves the arm by 0\.1 rad, .* in ([\d.]+) s at best"),
+        for goal, says in (("settling_s=0.2", r"settling_s=0\.2: the motor's torque T_pmax = 40 in-lbf moves the arm by 0\.1 rad, .* in ([\d.]+) s at best"),
                            ("bandwidth_hz=30", r"bandwidth_hz=30: sampled every 0\.005 s, .* reaches ([\d.]+) Hz"),
-                           ("step_rad=2", r"do not fit into the arm's travel of \+/- 0\.429 rad: at most step=([\d.]+) can")):
+                           ("step=2", r"do not fit into the arm's travel of \+/- 0\.429 rad: at most step=([\d.]+) can")):
             done = self.tune("--goal", goal, "--samples", 1, "-o", path, "--out", self.path("report"), expect=1)
             self.assertEqual(done.stdout, "")
             line = [line for line in done.stderr.splitlines() if not re.match(r"hydro-tune: \d+ %, ", line)]

@@ -58,7 +58,9 @@ class InstallTest(unittest.TestCase):
         self.moves_an_arm(project / "by_pkg_config", project)
 
     def moves_an_arm(self, program, project):
-        said = run(program, SOURCE / "config/models/table1.toml", project / "run.lcmlog")
+        log = project / "run.lcmlog"
+        log.unlink(missing_ok=True)  # no log is written over another
+        said = run(program, SOURCE / "config/models/table1.toml", log)
         match = re.fullmatch(r"(\d+) states, arm at ([\d.]+) rad, (\d+) effects in the catalogue\n", said)
         self.assertTrue(match, said)
         self.assertEqual(int(match[1]), 10_000)
