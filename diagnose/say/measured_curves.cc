@@ -184,6 +184,7 @@ std::optional<MeasuredCurve> TermOf(const model::ModelDescription& model, const 
   const std::vector<LackingRun> lacking = LackingIn(model, runs, jobs);
   if (IsWave(*description) && lacking.size() > 1 && !SeeAngles(lacking)) return std::nullopt;
   std::vector<BaseSeries> base;
+  base.reserve(lacking.size());
   for (const LackingRun& run : lacking) base.push_back(run.base);
   const std::vector<BalanceSeries> effects = AlongRuns(without, lacking, base, jobs);
   std::optional<MeasuredCurve> best;
