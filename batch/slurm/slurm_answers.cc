@@ -95,6 +95,7 @@ std::vector<QueuedArray> ParseQueue(const std::string& text) {
     }
   }
   std::vector<QueuedArray> list;
+  list.reserve(arrays.size());
   for (const auto& [id, array] : arrays) list.push_back(array);
   return list;
 }
