@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/number_text.h"
+#include "base/utf8.h"
 
 namespace hydro::tables {
 namespace {
@@ -33,23 +34,11 @@ void AppendUtf8(uint32_t character, std::string& text) {
 bool IsHighHalf(uint32_t unit) { return unit >= 0xd800 && unit < 0xdc00; }
 bool IsLowHalf(uint32_t unit) { return unit >= 0xdc00 && unit < 0xe000; }
 
-// The bytes of the character at the start of a text that is not empty; 0: they are none.
-size_t LengthOfCharacter(std::string_view text) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return 1;
-  const size_t length = byte(0) < 0xc2 ? 0 : byte(0) < 0xe0 ? 2 : byte(0) < 0xf0 ? 3 : byte(0) < 0xf5 ? 4 : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  return length;
-}
-
 }  // namespace
 
 std::string NotUtf8(std::string_view text) {
   for (size_t length = 0; !text.empty(); text.remove_prefix(length)) {
-    length = LengthOfCharacter(text);
+    length = CharacterLength(text);
     if (length > 0) continue;
     return "found byte " + HexNumber(static_cast<unsigned char>(text.front()), 2) +
            ", which is not UTF-8, allowed UTF-8: save the table as UTF-8 (it may be Latin-1 or Windows-1252: "

@@ -7,6 +7,20 @@
 
 namespace hydro::torture {
 
+namespace {
+
+// A command for the newest plant's tick, of a process that is none of the stack's.
+template <class Command>
+Command OfAnother(const PlantRecord* plant, uint64_t session, int64_t sequence) {
+  Command command{};
+  command.tick = plant != nullptr ? plant->tick : 0;
+  command.session = static_cast<int64_t>(session);
+  command.sequence = sequence;
+  return command;
+}
+
+}  // namespace
+
 // A second launch ends its own run, whose plant this stack has never heard.
 void ActiveFault::SendForeignStop() {
   stop_t stop{};
@@ -37,21 +51,14 @@ void ActiveFault::SendSecondPlant() {
 }
 
 void ActiveFault::SendSecondSender() {
-  motor_command_t command{};
-  const PlantRecord* plant = world_.observer().newest_plant();
-  command.tick = plant != nullptr ? plant->tick : 0;
-  command.session = static_cast<int64_t>(injection_.seed) + 99;
-  command.sequence = sent_++;
+  auto command = OfAnother<motor_command_t>(world_.observer().newest_plant(), injection_.seed + 99, sent_++);
   command.voltage = injection_.amount;
   world_.Forge(command);
 }
 
 void ActiveFault::SendSecondReference() {
-  pressure_command_t command{};
-  const PlantRecord* plant = world_.observer().newest_plant();
-  command.tick = plant != nullptr ? plant->tick : 0;
-  command.session = static_cast<int64_t>(injection_.seed) + 111;
-  command.sequence = sent_++;
+  auto command =
+      OfAnother<pressure_command_t>(world_.observer().newest_plant(), injection_.seed + 111, sent_++);
   command.pressure_ref = injection_.amount;
   world_.Forge(command);
 }

@@ -210,12 +210,7 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
       best += Top(std::prev(here)->second, here->second, std::next(here)->second, width);
     at.parameters[shape] = std::exp(best);
   }
-  const Rows before = rows_;
-  const Shape shape_before = ShapeOf(variant);
-  Take(variant, runs_->MakeShapeRows(variant, {at}), at);
-  if (SetEvidence(rows_).Shows(set)) return;
-  rows_ = before;
-  Restore(shape_before);
+  TakeIf(variant, at, [&] { return SetEvidence(rows_).Shows(set); });
 }
 
 // An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
@@ -240,20 +235,27 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
       }
     }
     if (!(change > kSettledShape)) return;
-    const Rows before = rows_;
-    const Shape shape_before = ShapeOf(variant);
-    Take(variant, runs_->MakeShapeRows(variant, {at}), at);
-    const SetEvidence moved(rows_);
-    if (moved.Shows(set)) fit = moved.Fit(set);
-    if (moved.Shows(set) && fit.log_evidence >= evidence) {
-      evidence = fit.log_evidence;
-      continue;
-    }
-    // A step too far, as of a resonance, whose phase turns within a few per cent, or of a limit that the runs then never reach.
-    rows_ = before;
-    Restore(shape_before);
-    return;
+    // A step may be too far, as of a resonance, whose phase turns within a few per cent, or of a limit that the runs then never reach.
+    const bool taken = TakeIf(variant, at, [&] {
+      const SetEvidence moved(rows_);
+      if (!moved.Shows(set)) return false;
+      fit = moved.Fit(set);
+      return fit.log_evidence >= evidence;
+    });
+    if (!taken) return;
+    evidence = fit.log_evidence;
   }
+}
+
+bool RefinedShapes::TakeIf(size_t variant, const model::EffectDescription& at,
+                           const std::function<bool()>& good) {
+  const Rows before = rows_;
+  const Shape shape_before = ShapeOf(variant);
+  Take(variant, runs_->MakeShapeRows(variant, {at}), at);
+  if (good()) return true;
+  rows_ = before;
+  Restore(shape_before);
+  return false;
 }
 
 void RefinedShapes::Take(size_t variant, const ScanRuns::OtherShapes& shape,

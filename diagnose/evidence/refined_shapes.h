@@ -1,6 +1,7 @@
 // Shapes of a set's effects where the evidence has them: speeds, set pressures and lags begin at a grid point and end between two.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "diagnose/balances/make_rows.h"
@@ -38,6 +39,8 @@ class RefinedShapes {
   void Restore(const Shape& shape);
   void MoveAmounts(size_t variant, const ChangeSet& set);
   void MoveWhole(size_t variant, const ChangeSet& set);
+  // Takes that shape where the rows then are good; else leaves all as it was. Returns whether it did.
+  bool TakeIf(size_t variant, const model::EffectDescription& at, const std::function<bool()>& good);
   // Puts the columns of that shape in the place of those of the variant.
   void Take(size_t variant, const ScanRuns::OtherShapes& shape, const model::EffectDescription& at);
 

@@ -19,15 +19,13 @@ using Mistakes = std::vector<RecordingMistake>;
 constexpr size_t kExtended = 16;
 // s between samples: no recorder of such a machine is faster.
 constexpr double kFastest = 5e-6;
-// Of a signal: standard deviations of its noise that it has to move by, up and down.
-constexpr double kSurelyMoves = 5;
 // Whether the motor surely moves: balances of a run at rest are those of noise, of which any unit explains some.
 bool Moves(const Run& run) {
   for (const SignalOfRun signal : {&Run::motor_speed, &Run::motor_angle}) {
     const runs::MeasuredSignal& measured = run.*signal;
     if (!measured.measured()) continue;
     const double steps = std::max(measured.noise.value_or(0), EstimateResolution(measured.values));
-    if (RangeOfValues(measured.values).size() > 2 * kSurelyMoves * steps) return true;
+    if (RangeOfValues(measured.values).size() > 2 * kHardlyMoves * steps) return true;
   }
   return false;
 }

@@ -32,7 +32,6 @@ double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std
 double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
 
 ValueReach ReachOf(const model::Parameters& given, const model::Parameters& estimated) {
-  constexpr double kImplausible = 2;  // no data sheet is wrong by more
   ValueReach reach;
   for (const model::BaseParameter& base : model::BaseParameters()) {
     const auto [least, most] = std::minmax(given.*base.member, estimated.*base.member);

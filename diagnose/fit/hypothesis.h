@@ -46,6 +46,9 @@ struct FreeParameter {
   double Slope() const { return logarithmic ? value : 1; }
 };
 
+// No data sheet or drawing is wrong by a larger factor: a value that moves farther is implausible.
+inline constexpr double kImplausible = 2;
+
 // How far fits may move base values; infinite where only physics bounds them.
 struct ValueReach {
   model::Parameters low, high;

@@ -16,8 +16,6 @@ namespace {
 constexpr size_t kGiven = ProofSets::kGiven;
 // Proposals whose values are refined: a scan has to have what is true among its first five to be of use.
 constexpr size_t kMostRefined = 5;
-// Of the gap: sets that differ by less predict equally well.
-constexpr double kNoBetter = 0.01;
 
 // How many numbers the set adds to the model.
 size_t NumbersOf(const ProvedSet& set) {
@@ -99,7 +97,7 @@ class Prover {
   // What is chosen is not worse than another set with as few effects.
   size_t BetterOfTheSameSize(size_t place) const {
     size_t better = place;
-    double most = kNoBetter;
+    double most = kEqual;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() > sets_[place].Effects().size()) continue;
       const double worth = WorthOf(sets_[place], sets_[i]).logarithm;

@@ -10,9 +10,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Sets whose gaps differ by less predict equally well: a tenth of what an effect has to take.
-constexpr double kEqual = 0.01;
-
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   std::vector<double> logarithms;
   for (const WindowGap& gap : gaps) {

@@ -53,6 +53,8 @@ GapFall WorthOf(const ProvedSet& from, const ProvedSet& to);
 inline constexpr double kPartOfAnEffect = 0.1;
 // Other values are likelier than a missing effect: no machine has exactly the values of its model.
 inline constexpr double kPartOfValues = 0.05;
+// Sets whose gaps differ by less predict equally well: a tenth of what an effect has to take.
+inline constexpr double kEqual = 0.01;
 
 // Whether `with` is worth the price of the one effect that it has more than `without`, over the near windows; and does not make the far
 // ones, as far as they are predicted, worse by kPartOfAnEffect. True where either cannot be tested: no simulation, no veto.

@@ -17,7 +17,6 @@ constexpr double kMostMissing = 0.05;    // of a signal that is present most of 
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
 constexpr double kGapTold = 5;           // median sample intervals
 constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
-constexpr double kHardlyMoves = 5;       // movement of a signal, in standard deviations of the noise
 
 std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %"; }
 

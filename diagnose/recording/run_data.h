@@ -104,13 +104,15 @@ struct ValueRange {
   double size() const { return high - low; }
 };
 ValueRange RangeOfValues(const std::vector<double>& values);
+// Standard deviations of its noise: a signal that moves by no more, up and down, hardly moves.
+inline constexpr double kHardlyMoves = 5;
 
 // Makes the runs' names unique.
 void MakeNamesUnique(std::vector<RunData>* runs);
 
-// The standard deviation of what no smooth signal explains: white noise and rounding. It comes from the
-// quietest of several bands of the upper spectrum, so that neither the motion nor a ripple of one frequency
-// counts, and is at least that of rounding to the resolution. `values` may contain NaN.
+// The standard deviation of what no smooth signal explains: white noise and rounding. It comes from the quietest of several bands of the
+// upper spectrum, so that neither the motion nor a ripple of one frequency counts, or, where these have surely less, from the quietest
+// samples; and is at least that of rounding to the resolution. `values` may contain NaN.
 double EstimateNoise(const std::vector<double>& values);
 
 // The smallest step between values that differ; 0 when most steps are not multiples of it.

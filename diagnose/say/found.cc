@@ -18,8 +18,6 @@ namespace {
 constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 // Standard errors: of a normal distribution, 95 % are within.
 constexpr double kToldApart = 2;
-// Of the gap: sets that differ by less predict equally well.
-constexpr double kAlikeSets = 0.01;
 
 std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof) {
   const size_t numbers = proof.Found().Free().size();
@@ -121,7 +119,7 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
     if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
     // What may be true by the balances, windows have to tell apart, by more than sets that predict equally well differ.
     const GapFall fall = FallOf(other.near, proof.Best().near);
-    if (fall.windows > 0 && fall.logarithm > std::max(kAlikeSets, kToldApart * fall.error)) continue;
+    if (fall.windows > 0 && fall.logarithm > std::max(kEqual, kToldApart * fall.error)) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }
   return ties;

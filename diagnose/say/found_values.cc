@@ -6,6 +6,7 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/fit/hypothesis.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -43,9 +44,8 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
 // "moves by a factor of 3" where a value moves by more than a factor of 2, which data sheets and drawings seldom miss by; "" otherwise,
 // and where it was given as 0.
 std::string WhyRemarkable(const ChangedParameter& changed) {
-  constexpr double kRemarkable = 2;
   const double ratio = changed.fitted.value / changed.model;
-  if (changed.model == 0 || (ratio >= 1 / kRemarkable && ratio <= kRemarkable)) return "";
+  if (changed.model == 0 || (ratio >= 1 / kImplausible && ratio <= kImplausible)) return "";
   return "moves by a factor of " + ShortNumber(ratio, 3);
 }
 
