@@ -55,7 +55,7 @@ class PressureApp : public process::App {
   template <class Describe>
   bool Check(bool good, const char* code, double value, double limit, Describe&& describe);
   template <class Describe>
-  bool CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe);
+  bool CheckLimit(const char* code, double value, double limit, Describe&& describe);
   double PressureReference(int64_t ticks_stale) const;
   double LargestReference() const;
   int64_t TicksStale(int64_t tick) const;

@@ -16,6 +16,8 @@ bool Finite(const state_t& state, bool with_arm_speed) {
          (!with_arm_speed || std::isfinite(state.arm_speed));
 }
 
+constexpr double kLimitEndsBelow = 0.95;  // the noise of usable sensors is far below a twentieth of the limit
+
 }  // namespace
 
 // Raises the fault while `good` is false and clears it otherwise; returns `good`.
@@ -30,10 +32,15 @@ bool PressureApp::Check(bool good, const char* code, double value, double limit,
 }
 
 // The same for a limit that ends the run when it is exceeded. With limits.rearm = "explicit" the run goes on,
-// and the plant holds the voltage at zero from the first SAFE command.
+// and the plant holds the voltage at zero from the first SAFE command. The fault then ends below kLimitEndsBelow of
+// the limit only: a noisy signal that comes back through its limit would raise and end it at every tick.
 template <class Describe>
-bool PressureApp::CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe) {
-  if (values_.limits.rearm == settings::Rearm::kExplicit) return Check(good, code, value, limit, describe);
+bool PressureApp::CheckLimit(const char* code, double value, double limit, Describe&& describe) {
+  const bool good = !(value > limit);
+  if (values_.limits.rearm == settings::Rearm::kExplicit) {
+    const bool near = value > kLimitEndsBelow * limit && participant_.active(code);
+    return Check(good && !near, code, value, limit, describe);
+  }
   if (!good && participant_.Raise(code, describe(), value, limit, true)) {
     participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
   }
@@ -62,30 +69,24 @@ bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Cl
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
   });
   const double pressure = std::fmax(state.p1, state.p2);
-  safe &=
-      CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure,
-                 values_.limits.pressure_psi, [&] {
-                   return fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure)",
-                                      state.tick, state.p1 > state.p2 ? 1 : 2, pressure,
-                                      values_.limits.pressure_psi, fmt::arg("unit", units_.UnitFor("psi")));
-                 });
+  safe &= CheckLimit("pressure_limit", pressure, values_.limits.pressure_psi, [&] {
+    return fmt::format("tick {}: p{} is {:.6g} {unit}, allowed is {} {unit} (limits.pressure)", state.tick,
+                       state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi,
+                       fmt::arg("unit", units_.UnitFor("psi")));
+  });
   const double speed = std::fabs(state.motor_speed);
-  safe &=
-      CheckLimit(!(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed,
-                 values_.limits.motor_speed_rad_s, [&] {
-                   return fmt::format(
-                       "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed)",
+  safe &= CheckLimit("motor_speed_limit", speed, values_.limits.motor_speed_rad_s, [&] {
+    return fmt::format("tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed)",
                        state.tick, speed, values_.limits.motor_speed_rad_s);
-                 });
+  });
   const double angle = std::fabs(state.arm_angle);
-  safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle,
-                     values_.limits.arm_angle_rad, [&] {
-                       return fmt::format(
-                           "tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
-                           "(limits.arm_angle)",
-                           state.tick, state.arm_angle, values_.limits.arm_angle_rad,
-                           fmt::arg("unit", units_.UnitFor("rad", 1)));
-                     });
+  safe &= CheckLimit("arm_angle_limit", angle, values_.limits.arm_angle_rad, [&] {
+    return fmt::format(
+        "tick {}: the arm is at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
+        "(limits.arm_angle)",
+        state.tick, state.arm_angle, values_.limits.arm_angle_rad,
+        fmt::arg("unit", units_.UnitFor("rad", 1)));
+  });
   safe &= PressureCommandIsSafe(state, ticks_stale, now);
   safe &= Check(!state_monitor_.SecondSenderAlive(now), process::kSecondSender<state_t>, 2, 1, [&] {
     return fmt::format("two processes send states: {} and {}; allowed is one",

@@ -424,6 +424,35 @@ TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
   EXPECT_TRUE(stops_.empty());
 }
 
+// Tests that a noisy pressure on its way back through its limit raises its fault once, and that the fault ends well below the limit.
+TEST_F(PressureAppTest, NoiseAtALimitIsOneFault) {
+  settings::StackConfig config = SmallStack();
+  config.limits.rearm = settings::Rearm::kExplicit;
+  Start(config);
+  SendState(State(0));
+  SendPressure(0, 120);
+  int64_t tick = 1;
+  for (const double p1 : {2000.5, 1999.5, 2000.1, 1901.0}) {
+    state_t s = State(tick++);
+    s.p1 = p1;
+    SendState(s);
+    EXPECT_EQ(commands_.back().status, motor_command_t::SAFE) << p1;
+  }
+  ASSERT_EQ(faults_.size(), 1u);
+  state_t s = State(tick++);
+  s.p1 = 1899;
+  SendState(s);
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_FALSE(faults_[1].active);
+  // Without a fault the whole range up to the limit is allowed.
+  s = State(tick++);
+  s.p1 = 1999.5;
+  SendState(s);
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_EQ(faults_.size(), 2u);
+}
+
 // Tests that in real time a silent plant gives first a zero-volt command, then a fault.
 TEST_F(PressureAppTest, StaleStateGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
