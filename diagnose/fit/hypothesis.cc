@@ -18,6 +18,29 @@ const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const
   throw model::ModelError("effect \"" + effect.id + "\" has no parameter \"" + name + "\"");
 }
 
+// A number of an effect that a fit moves, and its place among the model's EffectParameters().
+struct FreeEffectNumber {
+  model::EffectParameter parameter;
+  size_t place = 0;
+  double value = 0;
+};
+
+// Those that are free. Poles, teeth and pistons are counted, not measured: a whole number of periods stays.
+std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
+  std::vector<FreeEffectNumber> free;
+  model::ModelDescription model = hypothesis.model;
+  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const model::EffectDescription& effect = model.effects[all[i].effect];
+    const std::vector<std::string>& moved = hypothesis.effects;
+    if (std::find(moved.begin(), moved.end(), effect.id) == moved.end()) continue;
+    const double value = all[i].In(&model);
+    const bool periods = InfoOf(effect, all[i].name).role == model::Role::kPeriods;
+    if (!periods || value != std::round(value)) free.push_back({all[i], i, value});
+  }
+  return free;
+}
+
 }  // namespace
 
 std::string Change::Label() const {
@@ -61,17 +84,12 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     }
     free.push_back(parameter);
   }
-  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
-  for (size_t i = 0; i < all.size(); ++i) {
-    const model::EffectDescription& effect = model.effects[all[i].effect];
-    if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
-    const model::ParameterInfo& info = InfoOf(effect, all[i].name);
-    model::ModelDescription own = {{}, {}, {effect}, {}};
-    const double value = model::EffectParameter{0, all[i].name, all[i].place}.In(&own);
-    // Poles, teeth and pistons are counted, not measured.
-    if (info.role == model::Role::kPeriods && value == std::round(value)) continue;
-    FreeParameter parameter{{model::Unknown::Kind::kEffect, i},
-                            effect.id + "." + all[i].Label(),
+  for (const FreeEffectNumber& number : FreeEffectNumbers(*this)) {
+    const model::EffectDescription& effect = model.effects[number.parameter.effect];
+    const model::ParameterInfo& info = InfoOf(effect, number.parameter.name);
+    const double value = number.value;
+    FreeParameter parameter{{model::Unknown::Kind::kEffect, number.place},
+                            effect.id + "." + number.parameter.Label(),
                             info.UnitIn(model.units),
                             value,
                             info.min,
@@ -94,12 +112,8 @@ std::vector<FreeParameter> Hypothesis::Free() const {
 void Hypothesis::Set(const std::vector<double>& values) {
   size_t next = 0;
   for (const size_t i : base) model.parameters.*model::BaseParameters()[i].member = values[next++];
-  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
-  for (const model::EffectParameter& parameter : all) {
-    const std::string& id = model.effects[parameter.effect].id;
-    if (std::find(effects.begin(), effects.end(), id) == effects.end()) continue;
-    parameter.In(&model) = values[next++];
-  }
+  for (const FreeEffectNumber& number : FreeEffectNumbers(*this))
+    number.parameter.In(&model) = values[next++];
 }
 
 bool Hypothesis::Has(const Change& change) const {

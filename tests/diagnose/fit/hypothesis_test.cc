@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "diagnose/fit/residuals.h"
 #include "tests/diagnose/small_runs.h"
@@ -51,6 +54,26 @@ TEST(Hypothesis, FreeNumbers) {
   EXPECT_EQ(hypothesis.model.effects[0].parameters.at("k"), 3e-4);
   EXPECT_TRUE(hypothesis.Held().Free().empty());
   EXPECT_EQ(hypothesis.Held().model.parameters.b, 0.02);
+}
+
+// Tests that a whole number of periods, which is counted and not fitted, is not free and stays when the free numbers are set, and that
+// one that is no whole number is fitted.
+TEST(Hypothesis, WholePeriodsStay) {
+  for (const double periods : {9.0, 9.5}) {
+    const model::EffectDescription ripple = {
+        "motor.cogging", {{"amplitude", 0.1}, {"periods", periods}, {"phase", 0.5}}, {}};
+    Hypothesis hypothesis = WithFree(Table1With({ripple}), {"b"});
+    const bool whole = periods == 9.0;
+    ASSERT_EQ(hypothesis.Free().size(), whole ? 3u : 4u);
+    hypothesis.Set(whole ? std::vector{0.02, 0.2, 0.25} : std::vector{0.02, 0.2, 9.25, 0.25});
+    const std::map<std::string, double> expected = {
+        {"amplitude", 0.2}, {"periods", whole ? 9.0 : 9.25}, {"phase", 0.25}};
+    EXPECT_EQ(hypothesis.model.effects[0].parameters, expected);
+    std::vector<double> read;
+    for (const FreeParameter& parameter : hypothesis.Free()) read.push_back(parameter.value);
+    EXPECT_EQ(read.front(), 0.02);
+    EXPECT_EQ(read.back(), 0.25);
+  }
 }
 
 // Tests that a change is added with its starting points, named, told from another, and fully undone.
