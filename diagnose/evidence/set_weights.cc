@@ -168,18 +168,8 @@ ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed, bool curv
   }
   ExplanationWeights weights;
   for (auto& [changes, one] : by_changes) weights.explanations.push_back(std::move(one));
-  std::stable_sort(
-      weights.explanations.begin(), weights.explanations.end(),
-      [](const WeighedExplanation& a, const WeighedExplanation& b) { return a.weight > b.weight; });
-  CountIn90(&weights);
+  weights.in_90 = SortByWeight(&weights.explanations);
   return weights;
-}
-
-void CountIn90(ExplanationWeights* weights) {
-  double sum = 0;
-  weights->in_90 = 0;
-  while (weights->in_90 < weights->explanations.size() && sum < 0.9)
-    sum += weights->explanations[weights->in_90++].weight;
 }
 
 }  // namespace hydro::diagnose

@@ -1,6 +1,7 @@
 // How probable each explanation is: tempered scores, drawn over runs.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -32,7 +33,15 @@ struct ExplanationWeights {
 // `curves`: whether unknown curves are among them.
 ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1, bool curves = true);
 
-// Sets `in_90`, of explanations that are sorted.
-void CountIn90(ExplanationWeights* weights);
+// Sorts what has a weight, the largest first; how many of the first hold 90 % together.
+template <class Weighed>
+size_t SortByWeight(std::vector<Weighed>* all) {
+  std::stable_sort(all->begin(), all->end(),
+                   [](const Weighed& a, const Weighed& b) { return a.weight > b.weight; });
+  double sum = 0;
+  size_t in_90 = 0;
+  while (in_90 < all->size() && sum < 0.9) sum += (*all)[in_90++].weight;
+  return in_90;
+}
 
 }  // namespace hydro::diagnose

@@ -33,14 +33,19 @@ ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
   JudgeSet(windows_, context_.jobs, &sets_.back());
 }
 
-double ProofSets::PriceOf(const Change& effect) const {
-  if (said_.weights.empty()) return diagnose::PriceOf(0.5);
+double ProofSets::SaidOf(const Change& effect) const {
   // A curve is said of a balance and added to both columns of oil: one weight for all.
   const bool curve = IsClosureEffect(effect.effect);
   double said = 0;
   for (const auto& [id, weight] : said_.weights) {
     if (curve ? IsClosureEffect(id) : id == effect.effect) said += weight;
   }
+  return said;
+}
+
+double ProofSets::PriceOf(const Change& effect) const {
+  if (said_.weights.empty()) return diagnose::PriceOf(0.5);
+  const double said = SaidOf(effect);
   return diagnose::PriceOf(IsUnseenByBalances(effect.effect) ? std::max(kOddsOfAChange, said) : said);
 }
 
@@ -121,6 +126,12 @@ void ProofSets::BeginAtBestValues(ProvedSet* set) const {
     other.without[r].parameters = sets_[values].ModelOf(r).parameters;
   JudgeSet(windows_, context_.jobs, &other);
   if (PredictsBetter(windows_, context_.jobs, &other, set)) *set = std::move(other);
+}
+
+void ProofSets::BeginAtBestValues() {
+  for (ProvedSet& set : sets_) {
+    if (!set.refined) BeginAtBestValues(&set);
+  }
 }
 
 void ProofSets::Refine(size_t place) {

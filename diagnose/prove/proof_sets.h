@@ -25,7 +25,10 @@ class ProofSets {
   void Add(const std::vector<Proposal>& proposals);
   // The windows that are fitted from here on, with the discrepancy that the set at this place leaves.
   void SetFitted(size_t leading);
-  // A few steps of a fit, once a set; from the values of the best set of values alone, where these suit its effects better.
+  // Sets with effects begin at the values of the best set of values alone, where these suit their effects better: a set is not worth
+  // less for values that nobody fitted.
+  void BeginAtBestValues();
+  // A few steps of a fit, once a set.
   void Refine(size_t place);
   // A set fitted with a change more, from the catalogue's starts, judged.
   void Race(size_t from, const Change& change);
@@ -37,6 +40,8 @@ class ProofSets {
   // As far as it may be, with values fitted to the windows and to whole runs, where they predict better.
   void RefineForReport(size_t place);
 
+  // How probable the effect is as the balances speak of it; 0 where they do not.
+  double SaidOf(const Change& effect) const;
   // What the effect has to take, as the balances speak of it; of what they cannot see, at the odds of any effect; at even ones without balances.
   double PriceOf(const Change& effect) const;
 

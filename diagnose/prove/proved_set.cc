@@ -10,6 +10,8 @@ namespace hydro::diagnose {
 
 namespace {
 
+constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
+
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   std::vector<double> logarithms;
   for (const WindowGap& gap : gaps) {
@@ -86,11 +88,12 @@ GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
 }
 
 double PriceOf(double weight) {
-  constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
   constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never have exactly one
   const double odds = std::clamp(weight / std::max(1 - weight, 1e-9), 1 / kMostOdds, kMostOdds);
   return kEven * (1 - std::log(odds) / std::log(kWorthIt));
 }
+
+double LogOddsOf(double fall) { return fall / kEven * std::log(kWorthIt); }
 
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price) {
   if (!with.tested() || !without.tested()) return true;

@@ -45,6 +45,8 @@ bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, Pro
 // take some per cent by mending what else is wrong, the less often the more, so that a twentieth of the gap is worth nine to one. Even
 // odds have to be paid with a twentieth; at nine to one, windows need only agree; where the balances are sure, they may not object.
 double PriceOf(double weight);
+// The same exchange the other way: what a fall of this logarithm is worth, as the logarithm of odds.
+double LogOddsOf(double fall);
 
 // The fall of the near windows' gap from one set to another, less what the price rises.
 GapFall WorthOf(const ProvedSet& from, const ProvedSet& to);

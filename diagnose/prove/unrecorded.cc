@@ -11,8 +11,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr char kSomeOil[] = "some effect of the oil";
-
 // Signals that no run has in which a balance needs them.
 std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
   bool p1 = true, p2 = true, speed = true, arm = true, oil = false, moves = false;
@@ -102,9 +100,7 @@ ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeigh
     else
       same->weight += one.weight;
   }
-  std::stable_sort(merged.explanations.begin(), merged.explanations.end(),
-                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
-  CountIn90(&merged);
+  merged.in_90 = SortByWeight(&merged.explanations);
   return merged;
 }
 

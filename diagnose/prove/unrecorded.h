@@ -12,6 +12,9 @@
 
 namespace hydro::diagnose {
 
+// What stands in an explanation for all effects of the oil, which cannot be told apart without pressures.
+inline constexpr char kSomeOil[] = "some effect of the oil";
+
 // Effects of the context's changes of which the runs have no column of their own, and why; `names`: the sets that the rows show. None
 // where all signals were recorded that balances need, and none that simulation alone judges.
 std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,

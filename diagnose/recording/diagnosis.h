@@ -94,7 +94,7 @@ struct FoundEffect {
   std::vector<std::string> tied_with;
   // The part of the held-out squared gap that comes back without it, 0 to 1; NaN where it cannot be said.
   double share = std::numeric_limits<double>::quiet_NaN();
-  double weight = 0;  // of all explanations that have it; NaN where balances cannot speak for it
+  double weight = 0;  // of all explanations that have it
 };
 
 // A base parameter ("J"), or one of an effect that the model as given has ("valve.relief.set").

@@ -17,6 +17,7 @@
 #include "diagnose/say/next_experiment.h"
 #include "diagnose/say/run_curves.h"
 #include "diagnose/say/sentence.h"
+#include "diagnose/say/two_witnesses.h"
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
@@ -99,6 +100,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     nothing.best = proof.given;
     return Conclude(context, nothing, proposed);
   }
+  HearBothWitnesses(proof, &d);
   if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
   RemarkOnUsersOwn(&d);

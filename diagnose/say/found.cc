@@ -116,10 +116,16 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
   std::vector<size_t> ties;
   for (size_t i = 0; i < proof.sets.size(); ++i) {
     const ProvedSet& other = proof.sets[i];
-    if (!other.tested() || other.hypothesis.Has(change) || !MayBeTrue(other, d)) continue;
-    // What may be true by the balances, windows have to tell apart, by more than sets that predict equally well differ.
+    if (!other.tested() || other.hypothesis.Has(change)) continue;
+    // What may be true by the balances, windows have to tell apart, by more than sets that predict equally well differ. Values alone may
+    // be true whatever balances say, unless windows speak for the effect at all.
+    const bool may_be = MayBeTrue(other, d);
+    if (!may_be && !other.Effects().empty()) continue;
     const GapFall fall = FallOf(other.near, proof.Best().near);
-    if (fall.windows > 0 && fall.logarithm > std::max(kEqual, kToldApart * fall.error)) continue;
+    const double told_apart = std::max(kEqual, (may_be ? kToldApart : 1) * fall.error);
+    // An effect in its place that is less likely has to be worth it: one that does nothing explains nothing.
+    const double dearer = std::max(0.0, other.price - proof.Best().price);
+    if (fall.windows > 0 && fall.logarithm + dearer > told_apart) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }
   return ties;
@@ -137,7 +143,6 @@ std::vector<model::ModelDescription> DescribeFound(const ProofContext& context, 
     FoundEffect found = Describe(change, proof.Found().model, free, intervals);
     found.share = ShareOf(proof, change);
     found.weight = WeightOf(change, d->explanations);
-    if (found.weight == 0 && IsUnseenByBalances(change.effect)) found.weight = kUnsaid;
     for (const size_t place : TiesOf(change, proof, *d)) {
       const std::string label = InPlace(proof.sets[place], proof.Best());
       const bool there =
