@@ -42,7 +42,8 @@ const std::vector<std::pair<std::string, Scale>>& Scales() {
                                                                     {"rate", Scale::kRate},
                                                                     {"flow", Scale::kFlow},
                                                                     {"arm_stiffness", Scale::kArmStiffness},
-                                                                    {"arm_damping", Scale::kArmDamping}};
+                                                                    {"arm_damping", Scale::kArmDamping},
+                                                                    {"oil_stiffness", Scale::kOilStiffness}};
   return scales;
 }
 

@@ -149,6 +149,8 @@ double Sizes::Of(model::Scale scale) const {
       return arm_stiffness;
     case model::Scale::kArmDamping:
       return arm_damping;
+    case model::Scale::kOilStiffness:
+      return oil_stiffness;
   }
   return 1;
 }
@@ -180,8 +182,9 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
   if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;
   sizes.sample = SampleInterval(runs);
   sizes.flow = p.D * sizes.speed / sizes.pressure;
-  sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
-  sizes.arm_damping = p.J_a / sizes.sample;
+  sizes.oil_stiffness = p.V_ms > 0 ? p.beta / p.V_ms : 0;
+  sizes.arm_stiffness = 2 * p.c * p.c * sizes.oil_stiffness;
+  sizes.arm_damping = 2 * std::sqrt(p.J_a * sizes.arm_stiffness);
   return sizes;
 }
 

@@ -79,7 +79,7 @@ struct Hypothesis {
 // Magnitudes seen in the runs, used to scale starting values.
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
-  double flow = 0, arm_stiffness = 0, arm_damping = 0;
+  double flow = 0, arm_stiffness = 0, arm_damping = 0, oil_stiffness = 0;
 
   double Of(model::Scale scale) const;
 };

@@ -45,17 +45,22 @@ class Accumulator : public EffectOf<Accumulator> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
-    AddToCatalogue({.info = {.id = "accumulator.stiffness",
-                             .summary = "the accumulator's pressure rises with what is returned to it",
-                             .equation = "p3 rises by stiffness per volume returned to the accumulator",
-                             .confused_with = "parameter p3",
-                             .parameters = {{.name = "stiffness",
-                                             .unit = "psi/in^3",
-                                             .meaning = "pressure per volume",
-                                             .example = 3000}},
-                             .remembers_flow = true},
-                    .make = MakeEffect<Accumulator>});
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info =
+         {.id = "accumulator.stiffness",
+          .summary = "the accumulator's pressure rises with what is returned to it",
+          .equation = "p3 rises by stiffness per volume returned to the accumulator",
+          .confused_with = "parameter p3",
+          .parameters = {{.name = "stiffness",
+                          .unit = "psi/in^3",
+                          .meaning = "pressure per volume",
+                          // From hardly felt to nearly as stiff as the oil: the pressure then settles where
+                          // what leaks in leaks out, which a small stiffness does not foretell.
+                          .starts = {0.003, 0.03, 0.3},
+                          .scale = Scale::kOilStiffness,
+                          .example = 3000}},
+          .remembers_flow = true},
+     .make = MakeEffect<Accumulator>});
 
 }  // namespace
 

@@ -26,8 +26,9 @@ enum class Scale {
   kSample,        // the median time between samples
   kRate,          // one over kSample
   kFlow,          // D kSpeed over kPressure: a conductance that passes all of the pump's flow
-  kArmStiffness,  // J_a over kSample^2: resonates with the arm at kRate, in rad/s
-  kArmDamping,    // J_a over kSample
+  kArmStiffness,  // 2 beta c^2 / V_ms: what the oil of both sides holds the arm with
+  kArmDamping,    // 2 sqrt(J_a kArmStiffness): critical, of the arm on its oil
+  kOilStiffness,  // beta over V_ms: pressure per volume of one side's oil
 };
 
 // A parameter's role in its effect's equation, where the gap finder treats that role specially. Nothing else
