@@ -26,6 +26,11 @@ constexpr size_t kMostProposals = 8;
 // Effects whose shapes are refined before sets are compared: what is true was among the first three alone nearly always.
 constexpr size_t kMostLeaders = 5;
 
+// The torque limit bends the balance where it acts: its column holds near the limit alone, so that one that is more than this part off
+// is taken from the balances, and the columns are made anew. Twice is enough: what acts beyond the limit as given shows the rest of the way.
+constexpr double kLimitOff = 0.01;
+constexpr int kLimitsAgain = 2;
+
 // Pressures that were not measured are marched again with the values that the balances then show; the second time hardly moves them.
 constexpr int kMarchesAgain = 2;
 
@@ -232,6 +237,22 @@ double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   return 0;
 }
 
+// The rows of the runs at the torque limit that their balances show, beside the model as given.
+Rows RowsAtTheLimit(const ProofContext& context, const ScanOptions& options, ScanRuns* runs) {
+  Rows rows = runs->MakeRows({});
+  model::ModelDescription given = context.given;
+  for (int again = 0; again < kLimitsAgain && !rows.blocks.empty(); ++again) {
+    const std::optional<EstimatedModel> values = ModelOf(*runs, rows, {}, SetEvidence(rows).Fit({}));
+    if (!values) break;
+    const double limit = values->model.parameters.T_pmax;
+    if (!(limit > 0) || std::abs(limit / given.parameters.T_pmax - 1) <= kLimitOff) break;
+    given.parameters.T_pmax = limit;
+    *runs = ScanRuns(given, context.runs, options);
+    rows = runs->MakeRows({});
+  }
+  return rows;
+}
+
 }  // namespace
 
 Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed,
@@ -242,7 +263,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   options.changes = context.changes;
   options.inverted = inverted;
   ScanRuns runs(context.given, context.runs, options);
-  Rows rows = runs.MakeRows({});
+  Rows rows = RowsAtTheLimit(context, options, &runs);
   Proposed proposed;
   if (rows.blocks.empty()) {
     proposed.unjudged = UnjudgedOf(context, runs, {});
@@ -251,7 +272,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   for (int again = 0; again < kMarchesAgain && runs.HasLatent(); ++again) {
     const std::optional<EstimatedModel> values = ModelOf(runs, rows, {}, SetEvidence(rows).Fit({}));
     options.marched = values->model;
-    runs = ScanRuns(context.given, context.runs, options);
+    runs = ScanRuns(runs.setup().given, context.runs, options);
     rows = runs.MakeRows({});
   }
   const std::vector<int> periods = LikelyPeriods(runs, rows, SetEvidence(rows), context.jobs);
