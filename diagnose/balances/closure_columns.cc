@@ -25,7 +25,6 @@ double SpreadOf(int sine) { return kFirst * std::exp(-0.5 * std::pow(kSmooth * s
 
 double VariableOf(const std::string& name, const model::KnownMotion& at) {
   if (name == "motor_speed") return at.motor_speed;
-  if (name == "voltage") return at.voltage;
   if (name == "p1") return at.p1;
   if (name == "p2") return at.p2;
   if (name == "p2 - p1") return at.p2 - at.p1;
@@ -126,9 +125,7 @@ void AddArmElements(const ColumnSetup& setup, std::vector<ClosureElement>* eleme
 
 std::vector<ClosureElement> ClosureElements(const ColumnSetup& setup, const std::vector<RunMotion>& runs) {
   bool oil = false, arm = false, moves = false;
-  double voltage = 0;
   for (const RunMotion& run : runs) {
-    for (const model::KnownMotion& at : run.at) voltage = std::max(voltage, std::abs(at.voltage));
     oil |= run.pressures;
     arm |= CanForm(run, BalanceKind::kArm);
     moves |= run.arm_moves && run.pressures;
@@ -137,12 +134,6 @@ std::vector<ClosureElement> ClosureElements(const ColumnSetup& setup, const std:
   std::vector<ClosureElement> elements = {
       Odd("closure.pump_torque(motor_speed)", kSpeedSines, UsualOf(setup.sizes, BalanceKind::kTorque), fast,
           {{BalanceKind::kTorque, 1, "closure.pump_torque", "motor_speed"}})};
-  // Iron that saturates, an amplifier's dead band.
-  if (voltage > 0) {
-    elements.push_back(Odd("closure.pump_torque(voltage)", kOtherSines,
-                           UsualOf(setup.sizes, BalanceKind::kTorque), kBeyond * voltage,
-                           {{BalanceKind::kTorque, 1, "closure.pump_torque", "voltage"}}));
-  }
   if (oil) AddOilElements(setup, moves, &elements);
   if (arm) AddArmElements(setup, &elements);
   return elements;
