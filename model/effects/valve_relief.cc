@@ -50,7 +50,7 @@ class Relief : public EffectOf<Relief> {
                              .parameters = {{.name = "set",
                                              .unit = "psi",
                                              .meaning = "pressure at which the valve opens",
-                                             .starts = {0.15, 0.3, 0.5, 0.7, 0.85, 0.95},
+                                             .starts = {0.3, 0.5, 0.7, 0.85, 0.95},
                                              .scale = Scale::kPressure,
                                              .example = 200},
                                             {.name = "conductance",
