@@ -240,6 +240,7 @@ class QemuTest(BoardTest):
                    "-serial", lines[0], "-serial", lines[1], "-monitor", lines[2], label="qemu")
         self.wait_until(lambda: os.path.exists(self.path("monitor")), "qemu")
         self.machine = Machine(self.stream("machine"))
+        self.machine.kick_s = 0.5
         self.computer = Computer(Both(self.stream("link"), self.machine))
 
     def stream(self, name):
