@@ -78,9 +78,9 @@ enum hydro_refusal hydro_check_settings(const struct hydro_settings* settings,
   if (!output_is_good(settings)) return HYDRO_REFUSED_OUTPUT;
   const struct hydro_voltage_range range = hydro_reachable_voltages(settings, facts);
   if (!(range.low <= 0.0f && range.high >= 0.0f)) return HYDRO_REFUSED_ZERO;
-  for (uint8_t i = 0; i < HYDRO_SENSORS; ++i) {
+  for (size_t i = 0; i < HYDRO_SENSORS; ++i) {
     if (sensor_is_good(settings, i, facts)) continue;
-    *part = i;
+    *part = (uint8_t)i;
     return HYDRO_REFUSED_SENSOR;
   }
   return sensors_suffice(settings) ? HYDRO_TAKEN : HYDRO_REFUSED_MISSING;
