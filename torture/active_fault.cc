@@ -84,6 +84,7 @@ bool ActiveFault::BeginOnMachine() {
     case FaultKind::kSensorSpike:
     case FaultKind::kSensorSaturate:
     case FaultKind::kSensorLie:
+    case FaultKind::kBoardInput:
       world_.sensor_faults().push_back(
           {injection_.kind, static_cast<size_t>(std::clamp(injection_.amount, 0.0, 5.0)), false, 0});
       return true;
@@ -123,13 +124,39 @@ void ActiveFault::BeginOnProcess() {
     case FaultKind::kSignal:
       if (process != nullptr) process->Signal(SIGTERM);
       break;
+    case FaultKind::kTornSet:
+      if (process != nullptr) process->FreezeUntil(end());
+      break;
+    case FaultKind::kPlannerSilent:
+      world_.SilencePlanner(end());
+      break;
     default:
       break;
   }
 }
 
+bool ActiveFault::BeginOnBoard() {
+  BoardFaults& board = world_.board();
+  switch (injection_.kind) {
+    case FaultKind::kBoardError: {
+      const auto which = static_cast<int>(injection_.amount);
+      (which % 2 == 0 ? board.refuses_reading : board.refuses_output) = true;
+      board.refuses_zero = which >= 2;
+      return true;
+    }
+    case FaultKind::kEncoderLost:
+      board.encoder_lost = true;
+      return true;
+    case FaultKind::kGuardianGone:
+      board.guardian_gone = true;
+      return true;
+    default:
+      return false;
+  }
+}
+
 void ActiveFault::Begin() {
-  if (!BeginOnNetwork() && !BeginOnMachine()) BeginOnProcess();
+  if (!BeginOnNetwork() && !BeginOnMachine() && !BeginOnBoard()) BeginOnProcess();
 }
 
 std::optional<int64_t> ActiveFault::Continue() {
@@ -149,6 +176,7 @@ std::optional<int64_t> ActiveFault::Continue() {
       world_.SendRearm();
       return std::nullopt;
     case FaultKind::kSet:
+    case FaultKind::kTornSet:
       world_.SendSet(static_cast<int>(injection_.amount));
       return std::nullopt;
     case FaultKind::kHugeSequence:
@@ -156,6 +184,15 @@ std::optional<int64_t> ActiveFault::Continue() {
     case FaultKind::kNonfiniteCommand:
     case FaultKind::kExcessiveCommand:
       SendChangedCommand();
+      return std::nullopt;
+    case FaultKind::kNonfiniteReference:
+      SendNonfiniteReference();
+      return std::nullopt;
+    case FaultKind::kStrangeRequest:
+      SendStrangeRequest();
+      return std::nullopt;
+    case FaultKind::kWrongPlan:
+      SendWrongPlan();
       return std::nullopt;
     case FaultKind::kFlood:
       SendFlood();

@@ -53,8 +53,10 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
     default:
       return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
         const std::vector<std::string> expected(world.has_logger() ? 1 : 0, "logger");
-        FaultyRig rig(config, world.process(number), world.sensor_faults(), world.observer());
-        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, "hydro-plant",
+        BoardFaults* const board = world.has_driver() ? &world.board() : nullptr;
+        FaultyRig rig(config, world.process(number), world.sensor_faults(), board, world.observer());
+        const char* const program = board == nullptr ? "hydro-plant" : "hydro-driver";
+        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, program,
                                                            [&world, number] { return Beats(world, number); });
         return app->Run();
       };

@@ -27,10 +27,10 @@ class Silence {
 
 RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
   // Reading a configuration takes as long as a second of a run.
-  using Key = std::tuple<std::string, bool, bool, bool, double>;
+  using Key = std::tuple<std::string, bool, bool, bool, bool, double>;
   static std::map<Key, Stacks> known;
   const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.logger_required,
-                schedule.stale_input_s);
+                schedule.planner, schedule.stale_input_s);
   auto found = known.find(key);
   if (found == known.end()) {
     const settings::StackConfig config = ConfigFor(schedule, config_file);

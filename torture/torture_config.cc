@@ -28,6 +28,8 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
       std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
       fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
   };
+  if (schedule.planner && file.empty())
+    overrides.insert(overrides.end(), {"reference.kind=planner", "reference.timeout_s=0.2"});
   if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
   if (file.empty()) return Parsed(overrides);
   return settings::WithoutOwnPrograms(

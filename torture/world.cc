@@ -47,6 +47,9 @@ World::World(const Schedule& schedule, const Stacks& stacks)
   }
   if (schedule.key) observer_.SetSealed();
   command_channel_ = network_.ChannelNumber(channels_.Of<motor_command_t>());
+  reference_channel_ = network_.ChannelNumber(channels_.Of<pressure_command_t>());
+  plan_channel_ = network_.ChannelNumber(channels_.Of<arm_plan_t>());
+  if (schedule.planner) Push(kStarts, Happening::kPlanner, 0);
   std::vector<Role> first{Role::kPlant, Role::kPressure, Role::kPosition};
   if (schedule.logger) first.push_back(Role::kLogger);
   if (schedule.launcher) first = {Role::kLauncher};
@@ -152,6 +155,9 @@ void World::Happen(const Event& event) {
     case Happening::kLaunchDue:
       CheckLaunchIsOver(event.number);
       break;
+    case Happening::kPlanner:
+      StartPlanner();
+      break;
   }
 }
 
@@ -174,6 +180,8 @@ void World::Send(PacketPtr packet, int sender) {
     recorded_.push_back(packet);
     if (recorded_.size() > kMostRecorded) recorded_.pop_front();
   }
+  if (packet->channel == reference_channel_) newest_reference_ = packet;
+  if (packet->channel == plan_channel_) newest_plan_ = packet;
   network_.Send(packet, static_cast<int>(process.role()), receivers_);
   observer_.OnSent(*packet, process);
   if (schedule_.launcher) launches_.OnSent(*packet);

@@ -173,6 +173,17 @@ void World::Destroy(SimulatedProcess& process, int signal) {
   Reap(process);
 }
 
+void World::StartPlanner() {
+  if (ending_ || (planner_ != nullptr && !planner_->ended())) return;
+  planner_ = &Begin(Role::kOperator, PlannerProgram(config_), false);
+}
+
+void World::SilencePlanner(TrueTime until) {
+  if (!schedule_.planner) return;
+  if (planner_ != nullptr && !planner_->ended()) Destroy(*planner_, SIGKILL);
+  Push(until, Happening::kPlanner, 0);
+}
+
 void World::Suspend(Role role, TrueTime until) {
   TrueTime& awake_at = awake_at_[static_cast<size_t>(role)];
   if (awake_at > now_) return;  // asleep already

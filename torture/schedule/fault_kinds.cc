@@ -55,6 +55,18 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kLauncherCrash, "launcher_crash", "launcher", 0, 0, 0, 0, ""},
     {FaultKind::kInterrupt, "interrupt", "launcher", 0.001, 2, 1, 3,
      "SIGINTs: 1, or 2, the second when it ends"},
+    {FaultKind::kNonfiniteReference, "nonfinite_reference", "all", 0, 0, 0, 3.999,
+     "NaN, which infinity, or a voltage"},
+    {FaultKind::kStrangeRequest, "strange_request", "all", 0, 0, 0, 7.999, "which text, addressee or kind"},
+    {FaultKind::kTornSet, "torn_set", "pressure_ctrl position_ctrl", 0.6, 2, 0, 7.999,
+     "which values, and undo"},
+    {FaultKind::kWrongPlan, "wrong_plan", "all", 0, 0, 0, 6.999, "what is wrong with it"},
+    {FaultKind::kPlannerSilent, "planner_silent", "all", 0.3, 2, 0, 0, ""},
+    {FaultKind::kBoardInput, "board_input", "plant", 0.001, 0.5, 0, 6, "which sensor"},
+    {FaultKind::kBoardError, "board_error", "plant", 0, 0, 0, 3.999,
+     "reading or output, takes the zero or not"},
+    {FaultKind::kEncoderLost, "encoder_lost", "plant", 0, 0, 0, 0, ""},
+    {FaultKind::kGuardianGone, "guardian_gone", "plant", 0, 0, 0, 0, ""},
 }};
 
 constexpr std::array<std::string_view, static_cast<size_t>(Role::kCount)> kRoles{

@@ -62,11 +62,25 @@ enum class FaultKind : uint8_t {
   kLongHang,
   kLauncherCrash,
   kInterrupt,
+  // Commands and requests that no process of the stack would send.
+  kNonfiniteReference,
+  kStrangeRequest,  // of other values
+  kTornSet,         // hydro-set, while a controller stands still
+  // The planner, where one runs.
+  kWrongPlan,
+  kPlannerSilent,
+  // The board, where the plant is a driver.
+  kBoardInput,
+  kBoardError,
+  kEncoderLost,
+  kGuardianGone,
   kCount
 };
 
 // Those from here on are for a launcher: a run without one has none of them.
 inline constexpr FaultKind kFirstOfLauncher = FaultKind::kLongHang;
+// Those from here on are drawn beside the others, from a stream of their own.
+inline constexpr FaultKind kFirstOfMore = FaultKind::kNonfiniteReference;
 
 struct Injection {
   double at_s = 0;

@@ -119,8 +119,13 @@ void ReadRole(const LineReader& line, const std::string& word, Schedule* schedul
     schedule->logger_required = word == "logger=yes";
   } else if (word == "launcher=yes") {
     schedule->launcher = true;
+  } else if (word == "driver=yes") {
+    schedule->driver = true;
+  } else if (word == "planner=yes") {
+    schedule->planner = true;
   } else {
-    throw line.Error(word, "logger=yes, logger=optional, launcher=yes or the end of the line");
+    throw line.Error(
+        word, "logger=yes, logger=optional, launcher=yes, driver=yes, planner=yes or the end of the line");
   }
 }
 
@@ -128,11 +133,12 @@ void ReadRole(const LineReader& line, const std::string& word, Schedule* schedul
 
 std::string ScheduleText(const Schedule& schedule) {
   std::string text =
-      fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}{}\n", kFirstLine,
+      fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}{}{}{}\n", kFirstLine,
                   schedule.lockstep ? "lockstep" : "realtime",
                   schedule.explicit_rearm ? "explicit" : "restart", schedule.key ? "yes" : "no",
                   ShortestNumber(schedule.stale_input_s), ShortestNumber(schedule.faults_until_s),
-                  schedule.seed, LoggerText(schedule), schedule.launcher ? " launcher=yes" : "");
+                  schedule.seed, LoggerText(schedule), schedule.launcher ? " launcher=yes" : "",
+                  schedule.driver ? " driver=yes" : "", schedule.planner ? " planner=yes" : "");
   for (const Injection& injection : schedule.injections) {
     text +=
         fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),
