@@ -48,9 +48,11 @@ bool ActiveFault::BeginOnNetwork() {
 
 bool ActiveFault::BeginOnMachine() {
   const auto for_each = [&](auto&& act) {
-    for (int role = 0; role < static_cast<int>(Role::kOperator); ++role) {
-      if (injection_.target == kEveryone || injection_.target == role) act(static_cast<Role>(role));
+    if (injection_.target != kEveryone) {
+      act(role());
+      return;
     }
+    for (int role = 0; role < static_cast<int>(Role::kOperator); ++role) act(static_cast<Role>(role));
   };
   switch (injection_.kind) {
     case FaultKind::kDrift:
@@ -156,6 +158,7 @@ bool ActiveFault::BeginOnBoard() {
 }
 
 void ActiveFault::Begin() {
+  if (injection_.target >= 0 && IsOfKnee(role()) && !world_.has_knee()) return;
   if (!BeginOnNetwork() && !BeginOnMachine() && !BeginOnBoard()) BeginOnProcess();
 }
 

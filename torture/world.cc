@@ -53,6 +53,13 @@ World::World(const Schedule& schedule, const Stacks& stacks)
   std::vector<Role> first{Role::kPlant, Role::kPressure, Role::kPosition};
   if (schedule.logger) first.push_back(Role::kLogger);
   if (schedule.launcher) first = {Role::kLauncher};
+  if (schedule.limb) {
+    machines_.resize(static_cast<size_t>(Role::kCount));
+    Random draw(schedule.seed, 7);
+    machines_[static_cast<size_t>(Role::kKneePlant)] =
+        std::make_unique<Machine>("knee", &now_, draw.Between(10, 1e5), 1.7e9 + draw.Between(0, 1e6));
+    first.insert(first.end(), {Role::kKneePlant, Role::kKneePressure, Role::kKneePosition});
+  }
   for (const Role role : first) {
     Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(role));
   }

@@ -50,6 +50,7 @@ class World : public NetworkPort {
   std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
   BoardFaults& board() { return board_; }
   bool has_driver() const { return schedule_.driver; }
+  bool has_knee() const { return schedule_.limb; }
   // How many injected faults stop the launcher now.
   int& launcher_hangs() { return launcher_hangs_; }
   Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(HomeOf(role))]; }

@@ -26,7 +26,9 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       output_left_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<output_left_t>())),
       pressure_command_(
           network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<pressure_command_t>())),
-      reference_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<arm_reference_t>())) {}
+      reference_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<arm_reference_t>())) {
+  if (!config.siblings.empty()) limb_.emplace(config, network, now);
+}
 
 PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
   const auto number = static_cast<size_t>(plant.number());
@@ -43,6 +45,7 @@ void Observer::Report(const std::string& invariant, const std::string& text) {
 }
 
 void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
+  if (limb_ && IsOfKnee(sender.role())) limb_->OnSent(packet, &coverage_);
   if (packet.channel == state_) OnState(packet, sender);
   if (packet.channel == fault_) OnFault(packet);
   if (packet.channel == stop_) OnStop(packet, sender);
@@ -109,6 +112,7 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
            fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
                        network_.ChannelName(packet.channel)));
   }
+  if (limb_ && receiver.role() == Role::kPlant) limb_->OnHandled(packet, receiver);
   if (packet.channel == state_ && receiver.role() == Role::kPosition)
     losses_[receiver.number()].Handle(packet);
   if (packet.channel == state_ || packet.channel == run_) in_a_run_.insert(receiver.number());
@@ -184,6 +188,9 @@ void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double volta
   PlantRecord& record = RecordOf(plant);
   if (record.heartbeat) record.unsupervised = plant.machine().Now() - *record.heartbeat;
   PlantInvariants(*this, record).OnDrive(tick, voltage);
+  if (!limb_) return;
+  if (const std::string wrong = limb_->OnDrive(plant, tick, voltage); !wrong.empty())
+    Report("zero volts of all joints while one has a fault or is silent", wrong);
 }
 
 void Observer::SetOtherConfiguration(bool present) {
@@ -218,6 +225,8 @@ void Observer::OnReference(const Packet& packet, const SimulatedProcess& sender)
   constexpr int64_t kUnnoticed = 100;  // ticks: states may be lost
   arm_reference_t reference;
   if (sender.role() != Role::kPosition || newest_plant_ == nullptr || !Decode(packet, &reference)) return;
+  if (reference.value != reference_value_) reference_moved_ = *now_;
+  reference_value_ = reference.value;
   const auto returns = static_cast<int64_t>(config_.limits.return_s * config_.plant.rate_hz);
   if (reference.tick > newest_plant_->tick ||
       reference.tick <= newest_plant_->zero_tick + returns + kUnnoticed)
@@ -238,6 +247,7 @@ void Observer::OnEnd(const SimulatedProcess& process) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
     return;
   }
+  if (IsOfKnee(process.role())) return;  // of its messages only those matter that the others hear
   if (process.role() == Role::kPlant) CheckLeft(RecordOf(process));
   // One that finds itself misconfigured leaves alone.
   if (process.misconfigured() && process.exit_code() == 1) return;

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "model/terms/measurement.h"
 #include "settings/stack_config.h"
 #include "torture/invariants/coverage.h"
+#include "torture/invariants/limb_invariants.h"
 #include "torture/invariants/loss_count.h"
 #include "torture/invariants/plant_record.h"
 #include "torture/machines/network.h"
@@ -61,6 +63,12 @@ class Observer {
   // When a plant last obeyed a command; -1: never.
   TrueTime last_obeyed() const { return last_obeyed_; }
   PlantRecord* newest_plant() { return newest_plant_; }
+  // When a reference was last another than the one before; -1: never.
+  TrueTime reference_moved() const { return reference_moved_; }
+  // When the other joint of a limb was driven last; none: there is none.
+  std::optional<TrueTime> sibling_driven() const {
+    return limb_ ? std::optional(limb_->sibling_driven()) : std::nullopt;
+  }
 
  private:
   friend class PlantInvariants;
@@ -87,11 +95,14 @@ class Observer {
   std::set<int64_t> misconfigured_;  // sessions
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
+  TrueTime reference_moved_ = -1;
+  double reference_value_ = 0;  // of the newest
   static constexpr TrueTime kChangedForgotten = 2'000'000'000;  // ns: the reference has come back
   TrueTime changed_state_ = -kChangedForgotten;  // when a state with wrong bits was handled last
   TrueTime other_configuration_ = -1;            // since when
-  std::map<int, LossCount> losses_;              // of position loops, by number of the process
-  std::set<int> in_a_run_;                       // processes that have heard of a plant
+  std::optional<LimbInvariants> limb_;
+  std::map<int, LossCount> losses_;     // of position loops, by number of the process
+  std::set<int> in_a_run_;              // processes that have heard of a plant
   std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent
 };
 

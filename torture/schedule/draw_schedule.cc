@@ -77,6 +77,22 @@ void DrawLauncher(uint64_t seed, Schedule* schedule) {
   }
 }
 
+// What befalls the other joint.
+void DrawKnee(Random& random, Schedule* schedule) {
+  std::vector<FaultKind> kinds;
+  for (const FaultKindInfo& info : FaultKinds()) {
+    if (!info.knee_targets.empty()) kinds.push_back(info.kind);
+  }
+  for (uint64_t i = 1 + random.Index(4); i > 0; --i) {
+    Injection injection;
+    injection.kind = kinds[random.Index(kinds.size())];
+    injection.target = DrawTarget(random, InfoOf(injection.kind).knee_targets);
+    DrawNumbers(random, schedule->faults_until_s, &injection);
+    if (random.Chance(0.3)) injection.at_s = BesideOneOf(random, schedule->injections, 0);
+    schedule->injections.push_back(injection);
+  }
+}
+
 // What a run has besides, and what befalls it there; also from a stream of its own.
 void DrawMore(uint64_t seed, Schedule* schedule) {
   Random random(seed, 6);
@@ -89,16 +105,16 @@ void DrawMore(uint64_t seed, Schedule* schedule) {
     kinds.insert(kinds.end(), {FaultKind::kBoardInput, FaultKind::kBoardError, FaultKind::kEncoderLost,
                                FaultKind::kGuardianGone});
   }
+  schedule->limb = random.Chance(0.2) && !schedule->lockstep && !schedule->launcher;
   for (uint64_t i = random.Index(5); i > 0; --i) {
     Injection injection;
     injection.kind = kinds[random.Index(kinds.size())];
     injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
     DrawNumbers(random, schedule->faults_until_s, &injection);
-    if (random.Chance(0.3)) {
-      injection.at_s = BesideOneOf(random, schedule->injections, 0);
-    }
+    if (random.Chance(0.3)) injection.at_s = BesideOneOf(random, schedule->injections, 0);
     schedule->injections.push_back(injection);
   }
+  if (schedule->limb) DrawKnee(random, schedule);
 }
 
 }  // namespace

@@ -100,12 +100,16 @@ struct FaultKindInfo {
   double longest_s = 0;
   double least = 0;  // range of the amount
   double most = 0;
-  std::string_view amount;  // what the amount is; empty: none
+  std::string_view amount;             // what the amount is; empty: none
+  std::string_view knee_targets = {};  // the same of the other joint, in runs of a limb
 };
 
 // One for each kind, in the order of FaultKind.
 std::span<const FaultKindInfo> FaultKinds();
 inline const FaultKindInfo& InfoOf(FaultKind kind) { return FaultKinds()[static_cast<size_t>(kind)]; }
+
+// Of this run's stack and of the knee.
+std::string TargetsOf(const FaultKindInfo& info);
 
 // "plant", "pressure_ctrl", ..., "all".
 std::string_view TargetName(int target);
