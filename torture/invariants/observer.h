@@ -96,7 +96,7 @@ class Observer {
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
   TrueTime reference_moved_ = -1;
-  double reference_value_ = 0;  // of the newest
+  double reference_value_ = 0;                                  // of the newest
   static constexpr TrueTime kChangedForgotten = 2'000'000'000;  // ns: the reference has come back
   TrueTime changed_state_ = -kChangedForgotten;  // when a state with wrong bits was handled last
   TrueTime other_configuration_ = -1;            // since when
