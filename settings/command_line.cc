@@ -10,6 +10,7 @@
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <new>
 
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
@@ -348,6 +349,13 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(
+        stderr,
+        "%s: out of memory: it needs more than this process may have; a larger limit (ulimit -v) or a "
+        "smaller input is needed\n",
+        program.c_str());
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 1;
