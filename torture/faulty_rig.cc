@@ -58,7 +58,7 @@ void FaultyRig::ReadBoard(model::Measurement* measured) {
   if (std::exchange(board_->encoder_lost, false))
     throw plant::RigError("encoder_lost", "driver.motor_angle: the counter has jumped");
   board_faults_.clear();
-  for (size_t sensor = 0; sensor < kSensors; ++sensor) {
+  for (size_t sensor = 0; sensor < kSensorCount; ++sensor) {
     const bool bad = std::any_of(faults_.begin(), faults_.end(), [&](const SensorFault& fault) {
       return fault.kind == FaultKind::kBoardInput && fault.sensor == sensor;
     });

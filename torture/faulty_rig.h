@@ -40,7 +40,7 @@ class FaultyRig : public plant::Rig {
   plant::OutputLeft Zero() noexcept override;
 
  private:
-  static constexpr size_t kSensors = 6;
+  static constexpr size_t kSensorCount = 6;
   void ReadBoard(model::Measurement* measured);
 
   plant::SimulatedRig rig_;
@@ -50,7 +50,7 @@ class FaultyRig : public plant::Rig {
   Observer& observer_;
   int64_t tick_ = 0;
   double voltage_ = 0;  // that the output holds
-  std::array<int, kSensors> good_readings_{};
+  std::array<int, kSensorCount> good_readings_{};
   std::vector<plant::RigFault> board_faults_;
 };
 
