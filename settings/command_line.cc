@@ -1,5 +1,8 @@
 #include "settings/command_line.h"
 
+#include <sys/mman.h>
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -339,8 +342,31 @@ std::string FileToRecord(const std::string& output, const std::string& log) {
   return output.empty() ? log : output;
 }
 
+namespace {
+
+constexpr size_t kStack = size_t{512} << 10;  // bytes: more than any program's main thread uses
+
+[[gnu::noinline]] void TouchStack() {
+  constexpr size_t kPage = 4096;
+  volatile char stack[kStack - (size_t{64} << 10)];
+  for (size_t i = 0; i < sizeof stack; i += kPage) stack[sizeof stack - 1 - i] = 0;
+}
+
+// Under a limit of memory (ulimit -v) a stack that cannot grow ends a process without a word. So it grows before the rest is used up.
+void ReserveStack() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  void* const room = mmap(nullptr, kStack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  munmap(room, kStack);
+  TouchStack();
+}
+
+}  // namespace
+
 int RunProgram(const std::string& program, const std::function<int()>& body) {
   try {
+    ReserveStack();
     const int exit_code = body();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
     std::fprintf(stderr, "%s: standard output cannot be written: %s\n", program.c_str(),
