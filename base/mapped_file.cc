@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 
 #include "base/input_error.h"
 #include "base/read_files.h"
@@ -33,6 +34,13 @@ class Descriptor {
   throw InputError(file + ": cannot be read: " + std::strerror(error) + "; a readable file is needed");
 }
 
+// No fault of the file.
+[[noreturn]] void ThrowTooLarge(const std::string& file, size_t size) {
+  throw std::runtime_error(
+      file + ": out of memory: its " + std::to_string(size) +
+      " bytes are more than this process may have; a larger limit (ulimit -v) is needed");
+}
+
 }  // namespace
 
 MappedFile::MappedFile(const std::string& file) {
@@ -48,6 +56,7 @@ MappedFile::MappedFile(const std::string& file) {
     size_ = static_cast<size_t>(status.st_size);
     if (size_ == 0) return;
     void* mapping = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor.get(), 0);
+    if (mapping == MAP_FAILED && errno == ENOMEM) ThrowTooLarge(file, size_);
     if (mapping == MAP_FAILED) ThrowCannotRead(file, errno);
     madvise(mapping, size_, MADV_SEQUENTIAL);
     mapping_ = mapping;

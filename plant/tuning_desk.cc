@@ -28,7 +28,8 @@ TuningDesk::TuningDesk(process::Participant& participant, const settings::StackC
       configured_(std::make_shared<settings::StackConfig>(config)),
       simulated_rig_(simulated_rig),
       hooks_(std::move(hooks)),
-      aside_(!participant.clock().simulated()),
+      // Of many processes on one thread none may depend on how long another thread takes, either.
+      aside_(!participant.clock().simulated() && participant.bus().process() == nullptr),
       values_(tuning::ValuesOf(config)),
       in_force_{configured_, {}} {
   in_force_.message.version = in_force_.message.acts_at = in_force_.message.reference_from = 0;

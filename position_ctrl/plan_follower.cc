@@ -75,6 +75,12 @@ std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle, const std:
   return "";
 }
 
+// Whether it was made after the other.
+bool IsLater(const arm_plan_t& plan, const arm_plan_t& other) {
+  return plan.tick > other.tick ||
+         (!plan.time.empty() && !other.time.empty() && plan.time.back() > other.time.back());
+}
+
 PlannedPoint Between(const arm_plan_t& plan, size_t i, double time) {
   const Cubic c = Behind(plan, i);
   const double s = (time - plan.time[i]) / c.h;
@@ -112,7 +118,9 @@ const PlanFollower::Current* PlanFollower::newest() const {
 std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
   if (const Current* last = newest(); last != nullptr) {
     if (plan.session == last->plan.session) {
-      if (plan.sequence <= last->plan.sequence) return "";  // repeated, or overtaken: the newer one stays
+      // Repeated, or overtaken: the newer one stays. A planner that goes on behind its newest number has not sent that one.
+      const bool goes_on = silent(tick) && IsLater(plan, last->plan);
+      if (plan.sequence <= last->plan.sequence && !goes_on) return "";
     } else if (!silent(tick)) {
       return "another planner is followed already; allowed is one";
     }

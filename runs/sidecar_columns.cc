@@ -164,21 +164,16 @@ void NoteUnits(const tables::Table& table, const std::optional<SignalColumn>& ti
   run->layout += used.empty() ? ", whose units the sidecar replaces" : " (" + Joined(used) + ")";
 }
 
-// What few bits have done to the signals.
-void CountOnAndDoubt(const Sources& sources, tables::Table* table, MeasuredRun* run) {
-  const SignalColumn *command = nullptr, *speed = nullptr;
+// What few bits have done to the angles.
+void CountAnglesOn(const Sources& sources, tables::Table* table, const MeasuredRun& run) {
   for (size_t i = 0; i < kSignals.size(); ++i) {
     if (!sources[i].has_value()) continue;
     const auto signal = kSignals[i].signal;
-    if (signal == &MeasuredRun::voltage) command = &*sources[i];
-    if (signal == &MeasuredRun::motor_speed) speed = &*sources[i];
     const bool arm = signal == &MeasuredRun::arm_angle;
     if (!arm && signal != &MeasuredRun::motor_angle) continue;
-    const double revolution = arm && run->units.linear_arm ? 0 : 2 * std::numbers::pi;
+    const double revolution = arm && run.units.linear_arm ? 0 : 2 * std::numbers::pi;
     CountAngleOn(*sources[i], kSignals[i].ours, revolution, table);
   }
-  if (command == nullptr || speed == nullptr) return;
-  run->caution = UnsignedCommand(*command, SignalValues(*table, *speed), *table);
 }
 
 // The run's times by the number of the row.
@@ -235,7 +230,7 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
     RequireSeconds(columns, *table, &*time);
     MendTimes(*time, table);
   }
-  CountOnAndDoubt(sources, table, run);
+  CountAnglesOn(sources, table, *run);
   run->lines = table->lines;
   run->layout = table->layout;
   NoteUnits(*table, time, sources, run);

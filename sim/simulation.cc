@@ -1,6 +1,7 @@
 #include "sim/simulation.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "base/host_name.h"
 #include "base/input_error.h"
@@ -57,24 +58,26 @@ SimulationResult Simulate(const settings::StackConfig& config,
   settings::StackConfig simulated = lockstep;
   if (machine != nullptr) simulated.model.description = *machine;
   plant::SimulatedRig rig(simulated);
-  plant::PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
-  pressure_ctrl::PressureApp pressure(bus, clock, lockstep);
-  position_ctrl::PositionApp position(bus, clock, lockstep);
+  // A stack that cannot grow ends a process without a word; of memory that cannot be had it is said.
+  const auto plant =
+      std::make_unique<plant::PlantApp>(bus, clock, lockstep, rig, std::vector<std::string>{}, "hydro-sim");
+  const auto pressure = std::make_unique<pressure_ctrl::PressureApp>(bus, clock, lockstep);
+  const auto position = std::make_unique<position_ctrl::PositionApp>(bus, clock, lockstep);
 
-  plant.FollowTuning(tunings);
+  plant->FollowTuning(tunings);
   SimulationResult result;
-  result.exit_code = plant.Run();
+  result.exit_code = plant->Run();
   const auto dispatch_all = [&] {
     while (bus.HandleUntil(clock.Now()) > 0) {
     }
   };
   dispatch_all();
-  position.Finish();
-  pressure.Finish();
+  position->Finish();
+  pressure->Finish();
   dispatch_all();
-  result.ticks = plant.tick();
-  result.duration = static_cast<double>(plant.tick()) / config.plant.rate_hz;
-  result.failure = plant.failure();
+  result.ticks = plant->tick();
+  result.duration = static_cast<double>(plant->tick()) / config.plant.rate_hz;
+  result.failure = plant->failure();
   return result;
 }
 

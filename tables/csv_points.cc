@@ -25,6 +25,14 @@ size_t ColumnOf(const CsvText& text, const std::string& name) {
   return static_cast<size_t>(found - names.begin());
 }
 
+// A file that is cut in its last number has another number there, and a machine would follow it.
+void CheckLastNumber(const CsvText& text, size_t time_column, size_t value_column) {
+  const size_t last = text.names().size() - 1;
+  if (!text.unended() || (last != time_column && last != value_column)) return;
+  throw text.CellError(
+      last, "a number before the end of a line: the file may be cut within it; look at it, and end the line");
+}
+
 double FiniteNumber(const CsvText& text, size_t column) {
   const std::optional<double> value = text.Number(column);
   if (!value.has_value() || !std::isfinite(*value)) throw text.CellError(column, "a finite number");
@@ -42,6 +50,7 @@ std::vector<trajectory::Step> ParseCsvPoints(const std::string& text, const std:
   while (rows.Next()) {
     const double time = FiniteNumber(rows, time_column);
     const double value = FiniteNumber(rows, value_column);
+    CheckLastNumber(rows, time_column, value_column);
     if (!points.empty() && time <= points.back().time) {
       throw rows.CellError(time_column,
                            "above " + ShortestNumber(points.back().time) + ", the time of the row before");

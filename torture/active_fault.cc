@@ -48,9 +48,11 @@ bool ActiveFault::BeginOnNetwork() {
 
 bool ActiveFault::BeginOnMachine() {
   const auto for_each = [&](auto&& act) {
-    for (int role = 0; role < static_cast<int>(Role::kOperator); ++role) {
-      if (injection_.target == kEveryone || injection_.target == role) act(static_cast<Role>(role));
+    if (injection_.target != kEveryone) {
+      act(role());
+      return;
     }
+    for (int role = 0; role < static_cast<int>(Role::kOperator); ++role) act(static_cast<Role>(role));
   };
   switch (injection_.kind) {
     case FaultKind::kDrift:
@@ -84,6 +86,7 @@ bool ActiveFault::BeginOnMachine() {
     case FaultKind::kSensorSpike:
     case FaultKind::kSensorSaturate:
     case FaultKind::kSensorLie:
+    case FaultKind::kBoardInput:
       world_.sensor_faults().push_back(
           {injection_.kind, static_cast<size_t>(std::clamp(injection_.amount, 0.0, 5.0)), false, 0});
       return true;
@@ -123,13 +126,40 @@ void ActiveFault::BeginOnProcess() {
     case FaultKind::kSignal:
       if (process != nullptr) process->Signal(SIGTERM);
       break;
+    case FaultKind::kTornSet:
+      if (process != nullptr) process->FreezeUntil(end());
+      break;
+    case FaultKind::kPlannerSilent:
+      world_.SilencePlanner(end());
+      break;
     default:
       break;
   }
 }
 
+bool ActiveFault::BeginOnBoard() {
+  BoardFaults& board = world_.board();
+  switch (injection_.kind) {
+    case FaultKind::kBoardError: {
+      const auto which = static_cast<int>(injection_.amount);
+      (which % 2 == 0 ? board.refuses_reading : board.refuses_output) = true;
+      board.refuses_zero = which >= 2;
+      return true;
+    }
+    case FaultKind::kEncoderLost:
+      board.encoder_lost = true;
+      return true;
+    case FaultKind::kGuardianGone:
+      board.guardian_gone = true;
+      return true;
+    default:
+      return false;
+  }
+}
+
 void ActiveFault::Begin() {
-  if (!BeginOnNetwork() && !BeginOnMachine()) BeginOnProcess();
+  if (injection_.target >= 0 && IsOfKnee(role()) && !world_.has_knee()) return;
+  if (!BeginOnNetwork() && !BeginOnMachine() && !BeginOnBoard()) BeginOnProcess();
 }
 
 std::optional<int64_t> ActiveFault::Continue() {
@@ -149,6 +179,7 @@ std::optional<int64_t> ActiveFault::Continue() {
       world_.SendRearm();
       return std::nullopt;
     case FaultKind::kSet:
+    case FaultKind::kTornSet:
       world_.SendSet(static_cast<int>(injection_.amount));
       return std::nullopt;
     case FaultKind::kHugeSequence:
@@ -156,6 +187,15 @@ std::optional<int64_t> ActiveFault::Continue() {
     case FaultKind::kNonfiniteCommand:
     case FaultKind::kExcessiveCommand:
       SendChangedCommand();
+      return std::nullopt;
+    case FaultKind::kNonfiniteReference:
+      SendNonfiniteReference();
+      return std::nullopt;
+    case FaultKind::kStrangeRequest:
+      SendStrangeRequest();
+      return std::nullopt;
+    case FaultKind::kWrongPlan:
+      SendWrongPlan();
       return std::nullopt;
     case FaultKind::kFlood:
       SendFlood();

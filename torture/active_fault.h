@@ -24,11 +24,15 @@ class ActiveFault {
   TrueTime end() const { return world_.now() + static_cast<TrueTime>(injection_.duration_s * 1e9); }
   bool BeginOnNetwork();
   bool BeginOnMachine();
+  bool BeginOnBoard();
   void BeginOnProcess();
   void SendForeignStop();
   void SendSecondPlant();
   void SendSecondSender();
   void SendSecondReference();
+  void SendNonfiniteReference();
+  void SendStrangeRequest();
+  void SendWrongPlan();
   void SendReplay();
   void SendFlood();
   // The newest genuine motor command, with a number in it changed.

@@ -1,6 +1,9 @@
 // The injected faults that send messages: the operator's requests, another stack on the network, and somebody
 // who has listened and sends what no process of the stack would.
+#include <algorithm>
 #include <cmath>
+#include <hydro/arm_plan_t.hpp>
+#include <hydro/tuning_request_t.hpp>
 #include <limits>
 
 #include "torture/active_fault.h"
@@ -76,6 +79,108 @@ void ActiveFault::SendFlood() {
   status.state = process_status_t::READY;
   status.text = std::string(random_.Index(200), 'x');
   world_.Forge(status);
+}
+
+void ActiveFault::SendNonfiniteReference() {
+  const Packet* const packet = world_.newest_reference();
+  pressure_command_t command;
+  if (packet == nullptr || !Decode(*packet, &command)) return;
+  ++command.sequence;
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  switch (static_cast<int>(injection_.amount)) {
+    case 0:
+      command.pressure_ref = kNan;
+      break;
+    case 1:
+      command.pressure_ref = kInfinite;
+      break;
+    case 2:
+      command.pressure_ref = -kInfinite;
+      break;
+    default:
+      command.open_loop = true;
+      command.voltage = kNan;
+      break;
+  }
+  world_.Forge(command, Origin::kChanged);
+}
+
+// A request as hydro-set sends it, but for one thing.
+void ActiveFault::SendStrangeRequest() {
+  SimulatedProcess* const plant = world_.Find(Role::kPlant);
+  const PlantRecord* const record = world_.observer().newest_plant();
+  if (plant == nullptr || record == nullptr) return;
+  tuning_request_t request{};
+  request.tick = record->tick;
+  request.session = static_cast<int64_t>(random_.Next() >> 1) + 1;
+  request.request = 1;
+  request.addressee = plant->identity().session;
+  request.kind = tuning_request_t::SET;
+  request.source = "nobody";
+  request.changes = "position.c2=400";
+  constexpr size_t kTooLong = 70'000;
+  switch (static_cast<int>(injection_.amount)) {
+    case 0:
+      request.changes.assign(kTooLong, 'x');
+      break;
+    case 1:
+      request.changes = "position.c2=nan";
+      break;
+    case 2:
+      ++request.addressee;
+      break;
+    case 3:
+      request.kind = 7;
+      break;
+    case 4:
+      request.kind = tuning_request_t::UNDO;
+      break;
+    case 5:
+      request.changes += "\nposition.c2=401";
+      break;
+    case 6:
+      request.tick = std::numeric_limits<int64_t>::min();
+      break;
+    default:
+      request.changes = "limits.arm_angle=1e308\n\xed\xa0\x80=1";
+      break;
+  }
+  world_.Forge(request);
+}
+
+// The planner's newest plan in its own name, or another's, but for one thing.
+void ActiveFault::SendWrongPlan() {
+  const Packet* const packet = world_.newest_plan();
+  arm_plan_t plan;
+  if (packet == nullptr || !Decode(*packet, &plan) || plan.count < 2) return;
+  ++plan.sequence;
+  switch (static_cast<int>(injection_.amount)) {
+    case 0:
+      std::fill(plan.arm_angle.begin(), plan.arm_angle.end(), 5.0);
+      break;
+    case 1:
+      plan.torque.back() = std::numeric_limits<double>::quiet_NaN();
+      break;
+    case 2:
+      plan.session = static_cast<int64_t>(injection_.seed) + 133;
+      plan.sequence = 0;
+      break;
+    case 3:
+      plan.count = 0;
+      for (auto* numbers : {&plan.time, &plan.arm_angle, &plan.arm_speed, &plan.torque}) numbers->clear();
+      break;
+    case 4:
+      std::reverse(plan.time.begin(), plan.time.end());
+      break;
+    case 5:
+      plan.sequence = int64_t{1} << 62;
+      break;
+    default:
+      std::fill(plan.arm_speed.begin(), plan.arm_speed.end(), 1e6);
+      break;
+  }
+  world_.Forge(plan, Origin::kChanged);
 }
 
 void ActiveFault::SendChangedCommand() {

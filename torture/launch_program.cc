@@ -27,7 +27,8 @@ class TailReport : public launch::LaunchReport {
 // What launch::PlanLaunch() makes of a configuration without [[process]] sections.
 launch::LaunchPlan PlanOf(const World& world) {
   launch::LaunchPlan plan;
-  plan.children = {{"plant", {"hydro-plant"}, false},
+  const char* const role = world.has_driver() ? "driver" : "plant";
+  plan.children = {{role, {std::string("hydro-") + role}, false},
                    {"pressure_ctrl", {"hydro-pressure-ctrl"}, false},
                    {"position_ctrl", {"hydro-position-ctrl"}, false}};
   if (world.has_logger()) plan.children.push_back({"logger", {"hydro-logger"}, true});

@@ -13,7 +13,7 @@ void LaunchedChildren::Child::Signal(int signal_number) {
 }
 
 int32_t LaunchedChildren::Start(const launch::ChildSpec& spec) {
-  const auto role = static_cast<Role>(*TargetNamed(spec.role()));
+  const auto role = spec.role() == "driver" ? Role::kPlant : static_cast<Role>(*TargetNamed(spec.role()));
   children_.push_back(std::make_unique<Child>(world_, world_.StartChild(role), spec));
   stop_.Add(children_.back().get());
   return children_.back()->process.identity().id;

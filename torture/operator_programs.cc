@@ -1,5 +1,9 @@
 // The operator's requests as simulated processes: the launcher's own code (launch/logic).
 #include <array>
+#include <cmath>
+#include <hydro/arm_plan_t.hpp>
+#include <hydro/state_t.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -50,6 +54,45 @@ SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which
     std::optional<tuning_answer_t> answer;
     wait(4s, [&] { return answer || (answer = client.TakeAnswer()).has_value(); });
     return answer && answer->accepted != 0 ? 0 : 1;
+  };
+}
+
+namespace {
+
+// Where a sine of the stack's own amplitude and period would have the arm, for a while from this state on.
+arm_plan_t PlanFrom(const state_t& state) {
+  constexpr int kPoints = 8;
+  constexpr double kInterval_s = 0.05, kAmplitude_rad = 0.2, kFrequency_rad_s = 2 * std::numbers::pi * 0.25;
+  arm_plan_t plan{};
+  plan.tick = state.tick;
+  plan.count = kPoints;
+  for (int i = 0; i < kPoints; ++i) {
+    const double time = state.time + kInterval_s * i;
+    plan.time.push_back(time);
+    plan.arm_angle.push_back(kAmplitude_rad * std::sin(kFrequency_rad_s * time));
+    plan.arm_speed.push_back(kAmplitude_rad * kFrequency_rad_s * std::cos(kFrequency_rad_s * time));
+    plan.torque.push_back(0);
+  }
+  return plan;
+}
+
+}  // namespace
+
+SimulatedProcess::Body PlannerProgram(const settings::StackConfig& config) {
+  return [&config](bus::Bus& bus, bus::Clock& clock) {
+    constexpr int64_t kPlanTicks = 20;
+    const bus::Channels channels(config.bus.channel_suffix);
+    int64_t sequence = 0;
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
+      if (state.tick % kPlanTicks != 0 || !(std::fabs(state.time) < 1e6)) return;
+      arm_plan_t plan = PlanFrom(state);
+      plan.utime = clock.Utime();
+      plan.session = bus.process()->session;
+      plan.sequence = sequence++;
+      bus.Publish(channels.Of<arm_plan_t>(), plan);
+    });
+    while (bus.process()->stop_signal == 0) bus.HandleUntil(clock.Now() + 1s);
+    return 0;
   };
 }
 

@@ -36,8 +36,10 @@ bool Beats(World& world, int number) {
 
 SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config, World& world, int number) {
   switch (role) {
+    case Role::kKneePressure:
     case Role::kPressure:
       return Running<pressure_ctrl::PressureApp>(config);
+    case Role::kKneePosition:
     case Role::kPosition:
       return Running<position_ctrl::PositionApp>(config);
     case Role::kLogger:
@@ -50,11 +52,18 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
       };
     case Role::kLauncher:
       return LaunchProgram(config, world, number);
+    case Role::kKneePlant:
+      return [&config](bus::Bus& bus, bus::Clock& clock) {
+        plant::SimulatedRig rig(config);
+        return std::make_unique<plant::PlantApp>(bus, clock, config, rig)->Run();
+      };
     default:
       return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
         const std::vector<std::string> expected(world.has_logger() ? 1 : 0, "logger");
-        FaultyRig rig(config, world.process(number), world.sensor_faults(), world.observer());
-        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, "hydro-plant",
+        BoardFaults* const board = world.has_driver() ? &world.board() : nullptr;
+        FaultyRig rig(config, world.process(number), world.sensor_faults(), board, world.observer());
+        const char* const program = board == nullptr ? "hydro-plant" : "hydro-driver";
+        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, program,
                                                            [&world, number] { return Beats(world, number); });
         return app->Run();
       };

@@ -20,6 +20,8 @@ SimulatedProcess::Body RearmProgram(const settings::StackConfig& config);
 SimulatedProcess::Body StopProgram(const settings::StackConfig& config, bool watched);
 // hydro-set with one of several values, allowed ones and others, or an undo: `which`, 0 to 7.
 SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which);
+// A planner: each twenty ticks a plan of a sine, a third of a second ahead.
+SimulatedProcess::Body PlannerProgram(const settings::StackConfig& config);
 // Somebody with the stack's key, who answers each state with a motor command of that voltage, numbered from
 // `first_sequence` on.
 SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds,

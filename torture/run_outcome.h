@@ -14,6 +14,8 @@ struct Stacks {
   settings::StackConfig right;
   settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
   settings::StackConfig other_version;  // the same of kOtherVersion
+  settings::StackConfig knee;           // the other joint of a limb
+  settings::StackConfig whole;          // what an operator asks: of a limb all joints
 };
 
 struct RunOutcome {

@@ -23,18 +23,32 @@ class Silence {
   spdlog::level::level_enum level_;
 };
 
+Stacks OneStack(const settings::StackConfig& config) {
+  return {config, OtherConfig(config), OtherVersion(config), config, config};
+}
+
+Stacks LimbStacks(Schedule schedule, const std::string& config_file) {
+  const settings::StackConfig config = ConfigFor(schedule, config_file);
+  schedule.planner = false;  // the planner knows nothing of the knee
+  const settings::StackConfig knee = ConfigFor(schedule, config_file);
+  return {HipOf(config), HipOf(OtherConfig(config)), HipOf(OtherVersion(config)), KneeOf(knee),
+          LimbOf(config)};
+}
+
 }  // namespace
 
 RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
   // Reading a configuration takes as long as a second of a run.
-  using Key = std::tuple<std::string, bool, bool, bool, double>;
+  using Key = std::tuple<std::string, bool, bool, bool, bool, bool, double>;
   static std::map<Key, Stacks> known;
   const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.logger_required,
-                schedule.stale_input_s);
+                schedule.planner, schedule.limb, schedule.stale_input_s);
   auto found = known.find(key);
   if (found == known.end()) {
-    const settings::StackConfig config = ConfigFor(schedule, config_file);
-    found = known.emplace(key, Stacks{config, OtherConfig(config), OtherVersion(config)}).first;
+    found = known
+                .emplace(key, schedule.limb ? LimbStacks(schedule, config_file)
+                                            : OneStack(ConfigFor(schedule, config_file)))
+                .first;
   }
   const Silence silence;
   World world(schedule, found->second);

@@ -21,7 +21,8 @@ constexpr double kWholeRun_s = 1e9;
 
 int List() {
   for (const FaultKindInfo& info : FaultKinds()) {
-    fmt::print("{:20} target: {}; for {} to {} s", info.name, info.targets, info.shortest_s, info.longest_s);
+    fmt::print("{:20} target: {}; for {} to {} s", info.name, TargetsOf(info), info.shortest_s,
+               info.longest_s);
     if (!info.amount.empty()) fmt::print("; amount {} to {}: {}", info.least, info.most, info.amount);
     fmt::print("\n");
   }

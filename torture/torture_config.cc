@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
+#include "settings/limb_config.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
 #include "settings/toml/toml_document.h"
@@ -19,6 +21,23 @@ settings::StackConfig Parsed(const std::vector<std::string>& overrides) {
                                     "models/table1.toml");
 }
 
+constexpr char kHip[] = "hip", kKnee[] = "knee";
+
+std::string SuffixOf(const std::string& joint) { return "_" + joint; }
+
+// As settings::StackOfJoint() makes it of a limb's document.
+settings::StackConfig JointOf(settings::StackConfig config, const std::string& own,
+                              const std::string& other) {
+  settings::LimbSection limb;
+  limb.telemetry_interval_ticks = 1;
+  config.bus.channel_suffix = SuffixOf(own);
+  config.bus.limb_suffix = "";
+  config.bus.sibling_suffixes = {SuffixOf(other)};
+  config.siblings = {
+      {.name = other, .suffix = SuffixOf(other), .silence_s = settings::AllowedSilence(config, limb)}};
+  return config;
+}
+
 }  // namespace
 
 settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file) {
@@ -28,6 +47,8 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
       std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
       fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
   };
+  if (schedule.planner && file.empty())
+    overrides.insert(overrides.end(), {"reference.kind=planner", "reference.timeout_s=0.2"});
   if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
   if (file.empty()) return Parsed(overrides);
   return settings::WithoutOwnPrograms(
@@ -39,6 +60,15 @@ settings::StackConfig OtherConfig(const settings::StackConfig& config) {
   settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque=400"}, &stack);
   return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
                                     config.model.resolved_file);
+}
+
+settings::StackConfig HipOf(settings::StackConfig config) { return JointOf(std::move(config), kHip, kKnee); }
+settings::StackConfig KneeOf(settings::StackConfig config) { return JointOf(std::move(config), kKnee, kHip); }
+
+settings::StackConfig LimbOf(settings::StackConfig config) {
+  config.joints = {kHip, kKnee};
+  config.bus.joint_suffixes = {SuffixOf(kHip), SuffixOf(kKnee)};
+  return config;
 }
 
 settings::StackConfig OtherVersion(settings::StackConfig config) {

@@ -15,6 +15,11 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
 // The same stack with other gains and limits: what a process that was restarted by mistake runs.
 settings::StackConfig OtherConfig(const settings::StackConfig& config);
 
+// The same stack as one joint of a limb, beside the other; and what such joints have in common, for an operator.
+settings::StackConfig HipOf(settings::StackConfig config);
+settings::StackConfig KneeOf(settings::StackConfig config);
+settings::StackConfig LimbOf(settings::StackConfig config);
+
 // The same configuration, of a program of another version.
 settings::StackConfig OtherVersion(settings::StackConfig config);
 

@@ -47,9 +47,19 @@ World::World(const Schedule& schedule, const Stacks& stacks)
   }
   if (schedule.key) observer_.SetSealed();
   command_channel_ = network_.ChannelNumber(channels_.Of<motor_command_t>());
+  reference_channel_ = network_.ChannelNumber(channels_.Of<pressure_command_t>());
+  plan_channel_ = network_.ChannelNumber(channels_.Of<arm_plan_t>());
+  if (schedule.planner) Push(kStarts, Happening::kPlanner, 0);
   std::vector<Role> first{Role::kPlant, Role::kPressure, Role::kPosition};
   if (schedule.logger) first.push_back(Role::kLogger);
   if (schedule.launcher) first = {Role::kLauncher};
+  if (schedule.limb) {
+    machines_.resize(static_cast<size_t>(Role::kCount));
+    Random draw(schedule.seed, 7);
+    machines_[static_cast<size_t>(Role::kKneePlant)] =
+        std::make_unique<Machine>("knee", &now_, draw.Between(10, 1e5), 1.7e9 + draw.Between(0, 1e6));
+    first.insert(first.end(), {Role::kKneePlant, Role::kKneePressure, Role::kKneePosition});
+  }
   for (const Role role : first) {
     Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(role));
   }
@@ -152,6 +162,9 @@ void World::Happen(const Event& event) {
     case Happening::kLaunchDue:
       CheckLaunchIsOver(event.number);
       break;
+    case Happening::kPlanner:
+      StartPlanner();
+      break;
   }
 }
 
@@ -174,6 +187,8 @@ void World::Send(PacketPtr packet, int sender) {
     recorded_.push_back(packet);
     if (recorded_.size() > kMostRecorded) recorded_.pop_front();
   }
+  if (packet->channel == reference_channel_) newest_reference_ = packet;
+  if (packet->channel == plan_channel_) newest_plan_ = packet;
   network_.Send(packet, static_cast<int>(process.role()), receivers_);
   observer_.OnSent(*packet, process);
   if (schedule_.launcher) launches_.OnSent(*packet);

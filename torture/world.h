@@ -48,6 +48,9 @@ class World : public NetworkPort {
   Network& network() { return network_; }
   Observer& observer() { return observer_; }
   std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
+  BoardFaults& board() { return board_; }
+  bool has_driver() const { return schedule_.driver; }
+  bool has_knee() const { return schedule_.limb; }
   // How many injected faults stop the launcher now.
   int& launcher_hangs() { return launcher_hangs_; }
   Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(HomeOf(role))]; }
@@ -88,6 +91,11 @@ class World : public NetworkPort {
   // Somebody who has the stack's key sends motor commands of his own.
   void SendInsider(double voltage, double seconds, int64_t first_sequence);
   void SendSet(int which);
+  // The planner ends, and is started again then. Where none runs, nothing happens.
+  void SilencePlanner(TrueTime until);
+  // The newest pressure command, and the newest plan; null: there was none.
+  const Packet* newest_reference() const { return newest_reference_.get(); }
+  const Packet* newest_plan() const { return newest_plan_.get(); }
   Disk& disk() { return disk_; }
   bool has_logger() const { return schedule_.logger; }
   // The path of a new log, of the process `number`.
@@ -117,7 +125,8 @@ class World : public NetworkPort {
     kAwake,
     kPhase,
     kSignal,
-    kLaunchDue
+    kLaunchDue,
+    kPlanner
   };
   static constexpr int kSignals = 64;  // a kSignal's number: that of the process, times this, and the signal
   struct Event {
@@ -141,6 +150,7 @@ class World : public NetworkPort {
   SimulatedProcess& BeginRole(Role role);
   void StartAt(Role role, TrueTime time);
   void Awake(Role role);
+  void StartPlanner();
   void NoteConfigurations();
   void Signal(SimulatedProcess& process, int signal);
   void Destroy(SimulatedProcess& process, int signal);
@@ -176,6 +186,10 @@ class World : public NetworkPort {
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> awake_at_{};  // when its machine wakes up
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> asleep_since_{};
   std::vector<SensorFault> sensor_faults_;
+  BoardFaults board_;
+  SimulatedProcess* planner_ = nullptr;
+  PacketPtr newest_reference_, newest_plan_;
+  int reference_channel_ = -1, plan_channel_ = -1;
   std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;

@@ -50,6 +50,16 @@ bool World::StillStopping() {
 }
 
 void World::CheckReturned() {
+  if (const auto driven = observer_.sibling_driven(); driven && *driven < now_ - kLookBack) {
+    observer_.Report("control returns when faults stop",
+                     fmt::format("{:.3f} s after the last fault the motor of the knee is still at zero volts",
+                                 static_cast<double>(kReturn) * 1e-9));
+  }
+  if (schedule_.planner && observer_.reference_moved() < now_ - kLookBack) {
+    observer_.Report("a planner is followed when faults stop",
+                     fmt::format("{:.3f} s after the last fault the reference stands at one value",
+                                 static_cast<double>(kReturn) * 1e-9));
+  }
   if (observer_.last_obeyed() >= now_ - kLookBack) return;
   const PlantRecord* const plant = observer_.newest_plant();
   std::string codes;

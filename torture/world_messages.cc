@@ -61,7 +61,7 @@ const Packet* World::RecordedCommand(TrueTime before) const {
   return found == recorded_.rend() ? nullptr : found->get();
 }
 
-void World::SendRearm() { Begin(Role::kOperator, RearmProgram(config_), false); }
+void World::SendRearm() { Begin(Role::kOperator, RearmProgram(stacks_.whole), false); }
 
 void World::SendInsider(double voltage, double seconds, int64_t first_sequence) {
   Begin(Role::kOperator, InsiderProgram(config_, voltage, seconds, first_sequence), false);
@@ -71,7 +71,7 @@ void World::SendSet(int which) { Begin(Role::kOperator, SetProgram(config_, whic
 
 void World::SendStop() {
   const bool watched = !schedule_.launcher && !ending_;
-  SimulatedProcess& stop = Begin(Role::kOperator, StopProgram(config_, watched), false);
+  SimulatedProcess& stop = Begin(Role::kOperator, StopProgram(stacks_.whole, watched), false);
   stops_.insert(&stop);
   last_stop_ = &stop;
 }

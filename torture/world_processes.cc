@@ -13,6 +13,16 @@ namespace {
 
 constexpr TrueTime kRestart = 300'000'000;  // ns: how soon whoever watches a process starts it again
 
+// As process::OpenStackBus() has them: all processes of a limb introduce themselves on its own channels.
+std::vector<std::string> SealedChannels(const settings::StackConfig& whole) {
+  std::vector<std::string> sealed;
+  for (const std::string& suffix : settings::StackSuffixes(whole)) {
+    const std::vector<std::string> names = bus::AuthenticatedChannels(bus::Channels(suffix));
+    sealed.insert(sealed.end(), names.begin(), names.end());
+  }
+  return sealed;
+}
+
 }  // namespace
 
 SimulatedProcess* World::Find(Role role) {
@@ -40,9 +50,10 @@ void World::Start(Role role) {
 
 SimulatedProcess& World::BeginRole(Role role) {
   const settings::StackConfig* const other = starts_with_[static_cast<size_t>(role)];
-  return Begin(
-      role, ProgramOf(role, other != nullptr ? *other : config_, *this, static_cast<int>(by_number_.size())),
-      other != nullptr);
+  const settings::StackConfig& right = IsOfKnee(role) ? stacks_.knee : config_;
+  return Begin(role,
+               ProgramOf(role, other != nullptr ? *other : right, *this, static_cast<int>(by_number_.size())),
+               other != nullptr);
 }
 
 SimulatedProcess& World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
@@ -58,7 +69,7 @@ SimulatedProcess& World::Begin(Role role, SimulatedProcess::Body body, bool misc
   SimulatedProcess* const process = processes_.back().get();
   if (schedule_.key) {
     static const bus::BusKey kKey({1, 2, 3, 4, 5, 6, 7, 8});
-    process->bus().UseKey(std::make_unique<bus::Authenticator>(kKey, bus::AuthenticatedChannels(channels_),
+    process->bus().UseKey(std::make_unique<bus::Authenticator>(kKey, SealedChannels(stacks_.whole),
                                                                static_cast<int64_t>(draw.Next() | 1)));
   }
   process->set_misconfigured(misconfigured);
@@ -171,6 +182,17 @@ void World::Destroy(SimulatedProcess& process, int signal) {
   process.Resume();
   if (logs) disk_.Tear(written, disk_.size(), disk_random_);
   Reap(process);
+}
+
+void World::StartPlanner() {
+  if (ending_ || (planner_ != nullptr && !planner_->ended())) return;
+  planner_ = &Begin(Role::kOperator, PlannerProgram(config_), false);
+}
+
+void World::SilencePlanner(TrueTime until) {
+  if (!schedule_.planner) return;
+  if (planner_ != nullptr && !planner_->ended()) Destroy(*planner_, SIGKILL);
+  Push(until, Happening::kPlanner, 0);
 }
 
 void World::Suspend(Role role, TrueTime until) {

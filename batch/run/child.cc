@@ -42,6 +42,13 @@ int OpenOutput(const std::string& path) {
   return descriptor;
 }
 
+// What a child says of a full disk must not fail for want of room: another case beside it may take what was just given back.
+void ReserveLastWords(int descriptor, const std::string& path) {
+  constexpr off_t kRoom = 4096;
+  if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, kRoom) == 0) return;
+  if (errno == ENOSPC || errno == EDQUOT) ThrowCannotWrite(path);  // other file systems cannot reserve
+}
+
 int Milliseconds(Clock::time_point until) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
   return static_cast<int>(std::clamp<int64_t>(left, 0, 1'000'000'000));
@@ -101,6 +108,7 @@ ChildResult RunChild(const ChildRequest& request, const StopBell& bell) {
   process::Spawned spawned;
   {
     const OwnedDescriptor out(OpenOutput(request.out)), err(OpenOutput(request.err));
+    ReserveLastWords(err.number(), request.err);
     spawned = process::Spawn(
         {.argv = request.argv, .folder = request.folder, .out = out.number(), .err = err.number()});
   }

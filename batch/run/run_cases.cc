@@ -72,6 +72,8 @@ class Pool {
         const auto result = runner.Run(*index, bell_);
         // A child that was stopped together with this process may have ended as if all were well.
         if (!result || (request_.stop && request_.stop())) break;
+        // A case that fails while another worker finds the disk full may have failed of that: it runs again next time.
+        if (result->failed && bell_.Rings()) break;
         Keep(*index, *result, runner.Kept(), slot);
         times_.Add(*index, result->failed, result->attempts, began, SecondsSince(start));
       }

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "diagnose/balances/column_maker.h"
 #include "diagnose/balances/latent_pressures.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 
@@ -93,7 +94,7 @@ BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalEr
   double largest = 0;
   for (size_t s = 0; s < kGridChannels; ++s) {
     if (errors.of[s].empty() || !motion.signals[s].measured()) continue;
-    const double range = RangeOfValues(motion.signals[s].values).size();
+    const double range = maths::RangeOf(motion.signals[s].values).size();
     for (const double error : errors.of[s])
       largest = std::max(largest, std::abs(error) / std::max(range, 1e-300));
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diagnose/balances/column_maker.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 
@@ -176,7 +177,7 @@ double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const
       double sum = 0;
       for (const double error : errors.of[s]) sum += error * error;
       const double size = std::sqrt(sum / static_cast<double>(run.size())) / amount;
-      const double range = RangeOfValues(run.signals[s].values).size();
+      const double range = maths::RangeOf(run.signals[s].values).size();
       unit = std::max(unit, kReadingPart * range / size);
     }
   }

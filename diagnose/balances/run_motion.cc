@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "diagnose/recording/sample_interval.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 
@@ -64,7 +65,7 @@ GridSignal OnGrid(const RunData& run, size_t which, double step, size_t count) {
   if (own.size() < 4) return grid;
   grid.interval = std::max(step, MedianInterval({&own_time}));
   grid.noise = measured.noise.value_or(EstimateNoise(own));
-  const ValueRange range = RangeOfValues(own);
+  const maths::Range range = maths::RangeOf(own);
   grid.noise = std::max(grid.noise, 1e-9 * range.size() + 1e-300);
   grid.values.resize(count);
   grid.gap.assign(count, 0);
@@ -99,7 +100,7 @@ std::vector<double> HeldOnGrid(const RunData& run, double step, size_t count) {
 
 // The arm's direction, remembered where it stands.
 std::vector<double> Directions(const std::vector<double>& angle, double noise) {
-  const ValueRange range = RangeOfValues(angle);
+  const maths::Range range = maths::RangeOf(angle);
   const double reach = std::max({kTurnPart * range.size(), kTurnNoise * noise, 1e-300});
   std::vector<double> direction(angle.size());
   double bent = 0;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
+#include "maths/range.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
@@ -24,29 +24,18 @@ const double kClearSign = std::log(10.0);
 constexpr double kFarOff =
     6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  size_t missing = 0;
-};
+using maths::Range;
+using maths::RangeOf;
 
-Range RangeIn(const std::vector<double>& values) {
-  Range range;
-  for (const double value : values) {
-    if (std::isnan(value)) {
-      ++range.missing;
-      continue;
-    }
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  return range;
+std::string Text(const Range& range, const std::string& unit, size_t missing) {
+  std::string text = ShortNumber(range.low) + " to " + ShortNumber(range.high) + " " + unit;
+  if (missing > 0) text += ", " + std::to_string(missing) + " missing";
+  return text;
 }
 
-std::string Text(const Range& range, const std::string& unit) {
-  std::string text = ShortNumber(range.low) + " to " + ShortNumber(range.high) + " " + unit;
-  if (range.missing > 0) text += ", " + std::to_string(range.missing) + " missing";
-  return text;
+size_t MissingIn(const std::vector<double>& values) {
+  return static_cast<size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
 }
 
 class RunChecklist {
@@ -89,7 +78,7 @@ class RunChecklist {
       if (name.signal != &MeasuredRun::pressure_ref) Add(State::kAbsent, name.ours, "not recorded");
       return;
     }
-    Range range = RangeIn(signal.values);
+    Range range = RangeOf(signal.values);
     std::string unit = units_.UnitFor(name.unit, name.arm);
     if (const auto shown = InSi(unit, std::max(std::abs(range.low), std::abs(range.high)))) {
       range = {range.low * shown->factor, range.high * shown->factor};
@@ -98,13 +87,13 @@ class RunChecklist {
     if (name.signal == &MeasuredRun::voltage) unit = "V (the command that k_1 takes)";
     const bool moves = range.high > range.low;
     Add(moves ? State::kGood : State::kLook, name.ours,
-        Text(range, unit) + (moves ? "" : ": it never changes"));
+        Text(range, unit, MissingIn(signal.values)) + (moves ? "" : ": it never changes"));
   }
 
   // The lowest pressure of a closed circuit is its charge pressure, whatever moves.
   void AddPressures() {
     if (!run_.p1.measured() || !run_.p2.measured()) return;
-    const double low1 = RangeIn(run_.p1.values).low, low2 = RangeIn(run_.p2.values).low;
+    const double low1 = RangeOf(run_.p1.values).low, low2 = RangeOf(run_.p2.values).low;
     std::string unit = units_.UnitFor("psi");
     double factor = 1;
     if (const auto shown = InSi(unit, std::max({low1, low2, p_.p_3}))) {
@@ -130,7 +119,7 @@ class RunChecklist {
   // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
   bool LooksLikeCurrents() const {
     for (const MeasuredSignal* signal : {&run_.p1, &run_.p2}) {
-      const Range range = RangeIn(signal->values);
+      const Range range = RangeOf(signal->values);
       const double low = (range.low - signal->source.offset) / signal->source.scale,
                    high = (range.high - signal->source.offset) / signal->source.scale;
       if (!(low > 3.8 && low < 8 && high < 20.5)) return false;
@@ -140,7 +129,7 @@ class RunChecklist {
 
   void AddShaft() {
     if (!run_.arm_angle.measured() || run_.shaft == model::Shaft::kDriven) return;
-    const Range range = RangeIn(run_.arm_angle.values);
+    const Range range = RangeOf(run_.arm_angle.values);
     const double travel = p_.c * (range.high - range.low) / p_.V_ms;
     if (run_.shaft == model::Shaft::kClamped && travel > 0.02) {
       Add(State::kLook, "shaft",
@@ -154,19 +143,27 @@ class RunChecklist {
           "c times the arm's angle exceeds V_ms: one side would have no volume");
   }
 
-  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
-  void AddSign(const std::string& item, const std::function<bool(const RecordingMistake&)>& is_mistake,
-               const std::string& good, const std::string& turned) {
+  using IsMistake = std::function<bool(const RecordingMistake&)>;
+
+  // How much better the balances close with a mistake undone; nothing where it is not possible.
+  std::optional<double> GainOf(const IsMistake& is_mistake) const {
     const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
     const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
-    if (mistake == possible.end()) return;
-    const double gain = mistakes_.Try({*mistake}).gain;
-    const std::string number = " (log odds " + ShortNumber(gain, 2) + ")";
-    if (std::abs(gain) < kClearSign) {
+    if (mistake == possible.end()) return std::nullopt;
+    return mistakes_.Try({*mistake}).gain;
+  }
+
+  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
+  void AddSign(const std::string& item, const IsMistake& is_mistake, const std::string& good,
+               const std::string& turned) {
+    const std::optional<double> gain = GainOf(is_mistake);
+    if (!gain.has_value()) return;
+    const std::string number = " (log odds " + ShortNumber(*gain, 2) + ")";
+    if (std::abs(*gain) < kClearSign) {
       Add(State::kLook, item,
-          gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
+          *gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
     } else {
-      Add(gain < 0 ? State::kGood : State::kLook, item, (gain < 0 ? good : turned) + number);
+      Add(*gain < 0 ? State::kGood : State::kLook, item, (*gain < 0 ? good : turned) + number);
     }
   }
   static bool IsSignOf(const RecordingMistake& mistake, SignalOfRun signal) {
@@ -176,20 +173,24 @@ class RunChecklist {
   void AddSigns() {
     if (!run_.motor_speed.measured()) return;
     const bool pressures = run_.p1.measured() && run_.p2.measured() && !run_.bypass;
+    const IsMistake are_exchanged = [](const RecordingMistake& one) { return one.pressures_exchanged; };
+    const double exchanged = GainOf(are_exchanged).value_or(0);
     AddSign(
         "sign of the command",
         [](const RecordingMistake& one) { return IsSignOf(one, &MeasuredRun::voltage); },
-        pressures ? "a positive command turns the motor forward and raises p2 over p1"
-                  : "a positive command turns the motor forward",
+        pressures && exchanged < -kClearSign
+            ? "a positive command turns the motor forward and raises p2 over p1"
+            : "a positive command turns the motor forward",
         pressures ? "a positive command goes with a falling speed or p2 - p1: turn its sign, the speed's, or "
                     "exchange p1 and p2"
                   : "a positive command goes with a falling speed: turn the sign of one of them");
     if (run_.bypass) return;
-    if (run_.shaft == model::Shaft::kClamped && pressures) {
-      AddSign(
-          "sign of the pressures", [](const RecordingMistake& one) { return one.pressures_exchanged; },
-          "p2 - p1 rises while the motor turns forward",
-          "p2 - p1 falls while the motor turns forward: exchange p1 and p2, or turn the sign of the speed");
+    const bool clamped = run_.shaft == model::Shaft::kClamped;
+    if (pressures && (clamped || exchanged > kClearSign)) {
+      AddSign("sign of the pressures", are_exchanged, "p2 - p1 rises while the motor turns forward",
+              std::string(clamped ? "p2 - p1 falls while the motor turns forward"
+                                  : "p1 and p2 go far better with the motor the other way round") +
+                  ": exchange p1 and p2, or turn the sign of the speed");
     }
     const SignalOfRun arm = run_.arm_angle.measured() ? &MeasuredRun::arm_angle : &MeasuredRun::arm_speed;
     AddSign(

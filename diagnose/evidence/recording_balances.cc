@@ -11,6 +11,7 @@
 #include "diagnose/balances/run_motion.h"
 #include "diagnose/balances/test_functions.h"
 #include "diagnose/recording/sample_interval.h"
+#include "maths/range.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -161,7 +162,7 @@ class BalanceMaker {
   std::vector<uint8_t> MaskOf(BalanceKind balance, GridChannel side = GridChannel::kSpeed) const {
     HeldPressure held;
     if (motion_.Of(side).measured()) {
-      const ValueRange range = RangeOfValues(motion_.Of(side).values);
+      const maths::Range range = maths::RangeOf(motion_.Of(side).values);
       held = {range.low, kLow * range.size()};
     }
     BalanceSeries none;

@@ -8,6 +8,7 @@
 
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -25,7 +26,7 @@ bool Moves(const Run& run) {
     const runs::MeasuredSignal& measured = run.*signal;
     if (!measured.measured()) continue;
     const double steps = std::max(measured.noise.value_or(0), EstimateResolution(measured.values));
-    if (RangeOfValues(measured.values).size() > 2 * kHardlyMoves * steps) return true;
+    if (maths::RangeOf(measured.values).size() > 2 * kHardlyMoves * steps) return true;
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/thinned.h"
 #include "diagnose/recording/windows.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 
@@ -30,7 +31,7 @@ WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign)
   for (const RunData* window : pool) {
     const SignalData* signal = window->Find(channel);
     if (signal == nullptr) continue;
-    const ValueRange range = RangeOfValues(signal->values);
+    const maths::Range range = maths::RangeOf(signal->values);
     heights.emplace_back(sign > 0 ? -range.high : range.low, window);
   }
   std::stable_sort(heights.begin(), heights.end(),

@@ -132,8 +132,8 @@ class MistakeList {
     RecordingMistake mistake;
     const double counts = std::exp2(bits);
     mistake.what = std::string(NameOf(signal)) + " jumps by " + ShortNumber(counts, 10) +
-                   " counts between values above 0 and below the top: signed numbers of " +
-                   std::to_string(bits) + " bits read as unsigned";
+                   " counts between values above 0 and below the top: a signed number read as unsigned (" +
+                   std::to_string(bits) + " bits)";
     mistake.unsigned_signal = signal;
     mistake.span = counts * (run_.*signal).source.scale;
     list_.push_back(std::move(mistake));

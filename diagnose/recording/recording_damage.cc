@@ -9,6 +9,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -48,7 +49,7 @@ std::vector<Stretch> EqualValues(const std::vector<double>& values) {
 
 // Whether noise moves this signal from sample to sample: then many equal values are none of its own.
 bool HasNoise(const std::vector<double>& values, double noise) {
-  return noise >= kAboveSteps * EstimateResolution(values) && noise >= 1e-4 * RangeOfValues(values).size();
+  return noise >= kAboveSteps * EstimateResolution(values) && noise >= 1e-4 * maths::RangeOf(values).size();
 }
 
 // The change from one sample to the next that 19 of 20 stay below.
@@ -87,7 +88,7 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   }
   const double n = static_cast<double>(values.size());
   const double chance = std::min(0.9, repeats / n);
-  const ValueRange range = RangeOfValues(values);
+  const maths::Range range = maths::RangeOf(values);
   const double leap = std::max(kSpike * noise, kChange * UsualChange(values));
   std::vector<Stretch> held;
   for (const Stretch& one : equal) {
@@ -118,7 +119,7 @@ std::vector<size_t> Spikes(const std::vector<double>& values) {
   const double least = std::max(kSpike * noise, kChange * UsualChange(values));
   for (size_t i = kNeighbours; i + kNeighbours < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    ValueRange beside;
+    maths::Range beside;
     for (size_t k = i - kNeighbours; k <= i + kNeighbours; ++k) {
       if (k == i || std::isnan(values[k])) continue;
       beside.low = std::min(beside.low, values[k]);
@@ -169,7 +170,7 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
 std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_there, size_t sensors) {
   const double usual = MedianInterval(run.time);
   const std::vector<double>& voltage = run.voltage.values;
-  const double least = kStepOfDamage * RangeOfValues(voltage).size();
+  const double least = kStepOfDamage * maths::RangeOf(voltage).size();
   std::vector<Stretch> lost;
   for (size_t i = 0; i + 1 < run.samples(); ++i) {
     if (run.time[i + 1] - run.time[i] > kGap * usual && std::abs(voltage[i + 1] - voltage[i]) > least) {

@@ -8,6 +8,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -66,7 +67,7 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
   bool speed = false, pressure = false;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
-      const ValueRange range = RangeOfValues(signal.values);
+      const maths::Range range = maths::RangeOf(signal.values);
       if (signal.channel == model::Channel::kMotorSpeed) {
         speed = true;
         low = std::min(low, range.low);

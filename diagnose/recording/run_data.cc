@@ -8,6 +8,7 @@
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -81,7 +82,7 @@ void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
 
 // `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
 // differ; where many in a row equal the largest or smallest value of all, the sensor reads no further.
-std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRange& range) {
+std::vector<double> WithoutEnds(const std::vector<double>& values, const maths::Range& range) {
   constexpr size_t kInARow = 8;
   std::vector<double> rest = values;
   for (const double end : {range.low, range.high}) {
@@ -105,7 +106,7 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   signal.values = measured.values;
   signal.stated_noise = measured.noise.value_or(runs::kMissing);
   signal.resolution = EstimateResolution(measured.values);
-  const ValueRange range = RangeOfValues(measured.values);
+  const maths::Range range = maths::RangeOf(measured.values);
   const double size = range.size();
   if (size == 0) {
     // For a signal that never moves, believe the stated noise.
@@ -225,16 +226,6 @@ const SignalData* RunData::Find(model::Channel channel) const {
     if (signal.channel == channel) return &signal;
   }
   return nullptr;
-}
-
-ValueRange RangeOfValues(const std::vector<double>& values) {
-  ValueRange range;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  return range;
 }
 
 namespace {

@@ -96,14 +96,6 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 // Sets the run's start and start_free from its first samples; the rest of `data` must be filled in.
 void SetStart(const model::Parameters& model, RunData* data);
 
-// The smallest and the largest value, ignoring NaN; low is above high when there are no values.
-struct ValueRange {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  double size() const { return high - low; }
-};
-ValueRange RangeOfValues(const std::vector<double>& values);
 // Standard deviations of its noise: a signal that moves by no more, up and down, hardly moves.
 inline constexpr double kHardlyMoves = 5;
 

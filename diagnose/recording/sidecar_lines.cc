@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "runs/measured_signals.h"
+#include "runs/run_table.h"
 #include "runs/signal_unit.h"
 
 namespace hydro::diagnose {
@@ -66,7 +67,7 @@ Run SourcesOf(const Run& run) {
   for (const runs::SignalName& one : runs::kSignals) {
     (sources.*one.signal).source = (run.*one.signal).source;
     std::string& column = (sources.*one.signal).source.column;
-    if (column.empty()) column = one.exported;
+    if (column.empty()) column = runs::RunColumnIn(run.units, one.exported);
   }
   if (sources.time_source.column.empty()) sources.time_source.column = "time_s";
   return sources;

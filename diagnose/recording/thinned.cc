@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "maths/range.h"
+
 namespace hydro::diagnose {
 
 namespace {
@@ -21,7 +23,7 @@ void Thin(size_t fewest, RunData* run) {
   const auto by_time = static_cast<size_t>(1.001 * kFinest / interval);
   const size_t step = std::min(by_time, samples / std::max<size_t>(fewest, 1));
   if (step < 2) return;
-  const ValueRange range = RangeOfValues(stimulus.voltage);
+  const maths::Range range = maths::RangeOf(stimulus.voltage);
   const double jump = kJump * range.size();
   size_t kept = 0;
   for (size_t i = 0; i < samples; ++kept) {

@@ -6,6 +6,7 @@
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 
@@ -96,7 +97,7 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   constexpr double kExact = 2e-4;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
-      const double size = RangeOfValues(signal.values).size();
+      const double size = maths::RangeOf(signal.values).size();
       if (size > 0 && signal.noise > kExact * size) return false;
     }
   }

@@ -19,8 +19,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, with the next good one",
         .tests = "fault_commands.PressureCommandTest.test_nonfinite",
-        .not_injected =
-            "no kind of fault sends pressure commands, and hardly any wrong bit makes a reference infinite",
+        .injected = "nonfinite_reference",
     },
     SafetyRow{
         .id = "pressure_command_excessive",

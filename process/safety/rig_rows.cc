@@ -6,8 +6,6 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::string_view kNoDriver = "the driver and its board are not simulated";
-
 constexpr std::array kRows{
     SafetyRow{
         .id = "reading_not_finite",
@@ -66,7 +64,7 @@ constexpr std::array kRows{
         .tests = "driver.DriverFaultTest.test_sensor_faults plant/PlantRigTest.RigFaults "
                  "plant/driver/BoardRigTest.SaturatedInput "
                  "plant/driver/BoardRigTest.PlausibleVolts",
-        .not_injected = kNoDriver,
+        .injected = "board_input",
     },
     SafetyRow{
         .id = "board_refuses",
@@ -81,7 +79,7 @@ constexpr std::array kRows{
         .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
         .tests = "driver.WaysOutTest.test_board_errors driver.DriverFaultTest.test_board_that_takes_no_zero "
                  "plant/driver/BoardRigTest.EncoderLost plant/driver/BoardRigTest.BoardErrors",
-        .not_injected = kNoDriver,
+        .injected = "board_error encoder_lost",
     },
     SafetyRow{
         .id = "guardian_gone",
@@ -96,7 +94,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kRunEnds,
         .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
         .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/BoardRigTest.WithoutAGuardianNoVoltage",
-        .not_injected = kNoDriver,
+        .injected = "guardian_gone",
     },
     SafetyRow{
         .id = "limit_exceeded",
@@ -158,7 +156,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by a re-arm only, when the readings are good again",
         .tests = "plant/PlantRigTest.RigFaultWaitsForARearm",
-        .not_injected = kNoDriver,
+        .injected = "board_input",
     },
 };
 

@@ -122,7 +122,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "when the other joint's fault has ended, with `\"explicit\"` by a re-arm of that one",
         .tests = "limb/LimbTest.FaultOfOneHoldsTheOthers limb.LimbTest.test_a_fault_of_one_joint",
-        .not_injected = "hydro-torture runs single stacks",
+        .injected = "hang:knee_plant crash:knee_pressure_ctrl",
     },
     SafetyRow{
         .id = "joint_gone",
@@ -140,7 +140,7 @@ constexpr std::array kRows{
         .cleared_text = "by itself, when it is heard again",
         .tests = "plant/SilentJointTest.HoldsZeroVolts plant/SilentJointTest.WaitsForARearm "
                  "limb/LimbAppTest.SilenceOfAJointElsewhere limb.LimbCableTest.test_cable_out",
-        .not_injected = "hydro-torture runs single stacks",
+        .injected = "hang:knee_plant partition:knee_plant",
     },
     SafetyRow{
         .id = "wall_clock",

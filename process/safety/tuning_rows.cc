@@ -21,7 +21,7 @@ constexpr std::array kRows{
         .tests = "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
                  "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.RefusesWhatCannotBeJudged "
                  "tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
-        .injected = "set",
+        .injected = "set strange_request",
     },
     SafetyRow{
         .id = "tuning_torn",
@@ -38,7 +38,7 @@ constexpr std::array kRows{
                  "tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
                  "tuning/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
                  "position_ctrl/PositionAppTest.ActsByTheValuesInForceWhenItJoins",
-        .not_injected = "no kind by itself: it takes a set while a controller crashes, hangs or is not heard",
+        .injected = "torn_set",
     },
     SafetyRow{
         .id = "plan_refused",
@@ -54,7 +54,7 @@ constexpr std::array kRows{
         .cleared_text = "a second after the last",
         .tests = "position_ctrl/PlannerTest.APlanThatIsWrongIsNotFollowed "
                  "position_ctrl/PlanFollower.RefusesWithTheReason",
-        .not_injected = "no kind of fault sends plans",
+        .injected = "wrong_plan",
     },
     SafetyRow{
         .id = "planner_silent",
@@ -69,7 +69,7 @@ constexpr std::array kRows{
         .cleared_text = "with the next plan",
         .tests = "position_ctrl/PlannerTest.ASilentPlannersReferenceIsHeld "
                  "position_ctrl/PlanFollower.HoldsWhenThePlannerIsSilent",
-        .not_injected = "no kind of fault sends plans",
+        .injected = "planner_silent",
     },
 };
 

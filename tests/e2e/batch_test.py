@@ -339,14 +339,35 @@ cp -r small/out out
     def test_full_scratch(self):
         reference = self.reference()
         batch = stack.program("hydro-batch")
-        done = self.on_small_disk("150k", f"""
+        done = self.on_small_disk("100k", f"""
 TMPDIR={self.folder}/small {batch} study.toml --out out --jobs 2 2> first.err; echo first $?
 find out/cases -name '*.failed' | wc -l
 {batch} study.toml --out out --jobs 2; echo second $?
 """)
         self.assertRegex(done.stdout, r"(?s)^first 1\n0\n.*second 0\n$", done.stderr)
         with open(self.path("first.err"), encoding="utf-8") as file:
-            self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*\n\Z")
+            self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*: No space left on device\n\Z")
+        self.assertEqual(results(self.path("out")), reference)
+
+    # Tests that whichever of two cases finds the disk full, in whatever it writes, no case has failed because of it, and that the reason is
+    # said: one case fits on some of these disks, two on the last.
+    def test_scratch_of_any_size(self):
+        reference, batch = self.reference(), stack.program("hydro-batch")
+        sizes = (100, 145, 150, 155, 180, 220, 260, 290, 320)
+        done = self.on_small_disk("100k", f"""
+for size in {" ".join(map(str, sizes))}; do
+  mount -o remount,size=${{size}}k {self.folder}/small || exit 77
+  rm -rf out
+  TMPDIR={self.folder}/small {batch} study.toml --out out --jobs 2 > /dev/null 2> err.$size
+  echo $size $? $(find out/cases -name '*.failed' 2> /dev/null | wc -l)
+done
+{batch} study.toml --out out --jobs 2
+""")
+        for size in sizes:
+            said = re.search(rf"(?m)^{size} ([01]) 0$", done.stdout)
+            self.assertIsNotNone(said, done.stdout + done.stderr)
+            with open(self.path(f"err.{size}"), encoding="utf-8") as file:
+                self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*: No space left on device\n\Z" if said[1] == "1" else r"\A\Z")
         self.assertEqual(results(self.path("out")), reference)
 
     # Tests that wrong input ends with exit code 2 and one line that says what is wrong, and that nothing is made.

@@ -45,6 +45,12 @@ def with_processes(case, name, first="", second="", sections=MIXED):
     return path
 
 
+def resident_bytes(pid):
+    """What of its memory a process has in use."""
+    with open(f"/proc/{pid}/status", encoding="utf-8") as file:
+        return next(int(line.split()[1]) << 10 for line in file if line.startswith("VmRSS:"))
+
+
 def two_limbs(case):
     """The shipped limb with the hip in a hydro-limb on the rig, and the knee in one on the desk."""
     return with_processes(case, "limbs.toml", sections="".join(
@@ -92,7 +98,43 @@ class LimbTest(stack.TestCase):
             self.assertTrue(any(s.voltage != 0 for s in log.states))
             self.assertEqual([(left.accepted, left.voltage) for left in log.outputs_left], [(1, 0.0)])
             self.assertIn(f"{joint} plant: the output reads back 0 V", launch.stdout)
-        self.assertEqual({s.role for s in event_log.Log(log_file).statuses}, {"limb", "logger"})
+        self.assertEqual({s.role for s in event_log.Log(log_file).statuses} - {"launch"}, {"limb", "logger"})
+
+    # Tests that a flood of another's states and of processes that do not exist, while the limb runs, stops it not, makes none of its faults,
+    # and that what is remembered of it is bounded.
+    def test_a_flood(self):
+        log_file, sim = self.path("run.lcmlog"), self.path("sim.lcmlog")
+        self.run_program("hydro-sim", LIMB, "--duration", "0.1", "-o", sim)
+        examples = {event.channel: event.data for event in event_log.read_events(sim)}
+        options = ("--set", f"bus.url={self.url}", "--time", "realtime", "--duration", "0", *PATIENT)
+        logger = self.start("hydro-logger", LIMB, *options, "-o", log_file)
+        limb = self.start("hydro-limb", LIMB, *options, "--expect", "logger")
+        live = JointLog(self, log_file)
+        for joint in JOINTS:
+            live.wait_for(joint, "HYDRO_STATE", lambda s: s.tick > 100, "the joint runs")
+        peer = lcm_peer.Peer(self.url, {})
+        self.addCleanup(peer.close)
+        before = resident_bytes(limb.pid)
+        status = event_log.TYPES["HYDRO_PROCESS_STATUS"]
+        hash_ = next(data for channel, data in examples.items() if channel.startswith("HYDRO_PROCESS_STATUS"))[:8]
+        for session in range(1, 20001):
+            joint = JOINTS[session % 2]
+            state = examples[f"HYDRO_STATE_{joint}"]  # the session stands behind hash, utime and tick
+            peer.publish_bytes(f"HYDRO_STATE_{joint}", state[:24] + session.to_bytes(8, "big") + state[32:])
+            fields = {"session": session, "role": "tool", "host": "elsewhere", "state": event_log.READY, "text": "x" * 500}
+            values = [fields.get(name, "" if code == "s" else 0) for name, code in zip(status.tuple._fields, status.codes)]
+            peer.publish_bytes(f"HYDRO_PROCESS_STATUS_{joint}", status.encode(hash_, values))
+        grown = resident_bytes(limb.pid) - before
+        self.assertLess(grown, 20 << 20)
+        print(f"grown by {grown >> 10} KiB", flush=True)
+        limb.send(signal.SIGINT)
+        self.assertEqual(limb.wait(60), 0, limb.report())
+        for joint in JOINTS:
+            live.wait_for(joint, "HYDRO_STOP", lambda s: True, "its end")
+            faults = [event_log.TYPES["HYDRO_FAULT"].decode(data) for data in live.messages.get(f"HYDRO_FAULT_{joint}", [])]
+            self.assertEqual({fault.code for fault in faults} - {"late_plant", "other_joint", "logger_gone"}, set(), faults)
+        logger.send(signal.SIGTERM)
+        logger.wait()
 
     # Tests that a fault of one joint, which a re-arm has to end, holds the other at zero volts, and that the other says whose it is.
     def test_a_fault_of_one_joint(self):

@@ -113,7 +113,7 @@ class LaunchedLockstepKillTest(stack.TestCase):
         launch = self.launch(stack.config("demo.toml"), *OPTIONS, "--log", self.path("run.lcmlog"))
         log = stack.LiveLog(self, self.path("run.lcmlog"))
         log.wait_for_tick(200)
-        pids = {status.role: status.pid for status in log.messages["HYDRO_PROCESS_STATUS"]}
+        pids = log.pids()
         self.assertEqual(set(pids), set(ROLES))
         return launch, pids
 

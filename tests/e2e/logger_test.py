@@ -132,8 +132,7 @@ class LoggerTest(stack.TestCase):
 
 
 class DeletedLogTest(stack.TestCase):
-    # Tests that a log that is deleted, or whose folder is moved, is named within two seconds, that the logger goes on, and that
-    # it ends with 1.
+    # Tests that a log that is deleted, or whose folder is moved, is named, that the logger goes on, and that it ends with 1.
     def test_deleted_or_moved(self):
         for gone in ("deleted", "moved"):
             with self.subTest(gone):
@@ -146,7 +145,7 @@ class DeletedLogTest(stack.TestCase):
                     os.remove(log_file)
                 else:
                     os.rename(folder, folder + "_away")
-                self.wait_until(lambda p=logger: "renamed or deleted" in p.stderr, "a word on it", timeout=4)
+                self.wait_until(lambda p=logger: "renamed or deleted" in p.stderr, "a word on it")
                 self.assertIn(log_file, logger.stderr)
                 self.assertTrue(logger.running)
                 logger.send(signal.SIGTERM)
@@ -159,7 +158,7 @@ class DeletedLogTest(stack.TestCase):
         loop = self.start("hydro-pressure-ctrl", stack.config("demo.toml"), "--set", f"bus.url={self.new_url()}", "--log", log_file)
         self.wait_until(lambda: os.path.exists(log_file) and os.path.getsize(log_file) > 0, "a log")
         os.remove(log_file)
-        self.wait_until(lambda: "renamed or deleted" in loop.stderr, "a word on it", timeout=4)
+        self.wait_until(lambda: "renamed or deleted" in loop.stderr, "a word on it")
         self.assertTrue(loop.running)
         loop.send(signal.SIGTERM)
         self.assertEqual(loop.wait(), 1, loop.report())

@@ -158,7 +158,7 @@ class LaunchedRealtimeKillTest(stack.TestCase):
                              self.path("run.lcmlog"))
         log = stack.LiveLog(self, self.path("run.lcmlog"))
         log.wait_for_tick(100)
-        pids = {status.role: status.pid for status in log.messages["HYDRO_PROCESS_STATUS"]}
+        pids = log.pids()
         self.assertEqual(set(pids), set(ROLES))
         os.kill(pids[victim], signal.SIGKILL)
         self.assertEqual(launch.wait(), 1, launch.report())

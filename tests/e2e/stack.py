@@ -285,6 +285,10 @@ class LiveLog:
     def wait_for_tick(self, tick):
         return self.wait_for("HYDRO_STATE", lambda s: s.tick >= tick, f"state of tick {tick}")
 
+    def pids(self):
+        """The process ids of all that take part, by role: of the launch itself none, which asks who is there where a start takes long."""
+        return {status.role: status.pid for status in self.messages["HYDRO_PROCESS_STATUS"] if status.role != "launch"}
+
     def count(self, kind):
         self.update()
         return len(self.messages[kind])

@@ -40,7 +40,7 @@ class PlacementTest(stack.TestCase):
         self.launched = self.launch(config, "--duration", "0", "--log", self.path("run.lcmlog"))
         log = stack.LiveLog(self, self.path("run.lcmlog"))
         log.wait_for_tick(100)
-        return {status.role: status.pid for status in log.messages["HYDRO_PROCESS_STATUS"]}
+        return log.pids()
 
     def threads(self, pid):
         threads = []

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <hydro/motor_command_t.hpp>
 #include <hydro/output_left_t.hpp>
 #include <hydro/process_status_t.hpp>
 #include <hydro/stop_t.hpp>
@@ -167,9 +168,64 @@ TEST_F(LimbAppTest, SilenceOfAJointElsewhere) {
   EXPECT_THAT(faults_["_knee"][0].text, HasSubstr("joint hip has the fault joint_gone"));
   for (const std::string suffix : {"_hip", "_knee"}) {
     for (const state_t& state : states_[suffix]) {
-      if (state.tick >= 20 + 8 + 3 && state.tick < 70) EXPECT_EQ(state.voltage, 0) << suffix << state.tick;
+      if (state.tick >= 20 + 8 + 3 && state.tick < 70) {
+        EXPECT_EQ(state.voltage, 0) << suffix << state.tick;
+      }
     }
     EXPECT_NE(states_[suffix].back().voltage, 0);
+  }
+}
+
+// Tests that a flood from outside, of states and commands in a joint's channels and of processes that do not exist, changes nothing of
+// what the joints do.
+TEST_F(LimbAppTest, AFloodFromOutside) {
+  constexpr int64_t kForeign = 1'000'000'000;  // the sessions from here on
+  const auto without = [&](const std::string& suffix) {
+    std::vector<state_t> own;
+    for (const state_t& state : states_[suffix]) {
+      if (state.session < kForeign || state.session >= 2 * kForeign) own.push_back(state);
+    }
+    return own;
+  };
+  ASSERT_EQ(Run(), 0);
+  const std::vector<state_t> hip = without("_hip"), knee = without("_knee");
+  states_.clear();
+  faults_.clear();
+
+  int64_t sent = 0;
+  on_state_ = [&](const std::string& suffix, const state_t& state) {
+    if (suffix != "_hip" || (state.session >= kForeign && state.session < 2 * kForeign)) return;
+    for (int i = 0; i < 200; ++i) {
+      const bus::Channels channels(i % 2 == 0 ? "_hip" : "_knee");
+      state_t foreign = state;
+      foreign.session = kForeign + ++sent;
+      foreign.sequence = int64_t{1} << (sent % 63);
+      foreign.voltage = 5;
+      bus_.Publish(channels.Of<state_t>(), foreign);
+      motor_command_t command{};
+      command.session = foreign.session;
+      command.tick = state.tick;
+      command.voltage = 5;
+      bus_.Publish(channels.Of<motor_command_t>(), command);
+      process_status_t status{};
+      status.session = foreign.session;
+      status.role = i % 3 == 0 ? "logger" : "tool";
+      status.state = process_status_t::RUNNING;
+      status.text = std::string(1000, 'x');
+      bus_.Publish(channels.Of<process_status_t>(), status);
+    }
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_GE(sent, 2000);
+  for (const auto& [suffix, before] : {std::pair{std::string("_hip"), &hip}, {std::string("_knee"), &knee}}) {
+    const std::vector<state_t> own = without(suffix);
+    ASSERT_EQ(own.size(), before->size()) << suffix;
+    for (size_t i = 0; i < own.size(); ++i) {
+      EXPECT_EQ(own[i].tick, (*before)[i].tick);
+      EXPECT_EQ(own[i].voltage, (*before)[i].voltage) << suffix << " " << own[i].tick;
+      EXPECT_EQ(own[i].arm_angle, (*before)[i].arm_angle) << suffix << " " << own[i].tick;
+    }
+    EXPECT_TRUE(faults_[suffix].empty()) << faults_[suffix].front().code;
   }
 }
 

@@ -183,6 +183,22 @@ TEST(PlanFollower, FollowsOnePlannersNewest) {
   EXPECT_EQ(follower.At(305).angle, 0.4);
 }
 
+// Tests that one number that the planner has not reached deafens the loop no longer than a silent planner would, and that what is
+// repeated after that is still not followed.
+TEST(PlanFollower, OneFarNumberDeafensNobody) {
+  PlanFollower follower = Follower();
+  ASSERT_EQ(follower.Take(Plan(1, 7, {0.1}, {0.2}, {0}), 0), "");
+  ASSERT_EQ(follower.Take(Plan(1, int64_t{1} << 62, {0.2}, {0.25}, {0}), 1), "");
+  EXPECT_EQ(follower.Take(Plan(1, 8, {0.3}, {0.3}, {0}), 2), "");
+  EXPECT_EQ(follower.At(200).angle, 0.25) << "who it was cannot be told yet";
+  EXPECT_EQ(follower.Take(Plan(1, 7, {0.1}, {0.2}, {0}), 300), "");
+  EXPECT_EQ(follower.At(300).angle, 0.25) << "repeated";
+  EXPECT_EQ(follower.Take(Plan(1, 9, {0.3}, {0.4}, {0}), 305), "");
+  EXPECT_EQ(follower.At(305).angle, 0.4);
+  EXPECT_EQ(follower.Take(Plan(1, 10, {0.4}, {0.5}, {0}), 310), "");
+  EXPECT_EQ(follower.At(405).angle, 0.5);
+}
+
 TEST(PlanFollower, RefusesWithTheReason) {
   PlanFollower follower = Follower();
   EXPECT_THAT(follower.Take(Plan(1, 0, {}, {}, {}), 0), HasSubstr("found 0 points, allowed 1 to 256"));

@@ -167,26 +167,6 @@ TEST_F(TableTimesTest, AnglesThatRollOver) {
   EXPECT_NEAR(degrees.motor_angle.values[299], 40 * 299 * M_PI / 180, 1e-6);
   const MeasuredRun speed = read(4096, "motor_speed = \"w\"\n");
   EXPECT_NEAR(speed.motor_speed.values[299], std::fmod(40.0 * 299, 4096), 1e-9);  // no angle
-  EXPECT_EQ(speed.caution, "");
-}
-
-// Tests that a signed command read as unsigned is doubted, and that commands that are what they say are not.
-TEST_F(TableTimesTest, UnsignedCommands) {
-  const auto read = [&](double top, double offset) {
-    std::string rows;
-    const double levels[] = {0, 1, 2, -1, -2, 0.5};
-    for (int row = 0; row < 600; ++row) {
-      const double level = levels[row / 50 % 6];
-      const double shown = level < 0 ? level + top : level;
-      rows += NumberText(0.01 * row) + "," + NumberText(shown + offset) + "," + NumberText(60 * level) + "\n";
-    }
-    return Read(rows, "\"t\"", "motor_speed = \"w\"\n").caution;
-  };
-  EXPECT_THAT(read(655.36, 0), AllOf(HasSubstr("line 152, column u: voltage jumps by 65536 counts (655.36)"),
-                                     HasSubstr("a signed number read as unsigned")));
-  EXPECT_THAT(read(6.4, 0), HasSubstr("voltage jumps by 256 counts (6.4)"));
-  EXPECT_EQ(read(0, 0), "");
-  EXPECT_EQ(read(0, 2.5), "");  // it counts from the middle of its range
 }
 
 }  // namespace

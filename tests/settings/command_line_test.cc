@@ -231,6 +231,12 @@ TEST(RunProgramTest, ExitCodes) {
   CaptureStderr();
   EXPECT_EQ(RunProgram("p", []() -> int { throw std::runtime_error("it broke"); }), 1);
   EXPECT_EQ(GetCapturedStderr(), "p: it broke\n");
+  CaptureStderr();
+  EXPECT_EQ(RunProgram("p", []() -> int { throw std::bad_alloc(); }), 1);
+  EXPECT_EQ(
+      GetCapturedStderr(),
+      "p: out of memory: it needs more than this process may have; a larger limit (ulimit -v) or a smaller "
+      "input is needed\n");
 }
 
 }  // namespace

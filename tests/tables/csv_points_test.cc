@@ -10,12 +10,19 @@ using ::testing::HasSubstr;
 // Tests that the two columns are found by name, whatever else the table holds.
 TEST(CsvPointsTest, ReadsColumnsByName) {
   const auto points = ParseCsvPoints(
-      "\xEF\xBB\xBF# recorded\r\nother, \"time_s\" ,arm_ref_rad\r\n9,0,0.1\r\n\r\n,0.5,-2e-3\r\n9,+1,3",
+      "\xEF\xBB\xBF# recorded\r\nother, \"time_s\" ,arm_ref_rad\r\n9,0,0.1\r\n\r\n,0.5,-2e-3\r\n9,+1,3\n",
       "a.csv", "arm_ref_rad");
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points[1].time, 0.5);
   EXPECT_EQ(points[1].value, -2e-3);
   EXPECT_EQ(points[2].time, 1.0);
+}
+
+// Tests that what is cut in a column that nobody asks for is no harm.
+TEST(CsvPointsTest, AnotherColumnMayBeCut) {
+  const auto points = ParseCsvPoints("time_s,y,note\n0,0.25,1\n1,0.5,1", "a.csv", "y");
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[1].value, 0.5);
 }
 
 // Tests that each malformed table is refused with file, row, column, what was found and what is allowed.
@@ -41,6 +48,11 @@ TEST(CsvPointsTest, RefusesMalformedTables) {
       {"time_s,y\n-inf,0\n", "a.csv: line 2, column time_s: found \"-inf\", allowed a finite number"},
       {"time_s,y\n0,1\n# x\n0,2\n",
        "a.csv: line 4, column time_s: found \"0\", allowed above 0, the time of the row before"},
+      {"time_s,y\n0,0.25\n1,0.5",
+       "a.csv: line 3, column y: found \"0.5\", allowed a number before the end of a line: the file may be "
+       "cut within it"},
+      {"y,time_s\n0.25,0\n0.5,1",
+       "a.csv: line 3, column time_s: found \"1\", allowed a number before the end of a line"},
       {"time_s;y\n0;1\n", "a.csv: line 1: found no column \"time_s\", allowed \"time_s;y\""},
   };
   for (const auto& table : tables) {

@@ -46,6 +46,17 @@ TEST(TortureRunTest, SameSeedSameTrace) {
   EXPECT_EQ(traces.size(), 12u);
 }
 
+// Tests the same of changes that take a plant long to judge: how long does not count.
+TEST(TortureRunTest, ChangesAreJudgedAlike) {
+  Schedule schedule;
+  schedule.faults_until_s = 2;
+  for (int which = 0; which < 8; ++which) {
+    schedule.injections = {{1, FaultKind::kSet, -1, 0, static_cast<double>(which), 1}};
+    const uint64_t first = RunSchedule(schedule, "").trace;
+    for (int again = 0; again < 3; ++again) EXPECT_EQ(RunSchedule(schedule, "").trace, first) << which;
+  }
+}
+
 // Tests that without faults a stack moves its arm, in every mode, and none of its processes complains.
 TEST(TortureRunTest, WithoutFaultsAllIsWell) {
   for (const bool lockstep : {false, true}) {
@@ -135,13 +146,15 @@ TEST(TortureRunTest, RowsAreReachedAsTheTableSays) {
   for (const process::SafetyRow& row : process::SafetyTable()) {
     const std::vector<std::string_view> codes = process::WordsOf(row.codes);
     const auto code_seen = [&](std::string_view code) { return seen.contains(code); };
-    for (const std::string_view word : process::WordsOf(row.injected)) {
+    const std::vector<std::string_view> words = process::WordsOf(row.injected);
+    for (const std::string_view word : words) {
+      const bool is_last = word == words.back();
       const bool rearm =
           row.output == process::SafeOutput::kZeroVolts && row.explicit_rearm == process::Cleared::kByRearm;
       bool reached = false, all_seen = false, latched = !rearm;
       int runs = 0;
       // Some need a wrong bit at one place.
-      for (uint64_t seed = 1; !(reached && all_seen && latched) && runs < 600; ++seed) {
+      for (uint64_t seed = 1; !(reached && (all_seen || !is_last) && latched) && runs < 600; ++seed) {
         const std::optional<Schedule> schedule = Alone(seed, *FaultNamed(word));
         if (!schedule) continue;
         ++runs;
@@ -157,7 +170,7 @@ TEST(TortureRunTest, RowsAreReachedAsTheTableSays) {
       }
       EXPECT_TRUE(reached) << row.id << " by " << word;
       EXPECT_TRUE(latched) << row.id << " by " << word << ": in no explicit run";
-      EXPECT_TRUE(all_seen) << row.id << ": of " << row.codes;
+      EXPECT_TRUE(all_seen || !is_last) << row.id << ": of " << row.codes;
     }
   }
 }

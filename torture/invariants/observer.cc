@@ -23,7 +23,12 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       configuration_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<configuration_t>())),
       run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())),
       statistics_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<loop_statistics_t>())),
-      output_left_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<output_left_t>())) {}
+      output_left_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<output_left_t>())),
+      pressure_command_(
+          network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<pressure_command_t>())),
+      reference_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<arm_reference_t>())) {
+  if (!config.siblings.empty()) limb_.emplace(config, network, now);
+}
 
 PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
   const auto number = static_cast<size_t>(plant.number());
@@ -40,12 +45,17 @@ void Observer::Report(const std::string& invariant, const std::string& text) {
 }
 
 void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
+  if (limb_ && IsOfKnee(sender.role())) limb_->OnSent(packet, &coverage_);
   if (packet.channel == state_) OnState(packet, sender);
   if (packet.channel == fault_) OnFault(packet);
   if (packet.channel == stop_) OnStop(packet, sender);
   if (packet.channel == statistics_) OnStatistics(packet, sender);
+  if (packet.channel == pressure_command_) OnPressureCommand(packet, sender);
+  if (packet.channel == reference_) OnReference(packet, sender);
   if (output_left_t left; packet.channel == output_left_ && Decode(packet, &left)) {
-    RecordOf(sender).left_zero = left.accepted != 0 && left.voltage == 0;
+    PlantRecord& plant = RecordOf(sender);
+    const bool zero = left.accepted != 0 && left.voltage == 0;
+    (zero ? plant.left_zero : plant.left_other) = true;
   }
 }
 
@@ -102,10 +112,12 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
            fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
                        network_.ChannelName(packet.channel)));
   }
+  if (limb_ && receiver.role() == Role::kPlant) limb_->OnHandled(packet, receiver);
   if (packet.channel == state_ && receiver.role() == Role::kPosition)
     losses_[receiver.number()].Handle(packet);
   if (packet.channel == state_ || packet.channel == run_) in_a_run_.insert(receiver.number());
   if (packet.channel == state_) {
+    if (packet.origin == Origin::kChanged) changed_state_ = *now_;
     if (packet.origin == Origin::kChanged && receiver.role() == Role::kPressure) OnChangedState(packet);
     return;
   }
@@ -176,6 +188,9 @@ void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double volta
   PlantRecord& record = RecordOf(plant);
   if (record.heartbeat) record.unsupervised = plant.machine().Now() - *record.heartbeat;
   PlantInvariants(*this, record).OnDrive(tick, voltage);
+  if (!limb_) return;
+  if (const std::string wrong = limb_->OnDrive(plant, tick, voltage); !wrong.empty())
+    Report("zero volts of all joints while one has a fault or is silent", wrong);
 }
 
 void Observer::SetOtherConfiguration(bool present) {
@@ -184,6 +199,43 @@ void Observer::SetOtherConfiguration(bool present) {
   } else if (other_configuration_ < 0) {
     other_configuration_ = *now_;
   }
+}
+
+void Observer::CheckLeft(const PlantRecord& plant) {
+  if (plant.zero_refused && (plant.left_zero || !plant.left_other)) {
+    Report("a driver whose board refuses the zero says so", "the last driver did not");
+  } else if (!plant.zero_refused && !plant.left_zero) {
+    Report("a plant that ends leaves zero volts and says so", "the last plant did not");
+  }
+}
+
+// Whatever a planner, an operator or a bit on the way asks for.
+void Observer::OnPressureCommand(const Packet& packet, const SimulatedProcess& sender) {
+  pressure_command_t command;
+  if (sender.role() != Role::kPosition || !Decode(packet, &command)) return;
+  const double limit = config_.limits.arm_torque_in_lbf / config_.model.description.parameters.k_2;
+  if (std::fabs(command.pressure_ref) <= (1 + 1e-9) * limit && command.voltage == 0) return;
+  Report("a pressure command is finite and within limits.arm_torque",
+         fmt::format("tick {}: {} psi, {} V, allowed are +/- {} psi and 0 V", command.tick,
+                     command.pressure_ref, command.voltage, limit));
+}
+
+// While the motor is held the reference is where the arm is, and comes back from there.
+void Observer::OnReference(const Packet& packet, const SimulatedProcess& sender) {
+  constexpr int64_t kUnnoticed = 100;  // ticks: states may be lost
+  arm_reference_t reference;
+  if (sender.role() != Role::kPosition || newest_plant_ == nullptr || !Decode(packet, &reference)) return;
+  if (reference.value != reference_value_) reference_moved_ = *now_;
+  reference_value_ = reference.value;
+  const auto returns = static_cast<int64_t>(config_.limits.return_s * config_.plant.rate_hz);
+  if (reference.tick > newest_plant_->tick ||
+      reference.tick <= newest_plant_->zero_tick + returns + kUnnoticed)
+    return;
+  if (*now_ - changed_state_ < kChangedForgotten) return;
+  if (std::fabs(reference.value) <= config_.limits.arm_angle_rad) return;
+  Report("a reference is within limits.arm_angle",
+         fmt::format("tick {}: {} rad, allowed are +/- {} rad", reference.tick, reference.value,
+                     config_.limits.arm_angle_rad));
 }
 
 void Observer::OnEnd(const SimulatedProcess& process) {
@@ -195,9 +247,8 @@ void Observer::OnEnd(const SimulatedProcess& process) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
     return;
   }
-  if (process.role() == Role::kPlant && !RecordOf(process).left_zero) {
-    Report("a plant that ends leaves zero volts and says so", "the last plant did not");
-  }
+  if (IsOfKnee(process.role())) return;  // of its messages only those matter that the others hear
+  if (process.role() == Role::kPlant) CheckLeft(RecordOf(process));
   // One that finds itself misconfigured leaves alone.
   if (process.misconfigured() && process.exit_code() == 1) return;
   const auto stop = stops_.find(process.number());

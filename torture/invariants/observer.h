@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "model/terms/measurement.h"
 #include "settings/stack_config.h"
 #include "torture/invariants/coverage.h"
+#include "torture/invariants/limb_invariants.h"
 #include "torture/invariants/loss_count.h"
 #include "torture/invariants/plant_record.h"
 #include "torture/machines/network.h"
@@ -48,6 +50,8 @@ class Observer {
     if (process.role() == Role::kPlant) RecordOf(process).Stop();
   }
   void OnHeartbeat(const SimulatedProcess& plant) { RecordOf(plant).heartbeat = plant.machine().Now(); }
+  // The board of a driver does not take the zero at its end.
+  void OnZeroRefused(const SimulatedProcess& driver) { RecordOf(driver).zero_refused = true; }
   // Processes with another configuration than the plant's take part since now, or no longer.
   void SetOtherConfiguration(bool present);
   // A process has ended.
@@ -59,6 +63,12 @@ class Observer {
   // When a plant last obeyed a command; -1: never.
   TrueTime last_obeyed() const { return last_obeyed_; }
   PlantRecord* newest_plant() { return newest_plant_; }
+  // When a reference was last another than the one before; -1: never.
+  TrueTime reference_moved() const { return reference_moved_; }
+  // When the other joint of a limb was driven last; none: there is none.
+  std::optional<TrueTime> sibling_driven() const {
+    return limb_ ? std::optional(limb_->sibling_driven()) : std::nullopt;
+  }
 
  private:
   friend class PlantInvariants;
@@ -67,6 +77,9 @@ class Observer {
   void OnFault(const Packet& packet);
   void OnStatistics(const Packet& packet, const SimulatedProcess& sender);
   bool OnStop(const Packet& packet, const SimulatedProcess& process);
+  void CheckLeft(const PlantRecord& plant);
+  void OnPressureCommand(const Packet& packet, const SimulatedProcess& sender);
+  void OnReference(const Packet& packet, const SimulatedProcess& sender);
   void OnChangedState(const Packet& packet);
   void OnCommand(const Packet& packet, PlantRecord& plant);
 
@@ -74,15 +87,20 @@ class Observer {
   Network& network_;
   const TrueTime* now_;
   Coverage& coverage_;
-  const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_,
-      output_left_;                                   // channel numbers
+  const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_, output_left_,
+      pressure_command_, reference_;                  // channel numbers
   std::vector<std::unique_ptr<PlantRecord>> plants_;  // by number of the process
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;
   std::set<int64_t> misconfigured_;  // sessions
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
-  TrueTime other_configuration_ = -1;   // since when
+  TrueTime reference_moved_ = -1;
+  double reference_value_ = 0;                                  // of the newest
+  static constexpr TrueTime kChangedForgotten = 2'000'000'000;  // ns: the reference has come back
+  TrueTime changed_state_ = -kChangedForgotten;  // when a state with wrong bits was handled last
+  TrueTime other_configuration_ = -1;            // since when
+  std::optional<LimbInvariants> limb_;
   std::map<int, LossCount> losses_;     // of position loops, by number of the process
   std::set<int> in_a_run_;              // processes that have heard of a plant
   std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent

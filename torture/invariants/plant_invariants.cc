@@ -74,6 +74,7 @@ void PlantInvariants::OnDrive(int64_t tick, double voltage) {
   }
   plant_.tick = tick;
   plant_.voltage = voltage;
+  if (voltage == 0) plant_.zero_tick = tick;
   plant_.driven = *observer_.now_;
 }
 

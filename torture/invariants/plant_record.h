@@ -56,11 +56,14 @@ class PlantRecord {
   // A made-up or changed one among the last that were received.
   const ReceivedCommand* NewestFalse(double wanted) const;
 
-  int64_t tick = -1;       // of the last Drive()
-  int64_t read_tick = -1;  // of the last Read(); before the first the run has not begun
-  double voltage = 0;      // that it holds
-  bool left_zero = false;  // it has said that its output reads back zero
-  TrueTime driven = 0;     // when that was
+  int64_t tick = -1;          // of the last Drive()
+  int64_t read_tick = -1;     // of the last Read(); before the first the run has not begun
+  double voltage = 0;         // that it holds
+  int64_t zero_tick = 0;      // of the last Drive() of zero volts
+  bool left_zero = false;     // it has said that its output reads back zero
+  bool left_other = false;    // it has said that its output holds something else
+  bool zero_refused = false;  // its board did not take the zero
+  TrueTime driven = 0;        // when that was
   int64_t woke_tick = -1;  // the first tick after it did not run for longer than allowed; -1: it has answered
   std::optional<int64_t> stop_tick;                // the tick at which a stop or a signal reached it
   std::optional<bus::Clock::TimePoint> heartbeat;  // when one of its launcher reached it last

@@ -40,7 +40,8 @@ std::optional<NamedFault> FaultNamed(std::string_view word) {
   if (info == kinds.end()) return std::nullopt;
   if (colon == word.size()) return NamedFault{info->kind, std::nullopt};
   const std::string_view target = word.substr(colon + 1);
-  const std::vector<std::string_view> allowed = process::WordsOf(info->targets);
+  const std::string all = TargetsOf(*info);
+  const std::vector<std::string_view> allowed = process::WordsOf(all);
   if (std::find(allowed.begin(), allowed.end(), target) == allowed.end()) return std::nullopt;
   return NamedFault{info->kind, TargetNamed(target)};
 }

@@ -20,10 +20,27 @@ namespace hydro::torture {
 inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
 
 // The processes of a stack; also the numbers by which faults name their targets.
-enum class Role : int8_t { kPlant, kPressure, kPosition, kLogger, kOperator, kLauncher, kCount };
+enum class Role : int8_t {
+  kPlant,
+  kPressure,
+  kPosition,
+  kLogger,
+  kOperator,
+  kLauncher,
+  // Of the other joint of a limb:
+  kKneePlant,
+  kKneePressure,
+  kKneePosition,
+  kCount
+};
 
-// Whose machine a role runs on: the launcher starts the plant where it runs itself.
-inline Role HomeOf(Role role) { return role == Role::kLauncher ? Role::kPlant : role; }
+inline bool IsOfKnee(Role role) { return role >= Role::kKneePlant && role < Role::kCount; }
+
+// Whose machine a role runs on: the launcher starts the plant where it runs itself; the knee has one for its own.
+inline Role HomeOf(Role role) {
+  if (IsOfKnee(role)) return Role::kKneePlant;
+  return role == Role::kLauncher ? Role::kPlant : role;
+}
 
 class SimulatedProcess : public Waiter {
  public:

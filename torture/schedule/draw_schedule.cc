@@ -36,6 +36,12 @@ void DrawNumbers(Random& random, double latest_s, Injection* injection) {
   injection->seed = random.Next() >> 32;
 }
 
+// While one of these faults lasts, or soon after.
+double BesideOneOf(Random& random, const std::vector<Injection>& injections, size_t first) {
+  const Injection& other = injections[first + random.Index(injections.size() - first)];
+  return Rounded(other.at_s + random.Unit() * (other.duration_s + 0.02), 1e6);
+}
+
 Injection Draw(Random& random, double latest_s, bool logger) {
   const int none = *TargetNamed("logger");
   Injection injection;
@@ -65,12 +71,50 @@ void DrawLauncher(uint64_t seed, Schedule* schedule) {
     // While something else goes wrong, as often as not.
     if (random.Chance(0.5)) {
       const size_t first = schedule->injections.size() > own ? own : 0;  // of these, if there is one
-      const Injection& other =
-          schedule->injections[first + random.Index(schedule->injections.size() - first)];
-      injection.at_s = Rounded(other.at_s + random.Unit() * (other.duration_s + 0.02), 1e6);
+      injection.at_s = BesideOneOf(random, schedule->injections, first);
     }
     schedule->injections.push_back(injection);
   }
+}
+
+// What befalls the other joint.
+void DrawKnee(Random& random, Schedule* schedule) {
+  std::vector<FaultKind> kinds;
+  for (const FaultKindInfo& info : FaultKinds()) {
+    if (!info.knee_targets.empty()) kinds.push_back(info.kind);
+  }
+  for (uint64_t i = 1 + random.Index(4); i > 0; --i) {
+    Injection injection;
+    injection.kind = kinds[random.Index(kinds.size())];
+    injection.target = DrawTarget(random, InfoOf(injection.kind).knee_targets);
+    DrawNumbers(random, schedule->faults_until_s, &injection);
+    if (random.Chance(0.3)) injection.at_s = BesideOneOf(random, schedule->injections, 0);
+    schedule->injections.push_back(injection);
+  }
+}
+
+// What a run has besides, and what befalls it there; also from a stream of its own.
+void DrawMore(uint64_t seed, Schedule* schedule) {
+  Random random(seed, 6);
+  schedule->driver = random.Chance(0.25) && !schedule->lockstep;  // a board waits for nobody
+  schedule->planner = random.Chance(0.25);
+  std::vector<FaultKind> kinds{FaultKind::kNonfiniteReference, FaultKind::kStrangeRequest,
+                               FaultKind::kTornSet};
+  if (schedule->planner) kinds.insert(kinds.end(), {FaultKind::kWrongPlan, FaultKind::kPlannerSilent});
+  if (schedule->driver) {
+    kinds.insert(kinds.end(), {FaultKind::kBoardInput, FaultKind::kBoardError, FaultKind::kEncoderLost,
+                               FaultKind::kGuardianGone});
+  }
+  schedule->limb = random.Chance(0.2) && !schedule->lockstep && !schedule->launcher;
+  for (uint64_t i = random.Index(5); i > 0; --i) {
+    Injection injection;
+    injection.kind = kinds[random.Index(kinds.size())];
+    injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
+    DrawNumbers(random, schedule->faults_until_s, &injection);
+    if (random.Chance(0.3)) injection.at_s = BesideOneOf(random, schedule->injections, 0);
+    schedule->injections.push_back(injection);
+  }
+  if (schedule->limb) DrawKnee(random, schedule);
 }
 
 }  // namespace
@@ -96,6 +140,7 @@ Schedule DrawSchedule(uint64_t seed) {
     }
   }
   DrawLauncher(seed, &schedule);
+  DrawMore(seed, &schedule);
   for (const Injection& injection : schedule.injections) {
     const double end_s = std::ceil((injection.at_s + injection.duration_s) * 10) / 10;
     schedule.faults_until_s = std::max(schedule.faults_until_s, end_s);

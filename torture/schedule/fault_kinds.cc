@@ -8,23 +8,28 @@ namespace hydro::torture {
 namespace {
 
 constexpr std::string_view kLoops = "plant pressure_ctrl position_ctrl logger";
+constexpr std::string_view kKnee = "knee_plant knee_pressure_ctrl knee_position_ctrl";
 constexpr std::string_view kLoopsOrAll = "all plant pressure_ctrl position_ctrl logger";
 
 constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKinds{{
-    {FaultKind::kLoss, "loss", kLoopsOrAll, 0.005, 1.5, 0.01, 1, "probability, per packet that it sends"},
-    {FaultKind::kDelay, "delay", kLoopsOrAll, 0.005, 1.5, 0.0002, 0.3, "s, of every packet that it sends"},
-    {FaultKind::kRepeat, "repeat", kLoopsOrAll, 0.005, 1.5, 0.0005, 0.5, "s, at most until the repetition"},
+    {FaultKind::kLoss, "loss", kLoopsOrAll, 0.005, 1.5, 0.01, 1, "probability, per packet that it sends",
+     kKnee},
+    {FaultKind::kDelay, "delay", kLoopsOrAll, 0.005, 1.5, 0.0002, 0.3, "s, of every packet that it sends",
+     kKnee},
+    {FaultKind::kRepeat, "repeat", kLoopsOrAll, 0.005, 1.5, 0.0005, 0.5, "s, at most until the repetition",
+     kKnee},
     {FaultKind::kOvertake, "overtake", kLoopsOrAll, 0.005, 1.5, 0.0005, 0.3,
-     "s, at most that a packet is late"},
-    {FaultKind::kChange, "change", kLoopsOrAll, 0.005, 1.5, 0.001, 0.5, "probability that a bit is wrong"},
-    {FaultKind::kPartition, "partition", kLoops, 0.005, 2, 0, 0, ""},
+     "s, at most that a packet is late", kKnee},
+    {FaultKind::kChange, "change", kLoopsOrAll, 0.005, 1.5, 0.001, 0.5, "probability that a bit is wrong",
+     kKnee},
+    {FaultKind::kPartition, "partition", kLoops, 0.005, 2, 0, 0, "", kKnee},
     {FaultKind::kFlood, "flood", "all", 0.01, 0.5, 100, 20000, "messages a second"},
     {FaultKind::kDrift, "drift", kLoopsOrAll, 0.1, 3, -0.02, 0.02, "s per s"},
     {FaultKind::kWallClockJump, "wall_clock_jump", kLoopsOrAll, 0, 0, -4000, 4000, "s"},
-    {FaultKind::kSuspend, "suspend", kLoopsOrAll, 0.001, 2, 0, 0, ""},
-    {FaultKind::kCrash, "crash", kLoops, 0.02, 2, 0, 0, ""},
-    {FaultKind::kHang, "hang", kLoops, 0.002, 2, 0, 0, ""},
-    {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time"},
+    {FaultKind::kSuspend, "suspend", kLoopsOrAll, 0.001, 2, 0, 0, "", "knee_plant"},
+    {FaultKind::kCrash, "crash", kLoops, 0.02, 2, 0, 0, "", kKnee},
+    {FaultKind::kHang, "hang", kLoops, 0.002, 2, 0, 0, "", kKnee},
+    {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time", kKnee},
     {FaultKind::kOtherConfiguration, "other_configuration", "pressure_ctrl position_ctrl", 0.5, 6, 0, 0, ""},
     {FaultKind::kOtherVersion, "other_version", "pressure_ctrl position_ctrl logger", 0.5, 6, 0, 0, ""},
     {FaultKind::kLauncherHang, "launcher_hang", "plant", 0.2, 4, 0, 0, ""},
@@ -39,7 +44,7 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kSensorLie, "sensor_lie", "plant", 0.01, 1, 0, 6, "which sensor"},
     {FaultKind::kStop, "stop", "all", 0, 0, 0, 0, ""},
     {FaultKind::kRearm, "rearm", "plant", 0, 0, 0, 0, ""},
-    {FaultKind::kSignal, "signal", kLoops, 0, 0, 0, 0, ""},
+    {FaultKind::kSignal, "signal", kLoops, 0, 0, 0, 0, "", kKnee},
     {FaultKind::kSet, "set", "all", 0, 0, 0, 7.999, "which values, and undo"},
     {FaultKind::kForeignStop, "foreign_stop", "all", 0, 0, 0, 0, ""},
     {FaultKind::kSecondPlant, "second_plant", "all", 0.01, 1, 0, 0, ""},
@@ -55,14 +60,31 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kLauncherCrash, "launcher_crash", "launcher", 0, 0, 0, 0, ""},
     {FaultKind::kInterrupt, "interrupt", "launcher", 0.001, 2, 1, 3,
      "SIGINTs: 1, or 2, the second when it ends"},
+    {FaultKind::kNonfiniteReference, "nonfinite_reference", "all", 0, 0, 0, 3.999,
+     "NaN, which infinity, or a voltage"},
+    {FaultKind::kStrangeRequest, "strange_request", "all", 0, 0, 0, 7.999, "which text, addressee or kind"},
+    {FaultKind::kTornSet, "torn_set", "pressure_ctrl position_ctrl", 0.6, 2, 0, 7.999,
+     "which values, and undo"},
+    {FaultKind::kWrongPlan, "wrong_plan", "all", 0, 0, 0, 6.999, "what is wrong with it"},
+    {FaultKind::kPlannerSilent, "planner_silent", "all", 0.3, 2, 0, 0, ""},
+    {FaultKind::kBoardInput, "board_input", "plant", 0.001, 0.5, 0, 6, "which sensor"},
+    {FaultKind::kBoardError, "board_error", "plant", 0, 0, 0, 3.999,
+     "reading or output, takes the zero or not"},
+    {FaultKind::kEncoderLost, "encoder_lost", "plant", 0, 0, 0, 0, ""},
+    {FaultKind::kGuardianGone, "guardian_gone", "plant", 0, 0, 0, 0, ""},
 }};
 
 constexpr std::array<std::string_view, static_cast<size_t>(Role::kCount)> kRoles{
-    "plant", "pressure_ctrl", "position_ctrl", "logger", "operator", "launcher"};
+    "plant",      "pressure_ctrl",      "position_ctrl",     "logger", "operator", "launcher",
+    "knee_plant", "knee_pressure_ctrl", "knee_position_ctrl"};
 
 }  // namespace
 
 std::span<const FaultKindInfo> FaultKinds() { return kKinds; }
+
+std::string TargetsOf(const FaultKindInfo& info) {
+  return std::string(info.targets) + (info.knee_targets.empty() ? "" : " ") + std::string(info.knee_targets);
+}
 
 std::string_view TargetName(int target) { return target < 0 ? "all" : kRoles[static_cast<size_t>(target)]; }
 

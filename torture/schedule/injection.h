@@ -62,11 +62,25 @@ enum class FaultKind : uint8_t {
   kLongHang,
   kLauncherCrash,
   kInterrupt,
+  // Commands and requests that no process of the stack would send.
+  kNonfiniteReference,
+  kStrangeRequest,  // of other values
+  kTornSet,         // hydro-set, while a controller stands still
+  // The planner, where one runs.
+  kWrongPlan,
+  kPlannerSilent,
+  // The board, where the plant is a driver.
+  kBoardInput,
+  kBoardError,
+  kEncoderLost,
+  kGuardianGone,
   kCount
 };
 
 // Those from here on are for a launcher: a run without one has none of them.
 inline constexpr FaultKind kFirstOfLauncher = FaultKind::kLongHang;
+// Those from here on are drawn beside the others, from a stream of their own.
+inline constexpr FaultKind kFirstOfMore = FaultKind::kNonfiniteReference;
 
 struct Injection {
   double at_s = 0;
@@ -86,12 +100,16 @@ struct FaultKindInfo {
   double longest_s = 0;
   double least = 0;  // range of the amount
   double most = 0;
-  std::string_view amount;  // what the amount is; empty: none
+  std::string_view amount;             // what the amount is; empty: none
+  std::string_view knee_targets = {};  // the same of the other joint, in runs of a limb
 };
 
 // One for each kind, in the order of FaultKind.
 std::span<const FaultKindInfo> FaultKinds();
 inline const FaultKindInfo& InfoOf(FaultKind kind) { return FaultKinds()[static_cast<size_t>(kind)]; }
+
+// Of this run's stack and of the knee.
+std::string TargetsOf(const FaultKindInfo& info);
 
 // "plant", "pressure_ctrl", ..., "all".
 std::string_view TargetName(int target);

@@ -18,6 +18,9 @@ struct Schedule {
   bool logger_required = true;  // logger.required
   bool launcher =
       false;  // a launcher starts, watches and stops the others; otherwise each is started again by itself
+  bool driver = false;   // the plant is a driver with a simulated board
+  bool planner = false;  // a planner says where the arm is to be: reference.kind
+  bool limb = false;     // the stack is a joint, the hip, of a limb whose knee has processes of its own
   bool explicit_rearm = false;        // limits.rearm
   double stale_input_s = 0.1;         // limits.stale_input_s
   double faults_until_s = 12;         // all faults have ended by then

@@ -67,9 +67,10 @@ class LineReader {
 
 void CheckRanges(const LineReader& line, const FaultKindInfo& info, const Injection& injection) {
   const std::string_view target = TargetName(injection.target);
-  const std::vector<std::string_view> targets = process::WordsOf(info.targets);
+  const std::string all = TargetsOf(info);
+  const std::vector<std::string_view> targets = process::WordsOf(all);
   if (std::find(targets.begin(), targets.end(), target) == targets.end()) {
-    throw line.Error(std::string(target), "target=T with T one of " + std::string(info.targets));
+    throw line.Error(std::string(target), "target=T with T one of " + all);
   }
   if (!(injection.duration_s >= 0 && injection.duration_s <= kLongest_s)) {
     throw line.Error(ShortestNumber(injection.duration_s), fmt::format("for=S from 0 to {}", kLongest_s));
@@ -119,20 +120,29 @@ void ReadRole(const LineReader& line, const std::string& word, Schedule* schedul
     schedule->logger_required = word == "logger=yes";
   } else if (word == "launcher=yes") {
     schedule->launcher = true;
+  } else if (word == "driver=yes") {
+    schedule->driver = true;
+  } else if (word == "planner=yes") {
+    schedule->planner = true;
+  } else if (word == "limb=yes") {
+    schedule->limb = true;
   } else {
-    throw line.Error(word, "logger=yes, logger=optional, launcher=yes or the end of the line");
+    throw line.Error(word,
+                     "logger=yes, logger=optional, launcher=yes, driver=yes, planner=yes, limb=yes or the "
+                     "end of the line");
   }
 }
 
 }  // namespace
 
 std::string ScheduleText(const Schedule& schedule) {
-  std::string text =
-      fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}{}\n", kFirstLine,
-                  schedule.lockstep ? "lockstep" : "realtime",
-                  schedule.explicit_rearm ? "explicit" : "restart", schedule.key ? "yes" : "no",
-                  ShortestNumber(schedule.stale_input_s), ShortestNumber(schedule.faults_until_s),
-                  schedule.seed, LoggerText(schedule), schedule.launcher ? " launcher=yes" : "");
+  std::string text = fmt::format(
+      "{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}{}{}{}{}\n", kFirstLine,
+      schedule.lockstep ? "lockstep" : "realtime", schedule.explicit_rearm ? "explicit" : "restart",
+      schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
+      ShortestNumber(schedule.faults_until_s), schedule.seed, LoggerText(schedule),
+      schedule.launcher ? " launcher=yes" : "", schedule.driver ? " driver=yes" : "",
+      schedule.planner ? " planner=yes" : "", schedule.limb ? " limb=yes" : "");
   for (const Injection& injection : schedule.injections) {
     text +=
         fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),

@@ -89,6 +89,18 @@ TEST(ChecklistTest, TurnedSigns) {
   EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
 }
 
+// Tests that of pressures that are exchanged nothing good is said, however the shaft is held, and of others that they rise.
+TEST(ChecklistTest, ExchangedPressures) {
+  for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
+    runs::MeasuredRun run = PlainSwing(shaft);
+    EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::ContainsRegex("^ok .*raises p2 over p1"));
+    std::swap(run.p1, run.p2);
+    EXPECT_THAT(LineOf(run, "sign of the command"),
+                ::testing::Not(::testing::HasSubstr("raises p2 over p1")));
+    EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
+  }
+}
+
 // Tests that other units, a shaft that is not as stated and gaps in time are seen.
 TEST(ChecklistTest, UnitsShaftAndTime) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);

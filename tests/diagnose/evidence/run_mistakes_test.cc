@@ -116,7 +116,7 @@ TEST(RunMistakes, SignedNumbersReadAsUnsigned) {
     const MistakeTrial found = RunMistakes(kAsGiven, wrong).Search(NeverUp).front();
     ASSERT_EQ(found.mistakes.size(), 1u);
     EXPECT_THAT(found.mistakes[0].what,
-                ::testing::HasSubstr(std::to_string(bits) + " bits read as unsigned"));
+                ::testing::HasSubstr("a signed number read as unsigned (" + std::to_string(bits) + " bits)"));
     EXPECT_GT(found.Merit(), 0);
     Correct(found.mistakes[0], &wrong);
     for (size_t k = 0; k < run.samples(); ++k)

@@ -8,6 +8,7 @@
 
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/run_data.h"
+#include "maths/range.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -54,7 +55,7 @@ bool Overlap(const RunData& a, const RunData& b) {
 }
 
 double Highest(const RunData& run, model::Channel channel) {
-  return diagnose::RangeOfValues(run.Find(channel)->values).high;
+  return maths::RangeOf(run.Find(channel)->values).high;
 }
 
 // Tests that windows of runs that are held out by name judge, each as of its run, and that those of fitted runs are fitted.

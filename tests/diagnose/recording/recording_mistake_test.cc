@@ -73,6 +73,17 @@ TEST(RecordingMistake, SidecarLines) {
             "p1 = { column = \"P2\", scale = 2, offset = 3 }; p2 = { column = \"P1\" }");
 }
 
+// Tests that the columns of a log without a sidecar are named as its export has them, with the unit of the model.
+TEST(RecordingMistake, ColumnsOfALog) {
+  runs::MeasuredRun run = Bench();
+  run.p1.source.column = run.p2.source.column = "";
+  EXPECT_THAT(SidecarLines({Mistake("p1 and p2 are exchanged")}, run),
+              ::testing::StartsWith("p1 = { column = \"p2_psi\""));
+  run.units = kSiUnits;
+  EXPECT_THAT(SidecarLines({Mistake("p1 and p2 are exchanged")}, run),
+              ::testing::StartsWith("p1 = { column = \"p2_Pa\""));
+}
+
 // Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign, too.
 TEST(RecordingMistake, StatedUnit) {
   runs::MeasuredRun run = Bench();
