@@ -214,8 +214,9 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
     if (more > 0) out += " (and " + std::to_string(more) + " more in the report)";
     out += "\n";
   }
-  return out + "written:    " + folder + "/report.html, report.json, model.toml" +
+  out += "written:    " + folder + "/report.html, report.json, model.toml" +
          (diagnosis.next.config.empty() ? "" : ", next.toml") + "\n";
+  return PrintableLines(out);
 }
 
 }  // namespace hydro::diagnose
