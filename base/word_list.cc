@@ -1,6 +1,7 @@
 #include "base/word_list.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 
 namespace hydro {
@@ -16,7 +17,11 @@ std::string Enumerated(const std::vector<std::string>& parts) {
   return Joined({parts.begin(), parts.end() - 1}) + " and " + parts.back();
 }
 
-std::string RunNamed(const std::string& name) { return name.starts_with("run ") ? name : "run " + name; }
+std::string RunNamed(const std::string& name) {
+  const bool says_it =
+      name.starts_with("run") && name.size() > 3 && std::isalpha(static_cast<unsigned char>(name[3])) == 0;
+  return says_it ? name : "run " + name;
+}
 
 std::string RunsNamed(const std::vector<std::string>& names) {
   const bool say_it =

@@ -39,7 +39,7 @@ class ReportFolder {
  public:
   explicit ReportFolder(std::string folder) : folder_(std::move(folder)) {
     std::error_code error;
-    fs::create_directories(folder_, error);
+    created_ = fs::create_directories(folder_, error);
     if (error || !fs::is_directory(folder_) || access(folder_.c_str(), W_OK) != 0) {
       throw InputError("--out: found " + Quoted(folder_) + ", a folder that cannot be written" +
                        (error ? " (" + error.message() + ")" : "") +
@@ -48,7 +48,7 @@ class ReportFolder {
   }
   ~ReportFolder() {
     std::error_code error;
-    if (fs::is_empty(folder_, error) && !error) fs::remove(folder_, error);
+    if (created_ && fs::is_empty(folder_, error) && !error) fs::remove(folder_, error);
   }
   ReportFolder(const ReportFolder&) = delete;
   ReportFolder& operator=(const ReportFolder&) = delete;
@@ -57,7 +57,7 @@ class ReportFolder {
   void Write(const std::vector<std::pair<std::string, std::string>>& files) const {
     std::vector<std::unique_ptr<NewFile>> open;
     for (const auto& [name, text] : files) {
-      open.push_back(std::make_unique<NewFile>(folder_ + "/" + name, Opening::kTemporary));
+      open.push_back(std::make_unique<NewFile>(folder_ + "/" + name, Opening::kTemporary, Existing::kKept));
       open.back()->Write(text.data(), text.size());
     }
     for (const std::unique_ptr<NewFile>& file : open) file->Finish();
@@ -69,6 +69,7 @@ class ReportFolder {
 
  private:
   std::string folder_;
+  bool created_ = false;
 };
 
 std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, const UnitSystem& units) {
@@ -132,7 +133,8 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
 // What RunDiagnosis may write, or remove, in the request's folder.
 constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
 
-void RequireInputsKept(const DiagnoseRequest& request) {
+// An earlier report is a result like any other, and stays unless --force is given.
+void RequireFilesKept(const DiagnoseRequest& request) {
   std::vector<std::string> inputs;
   for (const std::string& run : request.runs) inputs.push_back(runs::ParseRunName(run).file);
   for (const std::string& run : request.held_out) inputs.push_back(runs::ParseRunName(run).file);
@@ -140,6 +142,7 @@ void RequireInputsKept(const DiagnoseRequest& request) {
   if (!request.effects.empty()) inputs.push_back(request.effects);
   inputs.insert(inputs.end(), request.own_effects.begin(), request.own_effects.end());
   for (const char* name : kReportFiles) CheckKeeps(request.folder + "/" + name, inputs);
+  for (const char* name : kReportFiles) CheckIsNew(request.folder + "/" + name);
 }
 
 // Whether the runs are of a motor alone: the bypass is open in all, and none has pressures.
@@ -266,12 +269,12 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   for (const runs::MeasuredRun& run : runs) {
     std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);
     for (const ChecklistLine& line : Checklist(model, run, request.si))
-      std::fputs((Written(line) + "\n").c_str(), out);
+      std::fputs((Printable(Written(line)) + "\n").c_str(), out);
     std::fputs("\n", out);
   }
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
   for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {
-    for (const std::string& line : *lines) std::fputs((line + "\n").c_str(), out);
+    for (const std::string& line : *lines) std::fputs((Printable(line) + "\n").c_str(), out);
   }
   if (!report.judged) {
     std::fputs("whether these recordings are right cannot be told before the model predicts them\n", out);
@@ -299,7 +302,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
                      ", allowed seconds above 0");
   }
   RequireDifferentFiles(request);
-  RequireInputsKept(request);
+  RequireFilesKept(request);
   const ReportFolder folder(request.folder);
 
   const auto begin = std::chrono::steady_clock::now();

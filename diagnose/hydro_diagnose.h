@@ -31,7 +31,8 @@ using Diagnoser =
                             std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const ProgressCallback&)>;
 
 // Writes report.html, report.json, model.toml and, when there is a next experiment, next.toml into the
-// request's folder, each file whole or not at all, and a summary to `out`. Progress goes to `err`: as a bar when
+// request's folder, each file whole or not at all, and a summary to `out`. Unless AllowReplacing() was called (base/new_file.h), a folder
+// that has one of them with contents is bad input. Progress goes to `err`: as a bar when
 // that is a terminal, else one line a stage, the first not before the input was found good: then `err` has the one line of an error.
 // Throws InputError for anything that cannot be read or used, including a model that cannot follow a run.
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err);

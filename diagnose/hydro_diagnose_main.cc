@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   line.AddOption(
       "-o,--out", &request.folder,
       "DIR where report.html, report.json, model.toml and next.toml are written; required without --check");
+  line.AddForce();
   line.AddOption("--hold-out", &request.held_out,
                  "RUN a run that is not fitted, for the proof; without any, the runs are held out in turn");
   std::string joint;

@@ -8,6 +8,7 @@
 #include "base/word_list.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/recording/contradictions.h"
+#include "diagnose/recording/held_samples.h"
 #include "diagnose/recording/recording_damage.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "diagnose/recording/run_data.h"
@@ -68,6 +69,7 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   if (!checked.load.empty()) remarks.push_back(checked.load);
+  remarks.insert(remarks.end(), checked.repeats.begin(), checked.repeats.end());
   remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
   return remarks;
 }
@@ -88,6 +90,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   for (const runs::MeasuredRun& run : all) CheckUsable(run);
   checked.load = LoadRemark(all);
   for (auto* some : {runs, held_out}) {
+    const std::vector<std::string> repeats = SetAsideRepeats(some);
+    checked.repeats.insert(checked.repeats.end(), repeats.begin(), repeats.end());
     const std::vector<std::string> damage = SetAsideDamage(some);
     checked.damage.insert(checked.damage.end(), damage.begin(), damage.end());
   }
@@ -142,6 +146,7 @@ Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecording
   diagnosis.remarks = RemarksOn(checked);
   SetUntried(&diagnosis.fit);
   SetUntried(&diagnosis.held_out);
+  SetUntried(&diagnosis.compared.gap);
   diagnosis.model = model;
   for (const runs::MeasuredRun& run : runs) {
     diagnosis.runs.push_back(run.name);
@@ -169,6 +174,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
   if (!checked.load.empty()) report.limits.push_back(checked.load);
+  report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());
   report.judged = checked.unjudged.empty();
   if (!report.judged) report.limits.push_back(checked.unjudged);
   if (checked.mend_first) return report;  // the rest is said of recordings that can be read
@@ -184,8 +190,9 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());
   const std::vector<std::string> layouts = LayoutRemarks(pointers);
   report.limits.insert(report.limits.end(), layouts.begin(), layouts.end());
-  const std::vector<std::string> limits = LimitRemarks(model.parameters, pointers);
-  report.limits.insert(report.limits.end(), limits.begin(), limits.end());
+  for (const std::vector<std::string>& limits :
+       {LimitRemarks(model.parameters, pointers), MotionRemarks(pointers)})
+    report.limits.insert(report.limits.end(), limits.begin(), limits.end());
   return report;
 }
 

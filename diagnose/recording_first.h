@@ -16,6 +16,7 @@ namespace hydro::diagnose {
 struct CheckedRecordings {
   std::vector<std::string> mistakes;  // signs, exchanged channels, units: a line each, with the remedy
   std::vector<std::string> damage;    // dropouts, spikes, cuts: a line each
+  std::vector<std::string> repeats;   // slow sensors that repeat their values: a line each
   std::string load;                   // LoadRemark()
   std::string unjudged;               // runs that the model as given does not predict at all; empty: none
   // The mistakes make a search useless: it would name physics for them.

@@ -26,6 +26,8 @@ constexpr double kAxisLabel = 20;
 constexpr double kNoteLine = 15;  // between the lines of a note
 constexpr double kAside = 7;      // from a point to its note
 constexpr double kTextSize = 12;
+// A reader's own sans-serif font over the one that TextWidth knows: labels beside an axis must not leave the picture.
+constexpr double kWidestFont = 1.12;
 constexpr double kLabelSize = 13;
 constexpr double kMinBarWidth = 0.8;
 
@@ -62,7 +64,7 @@ double PanelDrawing::LeftMargin(double frame_height) const {
       widest = std::max(widest, TextWidth(tick.text) * kTextSize);
     }
   }
-  return 8 + (panel_->y.label.empty() ? 0 : kAxisLabel) + widest + 7;
+  return 8 + (panel_->y.label.empty() ? 0 : kAxisLabel) + kWidestFont * widest + 7;
 }
 
 double PanelDrawing::FootHeight() const {

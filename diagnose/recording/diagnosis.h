@@ -125,6 +125,14 @@ struct BeforeAfter {
   double after = 0;       // with the changes found
 };
 
+// The gap that the verdict's sentence states.
+struct ComparedGap {
+  BeforeAfter gap;
+  double seconds = 0;      // that the predictions reach; 0: whole runs
+  bool closed = false;     // of an open verdict: this gap is not what is open, a curve has closed it
+  bool of_fitted = false;  // of the fitted runs: the held-out ones show none
+};
+
 struct SignalGap {
   model::Channel channel = model::Channel::kP1;
   double noise = 0;
@@ -200,6 +208,7 @@ struct NextExperiment {
 struct Diagnosis {
   Verdict verdict = Verdict::kNothingMissing;
   std::string sentence;               // the verdict in one sentence
+  ComparedGap compared;               // of the sentence
   std::vector<ClockDelay> recording;  // clocks found to differ, now aligned
   // What is suspect in the recordings, what could not be tried, and noise unlike the stated noise.
   std::vector<std::string> remarks;

@@ -185,36 +185,6 @@ std::pair<double, double> Beside(const std::vector<double>& values, std::ptrdiff
 
 }  // namespace
 
-double EstimateResolution(const std::vector<double>& values) {
-  std::vector<double> sorted;
-  for (const double value : values) {
-    if (std::isfinite(value)) sorted.push_back(value);
-  }
-  if (sorted.empty()) return 0;
-  std::sort(sorted.begin(), sorted.end());
-  // Differences within the rounding of the arithmetic are not steps.
-  const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
-  std::vector<double> steps;
-  for (size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i] - sorted[i - 1] > same) steps.push_back(sorted[i] - sorted[i - 1]);
-  }
-  if (steps.empty()) return 0;
-  const double smallest = *std::min_element(steps.begin(), steps.end());
-  double single = 0;  // steps of one unit
-  size_t singles = 0, multiples = 0;
-  for (const double step : steps) {
-    const double units = std::round(step / smallest);
-    if (std::abs(step / smallest - units) > 0.1) continue;
-    ++multiples;
-    if (units == 1) {
-      single += step;
-      ++singles;
-    }
-  }
-  // One step in five is a multiple by chance.
-  return 10 * multiples >= 9 * steps.size() ? single / static_cast<double>(singles) : 0;
-}
-
 double EstimateNoise(const std::vector<double>& all) {
   // A signal that stands in every second row or fewer has samples of its own: between them nothing is missing.
   constexpr double kOwnSamples = 0.75;

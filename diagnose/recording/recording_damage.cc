@@ -112,21 +112,28 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   return held;
 }
 
-std::vector<size_t> Spikes(const std::vector<double>& values) {
-  const double noise = std::max(EstimateNoise(values), EstimateResolution(values));
+// A slow sensor's neighbours are its own samples, not the empty rows between them.
+std::vector<size_t> Spikes(const std::vector<double>& all) {
+  std::vector<size_t> rows;
+  std::vector<double> values;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (std::isnan(all[i])) continue;
+    rows.push_back(i);
+    values.push_back(all[i]);
+  }
+  const double noise = std::max(EstimateNoise(all), EstimateResolution(values));
   std::vector<size_t> spikes;
   if (noise <= 0) return spikes;
   const double least = std::max(kSpike * noise, kChange * UsualChange(values));
   for (size_t i = kNeighbours; i + kNeighbours < values.size(); ++i) {
-    if (std::isnan(values[i])) continue;
     maths::Range beside;
     for (size_t k = i - kNeighbours; k <= i + kNeighbours; ++k) {
-      if (k == i || std::isnan(values[k])) continue;
+      if (k == i) continue;
       beside.low = std::min(beside.low, values[k]);
       beside.high = std::max(beside.high, values[k]);
     }
     const double beyond = std::max(values[i] - beside.high, beside.low - values[i]);
-    if (beside.size() >= 0 && beyond > least + kSpreadOfNeighbours * beside.size()) spikes.push_back(i);
+    if (beyond > least + kSpreadOfNeighbours * beside.size()) spikes.push_back(rows[i]);
   }
   // Many of them are the signal's own.
   return spikes.size() * 50 > values.size() ? std::vector<size_t>() : spikes;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/number_text.h"
@@ -61,37 +62,35 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
 // Of the way that the motor turns: so much is an overshoot.
 constexpr double kOtherWay = 0.01;
 
-void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
-  double low = INFINITY, high = -INFINITY, noise = 0, most_pressure = 0;
-  double forward = 0, backward = 0;  // sums of speeds: how far the motor turned
-  bool speed = false, pressure = false;
-  for (const RunData* run : runs) {
-    for (const SignalData& signal : run->signals) {
-      const maths::Range range = maths::RangeOf(signal.values);
-      if (signal.channel == model::Channel::kMotorSpeed) {
-        speed = true;
-        low = std::min(low, range.low);
-        high = std::max(high, range.high);
-        noise = std::max(noise, signal.noise);
-        for (const double value : signal.values) {
-          if (std::abs(value) > kHardlyMoves * signal.noise)
-            (value > 0 ? forward : backward) += std::abs(value);
-        }
-      } else if (signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2) {
-        pressure = true;
-        most_pressure = std::max(most_pressure, range.size() / signal.noise);
-      }
-    }
+// How far the motor turned each way, and whether it did at all; from its angle where no speed was recorded.
+struct MotorTurns {
+  bool known = false;
+  bool hardly = true;
+  double forward = 0, backward = 0;  // sums of speeds, or of angles
+
+  bool OneWay() const {
+    return forward + backward > 0 && std::min(forward, backward) <= kOtherWay * std::max(forward, backward);
   }
-  if (speed && high - low < 2 * kHardlyMoves * noise) {
-    remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be identified");
-  } else if (speed && std::min(forward, backward) <= kOtherWay * std::max(forward, backward)) {
-    remarks->push_back(
-        "the motor turns one way only: friction, its asymmetry and a constant torque cannot be told apart");
+};
+
+void Add(const SignalData& signal, MotorTurns* turned) {
+  const bool speed = signal.channel == model::Channel::kMotorSpeed;
+  turned->known = true;
+  turned->hardly = turned->hardly && maths::RangeOf(signal.values).size() < 2 * kHardlyMoves * signal.noise;
+  // Angles count when they have moved by what noise does not.
+  double from = speed ? 0 : std::numeric_limits<double>::quiet_NaN();
+  for (const double value : signal.values) {
+    if (std::isnan(value)) continue;
+    if (std::isnan(from)) from = value;
+    const double moved = value - from;
+    if (!(std::abs(moved) > kHardlyMoves * signal.noise)) continue;
+    (moved > 0 ? turned->forward : turned->backward) += std::abs(moved);
+    if (!speed) from = value;
   }
-  if (pressure && most_pressure < 2 * kHardlyMoves) {
-    remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be identified");
-  }
+}
+
+std::string WhichRuns(const std::vector<std::string>& names, size_t runs) {
+  return names.size() == runs && runs > 1 ? "every run" : RunsNamed(names);
 }
 
 // The fewest samples in the time constant of the pump on the oil of both sides, with which its motion shows.
@@ -124,7 +123,7 @@ void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>&
                      std::vector<std::string>* remarks) {
   if (names.empty()) return;
   const std::string side = missing.substr(1);
-  remarks->push_back((names.size() == runs && runs > 1 ? "every run" : RunsNamed(names)) + ": " + missing +
+  remarks->push_back(WhichRuns(names, runs) + ": " + missing +
                      " was not recorded: what leaks or opens on side " + side +
                      ", and how the sides differ, cannot be judged");
 }
@@ -193,6 +192,39 @@ std::vector<std::string> LimitRemarks(const model::Parameters& model,
   return remarks;
 }
 
+std::vector<std::string> MotionRemarks(const std::vector<const RunData*>& runs) {
+  MotorTurns turned;
+  double most_pressure = 0;
+  bool pressure = false;
+  std::vector<std::string> names;
+  for (const RunData* run : runs) {
+    const SignalData* speed = run->Find(model::Channel::kMotorSpeed);
+    const SignalData* motion = speed != nullptr ? speed : run->Find(model::Channel::kMotorAngle);
+    if (motion != nullptr) {
+      Add(*motion, &turned);
+      names.push_back(run->name);
+    }
+    for (const SignalData& signal : run->signals) {
+      if (signal.channel != model::Channel::kP1 && signal.channel != model::Channel::kP2) continue;
+      pressure = true;
+      most_pressure = std::max(most_pressure, maths::RangeOf(signal.values).size() / signal.noise);
+    }
+  }
+  std::vector<std::string> remarks;
+  if (turned.known && turned.hardly) {
+    remarks.push_back(WhichRuns(names, runs.size()) +
+                      ": the motor hardly turns: friction and inertia cannot be identified");
+  } else if (turned.OneWay()) {
+    remarks.push_back(
+        WhichRuns(names, runs.size()) +
+        ": the motor turns one way only: friction, its asymmetry and a constant torque cannot be told apart");
+  }
+  if (pressure && most_pressure < 2 * kHardlyMoves) {
+    remarks.push_back("the pressures hardly change in any run: fluid and leakage cannot be identified");
+  }
+  return remarks;
+}
+
 std::string DelayRemark(const ClockDelay& delay) {
   return RunNamed(delay.run) + ": " + Enumerated(delay.signals) +
          (delay.signals.size() > 1 ? " are " : " is ") + (delay.delay < 0 ? "early" : "late") + " by " +
@@ -213,7 +245,7 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
     RemarkOnTimes(*run, &remarks);
     for (const SignalData& signal : run->signals) RemarkOnSignal(*run, signal, &remarks);
   }
-  if (!runs.empty()) RemarkOnMotion(runs, &remarks);
+  for (std::string& remark : MotionRemarks(runs)) remarks.push_back(std::move(remark));
   return remarks;
 }
 

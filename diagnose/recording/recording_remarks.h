@@ -16,6 +16,10 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out);
 
+// What the motion of these runs, taken together, cannot show: of a motor that hardly turns, or turns one way only; of pressures that hardly
+// change.
+std::vector<std::string> MotionRemarks(const std::vector<const RunData*>& runs);
+
 // "run sine: motor_speed is late by 0.334 +- 0.013 s relative to p1 and p2"
 std::string DelayRemark(const ClockDelay& delay);
 

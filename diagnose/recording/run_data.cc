@@ -99,6 +99,14 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const maths::
   return rest;
 }
 
+// Below it, the simulation itself is the source of the noise. A noise that shows, or an encoder's steps, counts down to the simulation's
+// tolerance: an angle that turns far has a large range, and its sensor is as good as before.
+double LeastNoise(double noise, double resolution, double range) {
+  constexpr double kShows = 1e-6, kStepsShow = 1e-7, kTolerance = 1e-6, kOfNone = 1e-5;  // of the range
+  const bool shows = noise > kShows * range || resolution / std::sqrt(12.0) > kStepsShow * range;
+  return (shows ? kTolerance : kOfNone) * range;
+}
+
 SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   const runs::MeasuredSignal& measured = run.*SignalOf(channel).signal;
   SignalData signal;
@@ -121,8 +129,7 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
     } else {
       noise = EstimateNoise(measured.values);
     }
-    // Below 1e-5 of the range, the simulation itself is the source of the noise.
-    signal.noise = std::max(noise, 1e-5 * size);
+    signal.noise = std::max(noise, LeastNoise(noise, signal.resolution, size));
   }
   signal.estimated_noise = signal.noise;
   if (measured.noise.has_value()) signal.noise = *measured.noise;
@@ -230,6 +237,20 @@ const SignalData* RunData::Find(model::Channel channel) const {
 
 namespace {
 
+// No unit of any recorder makes a value as large: what is above it is a damaged cell, and squares of it are no numbers.
+constexpr double kNoSuchValue = 1e15;
+
+void CheckCells(const runs::MeasuredRun& run) {
+  for (const runs::SignalName& row : runs::kSignals) {
+    const std::vector<double>& values = (run.*row.signal).values;
+    const auto bad = std::find_if(values.begin(), values.end(),
+                                  [](double value) { return std::abs(value) > kNoSuchValue; });
+    if (bad == values.end()) continue;
+    Refuse(run.Place(static_cast<size_t>(bad - values.begin())), row.ours, ShortestNumber(*bad),
+           "-1e15 to 1e15: a damaged cell? Empty it, or write nan");
+  }
+}
+
 // Between two rows there may be as many samples as the recording has ten times over, or as a minute has at 2 kHz: what follows puts a
 // recording on an even grid.
 void CheckGaps(const runs::MeasuredRun& run) {
@@ -252,6 +273,7 @@ void CheckUsable(const runs::MeasuredRun& run) {
            std::to_string(kFewestSamples) + " or more");
   }
   CheckGaps(run);
+  CheckCells(run);
   for (size_t place = 0; place < model::kChannels; ++place) {
     const runs::SignalName& row = SignalOf(static_cast<model::Channel>(place));
     if ((run.*row.signal).measured()) CheckShows(run, row);

@@ -115,14 +115,12 @@ bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) 
 
 // What the weights together say.
 std::string WeightsInWords(size_t set_90, bool first_was_found) {
-  std::string words = "By the balances of the runs, ";
+  std::string words = "By what the balances say, the truth is ";
   if (set_90 <= 1) {
-    words += "the first is the truth nine times in ten: they tell it from all others.";
+    words += "the first of these nine times in ten: these runs tell it from all others.";
   } else {
-    const bool two = set_90 == 2;
-    words += "one of the first " + (two ? "two" : std::to_string(set_90)) +
-             " is the truth nine times in ten: they cannot tell " + (two ? "the two" : "these") +
-             " apart more surely.";
+    words += "among the first " + (set_90 == 2 ? "two" : std::to_string(set_90)) +
+             " of these nine times in ten: these runs tell no more.";
   }
   if (first_was_found) return words;
   return words +
@@ -147,8 +145,7 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   if (effects.empty()) return "";
   return Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow") +
-         "<p>The weight says how likely an effect is by what the balances of torque and flow say; it has "
-         "none "
+         "<p>The weight says how likely an effect is by what the balances say; it has none "
          "where these cannot speak for it, and simulation alone does. The share says how "
          "much it does: the part of the held-out squared gap that comes back without it. An effect may be "
          "certain and do little.</p>\n";
@@ -173,9 +170,8 @@ std::string WhatMayExplain(const Diagnosis& diagnosis) {
   if (rows.empty()) return "";
   return "<p>" + WeightsInWords(diagnosis.set_90, first_was_found) + "</p>\n" +
          Table({"explanation", "#weight", "one of these, nine times in ten", ""}, rows, "narrow") +
-         "<p>The weights are of what the balances of torque and flow say before anything is simulated, and "
-         "add to "
-         "100 %. They compare what was tried, and nothing else.</p>\n";
+         "<p>The weights are of what the balances say before anything is simulated, and add to 100 %. They "
+         "compare what was tried, and nothing else.</p>\n";
 }
 
 std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
@@ -204,22 +200,21 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
 }
 
 std::string WhatRemains(const Diagnosis& diagnosis) {
-  const std::string after = ShortNumber(diagnosis.held_out.after, 3);
-  std::string out;
-  if (diagnosis.verdict == Verdict::kNothingMissing) {
-    return "<p>Nothing but noise: " + after + " noise units on the held-out runs.</p>\n";
-  }
+  const ComparedGap& gap = diagnosis.compared;
+  if (!std::isfinite(gap.gap.after)) return Places(diagnosis) + MissingTerms(diagnosis);
+  const std::string left =
+      ShortNumber(gap.gap.after, 3) + " noise units" + (IsOpen(diagnosis.verdict) ? " remain" : "") +
+      " on the " + (gap.of_fitted ? "fitted" : "held-out") + " runs" +
+      (gap.seconds > 0 ? ", predicted over " + ShortNumber(gap.seconds, 2) + " s" : "") + ".";
+  if (diagnosis.verdict == Verdict::kNothingMissing) return "<p>Nothing but noise: " + left + "</p>\n";
   const std::string places = Places(diagnosis);
-  if (IsOpen(diagnosis.verdict)) {
-    out =
-        "<p>" + after + " noise units remain on the held-out runs." +
-        (places.empty() ? " No balance shows where." : " This is where, with what was found in the model:") +
-        "</p>\n";
-  } else {
-    out = "<p>Nothing but noise: " + after + " noise units on the held-out runs." +
-          (places.empty() ? "" : " This is where the model as given disagrees:") + "</p>\n";
-  }
-  return out + places + MissingTerms(diagnosis);
+  std::string where;
+  if (!places.empty() && IsOpen(diagnosis.verdict))
+    where = " This is where, with what was found in the model:";
+  if (!places.empty() && !IsOpen(diagnosis.verdict)) where = " This is where the model as given disagrees:";
+  if (places.empty() && IsOpen(diagnosis.verdict)) where = " No balance shows where.";
+  return "<p>" + std::string(IsOpen(diagnosis.verdict) ? "" : "Nothing but noise: ") + left + where +
+         "</p>\n" + places + MissingTerms(diagnosis);
 }
 
 std::string WhatToMeasureNext(const Diagnosis& diagnosis) {

@@ -5,6 +5,7 @@
 #include "base/word_list.h"
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/say/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
 
@@ -26,19 +27,11 @@ MeasuredCurve CurveOf(const Closure& closure) {
   return curve;
 }
 
-std::string Values(const Closure& closure) {
-  const bool surface = closure.knots.size() == 2;
-  std::vector<std::string> columns = {"#" + Label(closure.against[0], closure.against_units[0])};
-  if (surface) columns.push_back("#" + Label(closure.against[1], closure.against_units[1]));
-  columns.insert(columns.end(), {"#" + Label("value", closure.unit), "#95 % band"});
-  const size_t cuts = surface ? closure.knots[1].size() : 1;
-  std::string rows;
-  for (size_t i = 0; i < closure.value.size(); ++i) {
-    rows += "<tr>" + NumberCell(closure.knots[0][i / cuts]) +
-            (surface ? NumberCell(closure.knots[1][i % cuts]) : "") + NumberCell(closure.value[i]) +
-            IntervalCell({"", closure.value[i], closure.low[i], closure.high[i], ""}) + "</tr>\n";
-  }
-  return Table(columns, rows, "narrow");
+// "An unknown curve over motor speed in pump torque [closure.pump_torque]"
+std::string Label(const Closure& closure) {
+  std::string words = ChangeInWords(closure.id + "(" + Joined(closure.against, " and ") + ")");
+  words[0] = 'A';
+  return words + " [" + closure.id + "]";
 }
 
 std::string GapText(const Closure& closure) {
@@ -47,7 +40,8 @@ std::string GapText(const Closure& closure) {
          std::string(closure.on_refit ? " with its own values refitted" : " with what was found") +
          ", it predicts held-out runs over " + ShortNumber(closure.seconds, 2) + " s with " +
          ShortNumber(closure.after, 3) + " noise units instead of " + ShortNumber(closure.before, 3) +
-         ": it takes " + ShortNumber(100 * taken, 2) + " % of the squared gap. It names no cause.</p>\n";
+         ": it takes " + ShortNumber(100 * taken, 2) +
+         " % of the squared gap. It names no cause. Its values are in report.json.</p>\n";
 }
 
 }  // namespace
@@ -88,8 +82,8 @@ std::string Curves(const std::vector<MeasuredCurve>& curves, const std::string& 
 
 std::string MeasuredSection(const Diagnosis& diagnosis) {
   if (diagnosis.measured.empty()) return "";
-  return "<p>What the equations need at the measured motion, without any simulation: means of stretches of "
-         "16 ms with 95 % intervals, and what the models have at the same instants.</p>\n" +
+  return "<p>What the measured motion itself shows, without any simulation: means of stretches of 16 ms with "
+         "95 % intervals, and what the models have at the same instants.</p>\n" +
          Curves(diagnosis.measured, "");
 }
 
@@ -100,13 +94,11 @@ std::string ClosureSection(const Diagnosis& diagnosis) {
                                                       : " at " + closure.against[1] + " = " +
                                                             ShortNumber(closure.knots[1].back(), 2) + " " +
                                                             closure.against_units[1];
-    out += "<h3>" + page::EscapeMarkup(closure.id) + " against " +
-           page::TypesetHtml(Enumerated(closure.against)) + "</h3>\n<p>It " +
+    out += "<h3>" + page::TypesetHtml(Label(closure)) + "</h3>\n<p>It " +
            page::TypesetHtml(closure.resembles) +
            ".</p>\n<p class=\"lead\">With 95 % intervals at its knots" + page::TypesetHtml(cut) +
            ", as far as the picture reaches:</p>\n" +
-           page::HtmlFigure(CurveFigure(CurveOf(closure), "value"), "the closure, with its 95 % band") +
-           Values(closure);
+           page::HtmlFigure(CurveFigure(CurveOf(closure), "value"), "the closure, with its 95 % band");
   }
   return out.empty() ? "" : out + GapText(diagnosis.closures.front());
 }

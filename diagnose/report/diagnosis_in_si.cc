@@ -99,7 +99,13 @@ void ShowTheMotorAlone(Diagnosis* diagnosis) {
     if (*balance == "pump_torque") *balance = "motor torque";
     if (*balance == "pump_friction") *balance = "friction";
   };
+  const auto closures = [](std::string* id) { Replace("closure.pump_torque", "closure.motor_torque", id); };
   for (Location& location : diagnosis->location) name(&location.balance);
+  for (WeightedSet& one : diagnosis->explanations)
+    std::for_each(one.changes.begin(), one.changes.end(), [&](std::string& change) { closures(&change); });
+  for (Closure& closure : diagnosis->closures) closures(&closure.id);
+  for (Candidate& candidate : diagnosis->candidates) closures(&candidate.id);
+  for (ChoiceWithout& choice : diagnosis->choices) closures(&choice.chosen);
   for (std::vector<MeasuredCurve>* curves : {&diagnosis->missing, &diagnosis->terms, &diagnosis->measured}) {
     for (MeasuredCurve& curve : *curves) name(&curve.balance), name(&curve.element);
   }

@@ -11,6 +11,7 @@
 #include "diagnose/report/page_sections.h"
 #include "diagnose/report/report.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/say/sentence.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
 #include "page/typeset.h"
@@ -44,24 +45,18 @@ std::pair<std::string, std::string> FirstSentence(const std::string& sentence) {
   return {first, rest};
 }
 
-// How far the model is off, before and after: over the horizon that decides, which is not the longest, because there small errors of
-// any value have added up; over whole runs where there is no other.
+// How far the model is off, before and after, by the gap that the sentence states.
 std::string GapInWords(const Diagnosis& diagnosis) {
-  constexpr double kDecides = 0.4;  // s
-  BeforeAfter gap = diagnosis.held_out;
-  std::string over;
-  for (const HorizonGap& horizon : diagnosis.horizons) {
-    if (std::abs(horizon.seconds - kDecides) > 0.1 * kDecides) continue;
-    gap = horizon.held_out;
-    over = ", predicted over " + ShortNumber(horizon.seconds, 2) + " s,";
-  }
+  const ComparedGap& compared = diagnosis.compared;
+  const BeforeAfter& gap = compared.gap;
   if (!std::isfinite(gap.before) || !std::isfinite(gap.after) || gap.before == 0) return "";
-  return "On runs that it was not fitted to" + over + " the model as given is off by " +
-         ShortNumber(gap.before, 3) + " times the noise of the sensors" +
+  return (compared.of_fitted ? "On the runs that it was fitted to" : "On runs that it was not fitted to") +
+         (compared.seconds > 0 ? ", predicted over " + ShortNumber(compared.seconds, 2) + " s," : "") +
+         " the model as given is off by " + ShortNumber(gap.before, 3) + " times the noise of the sensors" +
          (diagnosis.verdict == Verdict::kNothingMissing
               ? ""
               : ", with what was found by " + ShortNumber(gap.after, 3) + " times") +
-         "; 1 is perfect.";
+         "; at 1 nothing but noise is left.";
 }
 
 std::string Head(const Diagnosis& diagnosis) {
@@ -107,6 +102,7 @@ std::string GapTable(const Diagnosis& diagnosis, bool si) {
 std::string Runs(const Diagnosis& diagnosis, bool si) {
   std::string out;
   for (const RunCurves& run : diagnosis.curves) {
+    if (out.empty()) out = "<p>To the right the differences: measured less predicted.</p>\n";
     const std::optional<page::Figure> figure = RunFigure(diagnosis, run, si);
     if (!figure) continue;
     out += "<h3>" + page::EscapeMarkup(run.run) +
@@ -161,7 +157,11 @@ std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
   for (const Unjudged& one : diagnosis.unjudged)
     items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
-  for (const std::string& remark : diagnosis.remarks) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
+  // How the runs were chosen stands beside the gaps.
+  const std::string choice = diagnosis.choices.empty() ? "" : ChoiceRemark(diagnosis.choices);
+  for (const std::string& remark : diagnosis.remarks) {
+    if (remark != choice) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
+  }
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }
 
@@ -180,8 +180,7 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
           Section("What no known effect explains", ClosureSection(diagnosis)) +
           Section("What differs from run to run", PerRunSection(diagnosis)) +
           Section("What to measure next", WhatToMeasureNext(diagnosis)) +
-          Section("Remarks on the recordings", Remarks(diagnosis)) +
-          Section("The gap by signal", GapTable(diagnosis, si)) +
+          Section("Remarks", Remarks(diagnosis)) + Section("The gap by signal", GapTable(diagnosis, si)) +
           Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
           Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
           Section("The model with what was found",

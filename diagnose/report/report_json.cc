@@ -1,6 +1,7 @@
 // report.json.
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/report/report.h"
 #include "settings/command_line.h"
@@ -198,8 +199,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"samples", diagnosis.samples},
                        {"version", settings::ProgramVersion()},
                        {"elapsed_s", elapsed_s}};
-  // Names come from files: bytes that are not UTF-8 are replaced, not refused.
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(report, 2) + "\n";
 }
 
 }  // namespace hydro::diagnose

@@ -96,7 +96,7 @@ page::Panel ResidualPanel(const Points& measured, const Points& before, const Po
   if (range.high > range.low) size = std::min(size, range.high - range.low);
   size = std::max(size, 3 * noise);
   page::Panel panel;
-  panel.y.label = "measured - model";
+  panel.y.label = "difference";
   panel.y.min = page::Range{-size, size}.WithMargin().low;
   panel.y.max = -panel.y.min;
   panel.curves = {Drawn("", left_before, kBefore, Weight::kFaint),
@@ -120,7 +120,7 @@ std::optional<page::Figure> RunFigure(const Diagnosis& diagnosis, const RunCurve
       if (window.run == run.run) shaded.push_back({"", true, window.from, window.to});
     }
   }
-  page::Figure figure{.caption = "", .panels = {}, .columns = 2, .width = 960, .panel_height = 104};
+  page::Figure figure{.caption = "", .panels = {}, .columns = 2, .width = 960, .panel_height = 124};
   for (const RunCurves::Curve& curve : run.curves) {
     const ShownUnit unit = UnitOf(curve.channel, diagnosis.model.units, si);
     const auto points = [&](const std::vector<double>& y) {

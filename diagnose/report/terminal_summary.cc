@@ -58,21 +58,6 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
   return parts.empty() ? "" : "signals:    " + Joined(parts, "; ") + "\n";
 }
 
-// "closure.pump_torque(motor_speed)" is "an unknown curve over motor speed in pump torque".
-std::string ChangeInWords(const std::string& change) {
-  const auto begins = [&](const std::string& with) { return change.starts_with(with); };
-  if (begins("value.")) return "another value of " + change.substr(6);
-  if (begins("run.")) return change.substr(4) + " that differs by run";
-  if (!begins("closure.")) return change;
-  const size_t open = change.find('('), close = change.rfind(')');
-  std::string of = change.substr(8, open == std::string::npos ? open : open - 8), over;
-  if (open != std::string::npos && close != std::string::npos)
-    over = " over " + change.substr(open + 1, close - open - 1);
-  std::replace(of.begin(), of.end(), '_', ' ');
-  std::replace(over.begin(), over.end(), '_', ' ');
-  return "an unknown curve" + over + " in " + of;
-}
-
 // The likeliest explanations: those that hold the truth nine times in ten, as far as a line can have them.
 std::string LikelyLine(const Diagnosis& diagnosis) {
   constexpr size_t kMost = 4;
@@ -214,8 +199,9 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
     if (more > 0) out += " (and " + std::to_string(more) + " more in the report)";
     out += "\n";
   }
-  return out + "written:    " + folder + "/report.html, report.json, model.toml" +
+  out += "written:    " + folder + "/report.html, report.json, model.toml" +
          (diagnosis.next.config.empty() ? "" : ", next.toml") + "\n";
+  return PrintableLines(out);
 }
 
 }  // namespace hydro::diagnose

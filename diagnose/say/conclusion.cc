@@ -115,7 +115,8 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   }
   NameRuns(context, &d);
   if (context.held_out.empty()) d.choices = ChoicesWithoutEach(proof);
-  d.sentence = Sentence(d, GapToCompare(d, proof)) + ClosureSentence(d.closures);
+  d.compared = GapToCompare(d, proof);
+  d.sentence = Sentence(d, d.compared) + ClosureSentence(d.closures);
   return d;
 }
 

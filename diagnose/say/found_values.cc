@@ -58,6 +58,44 @@ ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& inte
   return changed;
 }
 
+// Whether the command asks for the largest torque in one of the runs, fitted or not.
+bool ReachesTorqueLimit(const ProofContext& context, const model::Parameters& model) {
+  const auto reaches = [&](const RunData* run) {
+    return std::any_of(run->stimulus.voltage.begin(), run->stimulus.voltage.end(),
+                       [&](double volts) { return std::abs(model.k_1 * volts) >= model.T_pmax; });
+  };
+  return std::any_of(context.runs.begin(), context.runs.end(), reaches) ||
+         std::any_of(context.held_out.begin(), context.held_out.end(), reaches);
+}
+
+// Which of the free numbers the fitted runs say nothing of, whatever the others are: nothing in them depends on it, or a hundredth of what
+// was known of it beforehand.
+std::vector<bool> Unseen(const Fitted& told) {
+  constexpr double kNothing = 0.01;
+  const Hypothesis& hypothesis = told.hypothesis;
+  const size_t numbers = hypothesis.Free().size();
+  std::vector<bool> unseen(numbers, false);
+  if (!told.ok() || hypothesis.known == nullptr || !(hypothesis.known->weight > 0)) return unseen;
+  const Prior prior = KnownBefore(hypothesis);
+  const double discrepancy = std::max(1.0, told.squared_gap());
+  for (size_t i = 0; i < numbers; ++i) {
+    double shown = 0;
+    for (const RunFit& run : told.runs) shown += run.information[i * numbers + i] / discrepancy;
+    unseen[i] = shown < kNothing * prior.weight[i] / hypothesis.known->weight;
+  }
+  return unseen;
+}
+
+void KeepAsGiven(const OwnNumber& number, model::ModelDescription* model) {
+  for (const model::BaseParameter& base : model::BaseParameters()) {
+    if (number.is_base && base.info.name == number.name) model->parameters.*base.member = number.given;
+  }
+  for (const model::EffectParameter& parameter : model::EffectParameters(*model)) {
+    const std::string name = model->effects[parameter.effect].id + "." + parameter.Label();
+    if (!number.is_base && name == number.name) parameter.In(model) = number.given;
+  }
+}
+
 bool LooksTheSame(const OwnNumber& number) { return ShortNumber(number.found) == ShortNumber(number.given); }
 
 }  // namespace
@@ -68,7 +106,11 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
   const std::vector<FreeParameter> free = hypothesis.Free();
   const std::vector<bool> rests =
       proof.told.ok() ? RestOnKnown(proof.told) : std::vector<bool>(free.size(), false);
-  std::vector<std::string> unsure, resting;
+  const std::vector<bool> unseen =
+      proof.told.ok() ? Unseen(proof.told) : std::vector<bool>(free.size(), false);
+  const bool limited = ReachesTorqueLimit(context, context.given.parameters) ||
+                       ReachesTorqueLimit(context, hypothesis.model.parameters);
+  std::vector<std::string> unsure, resting, not_shown;
   for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
     const auto it = std::find_if(free.begin(), free.end(),
                                  [&](const FreeParameter& one) { return one.name == number.name; });
@@ -76,6 +118,11 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     const bool held = it == free.end();
     if (held && LooksTheSame(number)) continue;
+    if ((!held && unseen[place]) || (number.name == "T_pmax" && !limited)) {
+      KeepAsGiven(number, &d->model);
+      not_shown.push_back(number.name);
+      continue;
+    }
     const Interval interval = held ? Interval{kUnknown, kUnknown} : intervals[place];
     // What is held of the base values follows from those that are free: a displacement scales all flows.
     const bool follows = held && number.is_base;
@@ -90,6 +137,12 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     d->parameters.push_back(DescribeParameter(number, interval));
     d->parameters.back().resting = !held && rests[place];
     if (d->parameters.back().resting) resting.push_back(number.name);
+  }
+  if (!not_shown.empty()) {
+    d->remarks.push_back("These runs do not show " + Enumerated(not_shown) +
+                         (not_shown.size() == 1
+                              ? ": nothing in them depends on it, and it stays as given"
+                              : ": nothing in them depends on these, and they stay as given"));
   }
   if (!resting.empty()) {
     d->remarks.push_back(

@@ -13,16 +13,22 @@ namespace hydro::diagnose {
 namespace {
 
 std::string WordsFor(const std::string& rival) {
-  const std::string begin = "parameter ", between = " + " + begin;
+  const std::string begin = "parameter ", between = " + ";
   if (rival == "parameters") return "other values of the model's parameters";
-  if (!rival.starts_with(begin)) return rival;
-  std::vector<std::string> names;
-  for (size_t at = begin.size(); at < rival.size();) {
+  std::vector<std::string> words, names;
+  for (size_t at = 0; at < rival.size();) {
     const size_t end = std::min(rival.find(between, at), rival.size());
-    names.push_back(rival.substr(at, end - at));
+    const std::string part = rival.substr(at, end - at);
+    if (part.starts_with(begin)) {
+      names.push_back(part.substr(begin.size()));
+    } else {
+      words.push_back(ChangeInWords(part));
+    }
     at = end + between.size();
   }
-  return (names.size() == 1 ? "another value of " : "other values of ") + Enumerated(names);
+  if (!names.empty())
+    words.push_back((names.size() == 1 ? "another value of " : "other values of ") + Enumerated(names));
+  return Joined(words, between);
 }
 
 std::vector<std::string> EffectsOf(const Diagnosis& d) {
@@ -66,51 +72,72 @@ bool Falls(const BeforeAfter& gap) {
   return gap.after < gap.before && ShortNumber(gap.before, 3) != ShortNumber(gap.after, 3);
 }
 
-std::string GapOf(const ComparedGap& compared) {
+// "over 0.4 s"; of whole runs nothing, unless windows are what usually decides.
+std::string OverWhat(const Diagnosis& d, const ComparedGap& compared) {
+  if (compared.seconds > 0) return " over " + ShortNumber(compared.seconds, 2) + " s";
+  return d.horizons.empty() ? "" : " over whole runs";
+}
+
+std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   const BeforeAfter& gap = compared.gap;
-  const std::string over = compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "";
+  const std::string over = OverWhat(d, compared), which = compared.of_fitted ? "fitted" : "held-out";
   const std::string before = ShortNumber(gap.before, 3), after = ShortNumber(gap.after, 3);
   if (!std::isfinite(gap.after)) {
     return " (" + std::string(std::isfinite(gap.before) ? "with it the model" : "the model") +
-           " cannot follow the held-out runs" + over + ").";
+           " cannot follow the " + which + " runs" + over + ").";
   }
   if (!std::isfinite(gap.before)) {
-    return " (the model as given cannot follow the held-out runs" + over + "; " + after +
+    return " (the model as given cannot follow the " + which + " runs" + over + "; " + after +
            " noise units are left).";
   }
-  if (before == after) return " (the held-out gap" + over + " stays at " + before + " noise units).";
-  return " (held-out gap" + over + " " + before + " to " + after + " noise units).";
+  const std::string of = which + " gap" + over;
+  if (before == after) return " (the " + of + " stays at " + before + " noise units).";
+  if (gap.after > gap.before)
+    return " (the " + of + " rises from " + before + " to " + after + " noise units).";
+  return " (" + of + " " + before + " to " + after + " noise units).";
 }
 
-std::string Unexplained(const BeforeAfter& gap, const std::vector<std::string>& effects) {
+// What follows what was found, of a verdict that leaves something.
+std::string WhatIsLeft(const Diagnosis& d, const ComparedGap& compared) {
+  if (!compared.closed) return ", and a significant gap is left";
+  return d.closures.empty() ? "" : ", and a curve, which is no cause, closes the rest";
+}
+
+std::string Unexplained(const Diagnosis& d, const ComparedGap& compared,
+                        const std::vector<std::string>& effects, const std::vector<std::string>& parameters) {
   std::string sentence = "Something is missing that no known effect explains";
-  if (effects.empty()) return sentence;
+  const BeforeAfter& gap = compared.gap;
+  if (effects.empty()) {
+    if (d.closures.empty()) return sentence;
+    sentence += compared.closed ? "; a curve, which is no cause, closes the gap"
+                                : "; a curve closes a part of the gap";
+    return d.parameters.empty() ? sentence : sentence + ", with " + Enumerated(parameters);
+  }
   if (!Falls(gap))
-    return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the held-out gap";
+    return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the " +
+           (compared.of_fitted ? "fitted" : "held-out") + " gap";
   sentence += "; the nearest is " + Enumerated(effects);
-  if (!std::isfinite(gap.before)) return sentence;
+  // Beside noise alone no share says anything.
+  if (!std::isfinite(gap.before) || !(gap.before > 1 && gap.after > 1)) return sentence;
   const double left = (gap.after * gap.after - 1) / (gap.before * gap.before - 1);
   return sentence + ", which leaves " + ShortNumber(100 * left, 2) + " % of the squared gap";
 }
 
-std::string Partly(const Diagnosis& d, const std::vector<std::string>& effects,
+std::string Partly(const Diagnosis& d, const ComparedGap& compared, const std::vector<std::string>& effects,
                    const std::vector<std::string>& parameters) {
-  if (effects.empty() && !d.closures.empty()) {
-    std::string sentence = Unexplained({}, {}) + "; a curve closes a part of the gap";
-    return parameters.empty() || d.parameters.empty() ? sentence
-                                                      : sentence + ", with " + Enumerated(parameters);
-  }
-  return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ", effects,
-               parameters) +
+  if (effects.empty() && !d.closures.empty()) return Unexplained(d, compared, effects, parameters);
+  const std::string values = Falls(compared.gap) ? "Other values explain part of the gap: "
+                                                 : "Other values explain part of what is missing: ";
+  return Found("Missing, but not all that is missing: ", values, effects, parameters) +
          (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
                   : "; nothing else that was tried takes as much of the gap") +
-         ", and a significant gap is left";
+         WhatIsLeft(d, compared);
 }
 
 }  // namespace
 
 std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
-  const std::string gap = GapOf(compared);
+  const std::string gap = GapOf(d, compared);
   const std::vector<std::string> effects = EffectsOf(d), parameters = ParametersOf(d);
   switch (d.verdict) {
     case Verdict::kNothingMissing:
@@ -124,11 +151,25 @@ std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
     case Verdict::kTied:
       return Found("Missing, but these data cannot tell which: ", "", effects, parameters) + gap;
     case Verdict::kPartly:
-      return Partly(d, effects, parameters) + gap;
+      return Partly(d, compared, effects, parameters) + gap;
     case Verdict::kUnexplained:
-      return Unexplained(compared.gap, effects) + gap;
+      return Unexplained(d, compared, effects, parameters) + gap;
   }
   return "";
+}
+
+std::string ChangeInWords(const std::string& change) {
+  const auto begins = [&](const std::string& with) { return change.starts_with(with); };
+  if (begins("value.")) return "another value of " + change.substr(6);
+  if (begins("run.")) return change.substr(4) + " that differs by run";
+  if (!begins("closure.")) return change;
+  const size_t open = change.find('('), close = change.rfind(')');
+  std::string of = change.substr(8, open == std::string::npos ? open : open - 8), over;
+  if (open != std::string::npos && close != std::string::npos)
+    over = " over " + change.substr(open + 1, close - open - 1);
+  std::replace(of.begin(), of.end(), '_', ' ');
+  std::replace(over.begin(), over.end(), '_', ' ');
+  return "an unknown curve" + over + " in " + of;
 }
 
 std::vector<std::string> InWords(const std::vector<std::string>& rivals) {

@@ -8,13 +8,11 @@
 
 namespace hydro::diagnose {
 
-// The gap that a sentence states.
-struct ComparedGap {
-  BeforeAfter gap;
-  double seconds = 0;  // that the predictions reach; 0: whole runs
-};
-
 std::string Sentence(const Diagnosis& diagnosis, const ComparedGap& compared);
+
+// What a part of an explanation changes, in words: "closure.pump_torque(motor_speed)" is "an unknown curve over motor speed in pump
+// torque", "value.b" "another value of b", "run.T_s" "T_s that differs by run"; an effect's id stays.
+std::string ChangeInWords(const std::string& change);
 
 // What `tied_with` has, in words: "amp.delay", "other values of J and b", "other values of the model's parameters".
 std::vector<std::string> InWords(const std::vector<std::string>& rivals);

@@ -88,6 +88,7 @@ void FillGaps(diagnose::Diagnosis* diagnosis) {
                {model::Channel::kP2, 1.62, {41.5, 30.5, 1.65}, {45.0, 32.0, 1.7}}};
   d.fit = {22.1, 18.0, 1.04};
   d.held_out = {23.9, 19.5, 1.06};
+  d.compared = {{12, 10, 1.04}, 0.4};
   d.horizons = {{0.1, {5, 4, 1.0}, {6, 5, 1.02}, {}},
                 {0.4, {11, 9, 1.01}, {12, 10, 1.04}, {}},
                 {1.6, {18, 15, 1.02}, {19, 16, 1.05}, {}}};
@@ -148,7 +149,7 @@ diagnose::Diagnosis EmptyDiagnosis() {
   diagnose::Diagnosis d;
   d.verdict = diagnose::Verdict::kNothingMissing;
   d.sentence = "The model as given explains the data to the noise.";
-  d.fit = d.held_out = {1.01, 1.0, 1.01};
+  d.fit = d.held_out = d.compared.gap = {1.01, 1.0, 1.01};
   d.model = {"Table 1", Table1(), {}};
   d.runs = {"step"};
   d.samples = 500;

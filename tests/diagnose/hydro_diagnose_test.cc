@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/new_file.h"
 #include "diagnose/report/progress_bar.h"
 #include "diagnose/report/report.h"
 #include "settings/model_file.h"
@@ -188,6 +189,7 @@ TEST_F(HydroDiagnoseTest, MotorAlone) {
   diagnosis.candidates.push_back({"valve.relief", std::nan(""), std::nan(""), 1, diagnose::kNotProposed});
   EXPECT_THAT(Run(diagnosis), HasSubstr("friction of the pump"));
   EXPECT_THAT(Read("out/report.html"), HasSubstr("valve.relief"));
+  fs::remove_all(Path("out"));
   for (const char* stem : {"a", "b"}) {
     Write(stem + std::string(".csv"), [] {
       std::string table = "time_s,voltage_V,speed\n";
@@ -211,10 +213,60 @@ TEST_F(HydroDiagnoseTest, MotorAlone) {
   EXPECT_THAT(json, HasSubstr("\"says\": \"drag of the motor or its gear grows"));
 }
 
-// Tests that the next experiment of an earlier report is removed when there is none now.
+// Tests that an earlier report stays to the bit unless --force is given, whichever of its files is left of it; that other files in its
+// folder are no hindrance; and that nothing is read or tried before.
+TEST_F(HydroDiagnoseTest, AnEarlierReportStays) {
+  for (const char* name : {"report.html", "report.json", "model.toml", "next.toml"}) {
+    fs::remove_all(Path("out"));
+    fs::create_directory(Path("out"));
+    Write("out/notes.txt", "mine");
+    Write("out/" + std::string(name), "yesterday");
+    request_.runs = {Path("none.csv")};
+    try {
+      Run(testing::EmptyDiagnosis());
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(Path("out/") + name + ": found a file of this name"));
+      EXPECT_THAT(error.what(), HasSubstr("--force"));
+    }
+    EXPECT_THAT(Files(), UnorderedElementsAre("notes.txt", name));
+    EXPECT_EQ(Read("out/" + std::string(name)), "yesterday");
+    request_.runs = {Path("a.csv")};
+    Write("out/" + std::string(name), "");  // an empty file, as mktemp leaves, is no result
+    Run(testing::EmptyDiagnosis());
+    EXPECT_THAT(Files(), ::testing::IsSupersetOf({"notes.txt", "report.html", "report.json", "model.toml"}));
+  }
+}
+
+// Tests that a report which appears while the runs are diagnosed stays too.
+TEST_F(HydroDiagnoseTest, AReportThatAppearedMeanwhileStays) {
+  std::FILE* told = std::tmpfile();
+  const Diagnoser slow = [&](const model::ModelDescription&, std::vector<runs::MeasuredRun>,
+                             std::vector<runs::MeasuredRun>, const DiagnoseOptions&,
+                             const ProgressCallback&) {
+    Write("out/report.json", "somebody else's");
+    return testing::ExampleDiagnosis();
+  };
+  EXPECT_THROW(RunDiagnosis(request_, slow, told, told), InputError);
+  std::fclose(told);
+  EXPECT_EQ(Read("out/report.json"), "somebody else's");
+  EXPECT_THAT(Files(), ElementsAre("report.json"));
+}
+
+// Tests that a folder which was there before stays when nothing is written into it.
+TEST_F(HydroDiagnoseTest, AnEmptyFolderStays) {
+  fs::create_directory(Path("out"));
+  request_.model = Path("none.toml");
+  EXPECT_THROW(Run(testing::EmptyDiagnosis()), InputError);
+  EXPECT_TRUE(fs::exists(Path("out")));
+}
+
+// Tests that --force replaces an earlier report, and removes its next experiment when there is none now.
 TEST_F(HydroDiagnoseTest, NoStaleNextExperiment) {
   Run(testing::ExampleDiagnosis());
+  AllowReplacing();
   Run(testing::EmptyDiagnosis());
+  AllowReplacing(false);
   EXPECT_THAT(Files(), UnorderedElementsAre("report.html", "report.json", "model.toml"));
 }
 
@@ -222,6 +274,7 @@ TEST_F(HydroDiagnoseTest, NoStaleNextExperiment) {
 TEST_F(HydroDiagnoseTest, Deterministic) {
   Run(testing::ExampleDiagnosis());
   const std::string page = Read("out/report.html"), model = Read("out/model.toml");
+  fs::remove_all(Path("out"));
   Run(testing::ExampleDiagnosis());
   EXPECT_EQ(Read("out/report.html"), page);
   EXPECT_EQ(Read("out/model.toml"), model);

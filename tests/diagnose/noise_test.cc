@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -132,6 +133,32 @@ TEST(EstimateResolution, StepsAndNone) {
   EXPECT_NEAR(EstimateResolution(coarse), 0.1047197, 1e-6);
   EXPECT_EQ(EstimateResolution(std::vector<double>(100, 3.5)), 0);
   EXPECT_EQ(EstimateResolution({}), 0);
+}
+
+// Tests that an encoder's steps are found whatever its shaft does: at rest, slowly or fast, at a speed of which no two counts are
+// neighbours, back and forth, and behind the digits of a table; and that the noise is theirs.
+TEST(EstimateResolution, OfAnEncoder) {
+  const double q = 2 * kPi / 4096;
+  const std::function<double(double)> motions[] = {[](double t) { return 0.3 * std::sin(0.01 * t); },
+                                                   [](double t) { return 0.3 * t; },
+                                                   [](double t) { return 2.3 * t; },
+                                                   [](double t) { return 2.5 * t + 1e-4 * t * t; },
+                                                   [](double t) { return 4000 * std::sin(t / 200); },
+                                                   [](double t) { return 70000 * std::sin(t / 900); }};
+  for (size_t which = 0; which < std::size(motions); ++which) {
+    std::vector<double> values;
+    for (size_t i = 0; i < 3 * kSamples; ++i)
+      values.push_back(std::round(1e6 * q * std::floor(motions[which](static_cast<double>(i)))) / 1e6);
+    EXPECT_NEAR(EstimateResolution(values), q, 1e-3 * q) << "motion " << which;
+    EXPECT_NEAR(EstimateNoise(values), q / std::sqrt(12.0), 0.1 * q) << "motion " << which;
+  }
+}
+
+// Tests that how far a steady motion gets in a row is no sensor's step.
+TEST(EstimateResolution, NotOfASteadyMotion) {
+  std::vector<double> values;
+  for (size_t i = 0; i < kSamples; ++i) values.push_back(0.37 * static_cast<double>(i));
+  EXPECT_EQ(EstimateResolution(values), 0);
 }
 
 // Tests that series too short for a spectrum, and empty ones, have no noise but rounding.

@@ -2,13 +2,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/utf8.h"
 #include "diagnose/report/report.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 std::vector<std::string> Keys(const Json& object) {
@@ -96,11 +99,25 @@ TEST(ReportJson, Nothing) {
   EXPECT_TRUE(empty["next_experiment"].is_null());
 }
 
-// Tests that a name that is not UTF-8 does not stop the report.
+// Tests that names that are not UTF-8 stop no part of a report, and that every part is UTF-8 all the same.
 TEST(ReportJson, ForeignBytes) {
-  Diagnosis diagnosis = testing::EmptyDiagnosis();
-  diagnosis.runs = {"caf\xe9"};
-  EXPECT_TRUE(Json::accept(ReportJson(diagnosis, "", 1)));
+  const std::string foreign = "caf\xe9\xed\xa0\x80\x1b[31m";  // Latin-1, a surrogate, a terminal's red
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  diagnosis.runs = diagnosis.held_out_runs = {foreign};
+  diagnosis.sentence += " " + foreign;
+  diagnosis.remarks = {foreign};
+  diagnosis.location.front().where = diagnosis.effects.front().summary = foreign;
+  diagnosis.effects.front().names = {"signal = " + foreign};
+  diagnosis.candidates.front().id = foreign;
+  const std::string json = ReportJson(diagnosis, foreign, 1);
+  EXPECT_TRUE(Json::accept(json));
+  EXPECT_THAT(Json::parse(json)["runs"][0].get<std::string>(), HasSubstr("caf\uFFFD"));
+  const std::string summary = TerminalSummary(diagnosis, foreign, false);
+  for (const std::string& part :
+       {json, ReportHtml(diagnosis, false), CommentedModel(diagnosis, diagnosis.model), summary})
+    EXPECT_TRUE(IsUtf8(part)) << part.substr(0, 200);
+  EXPECT_THAT(summary, HasSubstr("caf\\xe9"));
+  EXPECT_THAT(summary, Not(HasSubstr("\x1b")));
 }
 
 // Tests that what the runs say nothing of is listed with the reason.

@@ -41,6 +41,8 @@ TEST(WordList, NamesRuns) {
   EXPECT_EQ(RunNamed("sine"), "run sine");
   EXPECT_EQ(RunNamed("run 5"), "run 5");
   EXPECT_EQ(RunNamed("runaway"), "run runaway");
+  EXPECT_EQ(RunNamed("run5"), "run5");
+  EXPECT_EQ(RunNamed("run"), "run run");
   EXPECT_EQ(RunsNamed({"a", "b"}), "runs a and b");
   EXPECT_EQ(RunsNamed({"run 5", "run 6"}), "run 5 and run 6");
   EXPECT_EQ(RunsNamed({"run 5", "b"}), "runs run 5 and b");

@@ -115,7 +115,7 @@ class DiagnoseTest(stack.TestCase):
         return self.run_file(name, rows, [*COLUMNS, "arm"], sidecar)
 
     # Tests --check: exit code 0 and 1, the line that mends the sidecar, 2 for what cannot be used; and that a diagnosis
-    # of such a recording says the same first and names nothing.
+    # of such a recording says the same first and names nothing; and that its report stays unless --force is given.
     def test_check(self):
         def check(run):
             return self.start("hydro-diagnose", run, "--model", TABLE1, "--check")
@@ -151,6 +151,11 @@ class DiagnoseTest(stack.TestCase):
         self.assertTrue(report["sentence"].startswith("Mend the recording first: run bar: p1 and p2 are in bar"))
         self.assertIn(report["remarks"][0], checked.stdout)
         self.assertIsNone(report["gap"]["held_out"]["after"])
+
+        again = ("hydro-diagnose", bar, "--model", TABLE1, "--out", self.path("out"))
+        refused = self.run_program(*again, expect=2)
+        self.assertRegex(refused.stderr, r"^[^\n]*report\.html: found a file of this name[^\n]*--force[^\n]*\n$")
+        self.run_program(*again, "--force", timeout=LONG)
 
     # Tests that a simulated log is diagnosed, that its reports are whole, and the same a second time but for
     # how long it took.

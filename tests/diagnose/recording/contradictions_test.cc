@@ -78,7 +78,7 @@ TEST(TwinPressures, OpenBypass) {
   EXPECT_THAT(Found(run), IsEmpty());
   run.bypass = false;
   run.sidecar = "rig/byp.toml";
-  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("This in byp.toml mends it: bypass = true")));
+  EXPECT_THAT(Found(run), ElementsAre(HasSubstr("this in byp.toml mends it: bypass = true")));
 }
 
 // Tests that pressures that differ, and those of a motor that does not turn, say nothing; and that one column for both is named.

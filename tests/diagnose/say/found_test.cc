@@ -120,5 +120,41 @@ TEST(DescribeFound, ImplausibleValues) {
   EXPECT_FALSE(moved("mgl", 1, 25).implausible);
 }
 
+// Tests that a limit which no run reaches, fitted or held out, has no value of its own: it stays as given, and a remark says that nothing
+// shows it. One that a run reaches is a value like any other.
+TEST(DescribeFound, WhatNoRunReachesStaysAsGiven) {
+  diagnose::Hypothesis hypothesis = Freed({"T_pmax", "b"});
+  hypothesis.model.parameters.T_pmax *= 1.05;
+  hypothesis.model.parameters.b *= 1.5;
+  const Proof proof = ProofOf({Leaving(100, Freed({})), Leaving(1, hypothesis)});
+  const double limit = Table1().T_pmax / Table1().k_1;
+  for (const double most : {0.9 * limit, 1.1 * limit}) {
+    NoisyRig rig;
+    rig.model = Table1With();
+    const diagnose::RunData small = rig.Record("small", model::Shaft::kClamped, 0, 0.3, false, [&](double t) {
+      return std::fmod(t, 0.1) < 0.05 ? 0.5 * limit : -0.5 * limit;
+    });
+    const diagnose::RunData large = rig.Record("large", model::Shaft::kClamped, 0, 0.3, false,
+                                               [&](double t) { return t < 0.1 ? most : -0.2 * most; });
+    diagnose::ProofContext context = OfTable1();
+    context.runs = {&small};
+    context.held_out = {&large};
+    Diagnosis d;
+    d.model = hypothesis.model;
+    DescribeFound(context, proof, &d);
+    std::vector<std::string> names;
+    for (const diagnose::ChangedParameter& changed : d.parameters) names.push_back(changed.fitted.name);
+    if (most > limit) {
+      EXPECT_THAT(names, ElementsAre("T_pmax", "b"));
+      EXPECT_EQ(d.model.parameters.T_pmax, hypothesis.model.parameters.T_pmax);
+      EXPECT_THAT(d.remarks, IsEmpty());
+    } else {
+      EXPECT_THAT(names, ElementsAre("b"));
+      EXPECT_EQ(d.model.parameters.T_pmax, Table1().T_pmax);
+      EXPECT_THAT(d.remarks, ElementsAre(::testing::HasSubstr("These runs do not show T_pmax: nothing")));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hydro::testing

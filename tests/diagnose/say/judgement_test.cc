@@ -123,6 +123,30 @@ TEST(GapToCompare, OfTheNearestHorizon) {
   EXPECT_EQ(GapToCompare(one.d, one.proof).gap.after, 10);
 }
 
+// Tests that an open verdict states a gap that is open: over longer predictions, over whole runs, of the fitted runs; and says where a curve
+// has closed it.
+TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
+  Judged one({1.05, 1.0, 0.9}, {30, 12, 9});
+  one.d.verdict = Verdict::kUnexplained;
+  diagnose::ComparedGap gap = GapToCompare(one.d, one.proof);
+  EXPECT_EQ(gap.seconds, 1.6);
+  EXPECT_EQ(gap.gap.after, 9);
+  one.d.horizons[2].typical = {1.1, 1.1, 0.95};
+  gap = GapToCompare(one.d, one.proof);
+  EXPECT_EQ(gap.seconds, 0);
+  EXPECT_EQ(gap.gap.after, 10);
+  EXPECT_FALSE(gap.closed || gap.of_fitted);
+  one.d.held_out = {1.1, 1.1, 1.1};
+  one.d.fit = {7, 7, 6};
+  gap = GapToCompare(one.d, one.proof);
+  EXPECT_TRUE(gap.of_fitted);
+  EXPECT_EQ(gap.gap.after, 6);
+  one.d.closures.emplace_back();
+  gap = GapToCompare(one.d, one.proof);
+  EXPECT_TRUE(gap.closed);
+  EXPECT_EQ(gap.seconds, 0.4);
+}
+
 // Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
 TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   Judged one({50, 50, 2}, {50, 50, 2});

@@ -100,6 +100,52 @@ TEST(Sentence, AGapOverWindows) {
               HasSubstr("(held-out gap over 0.4 s 11 to 1.2 noise units)"));
 }
 
+// Tests that the words agree with the figure beside them, for every verdict, what was found and gap: no share of noise, nothing taken that
+// does not fall, no gap left beside one that a curve has closed, and no number that is none.
+TEST(Sentence, WordsAgreeWithTheFigures) {
+  const double gaps[] = {0.6, 0.95, 1.0, 1.2, 3, 400, std::numeric_limits<double>::infinity(), std::nan("")};
+  size_t said = 0;
+  for (const Verdict verdict : {Verdict::kNamed, Verdict::kTied, Verdict::kPartly, Verdict::kParameters,
+                                Verdict::kUnexplained, Verdict::kNothingMissing}) {
+    for (const double before : gaps) {
+      for (const double after : gaps) {
+        for (const int what : {0, 1, 2, 3, 4, 5, 6, 7}) {
+          diagnose::Diagnosis d = With(verdict);
+          const bool effect = (what & 1) != 0, curve = (what & 2) != 0, closed = (what & 4) != 0;
+          if (!effect) d.effects.clear();
+          if (curve) d.closures.emplace_back().id = "closure.pump_torque";
+          const std::string text = diagnose::Sentence(d, {{before, before, after}, 0.4, closed});
+          SCOPED_TRACE(text);
+          ++said;
+          EXPECT_THAT(text, Not(::testing::ContainsRegex("nan|inf |-[0-9]")));
+          if (verdict == Verdict::kNothingMissing) continue;
+          const bool known = std::isfinite(before) && std::isfinite(after);
+          EXPECT_EQ(text.find("rises") != std::string::npos, known && after > before);
+          EXPECT_EQ(text.find("stays at") != std::string::npos, known && after == before);
+          const auto says = [&](const char* words) { return text.find(words) != std::string::npos; };
+          EXPECT_FALSE(says("takes nothing") && known && after < before);
+          EXPECT_FALSE(says("%") && !(after > 1 && before > after));
+          EXPECT_FALSE(says("significant gap") && closed);
+          EXPECT_FALSE(says("closes the") && !(closed && curve));
+          EXPECT_FALSE(says("explain part of the gap") && known && after >= before);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(said, 6u * 8 * 8 * 8);
+}
+
+// Tests that a gap over whole runs or of the fitted ones is said to be that where windows are what is compared.
+TEST(Sentence, AGapElsewhere) {
+  diagnose::Diagnosis d = With(Verdict::kUnexplained);
+  d.effects.clear();
+  d.horizons.emplace_back();
+  EXPECT_THAT(diagnose::Sentence(d, {{9, 9, 9}, 0}),
+              HasSubstr("(the held-out gap over whole runs stays at 9 noise units)"));
+  EXPECT_THAT(diagnose::Sentence(d, {{9, 9, 8}, 0, false, true}),
+              HasSubstr("(fitted gap over whole runs 9 to 8 noise units)"));
+}
+
 // Tests that a curve alone is no cause.
 TEST(Sentence, ACurveAlone) {
   diagnose::Diagnosis d = With(Verdict::kPartly);

@@ -1,0 +1,85 @@
+#include "diagnose/recording/held_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+#include "base/word_list.h"
+#include "diagnose/recording/run_data.h"
+#include "maths/median.h"
+
+namespace hydro::diagnose {
+namespace {
+
+constexpr size_t kFewestSteps = 20;  // of a signal, before their rhythm says something
+constexpr double kFewestRows = 1.9;  // that a sample stands in, on average
+constexpr double kInStep = 0.9;      // share of the samples that come in one rhythm
+// Steps of an encoder that turns slowly or of a converter with little noise are single ones.
+constexpr double kSingleSteps = 2.5;
+
+struct Repeats {
+  std::vector<size_t> rows;  // that repeat the row before
+  double apart = 0;          // rows between samples
+};
+
+// Whether the lengths are those of one rhythm: the usual one, its neighbour on one side where the rates have no whole ratio, and multiples,
+// of samples that by chance equal the one before.
+bool IsRhythm(const std::vector<double>& lengths, double usual) {
+  const auto share = [&](const auto& is_one) {
+    return static_cast<double>(std::count_if(lengths.begin(), lengths.end(), is_one)) /
+           static_cast<double>(lengths.size());
+  };
+  const double multiples = share([=](double length) { return std::fmod(length, usual) == 0; });
+  const double shorter = share([=](double length) { return length == usual - 1; });
+  const double longer = share([=](double length) { return length == usual + 1; });
+  return multiples + std::max(shorter, longer) >= kInStep;
+}
+
+Repeats RepeatsOf(const std::vector<double>& values) {
+  std::vector<double> lengths, steps;
+  Repeats repeats;
+  size_t first = 0, rows = 0;
+  for (size_t i = 1; i < values.size(); ++i) {
+    if (values[i] == values[i - 1]) {
+      repeats.rows.push_back(i);
+      continue;
+    }
+    const double step = std::abs(values[i] - values[i - 1]);
+    // What stands before the first step, and beside a gap, may be cut.
+    if (!std::isnan(step) && !steps.empty()) {
+      lengths.push_back(static_cast<double>(i - first));
+      rows += i - first;
+    }
+    if (!std::isnan(step)) steps.push_back(step);
+    first = i;
+  }
+  if (lengths.size() < kFewestSteps) return {};
+  repeats.apart = maths::Median(lengths);
+  const double mean = static_cast<double>(rows) / static_cast<double>(lengths.size());
+  const double resolution = EstimateResolution(values);
+  const bool single = resolution > 0 && maths::Median(steps) < kSingleSteps * resolution;
+  if (mean < kFewestRows || repeats.apart < 2 || single || !IsRhythm(lengths, repeats.apart)) return {};
+  return repeats;
+}
+
+}  // namespace
+
+std::vector<std::string> SetAsideRepeats(std::vector<runs::MeasuredRun>* runs) {
+  std::vector<std::string> lines;
+  for (runs::MeasuredRun& run : *runs) {
+    for (const runs::SignalName& sensor : runs::kSignals) {
+      if (sensor.standard_deviation == nullptr) continue;  // not a sensor's
+      std::vector<double>& values = (run.*sensor.signal).values;
+      const Repeats repeats = RepeatsOf(values);
+      for (const size_t row : repeats.rows) values[row] = runs::kMissing;
+      if (repeats.rows.empty()) continue;
+      lines.push_back(RunNamed(run.name) + ": " + sensor.ours + " stays the same for " +
+                      ShortNumber(repeats.apart, 2) +
+                      " rows at a time, as a slower sensor written at the rate of the table does: only the "
+                      "first of equal rows counts");
+    }
+  }
+  return lines;
+}
+
+}  // namespace hydro::diagnose
