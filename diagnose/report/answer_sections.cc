@@ -115,7 +115,7 @@ bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) 
 
 // What the weights together say.
 std::string WeightsInWords(size_t set_90, bool first_was_found) {
-  std::string words = "By what the balances say, the truth is ";
+  std::string words = "By what the balances say and what held-out simulation makes of it, the truth is ";
   if (set_90 <= 1) {
     words += "the first of these nine times in ten: these runs tell it from all others.";
   } else {
@@ -145,9 +145,10 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   if (effects.empty()) return "";
   return Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow") +
-         "<p>The weight says how likely an effect is by what the balances say; it has none "
-         "where these cannot speak for it, and simulation alone does. The share says how "
-         "much it does: the part of the held-out squared gap that comes back without it. An effect may be "
+         "<p>The weight says how likely an effect is: the mean of what the balances say and of what held-out "
+         "simulation "
+         "makes of it. The share says how much it does: the part of the held-out squared gap that comes back "
+         "without it. An effect may be "
          "certain and do little.</p>\n";
 }
 
@@ -170,7 +171,9 @@ std::string WhatMayExplain(const Diagnosis& diagnosis) {
   if (rows.empty()) return "";
   return "<p>" + WeightsInWords(diagnosis.set_90, first_was_found) + "</p>\n" +
          Table({"explanation", "#weight", "one of these, nine times in ten", ""}, rows, "narrow") +
-         "<p>The weights are of what the balances say before anything is simulated, and add to 100 %. They "
+         "<p>Each weight is the mean of two: what the balances say before anything is simulated, and what "
+         "the simulation of "
+         "held-out runs makes of it. They add to 100 %, and "
          "compare what was tried, and nothing else.</p>\n";
 }
 

@@ -41,7 +41,7 @@ std::string EffectText(const FoundEffect& effect) {
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.summary + ")";
   if (!parts.empty()) text += ": " + Joined(parts);
-  if (effect.weight > 0) text += "; weight " + Percent(effect.weight) + " by the balances";
+  if (effect.weight > 0) text += "; weight " + Percent(effect.weight);
   if (std::isfinite(effect.share)) text += ", without it " + Percent(effect.share) + " of the gap comes back";
   if (!effect.tied_with.empty()) text += "; tied with " + Joined(InWords(effect.tied_with));
   return text;
