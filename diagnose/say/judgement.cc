@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/evidence/change_set.h"
+#include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
 #include "maths/range.h"
@@ -60,19 +61,26 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
   return OpenHorizon(d, *near, exact) == nullptr;
 }
 
-// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
-bool HasOneWitness(const Diagnosis& d) {
+// Of the balances: that they do not deny it. One in twenty, by weight, or as far below the likeliest set as weights are tempered: what
+// simulation refutes may have led.
+bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   constexpr double kAWord = 0.05;
-  if (d.effects.empty() || d.explanations.empty()) return false;
-  const auto said = [&](const std::string& id) {
-    double weight = 0;
-    for (const WeightedSet& one : d.explanations) {
-      const bool has = std::any_of(one.changes.begin(), one.changes.end(),
-                                   [&](const std::string& change) { return EffectOf(change) == id; });
-      weight += has ? one.weight : 0;
-    }
-    return weight >= kAWord;
+  const auto has = [&id](const auto& changes) {
+    return std::any_of(changes.begin(), changes.end(),
+                       [&](const std::string& change) { return EffectOf(change) == id; });
   };
+  double weight = 0;
+  for (const WeightedSet& one : d.explanations) weight += has(one.changes) ? one.weight : 0;
+  if (weight >= kAWord) return true;
+  return std::any_of(scores.begin(), scores.end(), [&](const ScoredSet& one) {  // the best first
+    return one.score > std::max(0.0, scores.front().score + kTemperature * std::log(kAWord)) && has(one.set);
+  });
+}
+
+// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
+bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
+  if (d.effects.empty() || d.explanations.empty()) return false;
+  const auto said = [&](const std::string& id) { return IsSpokenFor(id, d, scores); };
   return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
     if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
     // Where other values do as well, not even the windows say that anything is missing.
@@ -131,7 +139,9 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   return true;
 }
 
-Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, double sample) {
+Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
+                  bool exact_sensors, double sample) {
+  const bool one_witness = HasOneWitness(d, scores);
   // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
                       !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
@@ -139,10 +149,10 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, do
   // A curve is no cause: what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
   if (!IsGapClosed(d, proof, exact_sensors) || !d.closures.empty())
-    return something && !HasOneWitness(d) ? Verdict::kPartly : Verdict::kUnexplained;
+    return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
-  if (HasOneWitness(d) && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
+  if (one_witness && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
   const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
                                 [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
   return tied ? Verdict::kTied : Verdict::kNamed;
