@@ -61,20 +61,30 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
   return OpenHorizon(d, *near, exact) == nullptr;
 }
 
+// How much of its score a set owes to the effect; nothing where it does not have it, or the rest was not tried.
+double OwedTo(const std::string& id, const ScoredSet& one, const std::vector<ScoredSet>& scores) {
+  ChangeSet rest = one.set;
+  std::erase_if(rest, [&](const std::string& change) { return EffectOf(change) == id; });
+  if (rest.size() == one.set.size()) return 0;
+  const auto same =
+      std::find_if(scores.begin(), scores.end(), [&](const ScoredSet& other) { return other.set == rest; });
+  return rest.empty() ? one.score : same == scores.end() ? 0 : one.score - same->score;
+}
+
 // Of the balances: that they do not deny it. One in twenty, by weight, or as far below the likeliest set as weights are tempered: what
 // simulation refutes may have led.
 bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   constexpr double kAWord = 0.05;
-  const auto has = [&id](const auto& changes) {
-    return std::any_of(changes.begin(), changes.end(),
-                       [&](const std::string& change) { return EffectOf(change) == id; });
-  };
   double weight = 0;
-  for (const WeightedSet& one : d.explanations) weight += has(one.changes) ? one.weight : 0;
-  if (weight >= kAWord) return true;
-  return std::any_of(scores.begin(), scores.end(), [&](const ScoredSet& one) {  // the best first
-    return one.score > std::max(0.0, scores.front().score + kTemperature * std::log(kAWord)) && has(one.set);
-  });
+  for (const WeightedSet& one : d.explanations) {
+    const bool has = std::any_of(one.changes.begin(), one.changes.end(),
+                                 [&](const std::string& change) { return EffectOf(change) == id; });
+    weight += has ? one.weight : 0;
+  }
+  return weight >= kAWord || std::any_of(scores.begin(), scores.end(), [&](const ScoredSet& one) {
+           const double least = scores.front().score + kTemperature * std::log(kAWord);  // the best first
+           return one.score > least && OwedTo(id, one, scores) > 0;
+         });
 }
 
 // Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.

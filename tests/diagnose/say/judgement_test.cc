@@ -73,7 +73,9 @@ TEST(VerdictOn, AGapBesideASingleWitness) {
   EXPECT_EQ(one.Of({{{"amp.delay"}, 60}, {{"amp.lag"}, 58}}), Verdict::kPartly)
       << "balances hardly tell them apart";
   EXPECT_EQ(one.Of({{{"amp.delay"}, 60}, {{"amp.lag"}, 40}}), Verdict::kUnexplained);
-  EXPECT_EQ(one.Of({{{}, 0}, {{"amp.lag"}, -2}}), Verdict::kUnexplained);
+  EXPECT_EQ(one.Of({{{"amp.delay"}, 19}, {{"amp.delay", "amp.lag"}, 17}, {{}, 0}, {{"amp.lag"}, -2}}),
+            Verdict::kUnexplained)
+      << "it only lowers what another has";
   one.d.effects[0].tied_with = {"amp.delay"};
   EXPECT_EQ(one.Of(), Verdict::kPartly);
   one.d.effects[0].tied_with.clear();
@@ -172,7 +174,7 @@ TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
 TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   Judged one({50, 50, 2}, {50, 50, 2});
   EXPECT_EQ(VerdictOn(one.d, one.proof, {}, false, kSample), Verdict::kPartly);
-  EXPECT_EQ(VerdictOn(one.d, one.proof, true, kSample), Verdict::kNamed);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, true, kSample), Verdict::kNamed);
   const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
   EXPECT_FALSE(diagnose::ExactSensors(PointersTo(noisy)));
   NoisyRig exact;
