@@ -51,7 +51,7 @@ TEST(WavePeriods, SeenToRepeat) {
     runs[1].at.push_back(at);
   }
   EXPECT_EQ(diagnose::FewestPeriods(runs), 6);
-  runs[1].at[1].motor_angle = 0.6;  // less than two of kMostPeriods
+  for (model::KnownMotion& at : runs[1].at) at.motor_angle *= 0.1;  // less than two of kMostPeriods
   EXPECT_GT(diagnose::FewestPeriods(runs), diagnose::kMostPeriods);
 }
 
