@@ -78,6 +78,37 @@ TEST_F(HydroLogTest, ExportAndImport) {
   }
 }
 
+// Tests that a table in SI units is one in the base units of one system, for arms that turn and that move along a line
+// and models in any units, and that it survives the way through a log and back.
+TEST_F(HydroLogTest, ExportInSiAndImport) {
+  for (const char* units : {"length = \"in\", force = \"lbf\"", "length = \"mm\", force = \"N\"",
+                            "length = \"cm\", force = \"daN\"", "length = \"m\", force = \"N\""}) {
+    for (const bool linear : {false, true}) {
+      runs::RunMessages run = log::SampleRun(9);
+      run_description_t description{};
+      description.session = 11;
+      const std::string length = std::string(units).substr(10, std::string(units).find(',') - 11);
+      description.model_text =
+          std::string("units = { ") + units + (linear ? ", arm = \"" + length + "\" }\n" : " }\n");
+      run.Of<run_description_t>() = {description};
+      log::WriteRun(Path("log"), run);
+      ASSERT_EQ(HydroLog({"export", Path("log"), "--si", "-o", Path("si.csv")}).exit_code, 0) << units;
+      const std::string table = log::ReadBytes(Path("si.csv"));
+      EXPECT_THAT(table,
+                  StartsWith(linear ? "time_s,tick,voltage_V,pressure_ref_Pa,arm_ref_m,motor_angle_rad,"
+                                      "motor_speed_rad_s,arm_angle_m,arm_speed_m_s,p1_Pa,p2_Pa\n"
+                                    : "time_s,tick,voltage_V,pressure_ref_Pa,arm_ref_rad,motor_angle_rad,"
+                                      "motor_speed_rad_s,arm_angle_rad,arm_speed_rad_s,p1_Pa,p2_Pa\n"));
+      const Outcome imported = HydroLog({"import", Path("si.csv"), "-o", Path("imported")});
+      ASSERT_EQ(imported.exit_code, 0) << imported.err;
+      EXPECT_EQ(HydroLog({"export", Path("imported"), "-o", Path("again.csv")}).exit_code, 0);
+      EXPECT_EQ(log::ReadBytes(Path("again.csv")), table) << units << " " << linear;
+      EXPECT_EQ(HydroLog({"export", Path("imported"), "--si", "-o", Path("again.csv")}).exit_code, 0);
+      EXPECT_EQ(log::ReadBytes(Path("again.csv")), table) << "it is in SI already";
+    }
+  }
+}
+
 // Tests what repair prints and leaves, with and without damage.
 TEST_F(HydroLogTest, Repair) {
   log::WriteRun(Path("log"), log::SampleRun(9));
@@ -93,7 +124,8 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
   const Outcome repaired = HydroLog({"repair", Path("log")});
   EXPECT_EQ(repaired.exit_code, 0);
-  EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes ")));
+  EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes "),
+                                  HasSubstr(": as it was found it is now " + Path("log.damaged") + "\n")));
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
