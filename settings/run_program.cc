@@ -1,3 +1,4 @@
+// RunProgram() of command_line.h: what must hold for every process before it works, and how it ends.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
