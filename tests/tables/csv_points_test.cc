@@ -65,7 +65,7 @@ TEST(CsvPointsTest, RefusesMalformedTables) {
        "cut within it"},
       {"y,time_s\n0.25,0\n0.5,1",
        "a.csv: line 3, column time_s: found \"1\", allowed a number before the end of a line"},
-      {"time_s;y\n0;one\n", "a.csv: line 1: found no column \"time_s\", allowed \"time_s;y\""},
+      {"time_s;y\n0;one\n", "a.csv: line 2, column y: found \"one\", allowed a finite number"},
       {"time_s;y\n0;0\n1;1e999\n", "a.csv: line 3, column y: found \"1e999\", allowed a finite number"},
       {"time_s;x\n0;1\n1;2\n", "a.csv: line 1: found no column \"y\", allowed \"time_s\" or \"x\""},
   };
