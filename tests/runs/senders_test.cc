@@ -171,7 +171,7 @@ TEST_F(SendersTest, JoinedRecordings) {
   }
 }
 
-// Tests that rows far apart, as of a slow recording, are no silence.
+// Tests that rows far apart, as of a slow recording, are no silence, and that a plant time that begins again is another run.
 TEST(ClockWatchTest, SlowStates) {
   ClockWatch slow;
   for (int64_t k = 0; k < 10; ++k) slow.Take(k, 10'000'000 * k, 10.0 * static_cast<double>(k));
@@ -180,7 +180,9 @@ TEST(ClockWatchTest, SlowStates) {
   joined.Take(0, 5'000'000, 5.0);
   joined.Take(1, 0, 0.0);
   joined.Take(2, 1000, 0.001);
-  EXPECT_TRUE(joined.steps().empty());
+  ASSERT_EQ(joined.steps().size(), 1u);
+  EXPECT_TRUE(joined.steps()[0].joined);
+  EXPECT_EQ(joined.steps()[0].seconds, -5);
 }
 
 }  // namespace
