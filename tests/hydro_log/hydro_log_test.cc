@@ -84,7 +84,7 @@ TEST_F(HydroLogTest, ExportInSiAndImport) {
   int run = 0;  // names of their own: a process replaces nothing that it has read
   for (const auto& [length, force] :
        {std::pair<std::string, std::string>("in", "lbf"), {"mm", "N"}, {"cm", "daN"}, {"m", "N"}}) {
-    for (const std::string arm : {std::string("rad"), length}) {
+    for (const std::string& arm : {std::string("rad"), length}) {
       const auto path = [&, n = ++run](const char* name) { return Path(std::to_string(n) + name); };
       const bool linear = arm != "rad";
       log::WriteRun(path("log"), log::SampleRun(9), "", "[plant]\nrate_hz = 1000\n",
