@@ -158,7 +158,7 @@ std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
     if (first == verb) arguments[1] = flag;
     verbs.emplace_back(verb);
   }
-  if (first != arguments[1] || std::filesystem::exists(first)) return arguments;
+  if (first != arguments[1] || first.starts_with('-') || std::filesystem::exists(first)) return arguments;
   if (const std::string meant = hydro::DidYouMean(first, verbs); !meant.empty()) {
     throw hydro::InputError("found " + hydro::Quoted(first) + meant + ", allowed a verb, " +
                             hydro::QuotedList(verbs) + ", or CONFIG, a file");

@@ -77,8 +77,8 @@ class ServerTest(stack.TestCase):
         with open(whole) as file:
             self.assertEqual(file.read().splitlines()[1001:1501], rows[1:501])  # the last row's voltage came later
         si = scope.request("POST", "/api/cut", {**window, "format": "csv", "si": True})[2].decode().splitlines()
-        column = si[0].split(",").index("p1_MPa")
-        self.assertAlmostEqual(float(si[1].split(",")[column]), float(rows[1].split(",")[column]) * 0.006894757293168, 9)
+        column = si[0].split(",").index("p1_Pa")
+        self.assertAlmostEqual(float(si[1].split(",")[column]), float(rows[1].split(",")[column]) * 6894.757293168, 3)
 
     # Tests that logs and tables that are handed in are runs beside the first, and can be closed.
     def test_open(self):
