@@ -47,18 +47,10 @@ bool ExistsAndIsNotRegular(const std::string& file) {
   throw InputError(name + ": is being written by another process; stop that one or give another name");
 }
 
-// Removes a file of that name, unless another process holds the lock that every NewFile takes on its file.
-void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) {
-  const int old = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (old < 0) {
-    if (errno == ENOENT) return;
-    ThrowCannotCreate(name, errno);
-  }
-  const bool locked = flock(old, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  close(old);
-  if (locked) ThrowIsBeingWritten(name);
-  // Unlinks instead of truncating: a reader that has the old contents mapped keeps them.
-  if (unlink(path.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
+// Unlinks instead of truncating: a reader that has the old contents mapped keeps them.
+void Remove(const std::string& name) {
+  if (access(name.c_str(), W_OK) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
+  if (unlink(name.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
 }
 
 // FILE.part or, where something has that name already, FILE.part1 and so on: it may be anybody's. Throws where another process is
@@ -68,7 +60,7 @@ std::string FreePart(const std::string& name) {
     std::string part = name + std::string(kPart) + (i == 0 ? "" : std::to_string(i));
     struct stat status;
     if (lstat(part.c_str(), &status) != 0) return part;
-    if (S_ISREG(status.st_mode) && IsBeingWritten(part)) ThrowIsBeingWritten(name);
+    if (IsBeingWritten(part)) ThrowIsBeingWritten(name);
   }
 }
 
@@ -77,16 +69,18 @@ std::string FreePart(const std::string& name) {
 void AllowReplacing(bool allowed) { may_replace = allowed; }
 
 void CheckIsNew(const std::string& file) {
-  if (may_replace || !HasContents(file)) return;
   if (IsBeingWritten(file)) ThrowIsBeingWritten(file);
+  if (may_replace || !HasContents(file)) return;
   throw InputError(file + ": found a file of this name, allowed: another name, or --force to replace it");
 }
 
-// Every NewFile holds a lock on its file.
+// Every NewFile holds a lock on its file. A shared one is tried: two that ask at the same time do not take each other for writers.
 bool IsBeingWritten(const std::string& file) {
+  struct stat status;
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return false;
-  const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const bool locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);
   return locked;
 }
@@ -115,10 +109,11 @@ NewFile::NewFile(const std::string& file, Opening opening, Existing existing)
   }
   CheckKeeps(name_);
   if (existing_ == Existing::kKept) CheckIsNew(name_);
+  if (IsBeingWritten(name_)) ThrowIsBeingWritten(name_);
   if (opening == Opening::kTemporary) {
     path_ = FreePart(name_);
   } else {
-    RemoveUnlessBeingWritten(path_, name_);
+    Remove(name_);
   }
   descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
@@ -198,9 +193,12 @@ void NewFile::Finish() {
     ThrowWriteError(name_, error);
   }
   if (path_ == name_) return;
+  const std::string left = "; what was written is " + path_;
+  if (IsBeingWritten(name_)) {
+    throw WriteError(name_ + ": cannot be written: another process writes to a file of this name now" + left);
+  }
   if (const int rename_error = GiveName(); rename_error == EEXIST && existing_ == Existing::kKept) {
-    throw WriteError(
-        name_ + ": cannot be written: a file of this name appeared meanwhile; what was written is " + path_);
+    throw WriteError(name_ + ": cannot be written: a file of this name appeared meanwhile" + left);
   } else if (rename_error != 0) {
     unlink(path_.c_str());
     ThrowWriteError(name_, rename_error);

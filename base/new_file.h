@@ -26,10 +26,10 @@ enum class Existing {
   kKept,  // InputError, unless AllowReplacing() was called: what a user names may be yesterday's measurement
 };
 
-// --force: from now on, this process replaces what it would have kept.
+// --force: from now on, this process replaces what it would have kept. What another process is writing is never replaced.
 void AllowReplacing(bool allowed = true);
 
-// Throws InputError if a file with contents has this name and must be kept.
+// Throws InputError if a file with contents has this name and must be kept, or another process is writing it.
 void CheckIsNew(const std::string& file);
 
 // Whether a NewFile, of this process or another, is writing to the file of this name.
@@ -60,7 +60,7 @@ class NewFile {
   bool TakeBack(size_t size);
   // Closes the file and, with kTemporary, gives it its name when its bytes are on the disk: after a power
   // failure, the name leads to all of the new contents or to what it led to before. Throws WriteError, also
-  // where kKept finds a file of that name that was not there before. Later calls do nothing.
+  // where kKept finds one that was not there before, or another process has begun one: ours stays at path(). Later calls do nothing.
   void Finish();
 
   const std::string& name() const { return name_; }  // final name, as given

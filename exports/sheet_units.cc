@@ -13,9 +13,6 @@ namespace {
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kEndings{
     {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_psi", "psi"}, {"_V", "V"}, {"_s", "s"}}};
 
-// Their size decides between kPa and MPa: exported pressures are in MPa, whatever they are.
-constexpr double kLargePressure = 1e12;
-
 const std::pair<std::string_view, std::string_view>* EndingOf(std::string_view column) {
   for (const auto& ending : kEndings) {
     if (column.ends_with(ending.first)) return &ending;
@@ -39,6 +36,16 @@ void Scale(double factor, Values* values) {
   }
 }
 
+// What turns values that a stack in these units has into SI's base units (m, N, Pa, m/s), which are one system: a table
+// in them can be imported. Empty where they are the same.
+std::optional<SiUnit> InSi(const UnitSystem& units, const std::string& paper, int arm) {
+  UnitSystem si = kSiUnits;
+  si.linear_arm = units.linear_arm;
+  const std::string own = units.UnitFor(paper, arm), shown = si.UnitFor(paper, arm);
+  if (own == shown) return std::nullopt;
+  return SiUnit{own, shown, ParseUnit(own)->size / ParseUnit(shown)->size};
+}
+
 // The name of a table's column with another unit.
 std::string Renamed(const std::string& column, const std::string& unit) {
   const auto* const ending = EndingOf(column);
@@ -60,8 +67,8 @@ void SetUnits(const UnitSystem& units, bool si, Sheet* sheet) {
   for (SheetColumn& column : sheet->columns) {
     definitions::Field& field = column.field;
     if (field.unit.empty()) continue;
+    const std::optional<SiUnit> to = si ? InSi(units, field.unit, ArmPower(field.name)) : std::nullopt;
     field.unit = UnitOfField(units, field);
-    const std::optional<SiUnit> to = si ? FindSiUnit(field.unit, kLargePressure) : std::nullopt;
     if (to.has_value()) {
       Scale(to->factor, &column.values);
       field.unit = to->to;
@@ -75,7 +82,7 @@ void SetUnits(const UnitSystem& units, bool si, tables::Table* table) {
     const std::string paper = PaperUnit(column.name);
     if (paper.empty()) continue;
     const std::string unit = units.UnitFor(paper, ArmPower(column.name));
-    const std::optional<SiUnit> to = si ? FindSiUnit(unit, kLargePressure) : std::nullopt;
+    const std::optional<SiUnit> to = si ? InSi(units, paper, ArmPower(column.name)) : std::nullopt;
     if (to.has_value()) {
       for (double& value : column.values) value *= to->factor;
     }

@@ -134,10 +134,10 @@ class CompareVerb {
 class RepairVerb {
  public:
   explicit RepairVerb(settings::CommandLine& line) {
-    settings::CommandLine& verb =
-        line.AddVerb("repair",
-                     "Keep what can be read of a damaged log. Without -o the log is "
-                     "replaced, and the damaged one kept as LOG.damaged.");
+    settings::CommandLine& verb = line.AddVerb(
+        "repair",
+        "Keep what can be read of a damaged log. Without -o the log is "
+        "replaced, and the damaged one kept as LOG.damaged (LOG.damaged1 ... where that is taken).");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
     verb.AddForce();

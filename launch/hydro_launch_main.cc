@@ -2,9 +2,11 @@
 // runs.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/did_you_mean.h"
 #include "base/text_file.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
@@ -139,18 +141,27 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   return hydro::launch::LaunchStack(request);
 }
 
-// `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`.
+constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
+                                                          {"rearm", "--rearm"},
+                                                          {"doctor", "--doctor"},
+                                                          {"make-key", "--make-key"},
+                                                          {"new-controller", "--new-controller"}};
+
+// `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`. Throws InputError for a word that is near a verb and no file:
+// `hydro-launch stopp CONFIG`.
 std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
-  static constexpr std::pair<std::string_view, const char*> kVerbs[] = {
-      {"stop", "--stop"},
-      {"rearm", "--rearm"},
-      {"doctor", "--doctor"},
-      {"make-key", "--make-key"},
-      {"new-controller", "--new-controller"}};
   std::vector<const char*> arguments(argv, argv + argc);
   if (argc < 2) return arguments;
+  const std::string first = arguments[1];
+  std::vector<std::string> verbs;
   for (const auto& [verb, flag] : kVerbs) {
-    if (verb == arguments[1]) arguments[1] = flag;
+    if (first == verb) arguments[1] = flag;
+    verbs.emplace_back(verb);
+  }
+  if (first != arguments[1] || first.starts_with('-') || std::filesystem::exists(first)) return arguments;
+  if (const std::string meant = hydro::DidYouMean(first, verbs); !meant.empty()) {
+    throw hydro::InputError("found " + hydro::Quoted(first) + meant + ", allowed a verb, " +
+                            hydro::QuotedList(verbs) + ", or CONFIG, a file");
   }
   return arguments;
 }
@@ -169,7 +180,9 @@ int main(int argc, char** argv) {
       "docs/launch.md");
   Options options;
   AddOptions(&line, &options);
-  const std::vector<const char*> arguments = WithFlagForVerb(argc, argv);
-  if (const auto code = line.Parse(argc, arguments.data())) return *code;
-  return hydro::settings::RunProgram("hydro-launch", [&] { return Run(line, options); });
+  return hydro::settings::RunProgram("hydro-launch", [&] {
+    const std::vector<const char*> arguments = WithFlagForVerb(argc, argv);
+    if (const auto code = line.Parse(argc, arguments.data())) return *code;
+    return Run(line, options);
+  });
 }

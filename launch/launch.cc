@@ -26,10 +26,6 @@ void CheckLog(const LaunchPlan& plan, const std::string& file) {
   const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
   if (!ours) return;
-  CheckKeeps(file);
-  if (IsBeingWritten(file)) {
-    throw InputError(file + ": is being written by another process; stop that process or give another name");
-  }
   CheckCanBeCreated(file);
 }
 

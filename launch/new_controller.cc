@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "base/input_error.h"
+#include "base/new_file.h"
 #include "base/text_file.h"
 #include "launch/own_controller_texts.h"
 #include "process/own_program.h"
@@ -45,13 +46,18 @@ void WriteNew(const std::string& file, const std::string& text, mode_t mode) {
   if (fd < 0 && errno == EEXIST) {
     throw InputError(file + ": is there already and is not overwritten; give another name, or move it away");
   }
+  if (fd < 0) {
+    throw InputError(file + ": cannot be written: " + std::strerror(errno) +
+                     "; go to a folder that is yours");
+  }
+  errno = ENOSPC;  // of a write that is shorter
   const bool written =
-      fd >= 0 && write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(fd) == 0;
+      write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(fd) == 0;
   const std::string why = std::strerror(errno);
-  if (fd >= 0) close(fd);
+  close(fd);
   if (written) return;
-  if (fd >= 0) unlink(file.c_str());
-  throw InputError(file + ": cannot be written: " + why + "; go to a folder that is yours");
+  unlink(file.c_str());
+  throw WriteError(file + ": cannot be written: " + why + "; space for it is needed");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <hydro/tuning_request_t.hpp>
 #include <memory>
 
+#include "process/output_left.h"
 #include "process/stop_signal.h"
 #include "timing/fixed_rate_loop.h"
 
@@ -274,7 +275,7 @@ int LimbApp::End() {
     participant_.RequestStop(fmt::format("hydro-limb was stopped by signal {}", signal), 0);
   } else {
     const double seconds = static_cast<double>(limb_.tick()) / config_.common.plant.rate_hz;
-    participant_.RequestStop(fmt::format("the run is complete after {} s", seconds), exit_code);
+    participant_.RequestStop(fmt::format("{} after {} s", process::kRunComplete, seconds), exit_code);
   }
   return std::max(exit_code, participant_.Leave());
 }

@@ -161,6 +161,21 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   return result;
 }
 
+namespace {
+
+// A second name for a log, which is returned, rather than a new one: whatever happens now, a log exists under the first.
+std::string KeepAsDamaged(const std::string& file) {
+  for (int i = 0;; ++i) {
+    const std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
+    if (link(file.c_str(), damaged.c_str()) == 0) return damaged;
+    if (errno == EEXIST) continue;
+    throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +
+                     "; a folder that can be written to, or -o, is needed");
+  }
+}
+
+}  // namespace
+
 RepairResult RepairInPlace(const std::string& file) {
   if (IsBeingWritten(file)) {
     throw InputError(file +
@@ -168,16 +183,11 @@ RepairResult RepairInPlace(const std::string& file) {
   }
   RepairResult result = RepairLog(file, "");
   if (!result.mended()) return result;
-  const std::string damaged = file + ".damaged";
-  // A second name rather than a new one: whatever happens now, a log exists under the first.
-  if (link(file.c_str(), damaged.c_str()) != 0) {
-    throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +
-                     "; a name that is free for the damaged log, or -o, is needed");
-  }
+  result.damaged = KeepAsDamaged(file);
   try {
     RepairLog(file, file);
   } catch (...) {
-    unlink(damaged.c_str());
+    unlink(result.damaged.c_str());
     throw;
   }
   return result;
@@ -186,6 +196,7 @@ RepairResult RepairInPlace(const std::string& file) {
 std::string Describe(const RepairResult& result, const std::string& file) {
   std::string text = file + ": kept " + std::to_string(result.kept_events) + " messages, " +
                      std::to_string(result.kept_bytes) + " bytes\n";
+  if (!result.damaged.empty()) text += file + ": as it was found it is now " + result.damaged + "\n";
   if (const std::string caution = Caution(result.verdict); !caution.empty())
     text += file + ": was " + caution + "\n";
   if (result.lost_messages > 0) {

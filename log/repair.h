@@ -18,6 +18,7 @@ struct RepairResult {
   int64_t lost_messages = 0;    // written and not kept, as far as the check events tell
   int64_t unvouched = 0;        // kept messages of which no checksum says that they are right
   std::vector<LostBytes> lost;  // in order of the file
+  std::string damaged;          // where RepairInPlace() has left the log as it was found
 
   // Whether there was anything to mend: bytes lost, messages missing, or no mark of the end.
   bool mended() const;
@@ -35,8 +36,9 @@ struct RepairResult {
 // WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
-// Repairs a log in place and keeps the original as FILE.damaged, which must not exist yet. Leaves a whole log
-// alone, and one without checksums in which nothing is wrong. Throws WriteError, and InputError, also when the log is still being recorded.
+// Repairs a log in place and keeps the original as FILE.damaged, or FILE.damaged1 and so on where an earlier one has
+// that name. Leaves a whole log alone, and one without checksums in which nothing is wrong. Throws WriteError, and
+// InputError, also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
 
 // One line for what was kept, and one for each place where something was lost.

@@ -75,8 +75,9 @@ void TuningDesk::Begin(const tuning_request_t& request) {
   pending_ = Pending{};
   pending_->request = request;
   if (const std::string why = WhyNot(request); !why.empty()) return Refuse(why);
-  const tuning::Situation situation{.held = hooks_.held(), .simulated = simulated_rig_};
-  if (request.kind == tuning_request_t::UNDO) {
+  const bool undo = request.kind == tuning_request_t::UNDO;
+  const tuning::Situation situation{.held = hooks_.held(), .simulated = simulated_rig_, .undo = undo};
+  if (undo) {
     aside_.Begin([configured = configured_, in_force = in_force_.config, next = before_.back().config,
                   situation] { return tuning::PrepareChange(*configured, *in_force, next, situation); });
     return;

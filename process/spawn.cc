@@ -46,7 +46,7 @@ void Report(int fd, Trouble::What what) {
 void ResetSignals() {
   struct sigaction action = {};
   action.sa_handler = SIG_DFL;
-  for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGQUIT}) sigaction(s, &action, nullptr);
+  for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGQUIT, SIGXFSZ}) sigaction(s, &action, nullptr);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
   sigset_t none;

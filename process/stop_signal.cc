@@ -26,8 +26,6 @@ void CatchStopSignals() {
   action.sa_handler = Remember;  // without SA_RESTART: a waiting poll returns
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
-  // A file at its size limit is an error of write(), like a full disk, and does not end the process.
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void StopBecause(const StopRequest& request) {

@@ -21,8 +21,8 @@ void ClockWatch::Take(int64_t event, int64_t utime, std::optional<double> state_
 void ClockWatch::Resolve(double state_time) {
   for (ClockStep step : pending_) {
     const double planned = state_time - step.at_time_s;
-    if (planned < 0) continue;  // another run begins, with a time of its own
-    step.seconds -= planned;
+    step.joined = planned < 0;
+    if (!step.joined) step.seconds -= planned;
     step.at_time_s = state_time;
     if (step.seconds > kSilence || step.seconds < -kBack) steps_.push_back(step);
   }

@@ -11,6 +11,8 @@ struct ClockStep {
   int64_t event = 0;     // the first after it, counted as LogEvent::index
   double at_time_s = 0;  // plant time of the first state after it
   double seconds = 0;    // by which the clock went on further than plant time; below 0: it was set back
+  bool joined =
+      false;  // another run begins there, with a plant time of its own: all that the clock went on by
 };
 
 // Goes through the events of a log in their order.

@@ -155,7 +155,7 @@ std::string InfoJson(const LogInfo& info) {
     json["channels"][channel.summary.channel] = ChannelJson(channel);
   json["first_undecodable"] = info.first_undecodable;
   json["clock_steps"] = ListJson(info.clock_steps, [](const ClockStep& step) {
-    return Json{{"at_time_s", step.at_time_s}, {"seconds", step.seconds}};
+    return Json{{"at_time_s", step.at_time_s}, {"seconds", step.seconds}, {"joined", step.joined}};
   });
   json["several_runs"] = info.several_runs;
   if (info.several_runs) {

@@ -92,6 +92,12 @@ void AppendClockSteps(const LogInfo& info, std::string& text) {
       break;
     }
     const std::string seconds = ShortNumber(std::abs(step.seconds), 3);
+    if (step.joined) {
+      Append(text, "clock: another run begins, {} s {}; duration and rates leave that out\n", seconds,
+             step.seconds > 0 ? "after the one before has ended"
+                              : "earlier by its clock than the one before has ended");
+      continue;
+    }
     Append(text, "clock: {} at {} s of plant time; duration and rates leave it out\n",
            step.seconds > 0 ? seconds + " s without a message" : "set back by " + seconds + " s",
            Number(step.at_time_s));

@@ -109,7 +109,7 @@ std::string LimbInfoText(const LimbInfo& info) {
 }
 
 std::string LimbSummaryText(const LimbInfo& info) {
-  std::string text = HintOf(info) + RowsOf(info);
+  std::string text = EarlyEndText(info.limb) + HintOf(info) + RowsOf(info);
   const std::string caution = log::Caution(info.limb.verdict);
   if (!caution.empty()) text += "log: " + caution + "\n";
   text += LoopsText(info.limb);

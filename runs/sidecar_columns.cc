@@ -10,6 +10,7 @@
 #include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "base/unit_spelling.h"
 #include "base/units.h"
 #include "base/word_list.h"
 #include "runs/counters.h"
@@ -36,10 +37,13 @@ double ReadUnit(settings::SectionReader& section, const std::string& key, const 
   const std::optional<double> factor = UnitFactor(unit, ours);
   if (factor.has_value()) return *factor;
   std::string allowed = QuotedList(UnitsLike(ours));
+  const std::string meant = UnitMeant(unit, ours);
   if (key == "voltage") allowed += ", or no unit for a command that is not a voltage";
-  throw section.Error(
-      "unit", Quoted(unit) + (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit"),
-      allowed);
+  throw section.Error("unit",
+                      Quoted(unit) +
+                          (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit") +
+                          (meant.empty() ? "" : ", did you mean " + Quoted(meant) + "?"),
+                      allowed);
 }
 
 bool StatesUnit(const tables::Column& column) {

@@ -58,7 +58,49 @@ class ArmText {
   double factor_ = 1;
 };
 
+// The stop that ended the run early: one that failed it, else one before its duration.
+const stop_t* EarlyEnd(const LogInfo& info) {
+  const stop_t* first = nullptr;
+  for (const stop_t& stop : info.stops) {
+    if (stop.exit_code != 0) return &stop;
+    if (process::IsCompletion(stop)) return nullptr;
+    if (first == nullptr) first = &stop;
+  }
+  return first;
+}
+
+std::string TrackingText(const Tracking& tracking, const LogInfo& info, bool si) {
+  const ArmText arm(tracking.units, si);
+  const bool early = EarlyEnd(info) != nullptr;
+  std::string text = log::EndIsOpen(info.verdict) ? "where this log ends (the run may go on): "
+                     : early                      ? "when it ended: "
+                                                  : "";
+  const std::string rms = ", rms error over the run " + arm.Size(tracking.rms_error_rad) + "\n";
+  if (tracking.held) {
+    return text +
+           "the voltage is held at zero, and the reference follows the arm: it says nothing of a target" +
+           rms;
+  }
+  if (!tracking.at_target) {
+    return text +
+           (early ? "the reference moves: error " : "the reference still moves at the end: error there ") +
+           arm.Error(tracking.final_error_rad) + rms;
+  }
+  return text +
+         fmt::format("arm {} its target {}: {} {}", *tracking.at_target ? "at" : "NOT at",
+                     arm.Place(tracking.target_rad), early ? "error" : "final error",
+                     arm.Error(tracking.final_error_rad)) +
+         rms;
+}
+
 }  // namespace
+
+std::string EarlyEndText(const LogInfo& info) {
+  const stop_t* const end = EarlyEnd(info);
+  if (end == nullptr) return {};
+  return fmt::format("the run {} at tick {}: {}: {}\n", end->exit_code != 0 ? "FAILED" : "was stopped",
+                     end->tick, Printable(end->source), Printable(end->reason));
+}
 
 std::string LoopsText(const LogInfo& info) {
   if (info.loops.empty()) return {};
@@ -76,7 +118,7 @@ std::string LoopsText(const LogInfo& info) {
 }
 
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) {
-  std::string text;
+  std::string text = EarlyEndText(info);
   const auto line = [&](fmt::string_view format, const auto&... arguments) {
     text += fmt::vformat(format, fmt::make_format_args(arguments...)) + "\n";
   };
@@ -91,17 +133,10 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
   if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));
   const std::string caution = log::Caution(info.verdict);
   if (!caution.empty()) line("log: {}", caution);
-  const std::string where = log::EndIsOpen(info.verdict) ? "where this log ends (the run may go on): " : "";
   if (tracking.has_reference) {
     const ArmText arm(tracking.units, si);
-    if (tracking.at_target) {
-      line("{}arm {} its target {}: final error {}, rms error over the run {}", where,
-           *tracking.at_target ? "at" : "NOT at", arm.Place(tracking.target_rad),
-           arm.Error(tracking.final_error_rad), arm.Size(tracking.rms_error_rad));
-    } else {
-      line("{}the reference still moves at the end: error there {}, rms error over the run {}", where,
-           arm.Error(tracking.final_error_rad), arm.Size(tracking.rms_error_rad));
-    }
+    // In a run that ended at its first tick nothing was followed.
+    if (info.ticks.states > 1 || EarlyEnd(info) == nullptr) text += TrackingText(tracking, info, si);
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {}", step.time_s,
            arm.Place(step.to_rad), step.overshoot_percent,
@@ -135,6 +170,12 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
       {"ticks_to_next_state", info.ticks.sampled},
       {"lost_messages", LostMessages(info)},
       {"log", {{"verdict", NameOf(info.verdict.completeness)}, {"caution", log::Caution(info.verdict)}}}};
+  if (const stop_t* const end = EarlyEnd(info)) {
+    json["ended_early"] = {{"tick", end->tick},
+                           {"source", end->source},
+                           {"reason", end->reason},
+                           {"failed", end->exit_code != 0}};
+  }
   if (tracking.has_reference) {
     // "_rad", or of a linear arm "_mm"
     const std::string unit = "_" + UnitInName(tracking.units.UnitFor("rad", 1));

@@ -131,7 +131,13 @@ Tracking TrackArm(const RunLog& log) {
       at_rest = false;
     }
   }
-  if (at_rest) {
+  const std::vector<state_t>& states = log.messages.Of<state_t>();
+  const auto newest = std::max_element(states.begin(), states.end(),
+                                       [](const state_t& a, const state_t& b) { return a.tick < b.tick; });
+  tracking.held =
+      newest->command_tick < 0 &&
+      std::any_of(states.begin(), states.end(), [](const state_t& state) { return state.command_tick >= 0; });
+  if (at_rest && !tracking.held) {
     tracking.at_target = std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, tolerance);
   }
   return tracking;

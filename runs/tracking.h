@@ -19,7 +19,8 @@ struct Tracking {
   double rms_error_rad = 0;    // over the run
   double final_error_rad = 0;  // arm minus reference, the mean of the last 0.1 s
   double target_rad = 0;       // last reference
-  // |final error| within 2 % of the largest step, at least 0.001 rad or 0.1 mm. None: the reference is still moving.
+  bool held = false;           // the voltage was held at zero at the end: the reference followed the arm
+  // |final error| within 2 % of the largest step, at least 0.001 rad or 0.1 mm. None: the reference is still moving, or held.
   std::optional<bool> at_target;
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
   int steps_left_out = 0;           // whose response a hold, a ramp or a curve of the reference ended
@@ -31,6 +32,9 @@ Tracking TrackArm(const RunLog& log);
 
 // Several lines for people to read, with loop timing and losses. With `si`, angles also in degrees.
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
+
+// The part of it that comes first: why the run ended, in a line; empty: at its duration, or the log does not say.
+std::string EarlyEndText(const LogInfo& info);
 
 // The part of it on loop timing.
 std::string LoopsText(const LogInfo& info);

@@ -1,19 +1,12 @@
 #include "settings/command_line.h"
 
-#include <sys/mman.h>
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <exception>
 #include <limits>
-#include <new>
 
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
@@ -340,52 +333,6 @@ std::string FileToRecord(const std::string& output, const std::string& log) {
                      ", allowed one of them");
   }
   return output.empty() ? log : output;
-}
-
-namespace {
-
-constexpr size_t kStack = size_t{512} << 10;  // bytes: more than any program's main thread uses
-
-[[gnu::noinline]] void TouchStack() {
-  constexpr size_t kPage = 4096;
-  volatile char stack[kStack - (size_t{64} << 10)];
-  for (size_t i = 0; i < sizeof stack; i += kPage) stack[sizeof stack - 1 - i] = 0;
-}
-
-// Under a limit of memory (ulimit -v) a stack that cannot grow ends a process without a word. So it grows before the rest is used up.
-void ReserveStack() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
-  void* const room = mmap(nullptr, kStack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) throw std::bad_alloc();
-  munmap(room, kStack);
-  TouchStack();
-}
-
-}  // namespace
-
-int RunProgram(const std::string& program, const std::function<int()>& body) {
-  try {
-    ReserveStack();
-    const int exit_code = body();
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-    std::fprintf(stderr, "%s: standard output cannot be written: %s\n", program.c_str(),
-                 std::strerror(errno));
-    return exit_code == 0 ? 1 : exit_code;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
-    return 2;
-  } catch (const std::bad_alloc&) {
-    std::fprintf(
-        stderr,
-        "%s: out of memory: it needs more than this process may have; a larger limit (ulimit -v) or a "
-        "smaller input is needed\n",
-        program.c_str());
-    return 1;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
-    return 1;
-  }
 }
 
 }  // namespace hydro::settings

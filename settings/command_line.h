@@ -92,8 +92,8 @@ class CommandLine {
 // are.
 std::string FileToRecord(const std::string& output, const std::string& log);
 
-// Runs a program's body. An exception becomes one line "program: ..." on stderr and an exit code: 2 for
-// InputError, 1 for anything else.
+// Runs a program's body, before which nothing may open a file (run_program.cc). An exception becomes one line
+// "program: ..." on stderr and an exit code: 2 for InputError, 1 for anything else.
 int RunProgram(const std::string& program, const std::function<int()>& body);
 
 }  // namespace hydro::settings

@@ -6,6 +6,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "base/unit_spelling.h"
 #include "base/units.h"
 #include "settings/quantity_keys.h"
 #include "settings/toml/section_reader.h"
@@ -40,11 +41,21 @@ std::string_view NumberPart(std::string_view text) {
   return text.substr(0, length);
 }
 
+// What a text of a number and a unit that cannot be read probably means.
+std::string MeaningOf(std::string_view number, std::string_view unit, const std::string& wanted) {
+  if (unit.size() > 1 && unit[0] == ',' && unit[1] >= '0' && unit[1] <= '9')
+    return "; decimals begin with a point, and thousands with nothing";
+  const std::string meant = UnitMeant(unit, wanted);
+  return meant.empty() ? "" : "; did you mean " + Quoted(std::string(number) + " " + meant) + "?";
+}
+
 bool BeginsWithNumber(const std::string& text) { return ParseNumber(NumberPart(text)).has_value(); }
 
 // "Pa, kPa, MPa, bar, psi": what a person may choose from.
 std::string UnitsLike(const std::string& unit) {
   std::string names = unit;
+  if (const auto si = FindSiUnit(unit, 1e12); si && ParseUnit(unit) && UnitPowers(unit)->size() > 1)
+    names += ", " + si->to;
   const std::optional<hydro::Unit> own = ParseUnit(unit);
   for (const std::string_view name : UnitNames()) {
     if (name != unit && name != "lb" && own && ParseUnit(name)->powers == own->powers)
@@ -160,17 +171,48 @@ double NumberOf(const std::string& text, const std::string& unit, const std::str
   // What overflows would read as "no limit".
   if (!fits || !std::isfinite(factor * *number)) {
     throw KeyError(place, key, Quoted(text),
-                   "a number (in " + unit + "), or a text of a number and a unit: " + UnitsLike(unit));
+                   "a number (in " + unit + "), or a text of a number and a unit: " + UnitsLike(unit) +
+                       (fits ? "" : MeaningOf(digits, given, unit)));
   }
   return factor * *number;
 }
 
-void ReadQuantities(TomlNode* root, const UnitSystem& units, FormerNames former) {
-  UsePresentNames(root);
+namespace {
+
+// What reference.signal says of the reference's values.
+std::string SignalOf(TomlNode* root) {
   const TomlNode* reference = root->Find("reference");
   const TomlNode* signal =
       reference == nullptr || !reference->is(TomlNode::Kind::kTable) ? nullptr : reference->Find("signal");
-  const std::string of = signal == nullptr ? "arm_angle" : signal->text;
+  return signal == nullptr ? "arm_angle" : signal->text;
+}
+
+bool HoldsNumber(const TomlNode& node) {
+  if (node.from_option) return false;
+  if (node.is(TomlNode::Kind::kArray)) return std::any_of(node.items.begin(), node.items.end(), HoldsNumber);
+  return node.is(TomlNode::Kind::kInteger) || node.is(TomlNode::Kind::kFloat);
+}
+
+}  // namespace
+
+std::string FirstNumberThatChanges(TomlNode root, const UnitSystem& was, const UnitSystem& is) {
+  UsePresentNames(&root);
+  const std::string of = SignalOf(&root);
+  std::string first;
+  ForEachSection(&root, [&](const std::string& section, TomlNode* table) {
+    for (const auto& [key, node] : table->members) {
+      const std::string dotted = section + "." + key;
+      if (!first.empty() || UnitOfKey(dotted, was, of) == UnitOfKey(dotted, is, of) || !HoldsNumber(node))
+        continue;
+      first = dotted + (node.is(TomlNode::Kind::kArray) ? "" : " = " + node.Shown());
+    }
+  });
+  return first;
+}
+
+void ReadQuantities(TomlNode* root, const UnitSystem& units, FormerNames former) {
+  UsePresentNames(root);
+  const std::string of = SignalOf(root);
   ForEachSection(root, [&](const std::string& section, TomlNode* table) {
     for (auto& [key, node] : table->members) {
       if (!node.former.empty() && former == FormerNames::kMustBeTrue) {

@@ -25,6 +25,10 @@ enum class FormerNames { kMustBeTrue, kAsMeant };
 // write instead.
 void ReadQuantities(TomlNode* root, const UnitSystem& units, FormerNames former = FormerNames::kMustBeTrue);
 
+// "limits.arm_torque = 56.5": the first number of `root` that is in the model's unit, is not from --set, and is another
+// quantity in `is` than in `was`. Empty: there is none. Before ReadQuantities(), which turns texts into numbers.
+std::string FirstNumberThatChanges(TomlNode root, const UnitSystem& was, const UnitSystem& is);
+
 // The former names under which a document has some of the keys ("section.key", value) that are to be written
 // into its text: to be taken out.
 std::vector<std::string> FormerNamesIn(const TomlNode& document,

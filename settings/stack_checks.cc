@@ -209,9 +209,16 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
         "at least p_3 = " + ShortestNumber(p.p_3) + " " + unit + ", below which the one-way valves open");
   }
   const double start = std::isnan(pressure) ? p.p_3 : pressure;
-  if (config.limits.pressure_psi <= start) {
-    throw KeyError(root, "limits.pressure", ShortestNumber(config.limits.pressure_psi) + " " + unit,
-                   "above " + ShortestNumber(start) + " " + unit + ", the pressure at the start");
+  // Numbers for a model in other units: below the start, or where the oil would be a fraction of its volume.
+  const double limit = config.limits.pressure_psi, most = 10 * p.beta;
+  const bool low = limit <= start;
+  if (low || (std::isfinite(limit) && limit > most)) {
+    throw KeyError(
+        root, "limits.pressure", ShortestNumber(limit) + " " + unit,
+        low ? "above " + ShortestNumber(start) + " " + unit + ", the pressure at the start"
+            : "up to " + ShortestNumber(most) + " " + unit +
+                  ", ten times the oil's beta, or inf for none; a number is in the model's unit, " + unit +
+                  ", and a text has a unit of its own: \"2000 psi\"");
   }
 }
 

@@ -55,6 +55,22 @@ UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
   return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
 }
 
+// "in, lbf, psi", for people.
+std::string Named(const UnitSystem& units) {
+  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi");
+}
+
+// --set model.file gives a configuration another model. Its numbers stay those of the one that it names itself.
+void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
+  const UnitSystem was = UnitsOfModelIn(before, file), is = UnitsOfModelIn(root, file);
+  if (was == is) return;
+  const std::string number = FirstNumberThatChanges(root, was, is);
+  if (number.empty()) return;
+  throw KeyError(root, "model.file",
+                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
+                 "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
+}
+
 // What the model file is relative to is what people get wrong.
 ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
   if (std::filesystem::exists(model.resolved_file)) return LoadModelWithText(model.resolved_file);
@@ -116,7 +132,9 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
     if (root.Find(key) != nullptr)
       throw KeyError(root, key, "it without joints", "it with [[joint]] sections");
   }
+  const TomlNode before = root;
   ApplyOverrides(others, &root);
+  CheckUnitsOfOtherModel(before, root, file);
   StackConfig config = StackOf(&root, file);
   CheckHasNoJoints(config);
   return config;

@@ -107,6 +107,11 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
+  if (const int signal = hydro::process::StopSignal(); signal != 0) {
+    const std::string what = file.empty() ? "the run ends" : "the run and its log " + file + " end";
+    std::fprintf(stderr, "hydro-sim: stopped by signal %d: %s after %s s of plant time\n", signal,
+                 hydro::Printable(what).c_str(), hydro::ShortNumber(result.duration, 6).c_str());
+  }
   std::printf("%lld ticks, %s s of plant time in %s s, %s times real time\n",
               static_cast<long long>(result.ticks), hydro::ShortNumber(result.duration, 6).c_str(),
               hydro::ShortNumber(wall, 3).c_str(), hydro::ShortNumber(result.duration / wall, 3).c_str());

@@ -39,11 +39,20 @@ double FiniteNumber(const CsvText& text, size_t column) {
   return *value;
 }
 
+// The plain layout, unless it does not have the column of times where another one does: semicolons or tabs between cells, decimal
+// commas.
+CsvLayout LayoutOf(const std::string& text, const std::string& file, const std::string& column) {
+  const CsvText plain(text, file);
+  const auto is_time = [](const std::string& name) { return Trimmed(name) == "time_s"; };
+  if (std::any_of(plain.names().begin(), plain.names().end(), is_time)) return {};
+  return FindLayout(text, file, {}, {.names = {"time_s", column}});
+}
+
 }  // namespace
 
 std::vector<trajectory::Step> ParseCsvPoints(const std::string& text, const std::string& file,
                                              const std::string& column) {
-  CsvText rows(text, file);
+  CsvText rows(text, file, LayoutOf(text, file, column));
   const size_t time_column = ColumnOf(rows, "time_s");
   const size_t value_column = ColumnOf(rows, column);
   std::vector<trajectory::Step> points;

@@ -9,7 +9,8 @@
 
 namespace hydro::tables {
 
-// Reads the columns time_s and `column` of a CSV file (csv_text.h); other columns may hold anything. Throws
+// Reads the columns time_s and `column` of a CSV file (csv_text.h), also one with semicolons or tabs between its cells and
+// decimal commas; other columns may hold anything. Throws
 // InputError "FILE: line N, column NAME: ..." for cells that are not finite numbers, for rows whose length
 // differs from that of the names, and for times that do not increase.
 std::vector<trajectory::Step> ReadCsvPoints(const std::string& file, const std::string& column);

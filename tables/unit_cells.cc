@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
+#include "base/unit_spelling.h"
 #include "base/units.h"
 #include "tables/csv_cells.h"
 
 namespace hydro::tables {
 namespace {
-
-// Spellings of one meaning only. Upper and lower case differ otherwise: mPa is not MPa.
-constexpr std::pair<std::string_view, std::string_view> kSpellings[] = {
-    {"sec", "s"},      {"Sec", "s"},        {"S", "s"},          {"msec", "ms"},     {"volt", "V"},
-    {"Volt", "V"},     {"volts", "V"},      {"Volts", "V"},      {"PSI", "psi"},     {"Psi", "psi"},
-    {"BAR", "bar"},    {"Bar", "bar"},      {"RPM", "rpm"},      {"Rpm", "rpm"},     {"r/min", "rpm"},
-    {"U/min", "rpm"},  {"Nm", "N m"},       {"N*m", "N m"},      {"N·m", "N m"},     {"°", "deg"},
-    {"degree", "deg"}, {"degrees", "deg"},  {"Deg", "deg"},      {"DEG", "deg"},     {"°/s", "deg/s"},
-    {"µs", "us"},      {"\xce\xbcs", "us"}, {"radian", "rad"},   {"radians", "rad"}, {"RAD", "rad"},
-    {"rev", "rev"},    {"µm", "um"},        {"\xce\xbcm", "um"}, {"inch", "in"},     {"KPa", "kPa"}};
 
 // Units of what no signal measures, and of pressures that count from elsewhere.
 constexpr std::string_view kOthers[] = {"A",      "mA",     "%",     "°C",    "degC",  "C",    "K",    "W",
@@ -35,12 +25,7 @@ std::string_view WithoutBrackets(std::string_view cell) {
 
 }  // namespace
 
-std::string UnitOfCell(std::string_view cell) {
-  const std::string_view unit = WithoutBrackets(cell);
-  const auto* spelling = std::find_if(std::begin(kSpellings), std::end(kSpellings),
-                                      [&](const auto& row) { return row.first == unit; });
-  return std::string(spelling == std::end(kSpellings) ? unit : spelling->second);
-}
+std::string UnitOfCell(std::string_view cell) { return std::string(OurSpelling(WithoutBrackets(cell))); }
 
 bool IsUnitCell(std::string_view cell) {
   if (WithoutBrackets(cell).size() != Trimmed(cell).size()) return true;

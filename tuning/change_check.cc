@@ -58,13 +58,22 @@ std::string LoosenedLimit(const settings::LimitsSection& before, const settings:
   return "";
 }
 
-// 1 and more: unstable.
-double SpectralRadius(const design::LoopCheck& check) {
-  double radius = 0;
-  for (const auto& loop : {check.pressure, check.position}) {
-    if (loop) radius = std::max(radius, loop->worst.spectral_radius);
+// Whether an unstable loop becomes more stable and no other loop less: a stable one stays stable, an unstable one
+// grows no faster. Rounding is no improvement.
+bool MoreStable(const design::LoopCheck& next, const design::LoopCheck& now) {
+  bool better = false;
+  for (const auto loop : {&design::LoopCheck::pressure, &design::LoopCheck::position}) {
+    const std::optional<design::CheckedLoop>&was = now.*loop, &is = next.*loop;
+    if (!is || is->worst.stable) continue;
+    if (!was || was->worst.stable) return false;
+    const double grew = was->worst.spectral_radius, grows = is->worst.spectral_radius;
+    if (grows > grew) return false;
+    better |= grows < grew - 1e-6;
   }
-  return radius;
+  const bool mended =
+      (now.pressure && !now.pressure->worst.stable && next.pressure && next.pressure->worst.stable) ||
+      (now.position && !now.position->worst.stable && next.position && next.position->worst.stable);
+  return better || mended;
 }
 
 // Stable in the model, and perhaps not in a rig that differs from it by as little as rigs do.
@@ -84,23 +93,33 @@ bool GoesNoFarther(const settings::StackConfig& than, const settings::StackConfi
 
 // Why the loops forbid the change; empty: they permit it. Fills in their margins as `text`.
 std::string WhyTheLoopsForbid(const settings::StackConfig& configured, const settings::StackConfig& in_force,
-                              const settings::StackConfig& next, std::string* text) {
+                              const settings::StackConfig& next, bool undo, std::string* text) {
   if (GoesNoFarther(in_force, next)) return "";
   const design::LoopCheck check = design::CheckLoops(next);
   *text = design::Describe(check);
   if (check.unknown) {
     // What the stack was started with, somebody has answered for.
-    if (GoesNoFarther(configured, next)) return "";
+    if (undo || GoesNoFarther(configured, next)) return "";
     return *text +
            "; allowed are values whose loops can be judged: change these in the configuration, and restart";
   }
   if (HardlyStable(check))
     *text += "; HARDLY STABLE: a rig that differs a little from its model may oscillate";
   if (check.stable()) return "";
+  if (undo) {
+    *text += "; an UNSTABLE loop, as it was when these values were in force before";
+    return "";
+  }
   // From loops that are unstable already, a change may lead towards stable ones.
   const design::LoopCheck now = design::CheckLoops(in_force);
-  if (!now.unknown && SpectralRadius(check) < SpectralRadius(now)) return "";
-  return "would be unstable: " + *text;
+  if (!now.unknown && MoreStable(check, now)) {
+    *text += "; still UNSTABLE, but less than what was in force";
+    return "";
+  }
+  return "would be unstable: " + *text +
+         (now.unknown || now.stable()
+              ? ""
+              : "; what is in force is unstable, too: allowed is what makes it more stable");
 }
 
 }  // namespace
@@ -186,7 +205,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
   if (!change.text.empty()) return change;
   std::string margins;
-  change.text = WhyTheLoopsForbid(configured, in_force, *next, &margins);
+  change.text = WhyTheLoopsForbid(configured, in_force, *next, situation.undo, &margins);
   if (!change.text.empty()) return change;
 
   const std::string reference = settings::ReferenceText(*next);

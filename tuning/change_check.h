@@ -23,6 +23,8 @@ std::string OnOneLine(const std::string& changes);
 struct Situation {
   bool held = false;       // the voltage is held at zero until a re-arm: limits may be loosened
   bool simulated = false;  // the rig is the simulated one: its noise may be changed
+  bool undo =
+      false;  // somebody asks for what was in force before, whose loops the stack has already run with
 };
 
 // A change that is ready to be proposed to the controllers, or why it is refused.

@@ -15,6 +15,7 @@ namespace {
 using settings::ReferenceSignal;
 
 constexpr int kSamples = 400;  // of the way back, and of the time after it
+constexpr size_t kMostBreaks = 100'000;
 
 // What a reference refers to, in words and in the units of the model.
 struct Referred {
@@ -77,13 +78,14 @@ class Wanted {
     return plan_ == nullptr ? initial_ : PlannedAt(*plan_, std::min(time, holds_from_));
   }
 
-  bool JumpsBetween(double begin, double end) const {
-    if (!trajectory_) return false;
+  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it says
+  // false. There the reference may jump.
+  template <class Take>
+  void BreaksBetween(double begin, double end, Take take) const {
+    if (!trajectory_) return;
     for (double t = trajectory_->NextBreak(begin - from_); t <= end - from_; t = trajectory_->NextBreak(t)) {
-      const double before = trajectory_->Value(std::nextafter(t, -INFINITY)), after = trajectory_->Value(t);
-      if (std::fabs(after - before) > 1e-9 * (std::fabs(after) + std::fabs(before))) return true;
+      if (!take(t + from_, trajectory_->Value(std::nextafter(t, -INFINITY)), trajectory_->Value(t))) return;
     }
-    return false;
   }
 
  private:
@@ -94,49 +96,120 @@ class Wanted {
   double holds_from_ = INFINITY;  // s
 };
 
+bool Differ(double a, double b) { return std::fabs(a - b) > 1e-9 * (std::fabs(a) + std::fabs(b)); }
+
+bool JumpsBetween(const Wanted& wanted, double begin, double end) {
+  bool jumps = false;
+  wanted.BreaksBetween(begin, end, [&](double, double before, double after) {
+    jumps = Differ(before, after);
+    return !jumps;
+  });
+  return jumps;
+}
+
 // The way back: a straight line from where it is to where it is wanted
 // (position_ctrl/law/reference_return.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
   forecast->target = wanted.At(end);
-  forecast->jumps =
-      forecast->return_s == 0 ? forecast->target != forecast->present : wanted.JumpsBetween(now, end);
+  if (forecast->return_s == 0) {
+    forecast->jumps = forecast->target != forecast->present;
+    return;
+  }
+  wanted.BreaksBetween(now, end, [&](double t, double before, double after) {
+    if (Differ(before, after))
+      forecast->steps.push_back({t - now, (t - now) / forecast->return_s * (after - before)});
+    return forecast->steps.size() < kMostSteps;
+  });
+  forecast->jumps = !forecast->steps.empty();
   const double step = forecast->return_s / kSamples;
-  for (int i = 0; i < kSamples && step > 0; ++i) {
+  for (int i = 0; i < kSamples; ++i) {
     const double t0 = now + i * step, t1 = t0 + step;
-    if (wanted.JumpsBetween(t0, t1)) continue;
+    if (JumpsBetween(wanted, t0, t1)) continue;
     const auto at = [&](double t, double share) {
       return forecast->present + share * (wanted.At(t) - forecast->present);
     };
     const double from = at(t0, static_cast<double>(i) / kSamples), to = at(t1, (i + 1.0) / kSamples);
     forecast->top_rate = std::max(forecast->top_rate, std::fabs(to - from) / step);
   }
-  forecast->lowest = forecast->highest = forecast->target;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double value = wanted.At(end + kForecast_s * i / kSamples);
-    forecast->lowest = std::min(forecast->lowest, value);
-    forecast->highest = std::max(forecast->highest, value);
-  }
 }
 
-std::string TextOf(const RearmForecast& f, const Referred& referred, bool planner) {
-  const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
-  const double way = f.target - f.present;
-  std::string text = fmt::format("{} is at {}; its reference comes back to {}", referred.words,
-                                 number(f.present), number(f.target));
-  if (planner) text += " (by the newest plan)";
-  text += fmt::format(": {} {}{}", f.quantity == "arm_angle" ? "the arm will move by" : "a change of",
-                      way > 0 ? "+" : "", number(way));
-  text += f.return_s > 0 ? " in " + ShortNumber(f.return_s) + " s" : " at once";
-  if (f.return_s > 0) text += ", at up to " + number(f.top_rate) + "/s";
-  if (f.jumps && f.return_s > 0) text += ", with steps of the reference on the way";
-  const double spread = f.highest - f.lowest;
-  if (spread > 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest))) {
-    text += fmt::format("; in the {} s after that the reference goes from {} to {}", ShortNumber(kForecast_s),
-                        number(f.lowest), number(f.highest));
+// What the reference does after that.
+void FollowTheReference(const Wanted& wanted, double begin, RearmForecast* forecast) {
+  forecast->lowest = forecast->highest = forecast->last = forecast->target;
+  bool rises = false, falls = false;
+  const auto take = [&](double value) {
+    forecast->lowest = std::min(forecast->lowest, value);
+    forecast->highest = std::max(forecast->highest, value);
+    if (Differ(value, forecast->last)) (value > forecast->last ? rises : falls) = true;
+    forecast->last = value;
+  };
+  const double step = kForecast_s / kSamples;
+  size_t breaks =
+      0;  // pulses are shorter than the samples, but not each of a table's million points is asked for
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = begin + i * step;
+    take(wanted.At(t));
+    wanted.BreaksBetween(t, t + step, [&](double, double before, double after) {
+      take(before);
+      take(after);
+      return ++breaks < kMostBreaks;
+    });
   }
-  if (f.quantity != "arm_angle") text += "; how far the arm moves does not follow from that";
+  take(wanted.At(begin + kForecast_s));
+  forecast->one_way = !(rises && falls);
+}
+
+std::string ReturnText(const RearmForecast& f) {
+  const double way = f.target - f.present;
+  std::string text =
+      fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit);
+  if (f.return_s == 0) return text + " at once";
+  text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
+  if (f.steps.empty()) return text;
+  const ReferenceStep& first = f.steps.front();
+  text += fmt::format(", and jumps by {}{} {} after {} s", first.by > 0 ? "+" : "", ShortNumber(first.by),
+                      f.unit, ShortNumber(first.after_s));
+  const size_t more = f.steps.size() - 1;
+  if (more == 0) return text;
+  return text + fmt::format(" and {}{} more time{}", f.steps.size() < kMostSteps ? "" : "at least ", more,
+                            more == 1 ? "" : "s");
+}
+
+// What stands between the reference and the arm.
+std::string LimitsText(const settings::StackConfig& config) {
+  const UnitSystem& units = config.model.description.units;
+  const settings::LimitsSection& limits = config.limits;
+  const auto listed = [](std::string* list, const char* name, double limit, const std::string& unit) {
+    if (!std::isfinite(limit)) return;
+    *list += fmt::format("{}{} {} {}", list->empty() ? "" : ", ", name, ShortNumber(limit), unit);
+  };
+  std::string held_back, ends;
+  listed(&held_back, "limits.arm_torque", limits.arm_torque_in_lbf, units.UnitFor("in-lbf", -1));
+  listed(&ends, "limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
+  listed(&ends, "limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
+  listed(&ends, "limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
+  std::string text = "the arm follows as far as its load";
+  text += held_back.empty() ? " lets it" : " and " + held_back + " let it";
+  if (!ends.empty()) text += "; zero volts again beyond " + ends;
   return text;
+}
+
+std::string TextOf(const RearmForecast& f, const Referred& referred, const settings::StackConfig& config) {
+  const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
+  const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
+  std::string text =
+      fmt::format("{} is at {}; its reference comes back to {}{}: {}", referred.words, number(f.present),
+                  number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
+  const double spread = f.highest - f.lowest,
+               least = 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest));
+  if (spread > least) {
+    text += fmt::format("; in the {} s after that it {} {} {} {}", ShortNumber(kForecast_s),
+                        f.one_way ? "goes from" : "is between", number(f.one_way ? f.target : f.lowest),
+                        f.one_way ? "to" : "and", number(f.one_way ? f.last : f.highest));
+  }
+  return text + "; " +
+         (f.quantity == "arm_angle" ? LimitsText(config) : "how far the arm moves does not follow from that");
 }
 
 RearmForecast Unknown(const std::string& why) {
@@ -186,8 +259,8 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
     forecast.return_s = config.limits.return_s;
     const Wanted wanted(config, heard);
     FollowTheReturn(wanted, heard.state->time, &forecast);
-    forecast.text = TextOf(forecast, referred,
-                           config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner);
+    FollowTheReference(wanted, heard.state->time + forecast.return_s, &forecast);
+    forecast.text = TextOf(forecast, referred, config);
     return forecast;
   } catch (const InputError& error) {
     return Unknown(error.what());

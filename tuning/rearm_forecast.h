@@ -1,7 +1,8 @@
 // What the machine will do when it is re-armed, as far as that can be known before: where the reference comes
 // back to, how far that is from where the arm is, and how fast. While the voltage is held at zero the
-// published reference follows the arm, and so says nothing of it. One function for everyone who re-arms, on a
-// page or in a terminal. Pure.
+// published reference follows the arm, and so says nothing of it. Whether the arm comes as far as its reference
+// is up to load and limits, so nothing is promised of it. One function for everyone who re-arms, on a page or in
+// a terminal. Pure.
 #pragma once
 
 #include <hydro/arm_plan_t.hpp>
@@ -10,10 +11,17 @@
 #include <hydro/tuned_settings_t.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "settings/stack_config.h"
 
 namespace hydro::tuning {
+
+// A jump of the reference on its way back.
+struct ReferenceStep {
+  double after_s = 0;  // the re-arm
+  double by = 0;       // less than the step that is configured: on its way, the reference follows it in part
+};
 
 struct RearmForecast {
   bool held = true;      // the voltage is held at zero: otherwise a re-arm changes nothing
@@ -25,13 +33,17 @@ struct RearmForecast {
   double return_s = 0;   // in which plant time; 0: at once
   double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
   bool jumps = false;    // the reference jumps on that way
+  std::vector<ReferenceStep> steps;  // where it does, if return_s is not 0; the first kMostSteps of them
   // What the reference does in the kForecast_s after that.
   double lowest = 0;
   double highest = 0;
-  std::string text;  // one line for a person
+  double last = 0;       // where it is then
+  bool one_way = false;  // it only rises, or only falls
+  std::string text;      // one line for a person
 };
 
 inline constexpr double kForecast_s = 10;
+inline constexpr size_t kMostSteps = 100;
 
 // What was heard of a stack, the newest of each.
 struct HeardOfStack {

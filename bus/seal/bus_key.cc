@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/input_error.h"
+#include "base/new_file.h"
 
 namespace hydro::bus {
 namespace {
@@ -155,11 +156,11 @@ void MakeBusKeyFile(const std::string& file) {
                 errno == EEXIST ? "remove it first if it is to be replaced"
                                 : "a name in a folder that can be written is needed");
   }
+  errno = ENOSPC;  // of a write that is shorter
   if (write(made.fd(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.fd()) != 0) {
-    const int error = errno;
+    const std::string why = std::strerror(errno);
     unlink(file.c_str());
-    errno = error;
-    RefuseErrno(file, "cannot be written", "space for it is needed");
+    throw WriteError(file + ": bus.key_file: cannot be written: " + why + "; space for it is needed");
   }
 }
 

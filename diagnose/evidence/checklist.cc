@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
+#include "diagnose/recording/sample_interval.h"
 #include "maths/range.h"
 #include "runs/measured_signals.h"
 
@@ -65,11 +66,12 @@ class RunChecklist {
     double longest = 0;
     for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
-    const bool even = longest < 1.5 * interval;
-    Add(even ? State::kGood : State::kLook, "samples",
+    const bool even = longest<1.5 * interval, slow = interval> kSlowestSamples;
+    Add(even && !slow ? State::kGood : State::kLook, "samples",
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +
-            (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms"));
+            (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms") +
+            (slow ? ": too slow for such a machine" + TimeUnitHint(interval) : ""));
   }
 
   void AddSignal(const runs::SignalName& name) {
@@ -105,15 +107,16 @@ class RunChecklist {
     const double noise = kFarOff * std::max(EstimateNoise(run_.p1.values), EstimateNoise(run_.p2.values));
     const bool near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise;
     const bool same = std::max(low1, low2) < 1.5 * low + noise;
-    Add(near && same && !LooksLikeCurrents() ? State::kGood : State::kLook, "charge pressure",
+    // Pressures of 4 to 20 bar that fit the model are pressures.
+    const bool currents = !(near && same) && LooksLikeCurrents();
+    Add(near && same ? State::kGood : State::kLook, "charge pressure",
         "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
             ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +
             " " + unit +
-            (LooksLikeCurrents()
-                 ? ": another unit, or currents of 4 to 20 mA that want a scale and an offset?"
-             : !near ? ": another unit, gauge against absolute, or another charge?"
-             : same  ? ""
-                     : ": is one side under load all the time, or its sensor's scale another?"));
+            (currents ? ": another unit, or currents of 4 to 20 mA that want a scale and an offset?"
+             : !near  ? ": another unit, gauge against absolute, or another charge?"
+             : same   ? ""
+                      : ": is one side under load all the time, or its sensor's scale another?"));
   }
 
   // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.

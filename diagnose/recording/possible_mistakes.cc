@@ -16,7 +16,7 @@ using Run = runs::MeasuredRun;
 constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s",
                                   "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
                                   "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
-constexpr const char* kTimeUnits[] = {"ms", "us", "min", "s"};
+constexpr const char* kTimeUnits[] = {"ms", "us", "ns", "min", "s"};
 constexpr double kSameScale = 1e-4;  // relative: scales are written with few digits
 
 bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }

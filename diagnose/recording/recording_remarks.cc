@@ -116,7 +116,7 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
   remarks->push_back(RunsNamed(slow) + ": samples " + ShortNumber(longest, 3) +
                      " s apart are too slow for the model's fastest motion, whose time constant is " +
                      ShortNumber(fastest, 2) + " s: what is as fast cannot be judged" +
-                     (longest >= 0.5 ? " (is the time in ms? unit = \"ms\")" : ""));
+                     TimeUnitHint(longest));
 }
 
 void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>& names, size_t runs,

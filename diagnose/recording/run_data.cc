@@ -284,8 +284,8 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckUsable(run);
   if (const double interval = MedianInterval(run.time); interval > kSlowestSamples) {
     Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
-           "at most " + ShortNumber(kSlowestSamples) +
-               " s: slower ones show no motion of such a machine (is the column in ms or us? unit = \"ms\")");
+           "at most " + ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +
+               TimeUnitHint(interval));
   }
   RunData data;
   data.name = run.name;

@@ -1,13 +1,16 @@
 #include "base/new_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -161,6 +164,45 @@ TEST_F(NewFileTest, KeepsWhatAppears) {
   NewFile file(Path("run"), Opening::kTemporary, Existing::kKept);
   file.Write("ours", 4);
   Make("run", "theirs");
+  EXPECT_THROW(file.Finish(), WriteError);
+  EXPECT_EQ(TextOf(Path("run")), "theirs");
+  EXPECT_EQ(TextOf(Path("run.part")), "ours");
+}
+
+// Tests that a file which another is writing is never replaced: not with --force, not by what replaces
+// everything, and not while it is still empty; and that an asking CheckIsNew() does not pass for a writer.
+TEST_F(NewFileTest, KeepsWhatIsBeingWritten) {
+  NewFile recording(Path("run"), Opening::kDirect);
+  for (const bool forced : {false, true}) {
+    AllowReplacing(forced);
+    for (const char* const contents : {"", "so far"}) {
+      recording.Write(contents, std::strlen(contents));
+      EXPECT_THAT(ErrorOf([&] { CheckIsNew(Path("run")); }), HasSubstr("is being written"));
+      EXPECT_THAT(ErrorOf([&] { CheckCanBeCreated(Path("run")); }), HasSubstr("is being written"));
+      EXPECT_THAT(ErrorOf([&] { WriteTextFile(Path("run"), "new"); }), HasSubstr("is being written"));
+      for (const Opening opening : {Opening::kDirect, Opening::kTemporary})
+        for (const Existing existing : {Existing::kKept, Existing::kReplaced})
+          EXPECT_THAT(ErrorOf([&] { NewFile(Path("run"), opening, existing); }),
+                      HasSubstr("is being written"));
+    }
+  }
+  AllowReplacing(false);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  recording.Finish();
+  EXPECT_EQ(TextOf(Path("run")), "so farso far");
+  const int asking = open(Path("run").c_str(), O_RDONLY);
+  ASSERT_EQ(flock(asking, LOCK_SH), 0);
+  EXPECT_FALSE(IsBeingWritten(Path("run")));
+  close(asking);
+}
+
+// Tests that a file which another process begins to write, while one that replaces it is being written, is kept,
+// and so is what was written.
+TEST_F(NewFileTest, KeepsARecordingThatBegins) {
+  NewFile file(Path("run"), Opening::kTemporary, Existing::kReplaced);
+  file.Write("ours", 4);
+  NewFile recording(Path("run"), Opening::kDirect);
+  recording.Write("theirs", 6);
   EXPECT_THROW(file.Finish(), WriteError);
   EXPECT_EQ(TextOf(Path("run")), "theirs");
   EXPECT_EQ(TextOf(Path("run.part")), "ours");

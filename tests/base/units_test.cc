@@ -2,8 +2,44 @@
 
 #include <gtest/gtest.h>
 
+#include "base/unit_spelling.h"
+
 namespace hydro {
 namespace {
+
+// Tests that of a unit that is spelled in another way ours is named, one of the quantity that is wanted; and nothing
+// of a unit of another quantity, or a word that is none.
+TEST(UnitsTest, OtherSpellings) {
+  const struct {
+    const char* theirs;
+    const char* wanted;
+    const char* ours;
+  } rows[] = {{"Nm", "in-lbf", "N m"},
+              {"NM", "in-lbf", "N m"},
+              {"N*m", "in-lbf", "N m"},
+              {"N·m", "in-lbf", "N m"},
+              {"kNm", "N m", "kN m"},
+              {"Nmm", "N m", "N mm"},
+              {"inlbf", "N m", "in lbf"},
+              {"Nm/rad", "in-lbf/rad", "N m/rad"},
+              {"mpa/rad", "psi/rad", "MPa/rad"},
+              {"MPA", "psi", "MPa"},
+              {"Bar", "psi", "bar"},
+              {"KHZ", "Hz", "kHz"},
+              {"V/PSI", "V/psi", "V/psi"},
+              {"degrees", "rad", "deg"},
+              {"°/s", "rad/s", "deg/s"},
+              {"Rpm", "rad/s", "rpm"},
+              {"rad/s²", "rad/s^2", "rad/s^2"},
+              {"µs", "s", "us"},
+              {"msec", "s", "ms"},
+              {"Nm", "psi", ""},
+              {"furlong", "in", ""},
+              {"", "in", ""},
+              {"((((((((((", "in", ""}};
+  for (const auto& row : rows) EXPECT_EQ(UnitMeant(row.theirs, row.wanted), row.ours) << row.theirs;
+  EXPECT_DOUBLE_EQ(ParseUnit("kHz")->size, 1000);
+}
 
 // Tests the displayed units against handbook values, and that both unit systems measure the same.
 TEST(UnitsTest, ShownInSi) {

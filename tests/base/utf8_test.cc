@@ -82,7 +82,9 @@ TEST(Utf8Test, AnyBytesBecomeUtf8) {
     const std::string text = JsonText(nlohmann::ordered_json{{"text", bytes}, {bytes, 1}});
     EXPECT_TRUE(IsUtf8(text));
     EXPECT_TRUE(nlohmann::json::accept(text));
-    if (IsUtf8(bytes)) EXPECT_EQ(nlohmann::json::parse(text)["text"], bytes);
+    if (IsUtf8(bytes)) {
+      EXPECT_EQ(nlohmann::json::parse(text)["text"], bytes);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/noisy_rig.h"
@@ -171,6 +172,17 @@ TEST(PrepareRun, StartOfWhatIsNotMeasured) {
   EXPECT_NEAR(data.start[model::kMotorSpeed], 20, 1e-3);
   EXPECT_EQ(data.start[model::kP1], 100);
   EXPECT_TRUE(data.start_free[model::kMotorAngle]);
+}
+
+// Tests that of times in a unit that nobody stated the one is named in which the samples are those of such a machine, and none where
+// none is, or where they are so as they stand.
+TEST(PrepareRun, NamesTheUnitOfTimes) {
+  for (const auto& [interval, unit] : {std::pair(1.0, "ms"), std::pair(10.0, "ms"), std::pair(1e3, "us"),
+                                       std::pair(2e4, "us"), std::pair(1e6, "ns"), std::pair(2e7, "ns")}) {
+    EXPECT_EQ(TimeUnitHint(interval),
+              std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")");
+  }
+  for (const double interval : {1e-3, 0.2, 1e12}) EXPECT_EQ(TimeUnitHint(interval), "");
 }
 
 // Tests that data from which nothing can be learnt are refused with run, signal and row.

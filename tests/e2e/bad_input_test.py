@@ -156,6 +156,10 @@ class BadInputTest(stack.TestCase):
         self.assert_refused("hydro-sim", [stack.config("demo.toml"), "--duration", "0", "-o", "FILE"], "duration")
         for name in "hydro-sim", "hydro-logger":
             self.assert_refused(name, [stack.config("demo.toml"), "-o", "FILE", "--log", "other"], "beside -o")
+        for word, verb in (("stopp", "stop"), ("re-arm", "rearm"), ("docter", "doctor"), ("make_key", "make-key"),
+                           ("newcontroller", "new-controller")):
+            self.assert_refused("hydro-launch", [word, stack.config("demo.toml")], f'found "{word}", did you mean "{verb}"?')
+        self.assert_refused("hydro-launch", ["--stopp", stack.config("demo.toml")], 'found the unexpected argument "--stopp".*did you mean "--stop"')
         self.assert_refused("hydro-launch", [stack.config("demo.toml"), "--host", "nobody", "--log", "FILE"],
                             "nobody")
 

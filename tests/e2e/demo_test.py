@@ -14,12 +14,16 @@ class DemoTest(stack.TestCase):
     # Tests that the demo ends in order with the arm at its target, that no message is lost, and that each process
     # reports how it kept time.
     def test_arm_reaches_its_target(self):
-        log_file, json_file = self.path("demo.lcmlog"), self.path("summary.json")
-        launch = self.launch(stack.config("demo.toml"), "--log", log_file)
-        self.assertEqual(launch.wait(60), 0, launch.report())
-        self.run_program("hydro-log", "summary", log_file, "--json", json_file)
-        with open(json_file, encoding="utf-8") as file:
-            summary = json.load(file)
+        # Without most of its ticks, 1000 a second, a loop is another one, which may overshoot: a busy machine runs it at a slower pace.
+        for speed in (1, 0.25, 0.1):
+            log_file, json_file = self.path(f"demo{speed}.lcmlog"), self.path(f"summary{speed}.json")
+            launch = self.launch(stack.config("demo.toml"), "--log", log_file, "--set", f"time.speed={speed}")
+            self.assertEqual(launch.wait(120), 0, launch.report())
+            self.run_program("hydro-log", "summary", log_file, "--json", json_file)
+            with open(json_file, encoding="utf-8") as file:
+                summary = json.load(file)
+            if summary["skipped_ticks"] < 0.1 * summary["ticks"]:
+                break
         self.assertTrue(summary["tracking"]["at_target"], summary)
         self.assertEqual(summary["lost_messages"], 0, summary)
 

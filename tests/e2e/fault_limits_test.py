@@ -75,7 +75,7 @@ class RearmTest(fault_case.FaultCase):
     def check_forecast(self, log, told):
         """What was told of the way back is what the position loop then asked for, in the same words for people and programs."""
         [forecast] = told["forecasts"]
-        self.assertRegex(told["text"], "^re-armed: ended .*; the arm is at .* rad; its reference comes back to .* rad: the arm will move by ")
+        self.assertRegex(told["text"], "^re-armed: ended .*; the arm is at .* rad; its reference comes back to .* rad: the reference moves by ")
         self.assertTrue(told["text"].endswith(forecast["text"]), told)
         accepted = next(r for r in log.rearms if r.kind == 1)
         state = next(s for s in log.states if s.tick >= accepted.tick - 1)

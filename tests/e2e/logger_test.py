@@ -34,7 +34,9 @@ class LoggerTest(stack.TestCase):
 
     # Tests that nothing is lost at 5 kHz, and what a kill and a rotation leave.
     def test_five_kilohertz(self):
-        run = self.stack(stack.config("paper.toml"), "--time", "realtime", "--duration", DURATION)
+        # A voltage that does not move the motor: a loop of which a busy machine skips many ticks would reach a limit, and end the run.
+        run = self.stack(stack.config("paper.toml"), "--time", "realtime", "--duration", DURATION, "--set",
+                         'reference={ signal = "voltage", kind = "steps", steps = [[0.2, 0.1]] }')
         whole_file = self.path("whole.lcmlog")
         rotated_file, rotated = self.start_second(run.arguments, "rotated.lcmlog", "--rotate-mb", "2")
         stack.LiveLog(self, rotated_file).wait_for("HYDRO_PROCESS_STATUS", lambda s: s.pid == rotated.pid,
@@ -88,7 +90,7 @@ class LoggerTest(stack.TestCase):
         # two records says nothing; the claim is about what comes after that.
         first = repaired[0].utime * 1e-6 + WAKE_UPS
         due = [e for e in whole.events if first < e.utime * 1e-6 < kill_time - FLUSH - WAKE_UPS]
-        self.assertGreater(len(due), 4 * RATE)
+        self.assertGreater(len(due), RATE)  # of a plant that may skip many ticks
         absent = [e for e in due if identity(e) not in have]
         self.assertEqual([(e.channel, kill_time - e.utime * 1e-6) for e in absent], [])
         late = [kill_time - e.utime * 1e-6 for e in whole.events
@@ -122,7 +124,7 @@ class LoggerTest(stack.TestCase):
         joined = [identity(e) for e in events]
         numbered = [item for item in joined if item[0] in event_log.NUMBERED]
         reference = [identity(e) for e in whole.events if e.channel in event_log.NUMBERED]
-        self.assertGreater(len(numbered), 5 * RATE)
+        self.assertGreater(len(numbered), RATE)
         self.assertEqual(len(set(numbered)), len(numbered))
         for channel in event_log.NUMBERED:
             mine = [item for item in numbered if item[0] == channel]

@@ -25,7 +25,7 @@ BIN = os.environ.get("HYDRO_BIN", os.path.join(_ROOT, "build", "bin"))
 CONFIG = os.environ.get("HYDRO_CONFIG", os.path.join(_ROOT, "config"))
 
 # How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is shared.
-PATIENCE = 30
+PATIENCE = 60
 # Added to a limit on wall time that is a promise of the programs: wake-ups here are late by up to 150 ms each, and a
 # process on two cores that others keep busy may get its turn a few hundred milliseconds late.
 MACHINE_MARGIN = 2.5

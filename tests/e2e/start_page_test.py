@@ -64,7 +64,7 @@ class StartPageTest(stack.TestCase):
                 self.assertRegex(printed, pattern, name)
         for name in ("run.csv", "pictures/arm.svg", "gap/report.html", "gap/model.toml", "states.csv"):
             self.assertTrue(os.path.getsize(self.path(name)) > 0, name)
-        self.assertIn("p1_MPa", pathlib.Path(self.path("run_si.csv")).read_text())
+        self.assertIn("p1_Pa", pathlib.Path(self.path("run_si.csv")).read_text())
 
     # Tests that the run in SI units is that of the paper's units, up to the digits of its numbers.
     def test_si_is_the_same_run(self):

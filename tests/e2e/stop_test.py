@@ -1,6 +1,8 @@
 """Starting in any order and stopping by signal, by hand and under hydro-launch."""
 
 import itertools
+import os
+import re
 import signal
 
 import event_log
@@ -34,6 +36,24 @@ class StopTest(stack.TestCase):
                     self.assertEqual(len(pids), 4)
                     self.assertEqual(stack.still_running(pids), [])
                     self.check_end(log_file)
+
+    # Tests that a simulation that is stopped says so and when, and that its log is whole up to there and says it, too.
+    def test_simulation_stopped(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                log_file = self.path(f"{number}.lcmlog")
+                simulation = self.start("hydro-sim", stack.config("demo.toml"), "--duration", "100000", "-o", log_file)
+                part = log_file + ".part"
+                self.wait_until(lambda: os.path.exists(part) and os.path.getsize(part) > 0, "the log grows")
+                simulation.send(number)
+                self.assertEqual(simulation.wait(), 0, simulation.report())
+                end = self.check_end(log_file).states[-1].time
+                said = re.fullmatch(rf"hydro-sim: stopped by signal {number:d}: the run and its log {re.escape(log_file)} "
+                                    r"end after (\S+) s of plant time\n", simulation.stderr)
+                self.assertTrue(said, simulation.report())
+                self.assertAlmostEqual(float(said[1]), end, delta=1e-5 * end)
+                summary = self.run_program("hydro-log", "summary", log_file).stdout
+                self.assertRegex(summary, rf"\Athe run was stopped at tick \d+: plant: hydro-sim was stopped by signal {number:d}\n")
 
     # Tests that the processes of a stack may start in any order: all wait until everybody is there, and none hangs.
     def test_any_order(self):

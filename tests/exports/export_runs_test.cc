@@ -184,15 +184,15 @@ TEST_F(ExportRunsTest, Si) {
   const auto si = Read({file}, selection);
   const SheetColumn &before = psi[0].sheets[0].columns[9], &after = si[0].sheets[0].columns[9];
   EXPECT_EQ(before.field.name, "p1_psi");
-  EXPECT_EQ(after.field.name, "p1_MPa");
-  EXPECT_EQ(after.field.unit, "MPa");
+  EXPECT_EQ(after.field.name, "p1_Pa");
+  EXPECT_EQ(after.field.unit, "Pa");
   EXPECT_DOUBLE_EQ(std::get<std::vector<double>>(after.values)[1],
-                   std::get<std::vector<double>>(before.values)[1] * 6.894757293168361e-3);
-  EXPECT_EQ(SheetOf(si[0], "HYDRO_STATE").columns[9].field.unit, "MPa");
+                   std::get<std::vector<double>>(before.values)[1] * 6.894757293168361e3);
+  EXPECT_EQ(SheetOf(si[0], "HYDRO_STATE").columns[9].field.unit, "Pa");
   EXPECT_EQ(si[0].sheets[0].columns[6].field.name, "motor_speed_rad_s");
 }
 
-// Tests the units of a rig in SI: what the values are in, and the names with --si.
+// Tests the units of a rig in SI: what the values are in, and that --si has nothing to do.
 TEST(SheetUnitsTest, ModelInSi) {
   Sheet sheet;
   sheet.is_table = true;
@@ -202,8 +202,8 @@ TEST(SheetUnitsTest, ModelInSi) {
   EXPECT_EQ(sheet.columns[0].field.unit, "Pa");
   EXPECT_EQ(sheet.columns[0].field.name, "p1_Pa") << "a column's name says what it holds";
   SetUnits(kSiUnits, true, &si);
-  EXPECT_EQ(si.columns[0].field.name, "p1_MPa");
-  EXPECT_EQ(std::get<std::vector<double>>(si.columns[0].values)[0], 2);
+  EXPECT_EQ(si.columns[0].field.name, "p1_Pa");
+  EXPECT_EQ(std::get<std::vector<double>>(si.columns[0].values)[0], 2e6);
 }
 
 // Tests which format a name tells, and what is refused.

@@ -26,7 +26,7 @@ import hydro  # noqa: E402
 
 CHANNELS = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE", "HYDRO_RUN", "HYDRO_FAULT",
             "HYDRO_LOOP_HISTOGRAM", "HYDRO_SETTINGS")
-PSI_IN_MPA = 0.45359237 * 9.80665 / 0.0254**2 / 1e6
+PSI_IN_PA = 0.45359237 * 9.80665 / 0.0254**2
 
 
 def needs(module):
@@ -345,18 +345,18 @@ class ForeignReadersTest(unittest.TestCase):
         refused = self.export(self.log, "--all-channels", "-o", self.path("both/"), expect=2)
         self.assertIn(b"there already", refused.stderr)
 
-    # Tests --si in every format: pressures in MPa, to the last bit the same, and the names and units say so.
+    # Tests --si in every format: pressures in Pa, to the last bit the same, and the names and units say so.
     @needs("h5py")
     def test_si(self):
         import h5py
         self.export(self.log, "--all-channels", "--si", "-o", self.path("si.h5"))
         with h5py.File(self.path("si.h5")) as read:
-            self.assertEqual(read["HYDRO_STATE/p1"].attrs["unit"], "MPa")
+            self.assertEqual(read["HYDRO_STATE/p1"].attrs["unit"], "Pa")
             self.assertEqual(read["HYDRO_STATE/motor_speed"].attrs["unit"], "rad/s")
             psi = self.channel("HYDRO_STATE")["p1"]
             for found, expected in zip(read["HYDRO_STATE/p1"][()], psi):
-                self.assertAlmostEqual(found, expected * PSI_IN_MPA, delta=1e-15 * abs(found) * 4)
-            self.assertEqual(len(read["p1_MPa"]), 101)
+                self.assertAlmostEqual(found, expected * PSI_IN_PA, delta=1e-15 * abs(found) * 4)
+            self.assertEqual(len(read["p1_Pa"]), 101)
             self.assertNotIn("p1_psi", read)
             self.assert_same(list(read["motor_speed_rad_s"][()]), self.table["motor_speed_rad_s"], "motor_speed")
 

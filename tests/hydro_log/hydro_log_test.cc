@@ -78,6 +78,36 @@ TEST_F(HydroLogTest, ExportAndImport) {
   }
 }
 
+// Tests that a table in SI units is one in the base units of one system, for arms that turn and that move along a line
+// and models in any units, and that it survives the way through a log and back.
+TEST_F(HydroLogTest, ExportInSiAndImport) {
+  int run = 0;  // names of their own: a process replaces nothing that it has read
+  for (const auto& [length, force] :
+       {std::pair<std::string, std::string>("in", "lbf"), {"mm", "N"}, {"cm", "daN"}, {"m", "N"}}) {
+    for (const std::string& arm : {std::string("rad"), length}) {
+      const auto path = [&, n = ++run](const char* name) { return Path(std::to_string(n) + name); };
+      const bool linear = arm != "rad";
+      log::WriteRun(path("log"), log::SampleRun(9), "", "[plant]\nrate_hz = 1000\n",
+                    "units = { length = \"" + length + "\", force = \"" + force +
+                        (linear ? "\", arm = \"" + arm : "") + "\" }\n");
+      const Outcome exported = HydroLog({"export", path("log"), "--si", "-o", path("si.csv")});
+      ASSERT_EQ(exported.exit_code, 0) << exported.err;
+      const std::string table = log::ReadBytes(path("si.csv"));
+      EXPECT_THAT(table,
+                  StartsWith(linear ? "time_s,tick,voltage_V,pressure_ref_Pa,arm_ref_m,motor_angle_rad,"
+                                      "motor_speed_rad_s,arm_angle_m,arm_speed_m_s,p1_Pa,p2_Pa\n"
+                                    : "time_s,tick,voltage_V,pressure_ref_Pa,arm_ref_rad,motor_angle_rad,"
+                                      "motor_speed_rad_s,arm_angle_rad,arm_speed_rad_s,p1_Pa,p2_Pa\n"));
+      const Outcome imported = HydroLog({"import", path("si.csv"), "-o", path("imported")});
+      ASSERT_EQ(imported.exit_code, 0) << imported.err;
+      EXPECT_EQ(HydroLog({"export", path("imported"), "-o", path("again.csv")}).exit_code, 0);
+      EXPECT_EQ(log::ReadBytes(path("again.csv")), table) << length << " " << linear;
+      EXPECT_EQ(HydroLog({"export", path("imported"), "--si", "-o", path("si_again.csv")}).exit_code, 0);
+      EXPECT_EQ(log::ReadBytes(path("si_again.csv")), table) << "it is in SI already";
+    }
+  }
+}
+
 // Tests what repair prints and leaves, with and without damage.
 TEST_F(HydroLogTest, Repair) {
   log::WriteRun(Path("log"), log::SampleRun(9));
@@ -93,7 +123,8 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
   const Outcome repaired = HydroLog({"repair", Path("log")});
   EXPECT_EQ(repaired.exit_code, 0);
-  EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes ")));
+  EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes "),
+                                  HasSubstr(": as it was found it is now " + Path("log.damaged") + "\n")));
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 

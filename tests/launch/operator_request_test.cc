@@ -106,6 +106,11 @@ class NoProcesses : public LocalProcesses {
   std::string Left() override { return ""; }
 };
 
+// What a forecast says of what may keep the arm from following.
+const std::string kLimits =
+    "; the arm follows as far as its load lets it; zero volts again beyond limits.pressure 2000 psi, "
+    "limits.arm_angle 0.8407 rad";
+
 class OperatorRequestTest : public ::testing::Test {
  protected:
   OperatorRequestTest() {
@@ -148,7 +153,8 @@ TEST_F(OperatorRequestTest, SaysWhereItMoves) {
   EXPECT_EQ(
       result.text,
       "re-armed: hip: ended pressure_limit; knee: no fault is latched; hip: the arm is at 0.125 rad; its "
-      "reference comes back to 0.1 rad: the arm will move by -0.025 rad in 0.5 s, at up to 0.05 rad/s");
+      "reference comes back to 0.1 rad: the reference moves by -0.025 rad in 0.5 s, at up to 0.05 rad/s" +
+          kLimits);
   ASSERT_EQ(result.forecasts.size(), 2u);
   EXPECT_EQ(result.forecasts[0].first, "hip");
   EXPECT_TRUE(result.forecasts[0].second.known);
@@ -164,8 +170,9 @@ TEST_F(OperatorRequestTest, ForecastsWithoutARequest) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(
       result.text,
-      "the arm is at 0.125 rad; its reference comes back to 0.1 rad: the arm will move by -0.025 rad in "
-      "0.5 s, at up to 0.05 rad/s");
+      "the arm is at 0.125 rad; its reference comes back to 0.1 rad: the reference moves by -0.025 rad in "
+      "0.5 s, at up to 0.05 rad/s" +
+          kLimits);
   EXPECT_EQ(plants_[0]->asked(), 0);
 }
 

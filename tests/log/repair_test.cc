@@ -186,22 +186,26 @@ TEST_F(RepairTest, NoEventAtAll) {
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
 }
 
-// Tests that repair in place keeps the damaged log beside the new one, and refuses to overwrite an older
-// copy.
+// Tests that repair in place keeps the damaged log beside the new one under a name that it tells, and any older one.
 TEST_F(RepairTest, InPlace) {
   std::vector<EventContents> events;
   std::vector<size_t> begins;
   const std::string torn = Foreign(events, begins).substr(0, begins[4] - 1);
   WriteBytes(Path("log"), torn);
-  RepairInPlace(Path("log"));
+  EXPECT_EQ(RepairInPlace(Path("log")).damaged, Path("log.damaged"));
   EXPECT_EQ(ReadEvents(Path("log")), Without(events, 3));
   EXPECT_EQ(ReadBytes(Path("log.damaged")), torn);
 
   EXPECT_TRUE(RepairInPlace(Path("log")).lost.empty());  // whole now: left alone
-  WriteBytes(Path("log"), torn + "more");
-  EXPECT_THAT(InputErrorOf([&] { RepairInPlace(Path("log")); }),
-              HasSubstr(Path("log.damaged") + ": cannot be created"));
-  EXPECT_EQ(ReadBytes(Path("log")), torn + "more");
+  const std::string shorter = torn.substr(0, torn.size() - 1);
+  WriteBytes(Path("log"), shorter);
+  const RepairResult again = RepairInPlace(Path("log"));
+  EXPECT_EQ(again.damaged, Path("log.damaged1"));
+  EXPECT_THAT(Describe(again, Path("log")),
+              HasSubstr(": as it was found it is now " + Path("log.damaged1") + "\n"));
+  EXPECT_EQ(ReadEvents(Path("log")), Without(events, 3));
+  EXPECT_EQ(ReadBytes(Path("log.damaged")), torn);
+  EXPECT_EQ(ReadBytes(Path("log.damaged1")), shorter);
 }
 
 // Tests that a log that is being recorded is not replaced under its recorder.

@@ -145,7 +145,33 @@ TEST_F(SendersTest, ClockSteps) {
   EXPECT_TRUE(ReadRunLog(Path("log")).clock_steps.empty());
 }
 
-// Tests that rows far apart, as of a slow recording, are no silence.
+// Tests that recordings that were joined last as long as they do together, whatever the clock did between them.
+TEST_F(SendersTest, JoinedRecordings) {
+  log::WriteRun(Path("log"), log::SampleRun(101));
+  for (const int64_t between : {int64_t{3600'000'000}, int64_t{-50'000}, int64_t{-86400'000'000}}) {
+    std::vector<log::EventContents> both = log::ReadEvents(Path("log"));
+    const int64_t end = both.back().utime;
+    for (log::EventContents event : log::ReadEvents(Path("log"))) {
+      event.utime += end + between;
+      both.push_back(event);
+    }
+    log::WritePlain(Path("joined"), both);
+    const LogInfo info = Summarise(ReadRunLog(Path("joined")), false);
+    ASSERT_EQ(info.clock_steps.size(), 1u);
+    EXPECT_TRUE(info.clock_steps[0].joined);
+    EXPECT_NEAR(info.duration_s, 0.2, 0.002);
+    for (const ChannelInfo& channel : info.channels) {
+      if (channel.summary.channel == "HYDRO_STATE") {
+        EXPECT_NEAR(channel.rate_hz, 1000, 20);
+      }
+    }
+    EXPECT_THAT(InfoText(info),
+                HasSubstr(between > 0 ? "clock: another run begins, 3600 s after the one before has ended"
+                                      : "s earlier by its clock than the one before has ended"));
+  }
+}
+
+// Tests that rows far apart, as of a slow recording, are no silence, and that a plant time that begins again is another run.
 TEST(ClockWatchTest, SlowStates) {
   ClockWatch slow;
   for (int64_t k = 0; k < 10; ++k) slow.Take(k, 10'000'000 * k, 10.0 * static_cast<double>(k));
@@ -154,7 +180,9 @@ TEST(ClockWatchTest, SlowStates) {
   joined.Take(0, 5'000'000, 5.0);
   joined.Take(1, 0, 0.0);
   joined.Take(2, 1000, 0.001);
-  EXPECT_TRUE(joined.steps().empty());
+  ASSERT_EQ(joined.steps().size(), 1u);
+  EXPECT_TRUE(joined.steps()[0].joined);
+  EXPECT_EQ(joined.steps()[0].seconds, -5);
 }
 
 }  // namespace

@@ -171,6 +171,61 @@ TEST(TrackingTest, ALinearArmHasLengths) {
   }
 }
 
+// Tests that what ended a run early stands first, and what was reached then, in the past tense of that end; and that
+// a run which lasted as long as it should has no such line, whatever was sent after it.
+TEST(TrackingTest, WhatEndedARunStandsFirst) {
+  using ::testing::HasSubstr;
+  using ::testing::Not;
+  using ::testing::StartsWith;
+  const auto still = [](double) { return 0.2; };
+  RunLog log = MakeRun(500, still, still);
+  const auto text = [&] { return SummaryText(TrackArm(log), Summarise(log, false), false); };
+  const auto add = [&](int exit_code, const std::string& reason) {
+    stop_t stop{};
+    stop.tick = 500;
+    stop.session = static_cast<int64_t>(log.messages.Of<stop_t>().size());
+    stop.source = exit_code == 0 ? "launch" : "pressure_ctrl";
+    stop.reason = reason;
+    stop.exit_code = exit_code;
+    log.messages.Of<stop_t>().push_back(stop);
+  };
+  EXPECT_THAT(text(), StartsWith("501 states"));
+  EXPECT_THAT(text(), HasSubstr("\narm at its target 0.2000 rad: final error"));
+  add(0, "stopped by signal 2");
+  EXPECT_THAT(text(), StartsWith("the run was stopped at tick 500: launch: stopped by signal 2\n501 states"));
+  EXPECT_THAT(text(), HasSubstr("\nwhen it ended: arm at its target 0.2000 rad: error"));
+  add(1, "fault pressure_limit: 2001 psi");
+  EXPECT_THAT(text(),
+              StartsWith("the run FAILED at tick 500: pressure_ctrl: fault pressure_limit: 2001 psi\n"));
+  EXPECT_THAT(SummaryJson(TrackArm(log), Summarise(log, false)), HasSubstr("\"failed\": true"));
+  log.messages.Of<stop_t>().clear();
+  add(0, "the run is complete after 0.5 s");
+  add(0, "stopped by signal 2");
+  EXPECT_THAT(text(), StartsWith("501 states"));
+  EXPECT_THAT(SummaryJson(TrackArm(log), Summarise(log, false)), Not(HasSubstr("ended_early")));
+  RunLog one = MakeRun(0, still, still);
+  one.messages.Of<stop_t>() = log.messages.Of<stop_t>();
+  one.messages.Of<stop_t>().front().exit_code = 1;
+  EXPECT_THAT(SummaryText(TrackArm(one), Summarise(one, false), false), Not(HasSubstr("target")))
+      << "nothing was followed";
+}
+
+// Tests that a reference which follows the arm, because the voltage is held at zero, is no target: neither at the end
+// of a run nor in JSON. Tables without commands have none that could be held.
+TEST(TrackingTest, AHeldVoltageHasNoTarget) {
+  RunLog log = MakeRun(
+      500, [](double) { return 0.2; }, [](double) { return 0.2; });
+  std::vector<state_t>& states = log.messages.Of<state_t>();
+  for (state_t& state : states) state.command_tick = -1;
+  EXPECT_EQ(TrackArm(log).at_target, true);
+  for (state_t& state : states) state.command_tick = state.tick < 300 ? state.tick : -1;
+  const Tracking tracking = TrackArm(log);
+  EXPECT_EQ(tracking.at_target, std::nullopt);
+  EXPECT_THAT(SummaryText(tracking, Summarise(log, false), false),
+              ::testing::HasSubstr("the voltage is held at zero, and the reference follows the arm"));
+  EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)), ::testing::HasSubstr("\"at_target\": null"));
+}
+
 // Tests that a run without arm-angle references says so instead of dividing by zero.
 TEST(TrackingTest, NoReference) {
   RunLog log = MakeRun(

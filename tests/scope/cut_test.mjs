@@ -41,7 +41,7 @@ test('a window is cut out', async () => {
 });
 
 // Tests that a cut has every row and every cell of the log's own export of that window, to the last digit, what was sent before and held too; and in
-// SI the pressures in MPa with that in their names, and nothing else changed.
+// SI the pressures in Pa with that in their names, and nothing else changed.
 test('a cut in SI has the values of the export', async () => {
   const window = { from: 3.1995, to: 5.4995 }; // over the gap
   await page.evaluate(({ from, to }) => {
@@ -64,7 +64,7 @@ test('a cut in SI has the values of the export', async () => {
   await page.keyboard.press('u');
   const si = readTable(readFileSync(await download('CSV'), 'utf8'));
   await page.keyboard.press('u');
-  const named = (column) => column.replace(/_psi$/, '_MPa');
+  const named = (column) => column.replace(/_psi$/, '_Pa');
   assert.deepEqual(si.columns, whole.columns.map(named));
   assert.deepEqual(
     whole.columns.filter((column) => named(column) !== column),
@@ -72,13 +72,13 @@ test('a cut in SI has the values of the export', async () => {
   );
   assert.equal(si.rows.length, wanted.length);
   // 1 psi = 1 lbf/in^2, by the exact definitions of pound, standard gravity and inch.
-  const kMegapascal = (0.45359237 * 9.80665) / 0.0254 ** 2 / 1e6;
+  const kPascal = (0.45359237 * 9.80665) / 0.0254 ** 2;
   for (const [i, row] of paper.rows.entries()) {
     for (const column of whole.columns) {
       const found = si.rows[i][named(column)];
       if (!column.endsWith('_psi') || row[column] === '') assert.equal(found, row[column], `${column} of row ${i}`);
       else {
-        const right = Number(row[column]) * kMegapascal;
+        const right = Number(row[column]) * kPascal;
         const error = Math.abs(Number(found) - right);
         assert.ok(error <= 1e-15 * Math.abs(right) + 1e-300, `${named(column)} of row ${i}: ${found}, not ${right}`);
       }

@@ -44,8 +44,14 @@ class KeyedTest(stack.TestCase):
                                     "--set", "limits.stale_input_s=2")  # late wake-ups of a busy machine are no faults here
         return stack.LiveLog(self, self.log_file)
 
-    def hydro_set(self, *arguments):
-        return self.run_program("hydro-set", stack.config("demo.toml"), *self.bus, *self.keyed, *arguments)
+    def list_in_force(self):
+        """What hydro-set lists. It looks for a stack for 3 s, in which a busy machine may not wake both."""
+
+        def listed():
+            asked = self.start("hydro-set", stack.config("demo.toml"), *self.bus, *self.keyed, "--list")
+            return asked.stdout if asked.wait() == 0 else None
+
+        return self.wait_until(listed, "hydro-set hears the stack")
 
     # Tests that with the key the states are seen, a value is set on the tick that the answer names, in the loop too, and a stop stops.
     def test_with_the_key(self):
@@ -78,7 +84,9 @@ class KeyedTest(stack.TestCase):
         minima, maxima = shown["channels"][0]
         seen = {round((shown["t0"] + (n + 0.5) * shown["width"]) * 1000): pair
                 for n, pair in enumerate(zip(minima, maxima)) if pair[0] == pair[0]}
-        self.assertGreater(len(seen), 500)
+        due = [tick for tick in recorded if 1000 <= tick <= 2000]  # a late plant skips some
+        self.assertGreater(len(due), 50)
+        self.assertGreater(len(seen), 0.9 * len(due))
         for number, pair in seen.items():
             self.assertEqual(pair, (recorded[number], recorded[number]), number)
 
@@ -100,7 +108,7 @@ class KeyedTest(stack.TestCase):
                 reply = scope_case.ask(client, number, **request)
                 self.assertFalse(reply["ok"], reply)
                 self.assertNotEqual(reply["text"], "")
-        self.assertRegex(self.hydro_set("--list").stdout, r"(?m)^position\.c2 +1200 ")
+        self.assertRegex(self.list_in_force(), r"(?m)^position\.c2 +1200 ")
         self.launched.send(signal.SIGINT)
         self.assertEqual(self.launched.wait(), 0, self.launched.report())
         run = event_log.Log(self.log_file)

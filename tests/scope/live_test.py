@@ -91,9 +91,10 @@ class LiveTest(stack.TestCase):
         self.assertTrue(reply["ok"], reply)
         client.until(lambda m: m["op"] == "runs" and any(c["id"] == "ghost.p1" for c in m["runs"][0]["channels"]))
         self.until_time(client, 3)
-        client.send({"op": "get", "id": 2, "run": 0, "channels": ["residual.p1"], "t0": 2.2, "t1": 2.7, "pixels": 4000})
-        values = [v for v in client.until(lambda m: m["op"] == "bins")["channels"][0][0] if v == v]
-        self.assertGreater(len(values), 300)
+        client.send({"op": "get", "id": 2, "run": 0, "channels": ["residual.p1", "p1"], "t0": 2.2, "t1": 2.7, "pixels": 4000})
+        values, states = ([v for v in channel[0] if v == v] for channel in client.until(lambda m: m["op"] == "bins")["channels"])
+        self.assertGreater(len(states), 50)  # a late plant skips ticks
+        self.assertGreater(len(values), 0.6 * len(states))
         return sorted(map(abs, values))[len(values) // 2]
 
     # Tests that with [scope] control a gain that is set acts from a tick on, is shown as in force and told as an event; that one

@@ -43,7 +43,7 @@ test('re-arm says what it will do, and does it', async () => {
     .waitFor();
   const way = await dialog.locator('.way').textContent();
   const told = new RegExp(
-    '^If it were re-armed now: the arm is at (\\S+) rad; its reference comes back to (\\S+) rad: the arm will move by (\\S+) rad in 2 s, at up to (\\S+) rad/s',
+    '^If it were re-armed now: the arm is at (\\S+) rad; its reference comes back to (\\S+) rad: the reference moves by (\\S+) rad in 2 s, at up to (\\S+) rad/s',
   ).exec(way);
   assert.ok(told, way);
   const [present, target, distance, rate] = told.slice(1).map((text) => Number(text.replace('\u2212', '-')));

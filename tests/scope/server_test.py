@@ -77,8 +77,8 @@ class ServerTest(stack.TestCase):
         with open(whole) as file:
             self.assertEqual(file.read().splitlines()[1001:1501], rows[1:501])  # the last row's voltage came later
         si = scope.request("POST", "/api/cut", {**window, "format": "csv", "si": True})[2].decode().splitlines()
-        column = si[0].split(",").index("p1_MPa")
-        self.assertAlmostEqual(float(si[1].split(",")[column]), float(rows[1].split(",")[column]) * 0.006894757293168, 9)
+        column = si[0].split(",").index("p1_Pa")
+        self.assertAlmostEqual(float(si[1].split(",")[column]), float(rows[1].split(",")[column]) * 6894.757293168, 3)
 
     # Tests that logs and tables that are handed in are runs beside the first, and can be closed.
     def test_open(self):
@@ -108,7 +108,7 @@ class ServerTest(stack.TestCase):
             status.update(scope.json("GET", f"/api/jobs/{job}"))
             return status["state"] != "running"
 
-        self.wait_until(ended, "the diagnosis ends", timeout=120)
+        self.wait_until(ended, "the diagnosis ends", timeout=600)  # it gives way to everybody on the machine
         self.assertEqual(status["state"], "done", status)
         self.assertNotEqual(status["sentence"], "")
         code, headers, report = scope.request("GET", status["report"], token=None)
@@ -117,7 +117,7 @@ class ServerTest(stack.TestCase):
         self.assertIn(b"<html", report)
         self.assertEqual(scope.request("GET", "/api/reports/" + "0" * 32, token=None)[0], 404)
         failed = scope.json("POST", "/api/diagnose", {"run": 0, "t0": 50, "t1": 51})["job"]
-        self.wait_until(lambda: scope.json("GET", f"/api/jobs/{failed}")["state"] == "failed", "the other one fails")
+        self.wait_until(lambda: scope.json("GET", f"/api/jobs/{failed}")["state"] == "failed", "the other one fails", timeout=300)
 
     # Tests that bad requests are answered by what was found and what is allowed.
     def test_bad_requests(self):

@@ -15,7 +15,7 @@ const kConfig = process.env.HYDRO_CONFIG ?? path.join(kRoot, 'config');
 export const kToken = 'f00df00df00df00df00df00df00df00d';
 // How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is
 // shared.
-export const kPatience_ms = 40000;
+export const kPatience_ms = 90000;
 
 export function demoConfig() {
   return path.join(kConfig, 'demo.toml');

@@ -64,9 +64,12 @@ test('a falling level of the arm angle', async () => {
   await nextCapture();
   const { before: above, after: below } = await page.evaluate(() => {
     const { t, bins } = hydroScope.display.capture;
-    const at = (time) =>
-      bins.max.arm_angle[bins.t.findIndex((one, i) => one >= time && !Number.isNaN(bins.max.arm_angle[i]))];
-    return { before: at(t - 0.02), after: at(t + 0.02) };
+    // The nearest on both sides that have a sample: a late plant skips some.
+    const seen = [...bins.t.keys()].filter((i) => !Number.isNaN(bins.max.arm_angle[i]));
+    return {
+      before: bins.max.arm_angle[seen.findLast((i) => bins.t[i] < t - bins.width)],
+      after: bins.min.arm_angle[seen.find((i) => bins.t[i] > t + bins.width)],
+    };
   });
   assert.ok(above > 0.05 && below < 0.05, `${above} before, ${below} after`);
 });
@@ -118,7 +121,7 @@ test('a wrong setting is named', async () => {
 });
 
 // How each of the next `count` captures with these settings came about ("triggered" or "auto") and when, as the server
-// says it, with the time from there to the first arm angle below the level; with `from`, counted from the first of that kind on.
+// says it, with the time from there to the first reference below the level; with `from`, counted from the first of that kind on.
 async function causes(settings, count, from = null) {
   const seen = await page.evaluateHandle(
     ([changes, first]) => {
@@ -133,7 +136,7 @@ async function causes(settings, count, from = null) {
       hydroScope.signals.on('capture', () => {
         const { t, bins } = hydroScope.display.capture;
         const at = bins.t.findIndex(
-          (one, i) => one > t - 0.3 && bins.min.arm_angle[i] <= hydroScope.trigger.settings.level,
+          (one, i) => one > t - 0.3 && bins.min.arm_ref[i] <= hydroScope.trigger.settings.level,
         );
         if (list.length > 0) list.at(-1).edge ??= bins.t[at] - t;
       });
@@ -147,10 +150,10 @@ async function causes(settings, count, from = null) {
 }
 
 // Tests that auto runs free while nothing triggers, and says so; and that once something does, more often than it
-// would run free, every picture is one of the trigger's.
+// would run free, every picture is one of the trigger's. The reference falls every 2 s, also where a late plant lets the arm swing.
 test('auto runs free, and stands still on what triggers', async () => {
   const span = 1.6; // a falling edge comes every 2 s
-  const never = { on: 'level', channel: 'arm_angle', edge: 'falling', level: 10, hysteresis: 0.02, mode: 'auto', span };
+  const never = { on: 'level', channel: 'arm_ref', edge: 'falling', level: 10, hysteresis: 0.02, mode: 'auto', span };
   const free = await causes(never, 3);
   assert.deepEqual(
     free.map(({ state }) => state),

@@ -6,15 +6,18 @@ import json
 import os
 import socket
 import struct
+import time
+
+PATIENCE = 60  # s
 
 
-def connect(port, tls=None, timeout=20):
+def connect(port, tls=None, timeout=PATIENCE):
     """A socket to a port of this machine; tls: the ssl.SSLContext and the name that the server's certificate is to have."""
     plain = socket.create_connection(("127.0.0.1", port), timeout=timeout)
     return tls[0].wrap_socket(plain, server_hostname=tls[1]) if tls else plain
 
 
-def request(port, method, path, body=None, token=None, headers=None, tls=None, timeout=20):
+def request(port, method, path, body=None, token=None, headers=None, tls=None, timeout=PATIENCE):
     """Status, headers and body of one request."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=timeout)
     connection.sock = connect(port, tls, timeout)
@@ -35,7 +38,7 @@ class Refused(Exception):
 class WebSocket:
     """A client's end. Messages come as (True, bytes) or (False, text)."""
 
-    def __init__(self, port, path, subprotocol=None, origin=None, host=None, tls=None, timeout=20):
+    def __init__(self, port, path, subprotocol=None, origin=None, host=None, tls=None, timeout=PATIENCE):
         self.socket = connect(port, tls, timeout)
         self.buffer = b""
         lines = [
@@ -106,8 +109,11 @@ class WebSocket:
                 return opcode == 2, data if opcode == 2 else data.decode()
 
     def until(self, wanted):
-        """The first message for which wanted(message) is true; texts are decoded from JSON first."""
+        """The first message for which wanted(message) is true; texts are decoded from JSON first. Other messages come all the time."""
+        deadline = time.monotonic() + PATIENCE
         while True:
+            if time.monotonic() > deadline:
+                raise AssertionError(f"waited {PATIENCE} s in vain for a message of hydro-scope")
             binary, data = self.receive()
             message = decode_bins(data) if binary else json.loads(data)
             if wanted(message):

@@ -124,6 +124,12 @@ TEST(QuantityKeys, OtherUnitsAreRefused) {
       error("pressure = \"30 mm\"\n"),
       "stack.toml:2: limits.pressure: found \"30 mm\", allowed a number (in Pa), or a text of a number and a "
       "unit: Pa, hPa, kPa, MPa, mbar, bar, psi");
+  EXPECT_THAT(error("arm_torque = \"50 Nm\"\n"), HasSubstr("and a unit: N m; did you mean \"50 N m\"?"));
+  EXPECT_THAT(error("pressure = \"13.8 mpa\"\n"), HasSubstr("; did you mean \"13.8 MPa\"?"));
+  EXPECT_THAT(error("pressure = \"13,8 MPa\"\n"),
+              HasSubstr("; decimals begin with a point, and thousands with nothing"));
+  EXPECT_THAT(InputErrorOf([] { Read("[limits]\narm_torque = \"50 psi\"\n", UnitSystem{}); }),
+              HasSubstr("and a unit: in-lbf, N m"));
   EXPECT_THAT(error("pressure = \"30 furlong\"\n"), HasSubstr("found \"30 furlong\""));
   EXPECT_THAT(error("pressure = \"30\"\n"), HasSubstr("found \"30\""));
   EXPECT_THAT(error("pressure = \"1e308 MPa\"\n"), HasSubstr("found \"1e308 MPa\"")) << "beyond all numbers";

@@ -30,6 +30,31 @@ TEST(ShippedFilesTest, StacksLoad) {
   EXPECT_GE(stacks, 1);
 }
 
+// Tests that a model in other units is refused under the numbers of a configuration, in both directions, and taken where
+// the numbers that it changes have a unit of their own or are given with it; and that numbers for another model are told
+// from a limit.
+TEST(ShippedFilesTest, AModelInOtherUnits) {
+  const auto error = [](const char* config, std::vector<std::string> overrides) {
+    return InputErrorOf([&] { LoadStackConfig((kConfig / config).string(), overrides); });
+  };
+  EXPECT_THAT(error("demo_si.toml", {"model.file=models/table1.toml"}),
+              ::testing::HasSubstr(
+                  "model.file: found a model in in, lbf, psi, and numbers for one in m, N, Pa (position.c1 = "
+                  "41368500), allowed a model in the same units, or values with a unit of their own"));
+  EXPECT_THAT(error("demo.toml", {"model.file=models/table1_si.toml"}),
+              ::testing::HasSubstr(
+                  "found a model in m, N, Pa, and numbers for one in in, lbf, psi (position.c1 = 6000)"));
+  EXPECT_EQ(error("demo.toml", {"model.file=models/table1_gravity.toml"}), "");
+  EXPECT_EQ(error("demo.toml",
+                  {"model.file=models/table1_si.toml", "position.c1=41e6", "position.c2=8e6",
+                   "limits.arm_torque=50", "limits.pressure=14e6", "noise.p1=7000", "noise.p2=\"1 psi\""}),
+            "");
+  EXPECT_THAT(
+      error("demo.toml", {"limits.pressure=13.8e6"}),
+      ::testing::HasSubstr("found 13800000 psi, allowed up to 2470000 psi, ten times the oil's beta"));
+  EXPECT_EQ(error("demo.toml", {"limits.pressure=inf"}), "");
+}
+
 // Tests that the variants differ from Table 1 only where they say so.
 TEST(ShippedFilesTest, VariantsOfTable1) {
   const auto load = [](const char* name) { return LoadModelFile((kConfig / "models" / name).string()); };

@@ -18,6 +18,18 @@ TEST(CsvPointsTest, ReadsColumnsByName) {
   EXPECT_EQ(points[2].time, 1.0);
 }
 
+// Tests that semicolons, tabs and decimal commas, as a spreadsheet writes them, are read.
+TEST(CsvPointsTest, OtherSeparators) {
+  for (const char* text : {"time_s;y\n0;0,25\n0,5;-1,5\n", "time_s;y\n0;0.25\n0.5;-1.5\n",
+                           "time_s\ty\n0\t0.25\n0.5\t-1.5\n", "x;time_s;y\n7;0;0,25\n8;0,5;-1,5\n"}) {
+    const auto points = ParseCsvPoints(text, "a.csv", "y");
+    ASSERT_EQ(points.size(), 2u) << text;
+    EXPECT_EQ(points[0].value, 0.25);
+    EXPECT_EQ(points[1].time, 0.5);
+    EXPECT_EQ(points[1].value, -1.5);
+  }
+}
+
 // Tests that what is cut in a column that nobody asks for is no harm.
 TEST(CsvPointsTest, AnotherColumnMayBeCut) {
   const auto points = ParseCsvPoints("time_s,y,note\n0,0.25,1\n1,0.5,1", "a.csv", "y");
@@ -53,7 +65,9 @@ TEST(CsvPointsTest, RefusesMalformedTables) {
        "cut within it"},
       {"y,time_s\n0.25,0\n0.5,1",
        "a.csv: line 3, column time_s: found \"1\", allowed a number before the end of a line"},
-      {"time_s;y\n0;1\n", "a.csv: line 1: found no column \"time_s\", allowed \"time_s;y\""},
+      {"time_s;y\n0;one\n", "a.csv: line 2, column y: found \"one\", allowed a finite number"},
+      {"time_s;y\n0;0\n1;1e999\n", "a.csv: line 3, column y: found \"1e999\", allowed a finite number"},
+      {"time_s;x\n0;1\n1;2\n", "a.csv: line 1: found no column \"y\", allowed \"time_s\" or \"x\""},
   };
   for (const auto& table : tables) {
     EXPECT_THAT(settings::InputErrorOf([&] { ParseCsvPoints(table.text, "a.csv", "y"); }),

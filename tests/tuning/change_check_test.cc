@@ -162,6 +162,42 @@ TEST(PrepareChange, LoopsAreJudgedWhereTheReferenceGoes) {
   EXPECT_NE(Prepared({"reference.steps=[[0.6, 0.3]]"}).config, nullptr);
 }
 
+// Tests that from an unstable loop a change may only lead towards stable ones, and says so; that no change which
+// makes it worse, or as bad, is taken; and that an undo, which somebody asks for, always goes back.
+TEST(PrepareChange, FromAnUnstableLoop) {
+  const auto with = [](const std::vector<std::string>& changes) {
+    return settings::Changed(Parsed(kFast), changes);
+  };
+  const settings::StackConfig configured = with({"position.c1=10500", "position.c2=5000"});
+  for (const char* worse : {"position.c2=5500", "position.c1=10501", "pressure.damping_ratio=0.4"}) {
+    const PreparedChange change = PrepareChange(configured, configured, {worse}, {});
+    EXPECT_EQ(change.config, nullptr) << worse;
+    EXPECT_THAT(change.text, StartsWith("would be unstable: "));
+    EXPECT_THAT(change.text,
+                HasSubstr("what is in force is unstable, too: allowed is what makes it more stable"));
+  }
+  const PreparedChange better = PrepareChange(configured, configured, {"position.c2=4500"}, {});
+  ASSERT_NE(better.config, nullptr) << better.text;
+  EXPECT_THAT(better.text, HasSubstr("still UNSTABLE, but less than what was in force"));
+  const PreparedChange stable =
+      PrepareChange(configured, configured, {"position.c2=450", "position.c1=2000"}, {});
+  ASSERT_NE(stable.config, nullptr) << stable.text;
+  EXPECT_THAT(stable.text, ::testing::Not(HasSubstr("UNSTABLE")));
+  for (const auto& from : {better.config, stable.config}) {
+    const auto back = std::make_shared<const settings::StackConfig>(configured);
+    const PreparedChange undone = PrepareChange(configured, *from, back, {.undo = true});
+    ASSERT_NE(undone.config, nullptr) << undone.text;
+    EXPECT_THAT(undone.text, HasSubstr("an UNSTABLE loop, as it was when these values were in force before"));
+    EXPECT_EQ(PrepareChange(configured, *from, back, {}).config, nullptr) << "a set is no undo";
+  }
+  // An undo is no way around limits.
+  const settings::StackConfig tight = settings::Changed(configured, {"limits.pressure=1500"});
+  EXPECT_EQ(PrepareChange(configured, tight, std::make_shared<const settings::StackConfig>(configured),
+                          {.undo = true})
+                .config,
+            nullptr);
+}
+
 // Tests that what is stable by a hair is accepted with a warning, and what is well stable without.
 TEST(PrepareChange, WarnsOfWhatIsHardlyStable) {
   const PreparedChange good = Prepared({"position.c2=450"});

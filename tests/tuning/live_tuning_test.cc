@@ -347,6 +347,22 @@ TEST_F(LiveTuningTest, UndoAndRepeats) {
   EXPECT_EQ(changes, expected);
 }
 
+// Tests that a stack that began with an unstable loop, and whose loop was mended, goes back to it by an undo and by
+// nothing else.
+TEST_F(LiveTuningTest, UndoOfAMendedLoop) {
+  config_ = settings::Replaced(config_, "c2 = ", "c2 = 5000 # ");
+  at_[500] = [&] { Ask(1, "position.c2=400"); };
+  at_[700] = [&] { Ask(2, "position.c2=5000"); };
+  at_[900] = [&] { Ask(3, "", tuning_request_t::UNDO); };
+  Run(0.25);
+  for (const int64_t number : {1, 2, 3}) ASSERT_NE(AnswerTo(number), nullptr) << number;
+  EXPECT_TRUE(AnswerTo(1)->accepted) << AnswerTo(1)->text;
+  EXPECT_FALSE(AnswerTo(2)->accepted);
+  EXPECT_THAT(AnswerTo(2)->text, HasSubstr("would be unstable"));
+  EXPECT_TRUE(AnswerTo(3)->accepted) << AnswerTo(3)->text;
+  EXPECT_THAT(AnswerTo(3)->text, HasSubstr("an UNSTABLE loop, as it was"));
+}
+
 // Tests that a new reference is reached from where the old one was, and counts its time from its beginning.
 // Tests that a request for what is in force already is answered, makes no version, and leaves the undo what it was.
 TEST_F(LiveTuningTest, WhatIsInForceMakesNoVersion) {
@@ -448,8 +464,9 @@ TEST_F(LiveTuningTest, SetsDuringALatchedFault) {
   EXPECT_EQ(rearmed[0].kind, rearm_t::ACCEPTED) << rearmed[0].text;
   double after = 0;
   for (const state_t& state : states_) {
-    if (state.tick > faults.front().tick + 1 && state.tick <= 3000)
+    if (state.tick > faults.front().tick + 1 && state.tick <= 3000) {
       ASSERT_EQ(state.voltage, 0) << state.tick << ": a set is no re-arm";
+    }
     if (state.tick > 3100) after = std::max(after, std::fabs(state.voltage));
   }
   EXPECT_GT(after, 0.1);

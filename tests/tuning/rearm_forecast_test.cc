@@ -27,6 +27,7 @@ namespace hydro::tuning {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kRate = 1000;     // Hz, of config/demo.toml
@@ -134,6 +135,10 @@ class RearmForecastTest : public ::testing::Test {
     }
     EXPECT_NEAR(lowest, forecast_.lowest, slack);
     EXPECT_NEAR(highest, forecast_.highest, slack);
+    EXPECT_NEAR(ReferenceAfter(forecast_.return_s + kForecast_s), forecast_.last, slack);
+    for (const ReferenceStep& step : forecast_.steps)
+      EXPECT_NEAR(ReferenceAfter(step.after_s + 0.006) - ReferenceAfter(step.after_s - 0.006), step.by,
+                  0.012 * forecast_.top_rate + slack);
   }
 
   bus::InProcessBus* bus_ = nullptr;
@@ -160,7 +165,7 @@ TEST_F(RearmForecastTest, AStepInMidMotion) {
   EXPECT_NEAR(ArmAfter(3) - ArmAfter(0), way, 0.02 * way) << "the arm goes that way";
   EXPECT_GT(ArmAfter(0.5) - ArmAfter(0), 0.5 * way) << "about as fast";
   EXPECT_THAT(forecast_.text, StartsWith("the arm is at "));
-  EXPECT_THAT(forecast_.text, HasSubstr("; its reference comes back to 0.3 rad: the arm will move by +"));
+  EXPECT_THAT(forecast_.text, HasSubstr("; its reference comes back to 0.3 rad: the reference moves by +"));
   EXPECT_THAT(forecast_.text, HasSubstr(" in 0.5 s, at up to "));
 }
 
@@ -171,9 +176,44 @@ TEST_F(RearmForecastTest, BackwardsAndALaterStep) {
   EXPECT_EQ(forecast_.target, -0.3);
   EXPECT_EQ(forecast_.highest, 0.1);
   EXPECT_NEAR(ArmAfter(4.5), -0.3, 0.01);
-  EXPECT_THAT(forecast_.text, HasSubstr("the arm will move by -"));
+  EXPECT_THAT(forecast_.text, HasSubstr("the reference moves by -"));
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it goes from -0.3 rad to 0.1 rad;"));
+}
+
+// Tests that a way down is told as one, from its beginning to its end.
+TEST_F(RearmForecastTest, DownAfterwards) {
+  Run({"reference.steps=[[0.2, 0.3], [4, 0.2], [6, -0.1]]"});
+  ExpectTrue();
+  EXPECT_TRUE(forecast_.one_way);
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it goes from 0.3 rad to -0.1 rad;"));
+}
+
+// Tests that a pulse between two samples of the forecast is seen, and that it is no way.
+TEST_F(RearmForecastTest, APulseAfterwards) {
+  Run({"reference.steps=[[0.2, 0.3], [4.002, 0.4], [4.012, 0.2], [4.02, 0.3]]"});
+  ExpectTrue();
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between 0.2 rad and 0.4 rad;"));
+}
+
+// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast promises
+// the reference alone, which comes true, and names the limit.
+TEST_F(RearmForecastTest, ALimitThatBinds) {
+  Run({"reference.steps=[[0.2, 0.3]]", "limits.arm_torque=1"});
+  ExpectTrue();
+  const double way = forecast_.target - forecast_.present;
+  EXPECT_LT(std::fabs(ArmAfter(3) - ArmAfter(0)), 0.5 * std::fabs(way)) << "the arm does not go that way";
+  EXPECT_THAT(forecast_.text, Not(HasSubstr("the arm will")));
   EXPECT_THAT(forecast_.text,
-              HasSubstr("in the 10 s after that the reference goes from -0.3 rad to 0.1 rad"));
+              HasSubstr("; the arm follows as far as its load and limits.arm_torque 1 in-lbf let it"));
+}
+
+// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast says.
+TEST_F(RearmForecastTest, ALimitThatStopsAgain) {
+  Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0.02", "limits.motor_speed=20"});
+  ASSERT_TRUE(forecast_.known);
+  EXPECT_GT(std::fabs(ArmAfter(3) - forecast_.target), 0.02) << "the arm does not get there";
+  EXPECT_THAT(forecast_.text,
+              HasSubstr("; zero volts again beyond limits.pressure 2000 psi, limits.motor_speed 20 rad/s"));
 }
 
 // Tests references that move all the time, and one that jumps on the way back.
@@ -183,6 +223,8 @@ TEST_F(RearmForecastTest, ReferencesThatMove) {
        "0.05}"});
   ExpectTrue();
   EXPECT_NEAR(forecast_.highest, 0.25, 1e-3);
+  EXPECT_FALSE(forecast_.one_way);
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between -0.15 rad and 0.25 rad;"));
 }
 
 TEST_F(RearmForecastTest, AJumpOnTheWay) {
@@ -190,7 +232,20 @@ TEST_F(RearmForecastTest, AJumpOnTheWay) {
   ExpectTrue();
   EXPECT_TRUE(forecast_.jumps);
   EXPECT_EQ(forecast_.target, -0.1);
-  EXPECT_THAT(forecast_.text, HasSubstr("with steps of the reference on the way"));
+  ASSERT_EQ(forecast_.steps.size(), 1u);
+  EXPECT_NEAR(forecast_.steps[0].after_s, 0.3, 1e-3);
+  EXPECT_NEAR(forecast_.steps[0].by, -0.6 * 0.4, 1e-3)
+      << "six tenths of the way from the arm to the reference";
+  EXPECT_THAT(forecast_.text, HasSubstr(" rad/s, and jumps by -0.24 rad after 0.3 s"));
+}
+
+// Tests steps at the very ends of the way back, and several on it.
+TEST_F(RearmForecastTest, JumpsOnTheWay) {
+  Run({"reference.steps=[[0.2, 0.3], [1.3, 0.1], [1.5, 0.2], [1.7, -0.1]]"});
+  ExpectTrue();
+  EXPECT_EQ(forecast_.steps.size(), 3u);
+  EXPECT_THAT(forecast_.text, HasSubstr(" after 0.1 s and 2 more times"));
+  EXPECT_EQ(forecast_.target, -0.1);
 }
 
 // Tests that nothing is called slow that is not.

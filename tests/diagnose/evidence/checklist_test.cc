@@ -75,6 +75,24 @@ TEST(ChecklistTest, Currents) {
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*currents of 4 to 20 mA"));
 }
 
+// Tests that pressures which a sidecar states in bar, and whose numbers are between 4 and 20 as those of currents are, are pressures: they
+// fit the model's charge.
+TEST(ChecklistTest, PressuresInBarAreNoCurrents) {
+  runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
+  const double low = std::min(*std::min_element(run.p1.values.begin(), run.p1.values.end()),
+                              *std::min_element(run.p2.values.begin(), run.p2.values.end()));
+  const double high = std::max(*std::max_element(run.p1.values.begin(), run.p1.values.end()),
+                               *std::max_element(run.p2.values.begin(), run.p2.values.end()));
+  for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
+    for (double& value : signal->values)
+      value = low + (value - low) * std::min(1.0, (280 - low) / (high - low));
+    signal->source.scale = 14.5038;  // "bar"
+  }
+  ASSERT_GT(low / 14.5038, 3.8);
+  ASSERT_LT(low / 14.5038, 8);
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^ok "));
+}
+
 // Tests that each turned sign is seen where it shows.
 TEST(ChecklistTest, TurnedSigns) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);

@@ -208,15 +208,17 @@ TEST_F(RecordingCheckTest, OtherShaft) {
   EXPECT_THAT(remarks[0], HasSubstr("run chirp: the shaft is clamped, not free"));
 }
 
-// Tests that pressures in mbar are told from kPa, also with times in us.
+// Tests that pressures in mbar are told from kPa, also with times in us or ns.
 TEST_F(RecordingCheckTest, Millibars) {
-  const auto remarks = Remarks([](runs::MeasuredRun& run) {
-    for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2})
-      Multiply(&(run.*signal).values, 68.947573);
-    Multiply(&run.time, 1e6);
-  });
-  ASSERT_THAT(remarks, SizeIs(1));
-  EXPECT_THAT(remarks[0], HasSubstr("time is in us and p1 and p2 are in mbar"));
+  for (const auto& [unit, factor] : {std::pair("us", 1e6), std::pair("ns", 1e9)}) {
+    const auto remarks = Remarks([factor = factor](runs::MeasuredRun& run) {
+      for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2})
+        Multiply(&(run.*signal).values, 68.947573);
+      Multiply(&run.time, factor);
+    });
+    ASSERT_THAT(remarks, SizeIs(1));
+    EXPECT_THAT(remarks[0], HasSubstr(std::string("time is in ") + unit + " and p1 and p2 are in mbar"));
+  }
 }
 
 // Tests that a run which nothing predicts is said to be that: columns exchanged, say.

@@ -1,0 +1,138 @@
+"""What every program does before anything else: no file or socket gets the number of a closed standard stream, and a file at its size
+limit is an error like a full disk."""
+
+import itertools
+import os
+import resource
+import signal
+import subprocess
+
+import event_log
+import outcome
+import stack
+
+
+class ProcessStartCase(stack.TestCase):
+    def run_prepared(self, prepare, *argv, **options):
+        """Runs a program after `prepare` in its process; returns what subprocess.run does. A program that does not end fails here."""
+        return subprocess.run([stack.program(argv[0]), *argv[1:]], cwd=self.folder, preexec_fn=prepare, timeout=stack.PATIENCE * 4,
+                              check=False, stdin=subprocess.DEVNULL, text=True, errors="replace", **options)
+
+    def record(self):
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "2", "-o", self.path("run.lcmlog"))
+        self.run_program("hydro-log", "export", "run.lcmlog", "-o", self.path("run.csv"))
+
+
+class ClosedStreamsTest(ProcessStartCase):
+    def run_closed(self, closed, *argv):
+        # Python closes its own copies only after this: what is closed here stays so for the program.
+        return self.run_prepared(lambda: [os.close(number) for number in closed], *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    # Tests that a launch ends, and that its log holds the run and no text, whichever streams are closed.
+    def test_launch(self):
+        for count in (1, 2, 3):
+            for closed in itertools.combinations((0, 1, 2), count):
+                with self.subTest(closed=closed):
+                    log = self.path("".join(map(str, closed)) + ".lcmlog")
+                    done = self.run_closed(closed, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time",
+                                           "lockstep", "--duration", "0.5", "--log", log)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual(len(event_log.Log(log).states), 501)
+                    self.run_program("hydro-log", "info", log)
+
+    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and that what it writes into files
+    # is what it writes otherwise.
+    def test_results(self):
+        self.record()
+        for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-log", "summary", "run.lcmlog"),
+                     ("hydro-sim", stack.config("demo.toml"), "--duration", "2", "-o", "out.lcmlog"),
+                     ("hydro-log", "export", "run.lcmlog", "-o", "-"), ("hydro-tune", stack.config("demo.toml"), "-o", "-"),
+                     ("hydro-experiment", "--list"), ("hydro-diagnose", "run.lcmlog", "--model", stack.config("models/table1.toml"), "--check")):
+            with self.subTest(" ".join(argv)):
+                done = self.run_closed((1,), *argv)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertRegex(done.stderr, r"standard output cannot be written: Bad file descriptor\n\Z")
+                self.assertEqual(self.run_closed((0, 1, 2), *argv, *(["--force"] if "-o" in argv else [])).returncode, 1)
+        done = self.run_closed((2,), "hydro-log", "export", "run.lcmlog", "-o", "out.csv")
+        self.assertEqual(done.returncode, 0)
+        with open(self.path("out.csv"), "rb") as ours, open(self.path("run.csv"), "rb") as other:
+            self.assertEqual(ours.read(), other.read())
+        self.assert_identical(self.path("run.lcmlog"), self.path("out.lcmlog"))
+
+    # Tests that no line about bad input is written into a file or a socket.
+    def test_bad_input(self):
+        for closed in ((2,), (0, 1, 2)):
+            for name in ("hydro-sim", "hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl", "hydro-launch", "hydro-scope", "hydro-set",
+                         "hydro-tune", "hydro-limb"):
+                with self.subTest(name, closed=closed):
+                    self.assertEqual(self.run_closed(closed, name, "missing.toml").returncode, 2)
+
+
+class FileSizeLimitTest(ProcessStartCase):
+    def check(self, outputs, *argv, limits=(0, 500)):
+        """With less room than its output needs, a program ends with 1 and a line that says why, and leaves nothing."""
+        before = set(os.listdir(self.folder))
+        for limit in limits:
+
+            def limit_size(limit=limit):
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+            done = self.run_prepared(limit_size, *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            said = f"{argv} with {limit} bytes: exit code {done.returncode}: {done.stderr[-1000:]}"
+            self.assertEqual(done.returncode, 1, said)
+            self.assertRegex(done.stderr, "File too large|no space|cannot be written", said)
+            left = set(os.listdir(self.folder)) - before
+            self.assertFalse([name for name in left for output in outputs if name.startswith(output) and os.path.isfile(self.path(name))],
+                             said)
+
+    def test_logs_and_tables(self):
+        self.record()
+        for name in ("out.csv", "out.mat", "out.h5", "out.mcap"):
+            with self.subTest(name):
+                self.check(["out"], "hydro-log", "export", "run.lcmlog", "-o", name)
+        for argv in (("hydro-log", "import", "run.csv", "-o", "out.lcmlog"), ("hydro-log", "repair", "run.lcmlog", "-o", "out.lcmlog"),
+                     ("hydro-sim", stack.config("demo.toml"), "--duration", "2", "-o", "out.lcmlog"),
+                     ("hydro-log", "summary", "run.lcmlog", "--json", "out.json")):
+            with self.subTest(" ".join(argv)):
+                self.check(["out"], *argv)
+
+    def test_pages_and_configurations(self):
+        self.record()
+        for argv in (("hydro-plot", "run.csv", "."), ("hydro-tune", stack.config("demo.toml"), "-o", "out.toml"),
+                     ("hydro-experiment", "fig2", "--out", ".")):
+            with self.subTest(" ".join(argv)):
+                self.check(["out", "arm", "pressure", "fig2"], *argv, limits=(0,))
+
+    # Tests that of a key and of a controller to begin with nothing is left either, and that the machine, not the user, is at fault.
+    def test_small_files(self):
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            config = file.read().replace("models/table1.toml", stack.config("models/table1.toml"))
+        with open(self.path("keyed.toml"), "w", encoding="utf-8") as file:
+            file.write(config.replace("[bus]", '[bus]\nkey_file = "out.key"'))
+
+        def limit_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+        for argv in (("hydro-launch", "make-key", "keyed.toml"), ("hydro-launch", "new-controller", "out")):
+            with self.subTest(" ".join(argv)):
+                done = self.run_prepared(limit_size, *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertRegex(done.stderr, r"\Ahydro-launch: [^\n]*cannot be written: File too large[^\n]*\n\Z")
+                self.assertEqual(os.listdir(self.folder), ["keyed.toml"])
+
+    # Tests that the logger of a launch notices the limit and says so, as on a full disk.
+    def test_launch(self):
+        def limit_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        done = self.run_prepared(limit_size, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time",
+                                 "lockstep", "--duration", "2", "--log", self.path("run.lcmlog"), stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("File too large", done.stderr + done.stdout)
+        self.assertNotIn(signal.strsignal(signal.SIGXFSZ), done.stderr + done.stdout)
+        self.assertLessEqual(os.path.getsize(self.path("run.lcmlog")), 20000)
+
+
+if __name__ == "__main__":
+    outcome.main()
