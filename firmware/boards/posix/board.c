@@ -1,0 +1,231 @@
+/* A front end that is a process: for tests, and for users to try the protocol without hardware. Its converters are those of
+ * a simulator behind a second link, or hold still. It is no real-time machine: a late wake-up counts as several ticks. */
+#include "firmware/board.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "firmware/boards/posix/link.h"
+
+enum { STALE_TICKS = 20 }; /* without values from the simulator: the converters do not answer */
+
+static const char kHelp[] =
+    "A front end as a process: the firmware of a microcontroller beside the machine, on this computer. For "
+    "trying and tests.\n"
+    "Usage: hydro-front-end [OPTIONS] LINK\n"
+    "\n"
+    "Positionals:\n"
+    "  LINK TEXT REQUIRED          to the computer: pty, pty:PATH, unix:PATH, udp:PORT or udp:ADDRESS:PORT\n"
+    "\n"
+    "Options:\n"
+    "  --version                   print the version and exit\n"
+    "  -h,--help                   print this and exit\n"
+    "  --converters LINK           to a simulator of the machine; without it the inputs hold 1 V and the "
+    "counters 0\n"
+    "  --rate HZ                   ticks a second, 1 to 20000 (default 1000)\n"
+    "  --tick-by-converters        a tick for each set of values that the simulator sends, and no clock\n"
+    "\n"
+    "Examples:\n"
+    "  hydro-front-end pty:/tmp/front_end\n"
+    "  hydro-front-end udp:7700 --converters udp:7701 --rate 5000\n"
+    "More: docs/front_end.md\n";
+
+static struct link computer, machine;
+static struct hydro_receiver from_machine;
+static struct hydro_converters converters;
+static uint32_t converters_age; /* ticks */
+static bool converters_new;
+static uint64_t outputs; /* written so far: the tick of the next OUTPUT */
+static uint32_t sent_to_machine;
+static float written_V;
+static unsigned long rate_hz = 1000;
+static bool tick_by_converters;
+static int64_t next_tick_ns;
+static volatile sig_atomic_t ended, reset;
+
+static void close_links(void) {
+  link_close(&computer);
+  link_close(&machine);
+}
+
+static void on_end(int number) {
+  (void)number;
+  ended = 1;
+}
+
+static void on_reset(int number) {
+  (void)number;
+  reset = 1;
+}
+
+static int64_t now_ns(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static int refuse(const char* option, const char* found, const char* allowed) {
+  fprintf(stderr, "hydro-front-end: %s: found %s, allowed is %s; see --help\n", option, found, allowed);
+  return 2;
+}
+
+static int read_options(int argc, char** argv, const char** link, const char** converter_link) {
+  for (int i = 1; i < argc; ++i) {
+    const char* value = i + 1 < argc ? argv[i + 1] : NULL;
+    if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+      fputs(kHelp, stdout);
+      exit(0);
+    } else if (strcmp(argv[i], "--version") == 0) {
+      puts("hydro-front-end " HYDRO_VERSION);
+      exit(0);
+    } else if (strcmp(argv[i], "--converters") == 0) {
+      if (!value) return refuse("--converters", "nothing", "a link");
+      *converter_link = argv[++i];
+    } else if (strcmp(argv[i], "--rate") == 0) {
+      if (!value) return refuse("--rate", "nothing", "1 to 20000");
+      char* end = NULL;
+      rate_hz = strtoul(argv[++i], &end, 10);
+      const bool number = argv[i][0] >= '0' && argv[i][0] <= '9' && *end == '\0';
+      if (!number || rate_hz < 1 || rate_hz > 20000) return refuse("--rate", argv[i], "1 to 20000");
+    } else if (strcmp(argv[i], "--tick-by-converters") == 0) {
+      tick_by_converters = true;
+    } else if (argv[i][0] == '-' || *link) {
+      return refuse("arguments", argv[i], "one LINK, --converters, --rate, --tick-by-converters");
+    } else {
+      *link = argv[i];
+    }
+  }
+  if (!*link) return refuse("arguments", "no LINK", "pty, pty:PATH, unix:PATH or udp:PORT");
+  if (tick_by_converters && !*converter_link)
+    return refuse("--tick-by-converters", "no --converters", "both");
+  return 0;
+}
+
+static void hold_still(void) {
+  converters = (struct hydro_converters){.read_back_V = written_V, .interlock = 1};
+  for (size_t i = 0; i < HYDRO_ANALOG_INPUTS; ++i) converters.analog_V[i] = 1;
+}
+
+int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
+  const char *link = NULL, *converter_link = NULL;
+  const int code = read_options(argc, argv, &link, &converter_link);
+  if (code != 0) return code;
+  if (!link_open(&computer, "link", link)) return 2;
+  atexit(close_links);
+  if (converter_link && !link_open(&machine, "converters", converter_link)) return 2;
+  fflush(stdout);
+  const struct sigaction end = {.sa_handler = on_end}, again = {.sa_handler = on_reset};
+  sigaction(SIGINT, &end, NULL);
+  sigaction(SIGTERM, &end, NULL);
+  sigaction(SIGHUP, &end, NULL);
+  sigaction(SIGUSR1, &again, NULL);
+  converters_age = STALE_TICKS;
+  next_tick_ns = now_ns();
+  *facts = (struct hydro_board_facts){.name = "posix",
+                                      .tick_rate_hz = (uint32_t)rate_hz,
+                                      .boot = (uint32_t)(next_tick_ns / 1000) | 1,
+                                      .analog_inputs = HYDRO_ANALOG_INPUTS,
+                                      .counters = HYDRO_COUNTERS,
+                                      .datagrams = computer.kind == LINK_UDP,
+                                      .analog_min_V = -10,
+                                      .analog_max_V = 10,
+                                      .output_min_V = -10,
+                                      .output_max_V = 10};
+  return 0;
+}
+
+/* Takes what the simulator has sent: the newest values count. */
+static void receive_converters(void) {
+  uint8_t bytes[512];
+  for (size_t chunk = 0; chunk < 8; ++chunk) {
+    const size_t count = link_receive(&machine, bytes, sizeof bytes);
+    if (count == 0) return;
+    machine.peer = machine.asker;
+    struct hydro_frame frame;
+    for (size_t i = 0; i < count; ++i) {
+      if (!hydro_receive(&from_machine, bytes[i], &frame) || frame.kind != HYDRO_CONVERTERS) continue;
+      converters = frame.body.converters;
+      converters_age = 0;
+      converters_new = true;
+    }
+    if (machine.kind == LINK_UDP) hydro_receive_anew(&from_machine);
+  }
+}
+
+/* The simulator's values are the clock. */
+static bool wait_for_converters(void) {
+  while (!ended && !converters_new) {
+    struct pollfd wanted = {.fd = machine.fd >= 0 ? machine.fd : machine.listening, .events = POLLIN};
+    poll(&wanted, 1, 100);
+    receive_converters();
+  }
+  converters_new = false;
+  return !ended;
+}
+
+bool hydro_board_wait(struct hydro_readings* readings) {
+  readings->overrun = false;
+  readings->elapsed_ticks = 1;
+  if (tick_by_converters) return wait_for_converters();
+  const int64_t period = 1000000000 / (int64_t)rate_hz;
+  next_tick_ns += period;
+  const struct timespec until = {.tv_sec = next_tick_ns / 1000000000, .tv_nsec = next_tick_ns % 1000000000};
+  while (!ended && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {
+  }
+  const int64_t late = (now_ns() - next_tick_ns) / period;
+  if (late > 0) {
+    readings->elapsed_ticks += (uint32_t)late;
+    next_tick_ns += late * period;
+  }
+  return !ended;
+}
+
+void hydro_board_read(struct hydro_readings* readings) {
+  if (machine.kind == LINK_NONE) {
+    hold_still();
+    converters_age = 0;
+  } else if (!tick_by_converters) {
+    converters_age += converters_age < STALE_TICKS ? readings->elapsed_ticks : 0;
+    receive_converters();
+  }
+  readings->answered = converters_age < STALE_TICKS;
+  readings->interlock_closed = converters.interlock == 1;
+  memcpy(readings->analog_V, converters.analog_V, sizeof readings->analog_V);
+  memcpy(readings->counter, converters.counter, sizeof readings->counter);
+  /* What was read back before the newest volts arrived says nothing of them. */
+  const bool current = machine.kind == LINK_NONE || (outputs > 0 && converters.tick == outputs - 1);
+  readings->read_back_V = current ? converters.read_back_V : strtof("nan", NULL);
+}
+
+void hydro_board_write(float volts) {
+  written_V = volts;
+  struct hydro_frame frame = {.kind = HYDRO_OUTPUT, .sequence = sent_to_machine++};
+  frame.body.output = (struct hydro_output){.tick = outputs++, .volts = volts};
+  uint8_t wire[HYDRO_WIRE_MAX];
+  link_send(&machine, wire, hydro_encode(&frame, wire), &machine.peer);
+}
+
+size_t hydro_board_receive(uint8_t* bytes, size_t capacity) {
+  return link_receive(&computer, bytes, capacity);
+}
+
+void hydro_board_computer_is_here(void) { computer.peer = computer.asker; }
+
+void hydro_board_send(const uint8_t* bytes, size_t count, bool to_asker) {
+  link_send(&computer, bytes, count, to_asker ? &computer.asker : &computer.peer);
+}
+
+void hydro_board_alive(void) {} /* the operating system ends a process that hangs when its user says so */
+
+bool hydro_board_was_reset(struct hydro_board_facts* facts) {
+  if (!reset) return false;
+  reset = 0;
+  ++facts->boot;
+  written_V = 0;
+  return true;
+}

@@ -1,0 +1,27 @@
+/* Whether a device can act by the settings it was sent. */
+#ifndef HYDRO_FIRMWARE_SETTINGS_H
+#define HYDRO_FIRMWARE_SETTINGS_H
+
+#include "firmware/sensors.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* HYDRO_TAKEN, or the first thing that is wrong; `part` is then the sensor's index for HYDRO_REFUSED_SENSOR, else 0. */
+enum hydro_refusal hydro_check_settings(const struct hydro_settings* settings,
+                                        const struct hydro_board_facts* facts, uint8_t* part);
+
+/* V of eq. (1) that the terminal can reach and the limit allows; low is above high when there are none. */
+struct hydro_voltage_range {
+  float low;
+  float high;
+};
+struct hydro_voltage_range hydro_voltage_range(const struct hydro_settings* settings,
+                                               const struct hydro_board_facts* facts);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
