@@ -40,7 +40,7 @@ class Connection {
   void Poll(TimePoint now);
 
   // The device holds the settings, and a sample of it has come since.
-  bool is_up() const { return phase_ == Phase::kUp && sampled_; }
+  bool is_up() const { return link_->is_open() && phase_ == Phase::kUp && sampled_; }
   bool link_is_open() const { return link_->is_open(); }
 
   // Meaningful once is_up() was true.

@@ -113,6 +113,7 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   } catch (const InputError& error) {
     throw RigError("board_error", error.what());
   }
+  if (beside_) beside_();
   faults_.clear();
   if (FindSilence()) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -124,6 +125,13 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   FindOldCommands(sample);
   trips_ = sample.trips;
   return Measured();
+}
+
+// Another program shall not take the device meanwhile, nor old samples wait.
+void FrontEndRig::Attend() {
+  Poll();
+  connection_.KeepAlive(now_);
+  if (beside_) beside_();
 }
 
 model::Measurement FrontEndRig::Measured() {
@@ -235,8 +243,8 @@ double FrontEndRig::Drive(double voltage) {
     arming_since_.reset();
     return 0;
   }
-  const bool armed = connection_.sample().state == HYDRO_ARMED;
-  const bool obeys = obeys_ && faults_.empty() && std::isfinite(voltage);
+  const bool armed = Armed();
+  const bool obeys = MayDrive() && std::isfinite(voltage);
   if (!armed && obeys) {
     if (!arming_since_) arming_since_ = now_;
     connection_.AskToArm(now_);
@@ -249,11 +257,38 @@ double FrontEndRig::Drive(double voltage) {
     connection_.KeepAlive(now_);
     return 0;
   }
+  if (armed && obeys && followed_) {
+    if (!followed_->sent) SendFollowed();
+    followed_->sent = false;
+    return connection_.sample().voltage;
+  }
   // Zero until it is known to be armed, so that what is said to act is what acts.
   const auto limited =
       static_cast<float>(armed && obeys ? std::clamp(voltage, -voltage_limit_, voltage_limit_) : 0.0);
   connection_.CommandVoltage(tick_, limited);
   return limited;
+}
+
+void FrontEndRig::SendFollowed() {
+  connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  followed_->sent = true;
+}
+
+pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, double pressure_ref,
+                                                      const pressure_ctrl::PressureLawSettings& law) {
+  followed_ = Followed{.pressure_ref = static_cast<float>(pressure_ref),
+                       .gains = {.k_p = static_cast<float>(law.gains.k_p),
+                                 .k_v = static_cast<float>(law.gains.k_v),
+                                 .reference_feedforward = static_cast<float>(law.reference_feedforward),
+                                 .arm_speed_ratio = static_cast<float>(law.arm_speed_ratio)}};
+  if (!Armed() || !MayDrive()) return {};
+  SendFollowed();
+  // The sample that the state was made from has the voltage that the device computed from it.
+  const hydro_sample& sample = connection_.sample();
+  return {.by_law = sample.source == HYDRO_SOURCE_LAW,
+          .voltage = sample.voltage,
+          .pressure_ref = sample.pressure_ref,
+          .saturated = sample.saturated != 0};
 }
 
 OutputLeft FrontEndRig::Zero() noexcept {

@@ -3,14 +3,17 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bus/clock.h"
 #include "plant/front_end/connection.h"
 #include "plant/rig.h"
+#include "pressure_ctrl/pressure_app.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
@@ -31,7 +34,7 @@ class DeviceCount {
   int64_t unwrapped_ = 0;
 };
 
-class FrontEndRig : public Rig {
+class FrontEndRig : public Rig, public pressure_ctrl::DeviceLoop {
  public:
   // `config` has a [driver] of kind "front_end". `link` and `session` are the configuration's and a random one, except in tests.
   FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock);
@@ -47,15 +50,25 @@ class FrontEndRig : public Rig {
   // A turn of the handshake. Returns whether it is done.
   bool Poll();
 
+  // What else this process does is called in each tick, and while the run has not begun.
+  void set_beside(std::function<void()> beside) { beside_ = std::move(beside); }
+
   std::string role() const override { return "driver"; }
   // The newest sample. Throws RigError "board_error" when another device has taken the place of the one that the run began with.
   model::Measurement Read(int64_t tick) override;
   // "device_silent", "device_fault", "output_differs", "sensor_NAME". Those that tripped the device are here in one reading at least.
   const std::vector<RigFault>& faults() const override { return faults_; }
+  void Attend() override;
   void Obey(bool commands) override { obeys_ = commands; }
   // Arms the device with the first command that is obeyed. Returns 0 until the device says that it is armed.
   double Drive(double voltage) override;
   int64_t lost_messages() const override { return connection_.counts().lost; }
+
+  // With the pressure loop on the device (driver.mode = "loop_on_device"): the reference goes out at once, and again in each Drive().
+  Answer Follow(const state_t& state, double pressure_ref,
+                const pressure_ctrl::PressureLawSettings& law) override;
+  void Release() override { followed_.reset(); }
+
   // Waits for up to 0.1 s until the device says that its output is at zero.
   OutputLeft Zero() noexcept override;
   // The same request, once, and nothing awaited. Async-signal-safe.
@@ -65,7 +78,16 @@ class FrontEndRig : public Rig {
   std::string Describe() const;  // "serial:/dev/ttyACM0 (posix, firmware 1.0.0, 5000 ticks/s)"
 
  private:
+  struct Followed {
+    float pressure_ref = 0;
+    hydro_gains gains{};
+    bool sent = false;  // since the last Drive()
+  };
+
   void CheckSpeed() const;
+  bool MayDrive() const { return obeys_ && faults_.empty(); }
+  bool Armed() const { return connection_.is_up() && connection_.sample().state == HYDRO_ARMED; }
+  void SendFollowed();
   model::Measurement Measured();
   bool FindSilence();
   void FindDeviceFaults(const hydro_sample& sample);
@@ -79,10 +101,12 @@ class FrontEndRig : public Rig {
   const double ticks_per_s_;
   const double voltage_limit_;  // V, +/-
   std::vector<RigFault> faults_;
+  std::function<void()> beside_;
 
   int64_t tick_ = 0;
   bus::Clock::TimePoint now_{};
   bool obeys_ = false;
+  std::optional<Followed> followed_;
   std::optional<int64_t> driving_since_;  // tick of the first command since the device was armed last
   std::optional<bus::Clock::TimePoint> arming_since_;
   std::optional<uint32_t> trips_;  // of the device, at the last reading

@@ -27,6 +27,12 @@ float RoundedUp(double limit) {
              : rounded;
 }
 
+// What the device says that it puts out shall not be beyond the limit here.
+float RoundedDown(double limit) {
+  const auto rounded = static_cast<float>(limit);
+  return static_cast<double>(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded;
+}
+
 uint8_t KindOf(Source source) {
   switch (source) {
     case Source::kAnalog:
@@ -114,7 +120,7 @@ void SetLimits(const settings::StackConfig& config, hydro_settings* settings) {
   const auto& driver = *config.driver;
   const model::Parameters& parameters = config.model.description.parameters;
   const bool loop = settings->mode == HYDRO_LOOP_ON_DEVICE;
-  settings->voltage_limit = RoundedUp(std::min(driver.voltage.limit_V, parameters.T_pmax / parameters.k_1));
+  settings->voltage_limit = RoundedDown(std::min(driver.voltage.limit_V, parameters.T_pmax / parameters.k_1));
   settings->pressure_limit = RoundedUp(config.limits.pressure_psi);
   settings->motor_speed_limit = RoundedUp(config.limits.motor_speed_rad_s);
   const bool measured = driver.arm_angle.source != Source::kNone;
