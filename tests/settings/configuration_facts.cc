@@ -209,6 +209,7 @@ const std::vector<HandWritten>& HandWrittenDefaults() {
       {"limits.arm_angle", "from the model's V_ms and c"},
       {"limits.rearm", "with a [driver] another"},
       {"driver.watchdog", "a section that may be missing"},
+      {"driver.simulated_device", "a list"},
       {"driver.motor_angle", "a section that may be missing"},
       {"driver.arm_angle", "a section that may be missing"},
       {"driver.arm_speed", "a section that may be missing"},
