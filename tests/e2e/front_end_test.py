@@ -1,7 +1,6 @@
 """hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
 
 import json
-import os
 import signal
 import socket
 import struct
@@ -26,7 +25,9 @@ class FrontEndCase(stack.TestCase):
         return [argument for option in options for argument in ("--set", option)]
 
     def run_by_hand(self, url, *settings, log=None, loops=("position_ctrl", "pressure_ctrl")):
-        run = self.stack(stack.config(self.config), "--duration", "0", *self.options(url, SINE, *settings), url=self.new_url())
+        network = self.new_url()
+        run = self.stack(stack.config(self.config), "--duration", "0", *self.options(url, SINE, *settings), url=network)
+        run.url = network
         if log:
             run.start("logger", "-o", log)
         for loop in loops:
@@ -168,7 +169,7 @@ class LastLineTest(FrontEndCase):
         session, _, _ = front_end.wait(self.relay.newest, "a sample")
         command = front_end.wait(lambda: (c := self.relay.command()) and c[0] == wire.VOLTAGE and c, "a command")
         body = struct.pack("<Iqf", command[3]["fingerprint"] ^ 1, command[3]["host_tick"], 5.0)
-        self.relay.device.send(wire.frame(wire.VOLTAGE, session, command[2] + 1000, body))
+        self.relay.device.send(wire.frame(wire.VOLTAGE, session, command[2] + 5, body))
         run["driver"].wait_for("a command made for other settings")
         self.assertNotIn(5.0, [s["voltage"] for s in self.relay.samples()])
 
@@ -184,6 +185,72 @@ class LastLineTest(FrontEndCase):
         self.assertFalse(self.armed())
         self.run_program("hydro-launch", stack.config(self.config), "--set", f"bus.url={run.url}", "--rearm")
         self.front.wait_until_driven()
+
+
+LOOP = ('driver.mode="loop_on_device"', 'process=[{ program = "hydro-driver" }, { program = "hydro-position-ctrl" }]')
+
+
+class LoopOnDeviceTest(FrontEndCase):
+    """The pressure loop runs on the device; hydro-driver leads it, and there is no hydro-pressure-ctrl."""
+
+    # Tests that the arm reaches its reference, that the commands in the log are the device's own, and that a replay in single precision
+    # agrees with each of them.
+    def test_arm_reaches_its_reference(self):
+        front = front_end.FrontEnd(self, "pty", rate=2000)
+        log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
+        launch = self.launch(stack.config(self.config), *self.options(front.url, *LOOP), "--log", log_file)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.run_program("hydro-log", "summary", log_file, "--json", json_file)
+        with open(json_file, encoding="utf-8") as file:
+            self.assertTrue(json.load(file)["tracking"]["at_target"])
+        self.assertAlmostEqual(front.shown()[5], 0.1, delta=0.02)
+        log = event_log.Log(log_file)
+        by_law = [c for c in log.motor_commands if c.status == 0]
+        self.assertGreater(len(by_law), 0.5 * len(log.states))
+        # Single precision, which only the device has.
+        self.assertEqual({struct.unpack("<f", struct.pack("<f", c.voltage))[0] == c.voltage for c in by_law}, {True})
+        replay = self.run_program("hydro-log", "replay", log_file, timeout=120)
+        self.assertRegex(replay.stdout, r"pressure: equal in single precision, \d+ motor commands of the device")
+        self.assertIn("position: identical", replay.stdout)
+
+    # Tests that hydro-set changes the gains of the device while it runs, without a jump of the voltage.
+    def test_hydro_set(self):
+        front = front_end.FrontEnd(self)
+        log_file = self.path("run.lcmlog")
+        run = self.run_by_hand(front.url, *LOOP, log=log_file, loops=("position_ctrl",))
+        front.wait_until_driven()
+        done = self.run_program("hydro-set", stack.config(self.config), "--set", f"bus.url={run.url}", *self.options(front.url, *LOOP),
+                                "pressure.natural_frequency_rad_s=140")
+        self.assertRegex(done.stdout, "acts from tick")
+        ticks = front.shown()[0]
+        self.wait_until(lambda: front.shown()[0] > ticks + 1000, "a second more")
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 0)
+        self.assertEqual(run["logger"].wait(), 0)
+        replay = self.run_program("hydro-log", "replay", log_file, timeout=120)
+        self.assertRegex(replay.stdout, r"pressure: equal in single precision, \d{3,} motor commands of the device")
+        self.assertRegex(replay.stdout, r"pressure: \d+ motor commands are not compared: a change of gains")
+
+    # Tests that the device stops by itself in this mode too.
+    def test_killed(self):
+        front = front_end.FrontEnd(self)
+        relay = front_end.Relay(self, front.port)
+        run = self.run_by_hand(relay.url, *LOOP, loops=("position_ctrl",))
+        front.wait_until_driven()
+        front_end.wait(lambda: (n := relay.newest()) and n[2]["source"] == 2, "the law")
+        run["driver"].kill()
+        front.wait_until_zero()
+        front_end.wait(lambda: relay.newest()[2]["state"] != wire.ARMED, "a sample that says so")
+        samples = relay.samples()
+        age, after = front_end.age_at_trip(samples)
+        late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
+        self.assertEqual(after["voltage"], 0)
+        self.assertLess(age, round(WATCHDOG * front.rate) + late)
+
+    # Tests that a second pressure loop is refused before anything starts.
+    def test_beside_a_pressure_loop(self):
+        process = self.run_program("hydro-driver", stack.config(self.config), *self.options("unix:/nobody", LOOP[0]), expect=2)
+        self.assertIn('found hydro-pressure-ctrl with driver.mode = "loop_on_device"', process.stderr)
 
 
 class FrontEndInputTest(FrontEndCase):

@@ -233,6 +233,7 @@ const std::vector<HandWritten>& HandWrittenDefaults() {
       {"limits.rearm", "with a [driver] another"},
       {"driver.watchdog", "a section that may be missing"},
       {"driver.watchdog_s", "limits.stale_input_s"},
+      {"driver.simulated_device", "a list"},
       {"driver.motor_angle", "a section that may be missing"},
       {"driver.arm_angle", "a section that may be missing"},
       {"driver.arm_speed", "a section that may be missing"},

@@ -33,7 +33,8 @@ struct SimulatedBoard {
     kInterrupt,   // every other read or write is interrupted by a signal
     kInput0High,  // analog input 0 is beyond its range
     kInput0Open,  // analog input 0 reads 0 V: its wire is broken
-    kLastToStay,
+    kOutputLies,  // an output reads back as its highest code, whatever it is
+    kLastToStay = kOutputLies,
     kThrow,        // a std::exception
     kThrowNumber,  // something that is none
     kTerminate,
