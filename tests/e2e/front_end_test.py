@@ -295,7 +295,8 @@ class FrontEndInputTest(FrontEndCase):
         self.assertIn("plant.rate_hz: found 1000, allowed a rate that divides the front end's 1500 ticks per second",
                       self.refused(front.url))
         self.assertIn("driver.motor_angle.channel: found 7, allowed 0 to 1: the front end has 2 counters",
-                      self.refused(front.url, "plant.rate_hz=500", "driver.motor_angle.channel=7"))
+                      self.refused(front.url, "plant.rate_hz=500", "position.sample_interval_s=0.006",
+                                   "driver.motor_angle.channel=7"))
 
     # Tests the table of readings: nothing is armed for it.
     def test_check_sensors(self):
