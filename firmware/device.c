@@ -120,7 +120,7 @@ static float act(struct hydro_device* device, uint32_t elapsed_ticks) {
     sample->pressure_ref = sample->transfer = 0.0f;
     return device->zero_volts;
   }
-  const struct hydro_voltage_range range = hydro_voltage_range(&device->settings, &device->facts);
+  const struct hydro_voltage_range range = hydro_reachable_voltages(&device->settings, &device->facts);
   sample->voltage = hydro_clamp(asked, range.low, range.high);
   sample->saturated = sample->voltage != asked;
   const float volts = (sample->voltage - device->settings.output_offset) / device->settings.output_scale;

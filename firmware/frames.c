@@ -256,14 +256,15 @@ size_t hydro_encode(const struct hydro_frame* frame, uint8_t wire[HYDRO_WIRE_MAX
   /* Consistent overhead byte stuffing: each zero becomes the distance to the next one, from the code byte on. */
   wire[0] = 0;
   size_t code_at = 1;
-  for (size_t i = 2; i < 2 + cursor.at; ++i) {
+  const size_t end = 2 + cursor.at;
+  for (size_t i = 2; i < end; ++i) {
     if (wire[i] != 0) continue;
     wire[code_at] = (uint8_t)(i - code_at);
     code_at = i;
   }
-  wire[code_at] = (uint8_t)(2 + cursor.at - code_at);
-  wire[2 + cursor.at] = 0;
-  return cursor.at + 3;
+  wire[code_at] = (uint8_t)(end - code_at);
+  wire[end] = 0;
+  return end + 1;
 }
 
 /* Undoes the stuffing in place; false: the distances do not lead to the end. */

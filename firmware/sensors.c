@@ -2,14 +2,6 @@
 
 #include "firmware/law.h"
 
-static float not_a_number(void) {
-  union {
-    uint32_t bits;
-    float number;
-  } pun = {.bits = UINT32_C(0x7fc00000)};
-  return pun.number;
-}
-
 void hydro_sensors_begin(struct hydro_sensors* sensors) {
   *sensors = (struct hydro_sensors){0};
   hydro_sensors_unknown(sensors, 0);
@@ -17,7 +9,7 @@ void hydro_sensors_begin(struct hydro_sensors* sensors) {
 
 void hydro_sensors_unknown(struct hydro_sensors* sensors, uint32_t elapsed_ticks) {
   sensors->unread_ticks += elapsed_ticks;
-  for (size_t i = 0; i < HYDRO_SENSORS; ++i) sensors->sensor[i].value = not_a_number();
+  for (size_t i = 0; i < HYDRO_SENSORS; ++i) sensors->sensor[i].value = HYDRO_NOT_A_NUMBER;
 }
 
 /* Follows a counter of up to 32 bits that wraps. Its first reading counts as signed: just below the wrap means just below
@@ -91,7 +83,7 @@ static void read_sensor(struct hydro_sensor* sensor, const struct hydro_sensor* 
   }
   /* The low pass starts again at the first reading after one that was not credible. */
   if (!good) {
-    sensor->value = not_a_number();
+    sensor->value = HYDRO_NOT_A_NUMBER;
   } else if (hydro_is_finite(sensor->value) && settings->low_pass_share < 1.0f) {
     sensor->value += settings->low_pass_share * (sensor->unfiltered - sensor->value);
   } else {

@@ -8,6 +8,8 @@
 extern "C" {
 #endif
 
+#define HYDRO_NOT_A_NUMBER (__builtin_nanf("")) /* GCC's and clang's, without math.h */
+
 enum {
   HYDRO_GOOD_READINGS = 10
 }; /* in a row end the fault of a sensor: a loose contact must not switch the motor */

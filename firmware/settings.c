@@ -55,8 +55,8 @@ static bool sensors_suffice(const struct hydro_settings* settings) {
   return !hydro_is_finite(settings->arm_angle_limit) || measured(settings, HYDRO_ARM_ANGLE);
 }
 
-struct hydro_voltage_range hydro_voltage_range(const struct hydro_settings* settings,
-                                               const struct hydro_board_facts* facts) {
+struct hydro_voltage_range hydro_reachable_voltages(const struct hydro_settings* settings,
+                                                    const struct hydro_board_facts* facts) {
   const float a = settings->output_scale * facts->output_min_V + settings->output_offset;
   const float b = settings->output_scale * facts->output_max_V + settings->output_offset;
   const float limit = settings->voltage_limit;
@@ -76,11 +76,11 @@ enum hydro_refusal hydro_check_settings(const struct hydro_settings* settings,
   if (settings->watchdog_ticks < 1 || settings->watchdog_ticks > second) return HYDRO_REFUSED_WATCHDOG;
   if (!limits_are_good(settings)) return HYDRO_REFUSED_LIMIT;
   if (!output_is_good(settings)) return HYDRO_REFUSED_OUTPUT;
-  const struct hydro_voltage_range range = hydro_voltage_range(settings, facts);
+  const struct hydro_voltage_range range = hydro_reachable_voltages(settings, facts);
   if (!(range.low <= 0.0f && range.high >= 0.0f)) return HYDRO_REFUSED_ZERO;
-  for (uint8_t i = 0; i < HYDRO_SENSORS; ++i) {
+  for (size_t i = 0; i < HYDRO_SENSORS; ++i) {
     if (sensor_is_good(settings, i, facts)) continue;
-    *part = i;
+    *part = (uint8_t)i;
     return HYDRO_REFUSED_SENSOR;
   }
   return sensors_suffice(settings) ? HYDRO_TAKEN : HYDRO_REFUSED_MISSING;

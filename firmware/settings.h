@@ -17,8 +17,8 @@ struct hydro_voltage_range {
   float low;
   float high;
 };
-struct hydro_voltage_range hydro_voltage_range(const struct hydro_settings* settings,
-                                               const struct hydro_board_facts* facts);
+struct hydro_voltage_range hydro_reachable_voltages(const struct hydro_settings* settings,
+                                                    const struct hydro_board_facts* facts);
 
 #ifdef __cplusplus
 }

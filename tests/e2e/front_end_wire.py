@@ -1,10 +1,13 @@
 """The frames of docs/front_end.md, written from that page and not from firmware/frames.c: what both agree on is what the page says."""
 
 import math
+import os
 import select
 import socket
 import struct
+import termios
 import time
+import tty
 import zlib
 
 HELLO, SETTINGS, ARM, VOLTAGE, PRESSURE, ZERO = 1, 2, 3, 4, 5, 6
@@ -140,10 +143,13 @@ class Computer:
         return identity, self.ask(SETTINGS, body, SETTINGS_HELD)
 
     def sample(self, wanted=lambda _: True, seconds=10, send=lambda: None):
-        """The next sample for which `wanted` holds; `send` is called about every millisecond."""
+        """The next sample for which `wanted` holds; `send` is called every 5 ms."""
         end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            send()
+        again = 0
+        while (now := time.monotonic()) < end:
+            if now >= again:
+                send()
+                again = now + 0.005
             for kind, _, _, fields in self.poll():
                 if kind == SAMPLE and wanted(fields):
                     return fields
@@ -152,9 +158,14 @@ class Computer:
         raise AssertionError(f"no such sample within {seconds} s; the last one is {last}")
 
     def arm(self, send=lambda: None):
-        trips = self.sample()["trips"]
-        self.send(ARM, struct.pack("<II", fingerprint(self.body), trips))
-        return self.sample(lambda s: s["state"] == ARMED, send=send)
+        """Asks for it, again with each newer sample, until a sample says so."""
+        def ask():
+            send()
+            if self.samples and time.monotonic() > again[0]:
+                self.send(ARM, struct.pack("<II", fingerprint(self.body), self.samples[-1]["trips"]))
+                again[0] = time.monotonic() + 0.05
+        again = [0]
+        return self.sample(lambda s: s["state"] == ARMED, send=ask)
 
     def voltage(self, volts, tick=0):
         self.send(VOLTAGE, struct.pack("<Iqf", fingerprint(self.body), tick, volts))
@@ -182,3 +193,105 @@ class Udp:
 
     def wait(self, seconds):
         select.select([self.socket], [], [], seconds)
+
+    def close(self):
+        self.socket.close()
+
+
+class Stream:
+    """A Unix socket."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        try:
+            self.socket.connect(path)
+        except OSError:
+            self.socket.close()
+            raise
+        self.socket.setblocking(False)
+
+    def send(self, data):
+        try:
+            self.socket.send(data)
+        except (BlockingIOError, BrokenPipeError, ConnectionResetError):
+            pass
+
+    def receive(self):
+        data = b""
+        while True:
+            try:
+                piece = self.socket.recv(4096)
+            except (BlockingIOError, ConnectionResetError):
+                return data
+            if not piece:
+                return data
+            data += piece
+
+    wait, close = Udp.wait, Udp.close
+
+
+class Terminal:
+    def __init__(self, path):
+        self.file = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        tty.setraw(self.file)
+        termios.tcflush(self.file, termios.TCIOFLUSH)
+
+    def send(self, data):
+        try:
+            os.write(self.file, data)
+        except BlockingIOError:
+            pass
+
+    def receive(self):
+        try:
+            return os.read(self.file, 65536)
+        except BlockingIOError:
+            return b""
+
+    def wait(self, seconds):
+        select.select([self.file], [], [], seconds)
+
+    def close(self):
+        os.close(self.file)
+
+
+class Machine:
+    """A simulator's end of the converter link: inputs that hold, and every output that was written."""
+
+    def __init__(self, port):
+        self.port, self.receiver, self.sequence = port, Receiver(), 0
+        self.analog, self.counters, self.interlock = [1.0] * 8, [0, 0], 1
+        self.outputs, self.held = [], math.nan
+        self.answers, self.kick_s, self.heard = True, None, time.monotonic()
+        self.give(0)
+
+    def give(self, tick):
+        self.sequence += 1
+        self.port.send(frame(CONVERTERS, 0, self.sequence, struct.pack("<Q8f2IfB3x", tick, *self.analog, *self.counters, self.held,
+                                                                       self.interlock)))
+
+    def poll(self):
+        for kind, _, _, fields in self.receiver.take(self.port.receive()):
+            if kind == OUTPUT:
+                self.outputs.append((fields["tick"], fields["volts"]))
+                self.held, self.heard = fields["volts"], time.monotonic()
+                if self.answers:
+                    self.give(fields["tick"])
+        # An emulator may sleep until something arrives: the same values again, should it have missed its own clock.
+        if self.kick_s and self.outputs and time.monotonic() > self.heard + self.kick_s:
+            self.heard = time.monotonic()
+            self.give(self.outputs[-1][0])
+
+
+class Both:
+    """The computer's port, beside which a Machine answers."""
+
+    def __init__(self, port, machine):
+        self.port, self.machine, self.send = port, machine, port.send
+
+    def receive(self):
+        self.machine.poll()
+        return self.port.receive()
+
+    def wait(self, seconds):
+        self.machine.port.wait(min(seconds, 0.001))

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 ROOMS = {
-    "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
+    "firmware", "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
     "position_ctrl/law", "logger", "process/safety", "sim", "plot", "design",
     "experiments", "diagnose/recording", "diagnose/fit", "diagnose/balances", "diagnose/evidence", "diagnose/say",
     "diagnose/prove", "diagnose/report", "diagnose",
@@ -31,6 +31,8 @@ EXEMPT = {
     "diagnose/evidence/run_values.h": "what per_run.h judges: per_run_test reads the values of runs",
     "diagnose/prove/progress.h": "one struct without a function",
     "pressure_ctrl/own_pressure_loop.h": "a whole program: e2e.own_controller runs the example that stands on it",
+    "firmware/board.h": "what a board provides: e2e.front_end_firmware runs those that exist",
+    "firmware/device_frames.h": "the inside of device.h, for two files",
     "model/start_from.h": "where Respond and StartedActuator begin: their tests go through it",
     "model/response_pass.h": "the inside of Respond, for two files: the tests of response.h go through it",
 }

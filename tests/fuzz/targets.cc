@@ -9,6 +9,7 @@ const Target* FindTarget(std::string_view name) {
       {"processes", Processes},
       {"plant", Plant},
       {"recorder", Recorder},
+      {"front_end", FrontEnd},
       {"log", Log},
       {"table", Table},
       {"mat", Mat},

@@ -20,12 +20,14 @@ struct Target {
 // Null when there is none of that name.
 const Target* FindTarget(std::string_view name);
 
-void Packets(const uint8_t* data, size_t size);      // LCM's packets as they come from the network
-void Messages(const uint8_t* data, size_t size);     // messages as they come from the network
-void Processes(const uint8_t* data, size_t size);    // what controllers and the launch do with them
-void Plant(const uint8_t* data, size_t size);        // what the plant and its voltage guard do with them
-void Recorder(const uint8_t* data, size_t size);     // what the logger does with them
-void Log(const uint8_t* data, size_t size);          // all that hydro-log does with a log
+void Packets(const uint8_t* data, size_t size);    // LCM's packets as they come from the network
+void Messages(const uint8_t* data, size_t size);   // messages as they come from the network
+void Processes(const uint8_t* data, size_t size);  // what controllers and the launch do with them
+void Plant(const uint8_t* data, size_t size);      // what the plant and its voltage guard do with them
+void Recorder(const uint8_t* data, size_t size);   // what the logger does with them
+void FrontEnd(const uint8_t* data,
+              size_t size);                  // what a front end's firmware makes of a link and its converters
+void Log(const uint8_t* data, size_t size);  // all that hydro-log does with a log
 void Table(const uint8_t* data, size_t size);        // hydro-log import
 void Mat(const uint8_t* data, size_t size);          // a MAT file as a table
 void MeasuredRun(const uint8_t* data, size_t size);  // a CSV with its sidecar

@@ -10,9 +10,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "firmware/boards/converter_link.h"
 #include "firmware/boards/posix/link.h"
-
-enum { STALE_TICKS = 20 }; /* without values from the simulator: the converters do not answer */
 
 static const char kHelp[] =
     "A front end as a process: the firmware of a microcontroller beside the machine, on this computer. For "
@@ -36,12 +35,7 @@ static const char kHelp[] =
     "More: docs/front_end.md\n";
 
 static struct link computer, machine;
-static struct hydro_receiver from_machine;
-static struct hydro_converters converters;
-static uint32_t converters_age; /* ticks */
-static bool converters_new;
-static uint64_t outputs; /* written so far: the tick of the next OUTPUT */
-static uint32_t sent_to_machine;
+static struct hydro_converter_link converters;
 static float written_V;
 static unsigned long rate_hz = 1000;
 static bool tick_by_converters;
@@ -106,11 +100,6 @@ static int read_options(int argc, char** argv, const char** link, const char** c
   return 0;
 }
 
-static void hold_still(void) {
-  converters = (struct hydro_converters){.read_back_V = written_V, .interlock = 1};
-  for (size_t i = 0; i < HYDRO_ANALOG_INPUTS; ++i) converters.analog_V[i] = 1;
-}
-
 int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
   const char *link = NULL, *converter_link = NULL;
   const int code = read_options(argc, argv, &link, &converter_link);
@@ -124,7 +113,7 @@ int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
   sigaction(SIGTERM, &end, NULL);
   sigaction(SIGHUP, &end, NULL);
   sigaction(SIGUSR1, &again, NULL);
-  converters_age = STALE_TICKS;
+  hydro_converter_link_begin(&converters, (uint32_t)(rate_hz + 3) / 4);
   next_tick_ns = now_ns();
   *facts = (struct hydro_board_facts){.name = "posix",
                                       .tick_rate_hz = (uint32_t)rate_hz,
@@ -146,25 +135,18 @@ static void receive_converters(void) {
     const size_t count = link_receive(&machine, bytes, sizeof bytes);
     if (count == 0) return;
     machine.peer = machine.asker;
-    struct hydro_frame frame;
-    for (size_t i = 0; i < count; ++i) {
-      if (!hydro_receive(&from_machine, bytes[i], &frame) || frame.kind != HYDRO_CONVERTERS) continue;
-      converters = frame.body.converters;
-      converters_age = 0;
-      converters_new = true;
-    }
-    if (machine.kind == LINK_UDP) hydro_receive_anew(&from_machine);
+    for (size_t i = 0; i < count; ++i) hydro_converter_link_take(&converters, bytes[i]);
+    if (machine.kind == LINK_UDP) hydro_receive_anew(&converters.receiver);
   }
 }
 
 /* The simulator's values are the clock. */
 static bool wait_for_converters(void) {
-  while (!ended && !converters_new) {
+  while (!ended && !converters.arrived) {
     struct pollfd wanted = {.fd = machine.fd >= 0 ? machine.fd : machine.listening, .events = POLLIN};
     poll(&wanted, 1, 100);
     receive_converters();
   }
-  converters_new = false;
   return !ended;
 }
 
@@ -185,29 +167,26 @@ bool hydro_board_wait(struct hydro_readings* readings) {
   return !ended;
 }
 
+/* Without a simulator: inputs of 1 V, counters of 0, an output that holds what was written. */
+static void hold_still(struct hydro_readings* readings) {
+  readings->answered = readings->interlock_closed = true;
+  readings->read_back_V = written_V;
+  for (size_t i = 0; i < HYDRO_ANALOG_INPUTS; ++i) readings->analog_V[i] = 1;
+}
+
 void hydro_board_read(struct hydro_readings* readings) {
   if (machine.kind == LINK_NONE) {
-    hold_still();
-    converters_age = 0;
-  } else if (!tick_by_converters) {
-    converters_age += converters_age < STALE_TICKS ? readings->elapsed_ticks : 0;
-    receive_converters();
+    hold_still(readings);
+    return;
   }
-  readings->answered = converters_age < STALE_TICKS;
-  readings->interlock_closed = converters.interlock == 1;
-  memcpy(readings->analog_V, converters.analog_V, sizeof readings->analog_V);
-  memcpy(readings->counter, converters.counter, sizeof readings->counter);
-  /* What was read back before the newest volts arrived says nothing of them. */
-  const bool current = machine.kind == LINK_NONE || (outputs > 0 && converters.tick == outputs - 1);
-  readings->read_back_V = current ? converters.read_back_V : strtof("nan", NULL);
+  if (!tick_by_converters) receive_converters();
+  hydro_converter_link_read(&converters, readings);
 }
 
 void hydro_board_write(float volts) {
   written_V = volts;
-  struct hydro_frame frame = {.kind = HYDRO_OUTPUT, .sequence = sent_to_machine++};
-  frame.body.output = (struct hydro_output){.tick = outputs++, .volts = volts};
   uint8_t wire[HYDRO_WIRE_MAX];
-  link_send(&machine, wire, hydro_encode(&frame, wire), &machine.peer);
+  link_send(&machine, wire, hydro_converter_link_output(&converters, volts, wire), &machine.peer);
 }
 
 size_t hydro_board_receive(uint8_t* bytes, size_t capacity) {
