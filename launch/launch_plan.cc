@@ -40,9 +40,13 @@ std::string Join(const std::set<std::string>& names) {
   return text;
 }
 
+std::string RoleOf(const settings::ProcessSection& process) {
+  return process.command.empty() ? process::RoleOf(process.program) : process.role;
+}
+
 // Waits for the logger before the run begins.
 bool AwaitsLogger(const settings::ProcessSection& process, const LaunchRequest& request) {
-  return !request.log_file.empty() && process::IsPlant(process.role);
+  return !request.log_file.empty() && process::IsPlant(RoleOf(process));
 }
 
 // Which joints a limb's process has, where it does not have them all.
@@ -88,7 +92,7 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
   std::vector<settings::ProcessSection> here;
   bool names_logger = false;
   for (const settings::ProcessSection& process : config.processes) {
-    if (process.role == "driver")
+    if (RoleOf(process) == "driver")
       settings::CheckDriver(config, process.command.empty() ? process.program : settings::NameOf(process));
     const bool logger = process.program == kLogger;
     names_logger |= logger;

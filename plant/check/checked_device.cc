@@ -56,7 +56,7 @@ CheckedDevice::~CheckedDevice() { End(); }
 
 void CheckedDevice::End() {
   if (pid_ < 0) return;
-  kill(pid_, SIGKILL);
+  kill(-pid_, SIGKILL);  // and what it has started
   waitpid(pid_, nullptr, 0);
   pid_ = -1;
   close(in_);

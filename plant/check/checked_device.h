@@ -16,6 +16,7 @@ class CheckedDevice {
   // Starts driver.simulated_device in the configuration's folder and waits for its line "ready". Throws
   // InputError when there is no such program, or when it does not become ready.
   explicit CheckedDevice(const settings::StackConfig& config);
+  // Kills it, and what it has started.
   ~CheckedDevice();
   CheckedDevice(const CheckedDevice&) = delete;
   CheckedDevice& operator=(const CheckedDevice&) = delete;

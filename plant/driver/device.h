@@ -71,9 +71,9 @@ class Device {
   // What it is and has. It does not change.
   virtual DeviceDescription Describe() const = 0;
 
-  // The newest reading of each input. A device on a network or bus takes what has arrived and waits for
-  // nothing: what keeps its old time grows old, and is a fault after limits.stale_input_s. Throws RigError,
-  // of which DeviceError is one.
+  // The newest reading of each input. On a network or bus that is what has arrived; waiting is for a small
+  // part of a tick at most. What keeps its old time grows old, and is a fault after limits.stale_input_s.
+  // Throws RigError, of which DeviceError is one.
   virtual void Read(DeviceReadings& readings) = 0;
 
   // Puts out `output`, in the output's unit and within its ends, until the next call. Once a tick. Throws

@@ -69,12 +69,12 @@ StandIn::StandIn(const settings::StackConfig& config) {
 
 void StandIn::End() {
   if (pid_ < 0) return;
-  kill(pid_, SIGTERM);
+  kill(-pid_, SIGTERM);  // and what it has started
   for (int i = 0; i < kExit_ms; ++i) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
     usleep(1000);
   }
-  kill(pid_, SIGKILL);
+  kill(-pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
 }
 

@@ -21,6 +21,7 @@ using hydro::plant::DeviceError;
 using hydro::plant::DeviceInput;
 
 constexpr int kAnswer_ms = 500;
+constexpr int kHeartbeatTicks = 10;
 constexpr int kReadBackTries = 20, kReadBackTry_ms = 5;
 constexpr int kTolerance = 50;  // permille, of the torque that a drive measures
 constexpr uint16_t kModeOfOperation = 0x6060;
@@ -57,7 +58,7 @@ int OpenCan(const std::string& name, const std::string& folder) {
   address.can_ifindex = static_cast<int>(if_nametoindex(name.c_str()));
   if (address.can_ifindex == 0) {
     throw DeviceError("driver.device: there is no interface " + name +
-                      "; `ip link` lists them; `ip link set can0 up type can bitrate 500000` starts one");
+                      "; `ip link` lists them; `ip link set can0 up type can bitrate 1000000` starts one");
   }
   return Connected(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW),
                    reinterpret_cast<const sockaddr*>(&address), sizeof address, true, name);
@@ -128,7 +129,8 @@ void CanDrive::Drive(double output) {
   const State state = StateOf(said_.statusword.value_or(0));
   const auto torque = static_cast<int16_t>(std::lround(state == State::kEnabled ? output : 0));
   asked_ = clock_.Now();
-  const bool sent = Send(Torque(node_, Towards(state), torque)) && Send(Heartbeat()) && Send(Sync());
+  const bool sent = Send(Torque(node_, Towards(state), torque)) &&
+                    (ticks_++ % kHeartbeatTicks != 0 || Send(Heartbeat())) && Send(Sync());
   // A full queue is a bus on which nobody answers: the readings grow old then.
   if (!sent && errno != ENOBUFS && errno != EAGAIN) {
     throw DeviceError(name_ + ": " + std::strerror(errno) +

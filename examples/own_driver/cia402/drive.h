@@ -37,6 +37,7 @@ class CanDrive : public hydro::plant::Device {
   const hydro::bus::Clock& clock_;
   bool drives_;
   Said said_;
+  unsigned ticks_ = 0;
   hydro::bus::Clock::TimePoint asked_{};  // the newest SYNC: the drive measures then
   hydro::bus::Clock::TimePoint motion_at_{}, inputs12_at_{}, input3_at_{};
 };

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <ctime>
 
 #include "frames.h"
 #include "plant/driver/driver_main.h"
@@ -15,6 +17,7 @@ namespace {
 
 using hydro::plant::DeviceInput;
 
+constexpr auto kAnswerTime = std::chrono::microseconds(300);
 constexpr uint32_t kRemembered = 64;  // of the newest commands it is known when they were sent
 
 // The socket to "udp://HOST:PORT". Throws InputError.
@@ -46,7 +49,7 @@ class UdpBox : public hydro::plant::Device {
     int patience = 1000;  // ms, of [driver.own]; a key that nobody asks for is refused
     settings.own.Integer("answer_ms", &patience, 1, 10000);
     Send(Command{});  // --check-sensors too: the box answers only to commands, and at the start it is at zero
-    if (WaitForAnswer(patience)) return;
+    if (WaitForAnswer(std::chrono::milliseconds(patience))) return;
     close(socket_);
     throw hydro::plant::DeviceError(
         name_ + " has not answered within " + std::to_string(patience) +
@@ -66,8 +69,10 @@ class UdpBox : public hydro::plant::Device {
   }
 
   void Read(hydro::plant::DeviceReadings& readings) override {
-    if (!drives_) Send(Command{});  // --check-sensors
-    Receive();
+    // It measures when it is asked. Its answer is awaited for a small part of a tick; one that comes later
+    // counts next time.
+    Send({.sequence = ++sequence_, .output = output_});
+    WaitForAnswer(kAnswerTime);
     for (size_t i = 0; i < 4; ++i) readings.inputs[i] = {answer_.inputs[i], answered_};
     readings.inputs[4] = {static_cast<double>(answer_.count), answered_};
     readings.output = {answer_.output, answered_};
@@ -76,16 +81,18 @@ class UdpBox : public hydro::plant::Device {
 
   // What is lost on the way is not noticed here, but by the answers that do not come.
   void Drive(double output) override {
-    drives_ = true;
-    if (!Send({.sequence = ++sequence_, .output = static_cast<float>(output)}) && errno != ECONNREFUSED &&
-        errno != EAGAIN)
+    output_ = static_cast<float>(output);
+    if (!Send({.sequence = ++sequence_, .output = output_}) && errno != ECONNREFUSED && errno != EAGAIN)
       throw hydro::plant::DeviceError(name_ + ": " + std::strerror(errno));
   }
 
-  bool Zero(double output) noexcept override { return Send({.output = static_cast<float>(output)}); }
+  bool Zero(double output) noexcept override {
+    output_ = static_cast<float>(output);
+    return Send({.output = output_});
+  }
 
   double ReadBack() noexcept override {
-    while (WaitForAnswer(20)) {
+    while (WaitForAnswer(std::chrono::milliseconds(20))) {
     }
     return answer_.output;
   }
@@ -114,15 +121,16 @@ class UdpBox : public hydro::plant::Device {
     return received;
   }
 
-  bool WaitForAnswer(int milliseconds) noexcept {
+  bool WaitForAnswer(std::chrono::nanoseconds patience) noexcept {
     pollfd waits{.fd = socket_, .events = POLLIN, .revents = 0};
-    return poll(&waits, 1, milliseconds) > 0 && Receive();
+    const timespec limit{patience.count() / 1000000000, patience.count() % 1000000000};
+    return ppoll(&waits, 1, &limit, nullptr) > 0 && Receive();
   }
 
   std::string name_;
   const hydro::bus::Clock& clock_;
   int socket_;
-  bool drives_ = false;
+  float output_ = 0;  // V, put out
   uint32_t sequence_ = 0;
   Answer answer_;
   hydro::bus::Clock::TimePoint sent_at_[kRemembered]{}, answered_{};

@@ -115,13 +115,14 @@ TEST_F(Cia402Test, StepsToEnabled) {
     Read(*drive);
     drive->Drive(-200);
     const std::vector<can_frame> frames = Heard();
-    ASSERT_EQ(frames.size(), 3u);
     EXPECT_EQ(frames[0].can_id, 0x205u);
     EXPECT_EQ(Bytes(frames[0]), command) << statusword;
+    EXPECT_EQ(frames.back().can_id, 0x80u);
+    EXPECT_TRUE(Bytes(frames.back()).empty());
+    EXPECT_EQ(frames.size(), statusword == 0x0240 ? 3u : 2u);
+    if (frames.size() != 3) continue;  // a heartbeat in every tenth tick
     EXPECT_EQ(frames[1].can_id, 0x77fu);
     EXPECT_THAT(Bytes(frames[1]), ElementsAre(5));
-    EXPECT_EQ(frames[2].can_id, 0x80u);
-    EXPECT_TRUE(Bytes(frames[2]).empty());
   }
 }
 

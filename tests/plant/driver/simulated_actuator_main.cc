@@ -112,7 +112,8 @@ class Rig {
       last_edge_ = time;
     }
     const bool enabled = edges_ > 0 && time - last_edge_ < kWatchdogTime;
-    if (board_.enabled != 0 && !enabled) ++board_.trips;
+    const bool driven = board_.opened > board_.closed;  // after its end a driver changes the line no more
+    if (board_.enabled != 0 && !enabled && driven) ++board_.trips;
     board_.enabled = enabled ? 1 : 0;
     board_.voltage = enabled ? -2 * Volts(board_.outputs[0]) : 0;
     if (time > actuator_.time()) actuator_.Advance(board_.voltage, time);
