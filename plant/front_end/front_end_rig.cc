@@ -106,7 +106,9 @@ void FrontEndRig::Connect() {
 }
 
 model::Measurement FrontEndRig::Read(int64_t tick) {
-  if (tick > tick_ + 1) driving_since_ = tick;  // this process was late: nothing was commanded meanwhile
+  // This process stood still: nothing was commanded meanwhile. Ordinary late wake-ups must not hide a device that lags behind.
+  if (static_cast<double>(tick - tick_) > 0.5 * config_.limits.stale_input_s * ticks_per_s_)
+    driving_since_ = tick;
   tick_ = tick;
   try {
     Poll();

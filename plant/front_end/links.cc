@@ -1,6 +1,7 @@
 // The three kinds of links: how each is opened, and what to do when it cannot be.
 #include <fcntl.h>
 #include <linux/serial.h>
+#include <linux/sockios.h>
 #include <netdb.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -187,6 +188,12 @@ class UnixLink : public Link {
     if (error == EAGAIN) allowed = "a front end that takes a connection: another program has it";
     if (error == EPROTOTYPE) allowed = "a stream socket";
     return Trouble(Found(path_, error), allowed);
+  }
+
+  // What the device has not read yet, with what the kernel adds to it: nothing, or more than a frame.
+  size_t BytesOnTheirWay(int opened) const override {
+    int bytes = 0;
+    return ioctl(opened, SIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
   }
 
  private:

@@ -105,7 +105,9 @@ TEST(FrontEndRigTest, PulledCable) {
     bench.Tick(3, /*obeys=*/i > 250);
     tripped =
         tripped || bench.Fault("device_fault").find("driver.watchdog_s (watchdog)") != std::string::npos;
-    if (i == 250) EXPECT_EQ(bench.device.state, HYDRO_TRIPPED) << "nobody has asked";
+    if (i == 250) {
+      EXPECT_EQ(bench.device.state, HYDRO_TRIPPED) << "nobody has asked";
+    }
   }
   EXPECT_TRUE(tripped);
   bench.Ticks(5, 3);

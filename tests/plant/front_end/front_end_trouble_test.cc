@@ -115,6 +115,20 @@ TEST(FrontEndTroubleTest, OneWay) {
   EXPECT_THAT(bench.Fault("device_silent"), HasSubstr("obeys commands of"));
 }
 
+// Tests the same where this process wakes up late all the time, and so skips ticks.
+TEST(FrontEndTroubleTest, OneWayAndLate) {
+  DeviceBench bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05", "watchdog_s = 1"));
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  bench.to_device = Wire({.lost_frame = 1}, 3);
+  const int64_t begin = bench.tick;
+  while (bench.tick < begin + 500 && bench.rig->faults().empty()) {
+    bench.tick += 4;
+    bench.Tick(3);
+  }
+  EXPECT_NEAR(static_cast<double>(bench.tick - begin), 103, 6);
+}
+
 std::string WhyNot(const std::function<void(DeviceBench&)>& change) {
   DeviceBench bench;
   change(bench);

@@ -59,6 +59,8 @@ class Machine {
     return Converters(output.tick);
   }
 
+  hydro_converters Now() const { return Converters(last_.value_or(0)); }
+
   hydro_converters Converters(uint64_t tick) const {
     const hydro::model::Measurement measured = actuator_.Measure();
     hydro_converters converters{};
@@ -143,9 +145,11 @@ void Run(const hydro::settings::FrontEndUrl& url, Machine& machine) {
       std::puts("ready");
       std::fflush(stdout);
     }
-    if (!heard && now >= next_greeting) {
-      next_greeting = now + 50ms;
-      talk.Send(machine.Converters(0));
+    if (!outputs.empty()) next_greeting = now + 500ms;
+    if (now >=
+        next_greeting) {  // the device does not know where the machine is, or an emulator sleeps until a byte comes
+      next_greeting = now + (heard ? 500ms : 50ms);
+      talk.Send(machine.Now());
     }
     if (heard && now >= next_show) {
       next_show = now + 1s;
