@@ -162,7 +162,8 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
   const bool on_device = config.driver && config.driver->kind == DriverKind::kFrontEnd &&
                          config.driver->front_end.mode == FrontEndMode::kLoopOnDevice;
   for (const ProcessSection& process : config.processes) {
-    if (!on_device || process.role != "pressure_ctrl") continue;
+    if (!on_device || process.role != "pressure_ctrl" || process.place.empty())
+      continue;  // those that nobody named
     throw KeyError(process.place, process.command.empty() ? "process.program" : "process.command",
                    NameOf(process) + " with driver.mode = \"loop_on_device\"",
                    "a stack without it: the front end runs the pressure loop");
