@@ -183,7 +183,8 @@ void Connection::Send(hydro_frame* frame) {
   frame->sequence = ++sent_;
   std::array<uint8_t, HYDRO_WIRE_MAX> wire;
   const size_t bytes = hydro_encode(frame, wire.data());
-  link_->Write({wire.data(), bytes});
+  const bool each_tick = frame->kind == HYDRO_VOLTAGE || frame->kind == HYDRO_PRESSURE;
+  link_->Write({wire.data(), bytes}, !each_tick);
 }
 
 void Connection::AskToArm(TimePoint now) {

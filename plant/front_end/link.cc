@@ -54,7 +54,7 @@ size_t Link::Read(std::span<uint8_t> into) {
   return filled;
 }
 
-void Link::Write(std::span<const uint8_t> frame) {
+void Link::Write(std::span<const uint8_t> frame, bool must_leave) {
   Flush();
   if (!is_open()) return;
   if (begun_.empty() && waiting_.empty() && BytesOnTheirWay(descriptor_) <= frame.size()) {
@@ -62,7 +62,9 @@ void Link::Write(std::span<const uint8_t> frame) {
     return;
   }
   if (!waiting_.empty()) ++frames_left_out_;
+  if (!waiting_.empty() && waiting_must_leave_ && !must_leave) return;
   waiting_.assign(frame.begin(), frame.end());
+  waiting_must_leave_ = must_leave;
 }
 
 void Link::Flush() {

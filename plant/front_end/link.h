@@ -41,8 +41,9 @@ class Link {
   size_t Read(std::span<uint8_t> into);
 
   // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the new one
-  // replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.
-  void Write(std::span<const uint8_t> frame);
+  // replaces any other that waits, and the one that it replaced is counted. Sends what waits, too. What is not a command of
+  // each tick `must_leave`: commands do not replace it.
+  void Write(std::span<const uint8_t> frame, bool must_leave = false);
   void Flush();
 
   // For signal handlers: the frame as one system call, whatever waits.
@@ -68,6 +69,7 @@ class Link {
   LinkTrouble trouble_;
   std::vector<uint8_t> begun_;    // the rest of a frame that has partly left
   std::vector<uint8_t> waiting_;  // the newest frame that has not begun to leave
+  bool waiting_must_leave_ = false;
   int64_t frames_left_out_ = 0;
 };
 

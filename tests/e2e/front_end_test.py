@@ -257,7 +257,7 @@ class EmulatorTest(FrontEndCase):
     """The whole stack on an emulated microcontroller: 500 ticks a second, which is what QEMU's serial lines carry."""
 
     SLOW = ("plant.rate_hz=500", "position.sample_interval_s=0.01", "driver.watchdog_s=0.5", "limits.stale_input_s=0.6",
-            "pressure.natural_frequency_rad_s=60", "position.c1=1500", "position.c2=600", "time.duration_s=15",
+            "pressure.natural_frequency_rad_s=30", "pressure.damping_ratio=1", "position.c1=500", "position.c2=250", "time.duration_s=15",
             "reference={ signal = \"arm_angle\", kind = \"steps\", steps = [[0.5, 0.2]] }")
 
     def arrives(self, *settings):

@@ -158,6 +158,20 @@ TEST(LinkTest, NeverBehindByMoreThanOneFrame) {
     const auto expected = static_cast<uint8_t>(frame + 1 < frames ? frame : written - 1);
     ASSERT_EQ(taken[i], expected) << i;
   }
+
+  // What must leave is not replaced by what is sent in each tick.
+  link->Write(Bytes(kFrame, 1));
+  link->Write(Bytes(5, 2), /*must_leave=*/true);
+  link->Write(Bytes(kFrame, 3));
+  taken.clear();
+  for (int quiet = 0; quiet < 3;) {
+    const ssize_t got = read(device, some.data(), some.size());
+    quiet = got > 0 ? 0 : quiet + 1;
+    if (got > 0) taken.insert(taken.end(), some.begin(), some.begin() + got);
+    link->Flush();
+  }
+  ASSERT_EQ(taken.size(), kFrame + 5);
+  EXPECT_EQ(taken.back(), 2);
   close(device);
   link->Write(some);
   link->Write(some);
