@@ -211,6 +211,7 @@ bool PlantApp::WaitForParticipants() {
     }
     participant_.bus().HandleUntil(until);
     PollDue(participant_.clock().Now());
+    rig_.Attend();
   }
   return false;
 }
@@ -239,7 +240,7 @@ void PlantApp::PublishRigFaults(const std::vector<RigFault>& faults) {
 }
 
 void PlantApp::PollDue(bus::Clock::TimePoint now) {
-  participant_.statistics().set_lost_messages(command_monitor_.lost());
+  participant_.statistics().set_lost_messages(LostMessages());
   participant_.Poll(now);
   tuning_.Poll(now);
   if (now >= next_description_) PublishDescription();

@@ -27,6 +27,7 @@
 
 #include "base/multiples.h"
 #include "base/ring_queue.h"
+#include "base/saturating.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
 #include "plant/output_safety.h"
@@ -138,6 +139,7 @@ class PlantApp {
   bus::Clock::Duration AgeOfAnswer() const;
   void PollIfDue(bus::Clock::TimePoint now);
   [[gnu::cold]] void PollDue(bus::Clock::TimePoint now);
+  int64_t LostMessages() const { return SaturatingSum(command_monitor_.lost(), rig_.lost_messages()); }
 
   settings::StackConfig config_;
   Rig& rig_;

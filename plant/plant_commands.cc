@@ -109,6 +109,7 @@ void PlantApp::ChooseVoltage() {
   const bool obeys = !held && command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
   command_tick_ = obeys ? command_->tick : -1;
+  rig_.Obey(obeys);
 }
 
 // The pressure loop's faults are told by its commands.

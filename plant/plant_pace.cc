@@ -79,7 +79,7 @@ inline const char* PlantApp::Unanswered() const {
 // What is due, if anything is.
 inline void PlantApp::PollIfDue(bus::Clock::TimePoint now) {
   const bool due = participant_.IsDue(now) || tuning_.IsDue(now) || now >= next_description_ ||
-                   command_monitor_.lost() != participant_.statistics().lost_messages();
+                   LostMessages() != participant_.statistics().lost_messages();
   if (due) PollDue(now);
 }
 

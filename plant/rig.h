@@ -55,6 +55,15 @@ class Rig {
   // voltage that actually acts, which a limit may have reduced. Throws RigError.
   virtual double Drive(double voltage) = 0;
 
+  // Whether the voltage of the next Drive() is that of a command, or zero because something is wrong or nobody commands.
+  virtual void Obey(bool /*commands*/) {}
+
+  // Called often while the run has not begun, and nothing is read or driven.
+  virtual void Attend() {}
+
+  // Messages from the machine that were lost on their way, in all.
+  virtual int64_t lost_messages() const { return 0; }
+
   // A simulated rig's sensors have this noise from now on; a real one's have their own.
   virtual void SetNoise(const settings::NoiseSection&) {}
   virtual bool simulated() const { return false; }
