@@ -1,8 +1,8 @@
 // A driver of one's own in a few lines (docs/own_driver.md):
 //
 //   int main(int argc, char** argv) {
-//     return hydro::plant::RunDriver(argc, argv, "The crane's drive.", [](hydro::plant::DeviceSettings& settings) {
-//       return std::make_unique<Crane>(settings);   // a hydro::plant::Device
+//     return hydro::plant::RunDriver(argc, argv, "The crane's drive.", [](hydro::plant::DeviceSettings& s) {
+//       return std::make_unique<Crane>(s);   // a hydro::plant::Device
 //     });
 //   }
 #pragma once

@@ -187,7 +187,7 @@ TEST(DriverSectionTest, KeysOfTheOtherKind) {
       {Replaced(own, "device = \"can0\"\n", ""),
        "driver.device: found nothing, allowed what the driver opens"},
       {Replaced(own, "kind = \"own\"", "kind = \"mine\""),
-       "driver.kind: found \"mine\", allowed \"comedi\", \"own\""},
+       "driver.kind: found \"mine\", allowed \"comedi\" or \"own\""},
       {Replaced(own, "[driver.own]", "settle_ns = 5\n[driver.own]"),
        "driver: \"settle_ns\": found an unknown key"},
       {Replaced(own, "[driver.own]", "[driver.watchdog]"), "driver: \"watchdog\": found an unknown key"},

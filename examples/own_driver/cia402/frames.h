@@ -1,12 +1,13 @@
 // The CAN frames of a CANopen drive with the profile CiA 402, in profile torque mode. Pure: bytes in, bytes
 // out.
 //
-// Two objects of the drive say what its frames hold. Set them once with the drive's own tool, and store them:
-//   RPDO1  0x200 + node  controlword, target torque                      (0x6040, 0x6071)
-//   TPDO1  0x180 + node  statusword, actual torque, actual position      (0x6041, 0x6077, 0x6064), at each SYNC
-//   TPDO2  0x280 + node  actual velocity, analog inputs 1 and 2 in mV    (0x606C, the maker's), at each SYNC
-//   TPDO3  0x380 + node  analog input 3 in mV                            (the maker's), at each SYNC
-//   0x1016 the heartbeat of node 127 is awaited for 100 ms, 0x6007 = 2: without it the drive takes the voltage from its motor
+// Objects of the drive say what its frames hold. Set them once with the drive's own tool, and store them:
+//   RPDO1  0x200 + node  controlword, target torque                    (0x6040, 0x6071)
+//   TPDO1  0x180 + node  statusword, actual torque, actual position    (0x6041, 0x6077, 0x6064), at each SYNC
+//   TPDO2  0x280 + node  actual velocity, analog inputs 1 and 2 in mV  (0x606C, the maker's), at each SYNC
+//   TPDO3  0x380 + node  analog input 3 in mV                          (the maker's), at each SYNC
+//   0x1016 the heartbeat of node 127 is awaited for 100 ms, 0x6007 = 2: without it the drive takes the
+//          voltage from its motor
 #pragma once
 
 #include <linux/can.h>

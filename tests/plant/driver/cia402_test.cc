@@ -174,8 +174,8 @@ TEST_F(Cia402Test, OldReadings) {
   EXPECT_GT(Read(*drive).inputs[0].at, before);
 }
 
-// Tests that zero is the power stage off, and what is read back is the torque that the drive answers then, not what it had
-// answered before.
+// Tests that zero is the power stage off, and what is read back is the torque that the drive answers then,
+// not what it had answered before.
 TEST_F(Cia402Test, Zero) {
   const auto drive = Open();
   Heard();
