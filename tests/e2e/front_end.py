@@ -6,7 +6,6 @@ HYDRO_TEST_TOOLS names the folder where the build has put simulated_converters.
 import os
 import re
 import select
-import shutil
 import socket
 import threading
 import time
@@ -58,27 +57,6 @@ class FrontEnd:
 
     def wait_until_zero(self):
         self.case.wait_until(lambda: not self.drives(), "zero volts")
-
-
-class EmulatedFrontEnd(FrontEnd):
-    """The firmware on a Cortex-M4 in qemu-system-arm. Skips the test where the emulator or the image is not there."""
-
-    def __init__(self, case):
-        self.image = stack.program("front_end_mps2_an386.elf")
-        if not shutil.which("qemu-system-arm"):
-            case.skipTest("needs qemu-system-arm (package qemu-system-arm)")
-        if not os.path.exists(self.image):
-            case.skipTest("needs front_end_mps2_an386.elf, which is built where arm-none-eabi-gcc is (package gcc-arm-none-eabi)")
-        super().__init__(case, "unix", rate=500)
-
-    def start(self):
-        self.converters = self.case.path("converters")
-        self.url = "unix:" + self.case.path("front_end")
-        lines = [argument for name in ("front_end", "converters")
-                 for argument in ("-serial", f"unix:{self.case.path(name)},server=on,wait=off")]
-        self.board = self.case.start(shutil.which("qemu-system-arm"), "-M", "mps2-an386", "-kernel", self.image, "-display", "none",
-                                     "-icount", "shift=3", *lines, label="qemu")
-        self.case.wait_until(lambda: os.path.exists(self.converters), "qemu")
 
 
 class Relay:

@@ -253,33 +253,6 @@ class LoopOnDeviceTest(FrontEndCase):
         self.assertIn('found hydro-pressure-ctrl with driver.mode = "loop_on_device"', process.stderr)
 
 
-class EmulatorTest(FrontEndCase):
-    """The whole stack on an emulated microcontroller: 500 ticks a second, which is what QEMU's serial lines carry."""
-
-    SLOW = ("plant.rate_hz=500", "position.sample_interval_s=0.01", "driver.watchdog_s=0.5", "limits.stale_input_s=0.6",
-            "pressure.natural_frequency_rad_s=30", "pressure.damping_ratio=1", "position.c1=500", "position.c2=250", "time.duration_s=15",
-            "reference={ signal = \"arm_angle\", kind = \"steps\", steps = [[0.5, 0.2]] }")
-
-    def arrives(self, *settings):
-        front = front_end.EmulatedFrontEnd(self)
-        run = self.stack(stack.config(self.config), *self.options(front.url, *self.SLOW, *settings))
-        run.start("position_ctrl")
-        if LOOP[0] not in settings:
-            run.start("pressure_ctrl")
-        run.start("driver")
-        self.assertEqual(run["driver"].wait(60), 0, run["driver"].report())
-        self.assertIn(("drives", ), {change[:1] for change in front.changes()})
-        front.wait_until_zero()
-        self.assertAlmostEqual(front.shown()[5], 0.2, delta=0.03)
-
-    # Tests that the arm reaches its reference in both modes.
-    def test_remote_io(self):
-        self.arrives()
-
-    def test_loop_on_device(self):
-        self.arrives(*LOOP)
-
-
 class FrontEndInputTest(FrontEndCase):
     def refused(self, url, *settings, expect=2):
         process = self.run_program("hydro-driver", stack.config(self.config), "--set", f"bus.url={self.url}",
