@@ -82,6 +82,8 @@ class Recorded {
       const double both = motor.dot(arm);
       found.follows = both / std::max(motor.norm() * arm.norm(), 1e-300);
       found.volume = p_.c / p_.D * both / std::max(motor.squaredNorm(), 1e-300);
+      const double turned = angle_.maxCoeff() - angle_.minCoeff();
+      found.moved = p_.c / p_.D * (arm_.maxCoeff() - arm_.minCoeff()) / std::max(turned, 1e-300);
     }
     const double oil = 2 * p_.beta * p_.D * p_.D / p_.V_ms;
     found.at_most = oil * (squeezed.maxCoeff() - squeezed.minCoeff()) / Rms(torque_);

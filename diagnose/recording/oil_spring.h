@@ -16,6 +16,7 @@ struct OilSpring {
   double inertia = 1;                  // of the model's
   double would_take = 0, at_most = 0;  // of the torque, by closed oil: where it is fast, and at any speed
   double follows = 0, volume = 0;      // the arm's correlation with the motor, and the ratio of their volumes
+  double moved = 0;                    // the volume that the arm displaced in all, by the motor's
 };
 
 // From the command, the motor's motion and, where the shaft is not clamped, the arm's. Empty where the run is too short or too slow for it.

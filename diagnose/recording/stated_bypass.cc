@@ -31,9 +31,9 @@ constexpr double kWouldShow = 0.7, kNoOil = 0.1;
 constexpr double kExplained = 0.5, kUnexplainedWithout = 0.05, kBetter = 0.7;
 // Fitted inertia over the model's. Beyond it a unit or a sign is wrong.
 constexpr double kLeastInertia = 0.6, kMostInertia = 1.6;
-// An arm that follows the motor through closed oil: correlation, and the ratio of the displaced volumes. One that bends on its way follows
-// less, and takes up angle that the oil does not.
-constexpr double kFollows = 0.95, kFollowsNot = 0.5, kSameVolume = 0.7;
+// An arm that follows the motor through closed oil: correlation, and the ratio of the displaced volumes. One that bends on its way, or whose
+// geometry is a guess, follows less, but moves.
+constexpr double kFollows = 0.95, kSameVolume = 0.7, kMovesLittle = 0.2;
 
 double Spread(const VectorXd& values) { return values.size() == 0 ? 0 : Rms(values.array() - values.mean()); }
 
@@ -108,7 +108,7 @@ class StatedBypass {
     if (clamped && no_pressure && spring_->at_most < kNoOil)
       return "the motor turns, and closed oil as the model has it would have taken less than " +
              ShortNumber(100 * kNoOil) + " % of its torque: the motor is bare, or the bypass was open";
-    if (!ShowsNoOil(*spring_) || std::abs(spring_->follows) > kFollowsNot) return "";
+    if (!ShowsNoOil(*spring_) || spring_->moved > kMovesLittle) return "";
     return "the motor turns freely, where closed oil would have taken " +
            ShortNumber(spring_->would_take, 2) +
            " times its torque: the motor is bare, or the bypass was open";

@@ -74,7 +74,7 @@ TEST(StatedBypass, Clamped) {
   }
 }
 
-// Tests that an arm which follows the motor contradicts an open bypass, and one that falls by itself a closed one.
+// Tests that an arm which follows the motor contradicts an open bypass, and one that stays where it is a closed one.
 TEST(StatedBypass, FreeArm) {
   const runs::MeasuredRun closed = Free();
   for (const Columns& columns : kLayouts) {
