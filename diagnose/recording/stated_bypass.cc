@@ -8,6 +8,7 @@
 #include "base/number_text.h"
 #include "diagnose/recording/oil_spring.h"
 #include "diagnose/recording/run_data.h"
+#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -26,7 +26,6 @@ EXEMPT = {
     "diagnose/say/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
     "diagnose/prove/whole_runs.h": "a stage of prove.h: gap_closed_test and own_effect_test read what it finds",
     "diagnose/prove/proof_sets.h": "what prove.h chooses among: prove_test reads what comes of it",
-    "diagnose/prove/unrecorded.h": "a part of propose.h: propose_test reads what is proposed without pressures",
     "diagnose/evidence/late_signals.h": "what clocks.h estimates with: clocks_test reads the clocks",
     "diagnose/evidence/run_values.h": "what per_run.h judges: per_run_test reads the values of runs",
     "diagnose/prove/progress.h": "one struct without a function",
