@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <ctime>
 #include <utility>
 
@@ -20,9 +21,18 @@
 namespace hydro::diagnose {
 namespace {
 
-// Splits off the last third of a single run as the held-out run.
+// Up to where the pump moves: many recordings end at rest, and what stands still tests nothing.
+size_t EndOfMotion(const runs::MeasuredRun& run) {
+  const std::vector<double>& values =
+      run.motor_speed.measured() ? run.motor_speed.values : run.motor_angle.values;
+  size_t end = values.size();
+  while (end > 0 && (std::isnan(values[end - 1]) || values[end - 1] == values.back())) --end;
+  return end > 0 ? end : run.samples();
+}
+
+// Splits off the last third of a single run, of the time in which it moves, as the held-out run.
 void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
-  const size_t first = run->samples() * 2 / 3;
+  const size_t first = EndOfMotion(*run) * 2 / 3;
   runs::MeasuredRun rest = *run;
   rest.name += ", last third";
   rest.Keep(first, rest.samples());

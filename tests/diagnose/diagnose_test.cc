@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnose/report/report.h"
+#include "runs/measured_signals.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -158,6 +159,23 @@ TEST(Diagnose, SplitsASingleRun) {
   EXPECT_THAT(d.held_out_runs, ElementsAre("clamped 0, last third"));
   EXPECT_EQ(d.samples, 600);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
+}
+
+// Tests that what is held out of a single run moves: a run that stands still in its second half is split in its first.
+TEST(Diagnose, SplitsASingleRunWhereItMoves) {
+  std::vector<runs::MeasuredRun> runs = Measured(ClampedPair(Dragged(), 0.9, 5));
+  runs.pop_back();
+  runs::MeasuredRun& run = runs.front();
+  const size_t moving = run.samples();
+  const double step = run.time[1] - run.time[0];
+  for (size_t i = 0; i < moving; ++i) run.time.push_back(run.time.back() + step);
+  for (const runs::SignalName& row : runs::kSignals) {
+    std::vector<double>& values = (run.*row.signal).values;
+    if (!values.empty()) values.resize(2 * moving, values.back());
+  }
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), runs, {}, Few(), {});
+  EXPECT_EQ(d.samples, 600);
+  EXPECT_THAT(d.held_out_runs, ElementsAre("clamped 0, last third"));
 }
 
 // Tests that held-out runs are predicted, not fitted.
