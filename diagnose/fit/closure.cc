@@ -81,12 +81,12 @@ std::string ClosureSentence(const std::vector<Closure>& closures) {
   curves.reserve(closures.size());
   for (const Closure& closure : closures) {
     curves.push_back((closure.against.size() == 2 ? "a surface over " : "a curve of ") +
-                     Enumerated(closure.against) + " in " + BalanceOf(closure) + ", which " +
-                     closure.resembles + ",");
+                     Enumerated(closure.against) + " in " + BalanceOf(closure) + " (it " + closure.resembles +
+                     ")");
   }
   const Closure& first = closures.front();
   std::string sentence = std::string(" The model") + (first.on_refit ? " with its own values refitted" : "") +
-                         " and " + Enumerated(curves) + " predicts held-out runs over " +
+                         " and " + Enumerated(curves) + " predict held-out runs over " +
                          ShortNumber(first.seconds, 2) + " s";
   if (!std::isfinite(first.before) || !(first.before > 0)) return sentence + ", which it cannot without.";
   const double taken = 1 - std::pow(first.after / first.before, 2);

@@ -69,7 +69,7 @@ TEST(ClosureSentence, SaysWhatItTakes) {
   closures[0].after = 2;
   closures[0].seconds = 0.4;
   EXPECT_THAT(ClosureSentence(closures),
-              AllOf(HasSubstr("a curve of motor_speed in the torque on the pump, which "),
+              AllOf(HasSubstr("a curve of motor_speed in the torque on the pump (it "),
                     HasSubstr("over 0.4 s better: 4 to 2 noise units, 75 % of the squared gap")));
   closures[0].after = 3.9999;
   EXPECT_EQ(ClosureSentence(closures), "");
