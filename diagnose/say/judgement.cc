@@ -82,6 +82,24 @@ bool HasOneWitness(const Diagnosis& d) {
   });
 }
 
+// Whether all that was found are times of a sample or two: means over a sample and filters make the signals late, or the command early.
+// The balances allow for that, a simulation does not, so that what it alone speaks for is the recorder's.
+bool IsTheRecorders(const Diagnosis& d, double sample) {
+  constexpr double kSamples = 2;
+  return std::all_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
+    const model::EffectInfo* info = model::FindEffect(effect.id);
+    return info != nullptr &&
+           std::any_of(
+               info->parameters.begin(), info->parameters.end(), [&](const model::ParameterInfo& parameter) {
+                 return parameter.role == model::Role::kTime &&
+                        std::any_of(
+                            effect.parameters.begin(), effect.parameters.end(), [&](const Estimated& one) {
+                              return one.name == parameter.name && std::abs(one.value) <= kSamples * sample;
+                            });
+               });
+  });
+}
+
 }  // namespace
 
 ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof) {
@@ -113,7 +131,7 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   return true;
 }
 
-Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors) {
+Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, double sample) {
   // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
                       !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
@@ -124,6 +142,7 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors) {
     return something && !HasOneWitness(d) ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
+  if (HasOneWitness(d) && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
   const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
                                 [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
   return tied ? Verdict::kTied : Verdict::kNamed;

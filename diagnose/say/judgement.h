@@ -19,7 +19,8 @@ bool ExactSensors(const std::vector<const RunData*>& runs);
 // `d` has the effects, parameters, closures and gaps. What was found was proved: it is named where the noise is left, tied where
 // something does as well, and partly where more is left, or where a closure is a part of it. A gap that is left beside effects that
 // simulation alone speaks for, though balances could (IsUnseenByBalances()), is unexplained: they give none of the effects a
-// twentieth, nor what they are tied with, unless other values do as well too.
-Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors);
+// twentieth, nor what they are tied with, unless other values do as well too. So are times of at most two samples (`sample`, s) that
+// simulation alone speaks for: recorders make them.
+Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, double sample);
 
 }  // namespace hydro::diagnose

@@ -10,7 +10,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr char kFrontEnd[] = R"([driver]
+constexpr char kFrontEndSection[] = R"([driver]
 kind = "front_end"
 url = "serial:/dev/ttyACM0?baud=2000000"
 mode = "loop_on_device"
@@ -44,11 +44,11 @@ channel = 0
 scale = 0.2
 )";
 
-StackConfig With(const std::string& driver) { return Parsed(kConfigText + driver); }
+StackConfig WithFrontEnd(const std::string& driver) { return Parsed(kConfigText + driver); }
 
 // Tests that every key of a front end reaches its field.
 TEST(FrontEndSectionTest, ReadsEveryKey) {
-  const StackConfig config = With(kFrontEnd);
+  const StackConfig config = WithFrontEnd(kFrontEndSection);
   ASSERT_TRUE(config.driver);
   const DriverSection& driver = *config.driver;
   EXPECT_EQ(driver.kind, DriverKind::kFrontEnd);
@@ -70,12 +70,12 @@ TEST(FrontEndSectionTest, ReadsEveryKey) {
 
 // Tests the defaults.
 TEST(FrontEndSectionTest, Defaults) {
-  std::string text = kFrontEnd;
+  std::string text = kFrontEndSection;
   for (const char* line : {"mode = \"loop_on_device\"\n", "watchdog_s = 0.02\n",
                            "read_back_tolerance_V = 0.1\n", "counter_bits = 16\n"}) {
     text = Replaced(text, line, "");
   }
-  const DriverSection driver = *With(text).driver;
+  const DriverSection driver = *WithFrontEnd(text).driver;
   EXPECT_EQ(driver.front_end.mode, FrontEndMode::kRemoteIo);
   EXPECT_FALSE(driver.front_end.watchdog_s);
   EXPECT_EQ(driver.front_end.read_back_tolerance_V, 0);
@@ -84,7 +84,7 @@ TEST(FrontEndSectionTest, Defaults) {
 
 // Tests that each malformed section is refused on one line with its place and key.
 TEST(FrontEndSectionTest, Errors) {
-  const std::string text = kFrontEnd;
+  const std::string text = kFrontEndSection;
   const std::pair<std::string, std::string> table[] = {
       {Replaced(text, "url = \"serial:/dev/ttyACM0?baud=2000000\"\n", ""),
        "driver.url: found nothing, allowed the address"},
@@ -108,7 +108,7 @@ TEST(FrontEndSectionTest, Errors) {
   };
   for (const auto& row : table) {
     const std::string& document = row.first;
-    const std::string error = InputErrorOf([&] { With(document); });
+    const std::string error = InputErrorOf([&] { WithFrontEnd(document); });
     EXPECT_THAT(error, AllOf(HasSubstr("stack.toml"), HasSubstr(row.second))) << document;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }

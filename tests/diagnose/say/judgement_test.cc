@@ -13,6 +13,7 @@ namespace {
 
 using diagnose::Verdict;
 
+constexpr double kSample = 1e-3;  // s
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // A lag that was found; windows judged.
@@ -27,7 +28,7 @@ struct Judged {
     d.effects.emplace_back().id = "amp.lag";
   }
 
-  Verdict Of() const { return VerdictOn(d, proof, false); }
+  Verdict Of() const { return VerdictOn(d, proof, false, kSample); }
   // The model as given, or other values of it, is best.
   void FindNoEffect(const std::vector<std::string>& values) {
     d.effects.clear();
@@ -76,6 +77,20 @@ TEST(VerdictOn, AGapBesideASingleWitness) {
   one.d.horizons[1].typical.after = 1.2;
   one.d.horizons[2].typical.after = 2;
   EXPECT_EQ(one.Of(), Verdict::kNamed) << "no gap is left";
+}
+
+// Tests that a lag of a sample or two that simulation alone speaks for is not named where it closes the gap, and that a longer one is, and
+// one of which balances speak.
+TEST(VerdictOn, WhatARecorderDoesToo) {
+  Judged one({12, 6, 1.2}, {30, 12, 2});
+  one.d.effects[0].parameters = {{"tau", 1.1 * kSample, 0, 0, "s"}};
+  one.d.explanations = {{{}, 1}};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.d.explanations = {{{"amp.lag"}, 0.1}, {{}, 0.9}};
+  EXPECT_EQ(one.Of(), Verdict::kNamed);
+  one.d.explanations = {{{}, 1}};
+  one.d.effects[0].parameters[0].value = 2.5 * kSample;
+  EXPECT_EQ(one.Of(), Verdict::kNamed);
 }
 
 // Tests values alone: parameters at the noise, a part above it, and nothing missing where the model as given is at the noise too and
@@ -150,8 +165,8 @@ TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
 // Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
 TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   Judged one({50, 50, 2}, {50, 50, 2});
-  EXPECT_EQ(VerdictOn(one.d, one.proof, false), Verdict::kPartly);
-  EXPECT_EQ(VerdictOn(one.d, one.proof, true), Verdict::kNamed);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, false, kSample), Verdict::kPartly);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, true, kSample), Verdict::kNamed);
   const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
   EXPECT_FALSE(diagnose::ExactSensors(PointersTo(noisy)));
   NoisyRig exact;
