@@ -88,7 +88,7 @@ bool IsTheRecorders(const Diagnosis& d, double sample) {
   constexpr double kSamples = 2;
   return std::all_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
     const model::EffectInfo* info = model::FindEffect(effect.id);
-    return info != nullptr &&
+    return info != nullptr && !effect.id.starts_with("sensor.") &&
            std::any_of(
                info->parameters.begin(), info->parameters.end(), [&](const model::ParameterInfo& parameter) {
                  return parameter.role == model::Role::kTime &&
