@@ -5,10 +5,14 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/e2e"))
+import outcome  # noqa: E402
+
 CORE = sorted((ROOT / "firmware").glob("*.c")) + [ROOT / "firmware/boards/converter_link.c"]
 # Board and start-up of the emulated board.
 BOARD = sorted((ROOT / "firmware/boards/mps2_an386").glob("*.c"))
@@ -174,4 +178,4 @@ class StaticTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

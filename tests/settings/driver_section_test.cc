@@ -173,9 +173,9 @@ TEST(DriverSectionTest, OwnDriver) {
     EXPECT_EQ(driver.arm_angle.input, "encoder");
   }
   EXPECT_EQ(InputErrorOf([&] { CheckDriver(config, "./crane (driver)"); }), "");
-  EXPECT_THAT(
-      InputErrorOf([&] { CheckDriver(config); }),
-      HasSubstr("driver.kind: found \"own\", allowed \"comedi\" with hydro-driver; a driver of your own"));
+  EXPECT_THAT(InputErrorOf([&] { CheckDriver(config); }),
+              HasSubstr("driver.kind: found \"own\", allowed \"comedi\" or \"front_end\" with hydro-driver; "
+                        "a driver of your own"));
   EXPECT_THAT(InputErrorOf([&] { CheckDriver(Parsed(WithDriver()), "./crane (driver)"); }),
               HasSubstr("driver.kind: found \"comedi\", allowed \"own\" with ./crane (driver)"));
 }
@@ -187,7 +187,7 @@ TEST(DriverSectionTest, KeysOfTheOtherKind) {
       {Replaced(own, "device = \"can0\"\n", ""),
        "driver.device: found nothing, allowed what the driver opens"},
       {Replaced(own, "kind = \"own\"", "kind = \"mine\""),
-       "driver.kind: found \"mine\", allowed \"comedi\" or \"own\""},
+       "driver.kind: found \"mine\", allowed \"comedi\", \"front_end\" or \"own\""},
       {Replaced(own, "[driver.own]", "settle_ns = 5\n[driver.own]"),
        "driver: \"settle_ns\": found an unknown key"},
       {Replaced(own, "[driver.own]", "[driver.watchdog]"), "driver: \"watchdog\": found an unknown key"},
