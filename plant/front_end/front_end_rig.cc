@@ -23,6 +23,7 @@ using Source = settings::SensorSection::Source;
 constexpr auto kTurn = 1ms;         // between two turns of what waits
 constexpr auto kZeroRepeat = 10ms;  // a lost ZERO is sent again
 constexpr auto kZeroTimeout = 100ms;
+constexpr double kNearZero = 0.05;    // V: offsets of converters are below it
 constexpr double kSampleBytes = 107;  // on the wire
 constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop
 
@@ -306,9 +307,11 @@ OutputLeft FrontEndRig::Zero() noexcept {
       if (!clock_.simulated()) bus::SleepUntil(clock_.Now() + kTurn);
       const bool up = Poll();
       const hydro_sample& sample = connection_.sample();
-      if (up && sample.state != HYDRO_ARMED && connection_.sampled_at() >= asked) {
-        return {.accepted = true,
+      if (up && connection_.sampled_at() >= asked) {
+        left = {.accepted = sample.state != HYDRO_ARMED,
                 .voltage = std::isnan(sample.read_back) ? sample.voltage : sample.read_back};
+        // The sample in which a device obeys has what its output read just before: the next one tells what it left.
+        if (left.accepted && std::abs(left.voltage) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);
