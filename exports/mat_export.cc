@@ -1,6 +1,9 @@
 // MAT files of version 5, by matio.
 #include <matio.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "base/input_error.h"
@@ -118,6 +121,16 @@ bool Write(mat_t* mat, const MatField& variable) {
   return Mat_VarWrite(mat, made.get(), MAT_COMPRESSION_NONE) == 0;
 }
 
+// Whether all that was written is in the file: there is room behind it for one byte more, which is taken back.
+bool IsWhole(const std::string& file) {
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  std::ofstream more(file, std::ios::binary | std::ios::app);
+  if (!more.put('\0').flush()) return false;
+  more.close();
+  std::filesystem::resize_file(file, size);
+  return true;
+}
+
 }  // namespace
 
 void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& file) {
@@ -140,8 +153,8 @@ void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& fil
   bool written = mat != nullptr;
   for (const MatField& variable : variables) written = written && Write(mat.get(), variable);
   mat.reset();
-  // matio does not report that its last buffer could not be written; the file's length does.
-  if (!written || out.size() < least) {
+  // matio does not report that its last buffer could not be written.
+  if (!written || out.size() < least || !IsWhole(out.SeekablePath())) {
     throw WriteError(file + ": cannot be written as a MAT file; enough room on the disk is needed");
   }
   out.Finish();

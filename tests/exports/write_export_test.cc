@@ -1,9 +1,12 @@
 #include "exports/write_export.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdint>
+#include <filesystem>
 
 #include "exports/mat_layout.h"
 #include "tables/table.h"
@@ -67,6 +70,32 @@ TEST_F(WriteExportTest, EveryKindOfColumn) {
       }
     }
   }
+}
+
+// Tests that a MAT file that does not fit is an error wherever it is cut, and leaves nothing: matio does not report its last buffer, and a
+// channel's struct is most of the file.
+TEST_F(WriteExportTest, NoRoomForAMatFile) {
+  const std::vector<ExportedRun> runs = {EveryKind(2)};
+  WriteExport(runs, Format::kMat, "test", Path("whole"));
+  const size_t whole = log::ReadBytes(Path("whole")).size();
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (size_t room = 200; room < whole; room += 200) {
+    rlimit small = before;
+    small.rlim_cur = room;
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    bool failed = false;
+    try {
+      WriteExport(runs, Format::kMat, "test", Path("cut"));
+    } catch (const WriteError&) {
+      failed = true;
+    }
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    EXPECT_TRUE(failed) << room << " of " << whole;
+    EXPECT_FALSE(std::filesystem::exists(Path("cut"))) << room;
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 // Tests that what was written is read by our own reader of MAT files, structs too.
