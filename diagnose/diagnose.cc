@@ -27,7 +27,7 @@ size_t EndOfMotion(const runs::MeasuredRun& run) {
       run.motor_speed.measured() ? run.motor_speed.values : run.motor_angle.values;
   size_t end = values.size();
   while (end > 0 && (std::isnan(values[end - 1]) || values[end - 1] == values.back())) --end;
-  return end > 0 ? end : run.samples();
+  return end > 0 ? end + 1 : run.samples();
 }
 
 // Splits off the last third of a single run, of the time in which it moves, as the held-out run.

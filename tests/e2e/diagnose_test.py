@@ -126,7 +126,7 @@ class DiagnoseTest(stack.TestCase):
         self.assertRegex(sound.stdout, "\nok      sign of the command +a positive command turns the motor forward")
         self.assertRegex(sound.stdout, "\nok      charge pressure ")
         self.assertRegex(sound.stdout, "\nabsent  motor_angle ")
-        self.assertRegex(sound.stdout, "\n\nnothing wrong was found in the recordings, as far as the model .*\n$")
+        self.assertRegex(sound.stdout, "\n\nrun sound: the motor turns one way only: .*\nnothing wrong was found in the recordings, as far as the model .*\n$")
         bar = self.bench_table("bar", {"p1_psi": 1 / 14.5038, "p2_psi": 1 / 14.5038})
         checked = check(bar)
         self.assertEqual(checked.wait(timeout=LONG), 1, checked.report())
