@@ -1,10 +1,10 @@
 #include "plant/check/checked_device.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -18,8 +18,7 @@
 namespace hydro::plant {
 namespace {
 
-constexpr int kStart_ms = 10000;
-constexpr int kAnswer_ms = 5000;
+constexpr std::chrono::seconds kStart(10), kAnswer(5);
 constexpr char kKey[] = "driver.simulated_device";
 
 }  // namespace
@@ -45,10 +44,13 @@ CheckedDevice::CheckedDevice(const settings::StackConfig& config)
   pid_ = process::Spawn(request).pid;
   close(in[0]);
   close(out[1]);
-  if (const auto ready = Answer(kStart_ms); ready != "ready") {
+  lines_.emplace(out_);
+  const std::string instead = lines_->Await("ready", std::chrono::steady_clock::now() + kStart);
+  if (!instead.empty()) {
     End();
-    throw InputError(config.file + ": " + kKey + ": found " + name_ +
-                     ", which does not say \"ready\", allowed a program that does (docs/own_driver.md)");
+    throw InputError(config.file + ": " + kKey + ": found " + name_ + ", which " + instead +
+                     ", allowed a program that says \"ready\" within " + std::to_string(kStart.count()) +
+                     " s (docs/own_driver.md)");
   }
 }
 
@@ -69,33 +71,25 @@ void CheckedDevice::Say(const std::string& line) const {
     throw std::runtime_error(name_ + " has ended");
 }
 
-std::optional<std::string> CheckedDevice::Answer(int milliseconds) {
-  pollfd waits{.fd = out_, .events = POLLIN, .revents = 0};
-  for (;;) {
-    if (const size_t end = said_.find('\n'); end != std::string::npos) {
-      const std::string line = said_.substr(0, end);
-      said_.erase(0, end + 1);
-      return line;
-    }
-    char text[256];
-    if (poll(&waits, 1, milliseconds) <= 0) return std::nullopt;
-    const ssize_t got = read(out_, text, sizeof text);
-    if (got <= 0) return std::nullopt;
-    said_.append(text, static_cast<size_t>(got));
-  }
+std::string CheckedDevice::Answer() {
+  std::string line;
+  const auto got = lines_->Next(std::chrono::steady_clock::now() + kAnswer, &line);
+  if (got == process::ChildLines::Got::kTooLong)
+    throw std::runtime_error(name_ + " says a line of more than " +
+                             std::to_string(process::ChildLines::kLongest) + " bytes");
+  return got == process::ChildLines::Got::kLine ? line : "";
 }
 
 bool CheckedDevice::Order(const std::string& trouble) {
   Say(trouble);
-  return Answer(kAnswer_ms) == "ok";
+  return Answer() == "ok";
 }
 
 double CheckedDevice::Output() {
   Say("output");
-  const std::optional<std::string> answer = Answer(kAnswer_ms);
-  if (!answer || !answer->starts_with("output "))
-    throw std::runtime_error(name_ + " does not say what it puts out");
-  return std::atof(answer->c_str() + 7);
+  const std::string answer = Answer();
+  if (!answer.starts_with("output ")) throw std::runtime_error(name_ + " does not say what it puts out");
+  return std::atof(answer.c_str() + 7);
 }
 
 }  // namespace hydro::plant

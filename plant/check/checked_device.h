@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "process/child_lines.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
@@ -28,15 +29,15 @@ class CheckedDevice {
   double Output();
 
  private:
-  // Its next line that is an answer; nothing when none has come in time.
-  std::optional<std::string> Answer(int milliseconds);
+  // Its next line; empty when none has come in time. Throws std::runtime_error for one without an end.
+  std::string Answer();
   void Say(const std::string& line) const;
   void End();
 
   std::string name_;
   pid_t pid_ = -1;
   int in_ = -1, out_ = -1;  // our ends of its standard input and output
-  std::string said_;
+  std::optional<process::ChildLines> lines_;
 };
 
 }  // namespace hydro::plant

@@ -17,6 +17,8 @@ constexpr std::pair<const char*, DeviceTrouble> kTroubles[] = {{"none", DeviceTr
                                                                {"lies", DeviceTrouble::kLies},
                                                                {"slow", DeviceTrouble::kSlow}};
 
+constexpr size_t kLongestOrder = 100;  // no word is longer
+
 void Say(const std::string& line) {
   std::puts(line.c_str());
   std::fflush(stdout);
@@ -40,7 +42,7 @@ bool SimulatedDevice::Wait(int file, std::chrono::milliseconds patience) {
     for (ssize_t i = 0; i < got; ++i) {
       if (text[i] == '\n') {
         Obey(std::exchange(line_, ""));
-      } else {
+      } else if (line_.size() < kLongestOrder) {
         line_ += text[i];
       }
     }

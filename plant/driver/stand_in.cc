@@ -1,39 +1,24 @@
 #include "plant/driver/stand_in.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 
 #include "plant/driver/device.h"
+#include "process/child_lines.h"
 #include "process/own_program.h"
 #include "process/spawn.h"
 
 namespace hydro::plant {
 namespace {
 
-constexpr char kReady[] = "ready";
-constexpr int kStart_ms = 5000;
+constexpr std::chrono::seconds kStart(5);
 constexpr int kExit_ms = 1000;
-
-// What it has said when it is ready, silent for too long, or has ended.
-std::string WaitUntilReady(int out) {
-  std::string said;
-  pollfd waits{.fd = out, .events = POLLIN, .revents = 0};
-  for (int waited = 0; waited < kStart_ms && said.find(kReady) == std::string::npos; waited += 10) {
-    if (poll(&waits, 1, 10) <= 0) continue;
-    char text[256];
-    const ssize_t got = read(out, text, sizeof text);
-    if (got == 0) break;
-    if (got > 0) said.append(text, static_cast<size_t>(got));
-  }
-  return said;
-}
 
 }  // namespace
 
@@ -57,12 +42,14 @@ StandIn::StandIn(const settings::StackConfig& config) {
     throw;
   }
   close(ends[1]);
-  const std::string said = WaitUntilReady(ends[0]);
+  const std::string instead =
+      process::ChildLines(ends[0]).Await("ready", std::chrono::steady_clock::now() + kStart);
   close(ends[0]);  // it ignores SIGPIPE; what else it says is lost
-  if (said.find(kReady) == std::string::npos) {
+  if (!instead.empty()) {
     End();
-    throw DeviceError("driver.simulated_device: " + command.front() +
-                      " has not said \"ready\"; start it by hand to see why");
+    throw DeviceError("driver.simulated_device: " + command.front() + " must say \"ready\" within " +
+                      std::to_string(kStart.count()) + " s, but " + instead +
+                      "; start it by hand to see why");
   }
   spdlog::warn("{} stands for the device (driver.simulated_device): nothing real moves", command.front());
 }
