@@ -76,7 +76,7 @@ class FrontEndPeer : public Peer {
         board_(link, static_cast<int>(kDeviceTicks * rate_hz)),
         rig_(config_, clock_) {
     rig_.Connect();
-    rig_.Obey(true);
+    rig_.Obey(0);
     for (tick_ = 1; tick_ < 2000 && rig_.connection().sample().state != HYDRO_ARMED; ++tick_) {
       rig_.Read(tick_);
       rig_.Drive(1);
@@ -85,7 +85,7 @@ class FrontEndPeer : public Peer {
   }
   void Ask(int64_t number) override {
     rig_.Read(tick_ = base_ + number);
-    rig_.Obey(true);
+    rig_.Obey(0);
     rig_.Drive(1 + 1e-3 * static_cast<double>(number % 100));
   }
   int64_t Answered() override {

@@ -46,7 +46,9 @@ Connection::Connection(std::string file, std::unique_ptr<Link> link, uint32_t se
 
 void Connection::Poll(TimePoint now) {
   if (!link_->is_open()) Reopen(now);
+  const int64_t before = counts_.samples;
   Receive(now);
+  if (counts_.samples != before) link_->ForgetOld();
   link_->Flush();
   counts_.damaged = damaged_before_ + receiver_.bad;
   counts_.left_out = link_->frames_left_out();
@@ -196,13 +198,14 @@ void Connection::AskToArm(TimePoint now) {
   Send(&frame);
 }
 
-void Connection::CommandVoltage(int64_t host_tick, float voltage) {
+uint32_t Connection::CommandVoltage(int64_t host_tick, float voltage) {
   hydro_frame frame{};
   frame.kind = HYDRO_VOLTAGE;
   frame.body.command.fingerprint = fingerprint_;
   frame.body.command.host_tick = host_tick;
   frame.body.command.voltage = voltage;
   Send(&frame);
+  return sent_;
 }
 
 void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {

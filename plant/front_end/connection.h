@@ -1,5 +1,5 @@
-// The conversation with a front end (docs/front_end.md): who is there, its settings, and then samples one way and commands
-// the other. Time is passed in; nothing waits.
+// The conversation with a front end (docs/front_end.md): who is there, its settings, and then samples one way
+// and commands the other. Time is passed in; nothing waits.
 #pragma once
 
 #include <array>
@@ -35,8 +35,9 @@ class Connection {
   // `file`: the configuration's, for errors. `session`: at random, not 0.
   Connection(std::string file, std::unique_ptr<Link> link, uint32_t session, SettingsFor settings_for);
 
-  // Takes all that has come, and goes on with the handshake where one is due: also again, after the link was cut or the device has
-  // reset itself. Throws InputError like SettingsFor, or when the device refuses its settings.
+  // Takes all that has come, and goes on with the handshake where one is due: also again, after the link was
+  // cut or the device has reset itself. Throws InputError like SettingsFor, or when the device refuses its
+  // settings.
   void Poll(TimePoint now);
 
   // The device holds the settings, and a sample of it has come since.
@@ -59,8 +60,9 @@ class Connection {
 
   // Asks the device to arm, unless it was asked a moment ago.
   void AskToArm(TimePoint now);
-  // Commands for the computer's tick.
-  void CommandVoltage(int64_t host_tick, float voltage);
+  // Commands for the computer's tick. The device's samples name that of a voltage by the sequence that is
+  // returned.
+  uint32_t CommandVoltage(int64_t host_tick, float voltage);
   void CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "base/text_file.h"
 #include "bus/sleep_until.h"
 #include "plant/front_end/front_end_settings.h"
 #include "plant/front_end/refusals.h"
@@ -20,9 +21,9 @@ namespace {
 using namespace std::chrono_literals;
 using Source = settings::SensorSection::Source;
 
-constexpr auto kTurn = 1ms;         // between two turns of what waits
-constexpr auto kZeroRepeat = 10ms;  // a lost ZERO is sent again
-constexpr auto kZeroTimeout = 100ms;
+constexpr auto kTurn = 1ms;           // between two turns of what waits
+constexpr auto kZeroRepeat = 10ms;    // a lost ZERO is sent again
+constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of it
 constexpr double kNearZero = 0.05;    // V: offsets of converters are below it
 constexpr double kSampleBytes = 107;  // on the wire
 constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop
@@ -47,7 +48,8 @@ FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& 
                   [this](const hydro_identity& identity) { return FrontEndSettings(config_, identity); }),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       ticks_per_s_(config.plant.rate_hz),
-      voltage_limit_(config.driver->voltage.limit_V) {
+      voltage_limit_(config.driver->voltage.limit_V),
+      output_(*config.driver, stale_time_) {
   CheckSpeed();
 }
 
@@ -66,8 +68,9 @@ FrontEndRig::~FrontEndRig() {
 std::string FrontEndRig::Describe() const {
   const hydro_identity& identity = connection_.identity();
   const std::string board(identity.board, strnlen(identity.board, HYDRO_BOARD_NAME_BYTES));
-  return fmt::format("{} ({}, firmware {}.{}.{}, {} ticks/s)", config_.driver->front_end.url, board,
-                     identity.firmware[0], identity.firmware[1], identity.firmware[2], identity.tick_rate_hz);
+  return fmt::format("{} ({}, firmware {}.{}.{}, {} ticks/s)", config_.driver->front_end.url,
+                     Printable(board), identity.firmware[0], identity.firmware[1], identity.firmware[2],
+                     identity.tick_rate_hz);
 }
 
 // A line that cannot carry all samples would be behind by more and more of them.
@@ -107,27 +110,44 @@ void FrontEndRig::Connect() {
 }
 
 model::Measurement FrontEndRig::Read(int64_t tick) {
-  // This process stood still: nothing was commanded meanwhile. Ordinary late wake-ups must not hide a device that lags behind.
+  // This process stood still: nothing was commanded meanwhile. Ordinary late wake-ups must not hide a device
+  // that lags behind.
   if (static_cast<double>(tick - tick_) > 0.5 * config_.limits.stale_input_s * ticks_per_s_)
     driving_since_ = tick;
   tick_ = tick;
+  if (!polled_) TakeTurn();
+  polled_ = false;
+  faults_.clear();
+  read_ = {};
+  if (FindSilence()) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    driving_since_.reset();
+    return {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+  }
+  read_ = connection_.sample();
+  FindSensorFaults(read_);
+  FindDeviceFaults(read_);
+  FindOldCommands(read_);
+  trips_ = read_.trips;
+  return Measured();
+}
+
+// A turn within the run, where another device is no error of the configuration.
+void FrontEndRig::TakeTurn() {
   try {
     Poll();
   } catch (const InputError& error) {
     throw RigError("board_error", error.what());
   }
   if (beside_) beside_();
-  faults_.clear();
-  if (FindSilence()) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    driving_since_.reset();
-    return {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
-  }
-  const hydro_sample& sample = connection_.sample();
-  FindDeviceFaults(sample);
-  FindOldCommands(sample);
-  trips_ = sample.trips;
-  return Measured();
+}
+
+std::optional<int64_t> FrontEndRig::Arrived() {
+  TakeTurn();
+  polled_ = true;
+  const int64_t before = std::exchange(arrived_before_, connection_.counts().samples);
+  if (!connection_.is_up() || arrived_before_ == before) return std::nullopt;
+  return static_cast<int64_t>(connection_.sample().tick / connection_.settings().sample_interval_ticks);
 }
 
 // Another program shall not take the device meanwhile, nor old samples wait.
@@ -138,7 +158,7 @@ void FrontEndRig::Attend() {
 }
 
 model::Measurement FrontEndRig::Measured() {
-  const hydro_sample& sample = connection_.sample();
+  const hydro_sample& sample = read_;
   const settings::DriverSection& driver = *config_.driver;
   // A count is exact where an angle in single precision is not.
   const auto angle = [](const settings::SensorSection& section, float value, int32_t count,
@@ -196,15 +216,33 @@ bool FrontEndRig::FindSilence() {
   return true;
 }
 
-void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
+// A signal that is no number is missing, whatever the device says of it. That of a rate is the fault of its
+// angle.
+void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
+  const bool answered = (sample.faults_present & HYDRO_FAULT_CONVERTER) == 0;
   for (int i = 0; i < HYDRO_SENSORS; ++i) {
-    if ((sample.sensor_faults & (1 << i)) == 0) continue;
-    Add(std::string("sensor_") + SensorName(i),
-        fmt::format("the front end's reading of {} is not credible: an end of its range, or outside of what "
-                    "driver.{} allows",
-                    SensorName(i), SensorName(i)));
+    const uint8_t kind = connection_.settings().sensors[i].kind;
+    const bool by_device = (sample.sensor_faults & (1 << i)) != 0;
+    const bool of_angle = kind == HYDRO_SENSOR_RATE && !std::isfinite(sample.value[i - 1]);
+    const bool expected = kind != HYDRO_SENSOR_NONE && answered && !of_angle;
+    const std::string code = std::string("sensor_") + SensorName(i);
+    if (by_device) {
+      Add(code, fmt::format("the front end's reading of {} is not credible: an end of its range, or outside "
+                            "of what driver.{} allows",
+                            SensorName(i), SensorName(i)));
+    } else if (expected && !std::isfinite(sample.value[i])) {
+      Add(code, fmt::format("the front end gives {} for {} and reports no fault of it; allowed is a number",
+                            sample.value[i], SensorName(i)));
+    }
+    // Not to be taken for a signal by anyone.
+    if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
   }
-  if ((sample.faults_present & HYDRO_FAULT_READ_BACK) != 0) {
+}
+
+void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
+  if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
+    output_.Look(sample, now_, &faults_);
+  } else {
     Add("output_differs",
         fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,
                     sample.voltage),
@@ -221,7 +259,8 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   }
 }
 
-// Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that were queued somewhere.
+// Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that
+// were queued somewhere.
 void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
   const double allowed = config_.limits.stale_input_s;
   if (arming_since_ && now_ - *arming_since_ > stale_time_ && sample.state != HYDRO_ARMED) {
@@ -242,9 +281,11 @@ void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
 }
 
 double FrontEndRig::Drive(double voltage) {
+  // The motor command of a loop on the device is its answer to the very state that was read.
+  acting_command_tick_ = read_.source == HYDRO_SOURCE_LAW ? tick_ : output_.CommandTick(read_);
   if (!connection_.is_up()) {
     arming_since_.reset();
-    return 0;
+    return read_.voltage;
   }
   const bool armed = Armed();
   const bool obeys = MayDrive() && std::isfinite(voltage);
@@ -258,18 +299,20 @@ double FrontEndRig::Drive(double voltage) {
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
     connection_.KeepAlive(now_);
-    return 0;
-  }
-  if (armed && obeys && followed_) {
+  } else if (armed && obeys && followed_) {
     if (!followed_->sent) SendFollowed();
     followed_->sent = false;
-    return connection_.sample().voltage;
+  } else {
+    // Zero until it is known to be armed.
+    SendVoltage(armed && obeys ? std::clamp(voltage, -voltage_limit_, voltage_limit_) : 0.0);
   }
-  // Zero until it is known to be armed, so that what is said to act is what acts.
-  const auto limited =
-      static_cast<float>(armed && obeys ? std::clamp(voltage, -voltage_limit_, voltage_limit_) : 0.0);
-  connection_.CommandVoltage(tick_, limited);
-  return limited;
+  return read_.voltage;
+}
+
+void FrontEndRig::SendVoltage(double voltage) {
+  const auto told = static_cast<float>(voltage);
+  const uint32_t sequence = connection_.CommandVoltage(tick_, told);
+  output_.OnTold(sequence, told, command_tick_, now_);
 }
 
 void FrontEndRig::SendFollowed() {
@@ -287,11 +330,10 @@ pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, 
   if (!Armed() || !MayDrive()) return {};
   SendFollowed();
   // The sample that the state was made from has the voltage that the device computed from it.
-  const hydro_sample& sample = connection_.sample();
-  return {.by_law = sample.source == HYDRO_SOURCE_LAW,
-          .voltage = sample.voltage,
-          .pressure_ref = sample.pressure_ref,
-          .saturated = sample.saturated != 0};
+  return {.by_law = read_.source == HYDRO_SOURCE_LAW,
+          .voltage = read_.voltage,
+          .pressure_ref = read_.pressure_ref,
+          .saturated = read_.saturated != 0};
 }
 
 OutputLeft FrontEndRig::Zero() noexcept {
@@ -308,10 +350,11 @@ OutputLeft FrontEndRig::Zero() noexcept {
       const bool up = Poll();
       const hydro_sample& sample = connection_.sample();
       if (up && connection_.sampled_at() >= asked) {
-        left = {.accepted = sample.state != HYDRO_ARMED,
-                .voltage = std::isnan(sample.read_back) ? sample.voltage : sample.read_back};
-        // The sample in which a device obeys has what its output read just before: the next one tells what it left.
-        if (left.accepted && std::abs(left.voltage) <= kNearZero) return left;
+        left.voltage = std::isfinite(sample.read_back) ? sample.read_back : sample.voltage;
+        left.accepted = sample.state != HYDRO_ARMED && std::fabs(left.voltage) <= output_.tolerance();
+        // The sample in which a device obeys has what its output read just before: the next one tells what it
+        // left.
+        if (left.accepted && std::fabs(left.voltage) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);

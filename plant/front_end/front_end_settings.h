@@ -6,8 +6,9 @@
 
 namespace hydro::plant {
 
-// What the device gets: its wiring, and the limits that it holds on its own. Throws InputError when the device that says `identity` is
-// not one for this configuration: its modes, its ticks, its channels or the range of its output.
+// What the device gets: its wiring, and the limits that it holds on its own. Throws InputError when the
+// device that says `identity` is not one for this configuration: its modes, its ticks, its channels or the
+// range of its output.
 hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro_identity& identity);
 
 }  // namespace hydro::plant

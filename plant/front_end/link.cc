@@ -55,6 +55,7 @@ size_t Link::Read(std::span<uint8_t> into) {
 }
 
 void Link::Write(std::span<const uint8_t> frame, bool must_leave) {
+  ForgetOld();  // before the line is looked at: else each frame would wait behind the one before it, for ever
   Flush();
   if (!is_open()) return;
   if (begun_.empty() && waiting_.empty() && BytesOnTheirWay(descriptor_) <= frame.size()) {
@@ -65,6 +66,12 @@ void Link::Write(std::span<const uint8_t> frame, bool must_leave) {
   if (!waiting_.empty() && waiting_must_leave_ && !must_leave) return;
   waiting_.assign(frame.begin(), frame.end());
   waiting_must_leave_ = must_leave;
+}
+
+void Link::ForgetOld() {
+  if (waiting_.empty() || waiting_must_leave_) return;
+  waiting_.clear();
+  ++frames_left_out_;
 }
 
 void Link::Flush() {

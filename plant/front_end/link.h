@@ -29,22 +29,25 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() says why. Takes no longer than
-  // the system call, also with nobody at the other end.
+  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() says why. Takes no
+  // longer than the system call, also with nobody at the other end.
   bool Open();
   void Close();
   bool is_open() const { return descriptor_ >= 0; }
+  int descriptor() const { return descriptor_; }  // to wait on; -1: closed
   const LinkTrouble& trouble() const { return trouble_; }
 
-  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other. A link whose
-  // other end has gone is closed.
+  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other. A
+  // link whose other end has gone is closed.
   size_t Read(std::span<uint8_t> into);
 
-  // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the new one
-  // replaces any other that waits, and the one that it replaced is counted. Sends what waits, too. What is not a command of
-  // each tick `must_leave`: commands do not replace it.
+  // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
+  // new one replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.
+  // What is not a command of each tick `must_leave`: commands do not replace it.
   void Write(std::span<const uint8_t> frame, bool must_leave = false);
   void Flush();
+  // The tick of what waits is over: unless it must leave, it is left out.
+  void ForgetOld();
 
   // For signal handlers: the frame as one system call, whatever waits.
   void WriteAtOnce(std::span<const uint8_t> frame) const noexcept;

@@ -51,7 +51,8 @@ bool HasSpeed(int port, int baud) {
   return tcgetattr(port, &settings) == 0 && cfgetospeed(&settings) == *settings::BaudConstant(baud);
 }
 
-// USB converters collect what comes for up to 16 ms otherwise. Where a port does not know this, nothing is lost.
+// USB converters collect what comes for up to 16 ms otherwise. Where a port does not know this, nothing is
+// lost.
 void AskForLowLatency(int port) {
   serial_struct serial = {};
   if (ioctl(port, TIOCGSERIAL, &serial) != 0) return;

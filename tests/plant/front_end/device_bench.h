@@ -1,5 +1,5 @@
-// A front end without hardware or time: the firmware itself, ticked by the test, and the rig that talks to it over a wire that may damage
-// frames.
+// A front end without hardware or time: the firmware itself, ticked by the test, and the rig that talks to it
+// over a wire that may damage frames.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ namespace hydro::plant {
 
 using Bytes = std::vector<uint8_t>;
 
-// p1, p2: 500 units per V; the motor: an encoder of 16 bits and its rate; the arm: 0.2 rad per V; the amplifier inverts and doubles.
+// p1, p2: 500 units per V; the motor: an encoder of 16 bits and its rate; the arm: 0.2 rad per V; the
+// amplifier inverts and doubles.
 inline const char kFrontEndText[] = R"([driver]
 kind = "front_end"
 url = "udp://127.0.0.1:7"
@@ -161,6 +162,7 @@ class DeviceBench {
       Receive();
       if (before_tick) before_tick(device.tick + 1);
       volts = hydro_device_tick(&device, &readings);
+      if (lie) lie(device.sample);
       uint8_t wire[HYDRO_WIRE_MAX];
       while (const size_t count = hydro_device_send(&device, wire)) SendToComputer(Bytes(wire, wire + count));
     }
@@ -185,11 +187,12 @@ class DeviceBench {
     return false;
   }
 
-  // One tick of the computer: the rig reads, and is driven with `voltage` where that may be. Returns what acts, as it says.
+  // One tick of the computer: the rig reads, and is driven with `voltage`, which answers the tick before,
+  // where that may be. Returns what acts, as it says.
   double Tick(double voltage, bool obeys = true) {
     measured = rig->Read(++tick);
     const bool held = !obeys || !rig->faults().empty();
-    rig->Obey(!held);
+    rig->Obey(held ? -1 : tick - 1);
     const double acts = rig->Drive(held ? 0 : voltage);
     if (device_runs) RunDevice();
     Wait();
@@ -215,6 +218,7 @@ class DeviceBench {
   hydro_device device{};
   hydro_readings readings{};
   std::function<void(uint64_t tick)> before_tick;  // sets the readings
+  std::function<void(hydro_sample& sample)> lie;   // in what it sends
   float volts = 0;                                 // at the terminal
   bool device_runs = true;
   int64_t tick = 0;

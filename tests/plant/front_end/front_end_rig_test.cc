@@ -9,8 +9,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Tests the way from the first byte to the first volt: the device holds the configuration's settings, stays at zero until something is
-// obeyed, and then does what it is told, within the limit.
+// Tests the way from the first byte to the first volt: the device holds the configuration's settings, stays
+// at zero until something is obeyed, and then does what it is told, within the limit.
 TEST(FrontEndRigTest, FromTheFirstByteToTheFirstVolt) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());
@@ -37,17 +37,21 @@ TEST(FrontEndRigTest, FromTheFirstByteToTheFirstVolt) {
   EXPECT_EQ(bench.Tick(3), 3);
   EXPECT_EQ(bench.device.state, HYDRO_ARMED);
   EXPECT_FLOAT_EQ(bench.volts, -1.5) << "at the terminal";
-  EXPECT_EQ(bench.Tick(11), 8) << "limit_V";
-  bench.Tick(-11);
+  EXPECT_EQ(bench.Tick(11), 3) << "still, when this one leaves";
+  EXPECT_EQ(bench.rig->acting_command_tick(), bench.tick - 2) << "the one before has arrived";
+  EXPECT_EQ(bench.Tick(-11), 8) << "limit_V";
   EXPECT_EQ(bench.volts, 4);
-  EXPECT_EQ(bench.Tick(NAN), 0);
+  EXPECT_EQ(bench.Tick(NAN), -8);
   EXPECT_EQ(bench.volts, 0);
+  bench.Tick(1, /*obeys=*/false);
+  bench.Tick(1, /*obeys=*/false);
+  EXPECT_EQ(bench.rig->acting_command_tick(), -1) << "zero is nobody's command";
   EXPECT_TRUE(bench.rig->faults().empty());
   EXPECT_EQ(bench.rig->lost_messages(), 0);
 }
 
-// Tests that signals come in the model's units, and that an angle from a counter stays exact where one in single precision does not, beyond
-// its wraps.
+// Tests that signals come in the model's units, and that an angle from a counter stays exact where one in
+// single precision does not, beyond its wraps.
 TEST(FrontEndRigTest, Signals) {
   DeviceBench bench;
   bench.readings.analog_V[0] = 0.5;
@@ -81,8 +85,8 @@ TEST(FrontEndRigTest, CountWithoutAnEnd) {
   EXPECT_EQ(up.Update(2147483600), 2147483600);
 }
 
-// Tests that a pulled cable is a fault at once, that the device goes to zero by itself after exactly its own limit, and that with the cable
-// back it waits for a command that is obeyed.
+// Tests that a pulled cable is a fault at once, that the device goes to zero by itself after exactly its own
+// limit, and that with the cable back it waits for a command that is obeyed.
 TEST(FrontEndRigTest, PulledCable) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());
@@ -97,7 +101,8 @@ TEST(FrontEndRigTest, PulledCable) {
   for (int i = 0; i < 60; ++i) EXPECT_EQ(bench.Tick(3), 0);
   EXPECT_EQ(bench.volts, 0);
   EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
-  // The last command was taken in the last tick before; 250 ticks later the watchdog trips, in the tick that it is counted in.
+  // The last command was taken in the last tick before; 250 ticks later the watchdog trips, in the tick that
+  // it is counted in.
   EXPECT_NEAR(ticks, 250, DeviceBench::kTicks);
   bench.link->plugged = true;
   bool tripped = false;
@@ -132,7 +137,8 @@ TEST(FrontEndRigTest, SilentDevice) {
   EXPECT_EQ(bench.volts, -1.5);
 }
 
-// Tests that a reset is noticed, however short, and that the device gets its settings anew before it may drive.
+// Tests that a reset is noticed, however short, and that the device gets its settings anew before it may
+// drive.
 TEST(FrontEndRigTest, Reset) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());
@@ -189,6 +195,80 @@ TEST(FrontEndRigTest, ReadBack) {
   EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("reads back -4 V"));
 }
 
+// Tests that the driver compares too: a device that says that it puts out something else than it was told,
+// less where it names the limit, and one whose output reads back what nobody has put out, whatever it says of
+// it.
+TEST(FrontEndRigTest, OutputDiffers) {
+  DeviceBench bench;
+  bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = bench.device.written_volts; };
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  for (int i = 0; i < 200; ++i) bench.Tick(i % 40 < 20 ? 7 : -7);
+  EXPECT_TRUE(bench.rig->faults().empty());
+  bench.lie = [](hydro_sample& sample) { sample.voltage = 4; };
+  bench.Ticks(2, 3);
+  EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("says that it puts out 4 V; it was told 3 V"));
+  EXPECT_EQ(bench.volts, 0);
+  bench.Ticks(5, 3);
+  EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 4 V; it was told 0 V"));
+  bench.lie = nullptr;
+  bench.Ticks(150, 3);
+  EXPECT_TRUE(bench.rig->faults().empty());
+  bench.lie = [](hydro_sample& sample) {
+    sample.voltage = 2;
+    sample.saturated = 1;
+  };
+  bench.Ticks(5, 3);
+  EXPECT_TRUE(bench.rig->faults().empty()) << "an end of its range";
+  bench.Ticks(2, 1);
+  EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 2 V; it was told 1 V"));
+
+  bench.lie = nullptr;
+  bench.Ticks(150, 3);
+  bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = -2.5; };
+  bench.Ticks(3, 3);
+  EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("reads back 5 V; 3 V was put out"));
+  EXPECT_EQ(bench.volts, 0);
+  bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = NAN; };
+  bench.Ticks(5, 3);
+  EXPECT_TRUE(bench.rig->faults().empty()) << "a board that cannot read back";
+}
+
+// Tests that a signal that is no number is the fault of its sensor although the device reports none, that a
+// rate of it is not another, and that sensors which are not configured have none.
+TEST(FrontEndRigTest, NoNumberAndNoFault) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  for (const float none : {NAN, INFINITY}) {
+    bench.lie = [&](hydro_sample& sample) {
+      sample.value[HYDRO_P1] = sample.value[HYDRO_MOTOR_ANGLE] = none;
+    };
+    bench.Ticks(2, 3);
+    EXPECT_THAT(bench.Fault("sensor_p1"),
+                HasSubstr("for p1 and reports no fault of it; allowed is a number"));
+    EXPECT_NE(bench.Fault("sensor_motor_angle"), "");
+    EXPECT_EQ(bench.rig->faults().size(), 2U);
+    EXPECT_TRUE(std::isnan(bench.measured.p1));
+    EXPECT_EQ(bench.volts, 0);
+    bench.lie = nullptr;
+    bench.Ticks(20, 3);
+    EXPECT_TRUE(bench.rig->faults().empty());
+  }
+  bench.lie = [&](hydro_sample& sample) { sample.value[HYDRO_MOTOR_SPEED] = NAN; };
+  bench.Ticks(2, 3);
+  EXPECT_NE(bench.Fault("sensor_motor_speed"), "") << "its angle is there";
+}
+
+// Tests that the board's name, which anyone may have put there, moves no cursor.
+TEST(FrontEndRigTest, ForeignName) {
+  DeviceBench bench;
+  bench.facts.name = "a\x1b[2J\nb\xff";
+  bench.Reset();
+  ASSERT_TRUE(bench.Connect());
+  EXPECT_EQ(bench.rig->Describe(), "udp://127.0.0.1:7 (a\\x1b[2J\\x0ab\\xff, firmware 1.0.0, 5000 ticks/s)");
+}
+
 // Tests that frames of others, old ones and repeated ones change nothing, and are counted.
 TEST(FrontEndRigTest, ForgedFrames) {
   DeviceBench bench;
@@ -216,7 +296,8 @@ TEST(FrontEndRigTest, ForgedFrames) {
   EXPECT_TRUE(bench.rig->faults().empty());
 }
 
-// Tests that settings which somebody else has put into the device stop it at the next command, by their fingerprint.
+// Tests that settings which somebody else has put into the device stop it at the next command, by their
+// fingerprint.
 TEST(FrontEndRigTest, WrongFingerprint) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());
@@ -247,6 +328,10 @@ TEST(FrontEndRigTest, Zero) {
   const OutputLeft left = bench.rig->Zero();
   EXPECT_TRUE(left.accepted);
   EXPECT_EQ(left.voltage, 0);
+  bench.readings.read_back_V = 2;
+  bench.RunDevice();
+  EXPECT_FALSE(bench.rig->Zero().accepted) << "it says so, but its output does not hold it";
+  EXPECT_EQ(bench.rig->Zero().voltage, -4);
   bench.link->Unplug();
   EXPECT_FALSE(bench.rig->Zero().accepted) << "nobody is there to say so";
 }

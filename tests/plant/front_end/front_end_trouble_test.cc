@@ -45,7 +45,8 @@ Outcome Driven(const Damage& damage) {
   return outcome;
 }
 
-// Tests that frames which are flipped in a bit, lost, doubled or late, up to one in a hundred of each, change nothing but counts.
+// Tests that frames which are flipped in a bit, lost, doubled or late, up to one in a hundred of each, change
+// nothing but counts.
 TEST(FrontEndTroubleTest, DamageChangesNothingButCounts) {
   int64_t seen = 0;
   for (const double rate : {0.0, 1e-5, 1e-4, 1e-3, 1e-2}) {
@@ -86,7 +87,8 @@ TEST(FrontEndTroubleTest, BitErrors) {
   EXPECT_FALSE(Driven({.bit = 1e-2}).connected);
 }
 
-// Tests that a wire which suddenly carries nothing whole is a fault, that nothing is obeyed then, and that all is well once it is.
+// Tests that a wire which suddenly carries nothing whole is a fault, that nothing is obeyed then, and that
+// all is well once it is.
 TEST(FrontEndTroubleTest, WireThatBreaksAndHeals) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());
@@ -103,7 +105,8 @@ TEST(FrontEndTroubleTest, WireThatBreaksAndHeals) {
   EXPECT_EQ(bench.volts, -1.5);
 }
 
-// Tests that commands which no longer reach the device are noticed by the age of what it obeys, where its samples still come.
+// Tests that commands which no longer reach the device are noticed by the age of what it obeys, where its
+// samples still come.
 TEST(FrontEndTroubleTest, OneWay) {
   DeviceBench bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05", "watchdog_s = 1"));
   ASSERT_TRUE(bench.Connect());

@@ -29,7 +29,7 @@ class LoopOnDeviceTest : public ::testing::Test {
   // A tick in which the application follows `reference`, as PressureApp does between two ticks of the plant.
   Answer Follow(double reference, const PressureLawSettings& law) {
     bench.measured = bench.rig->Read(++bench.tick);
-    bench.rig->Obey(bench.rig->faults().empty());
+    bench.rig->Obey(bench.rig->faults().empty() ? bench.tick : -1);
     bench.rig->Drive(answer.voltage);
     answer = bench.rig->Follow(state_t{}, reference, law);
     bench.RunDevice();
@@ -41,8 +41,8 @@ class LoopOnDeviceTest : public ::testing::Test {
   Answer answer;
 };
 
-// Tests that the device acts by eq. (16) with the reference and gains that it is sent, once it is armed, and that its answers are what it
-// has put out for the very state that was read.
+// Tests that the device acts by eq. (16) with the reference and gains that it is sent, once it is armed, and
+// that its answers are what it has put out for the very state that was read.
 TEST_F(LoopOnDeviceTest, AnswersEachState) {
   EXPECT_EQ(bench.device.settings.mode, HYDRO_LOOP_ON_DEVICE);
   EXPECT_FALSE(Follow(100, Law(0.02)).by_law) << "not armed";
@@ -57,7 +57,8 @@ TEST_F(LoopOnDeviceTest, AnswersEachState) {
   EXPECT_EQ(bench.rig->Drive(answer.voltage), 8) << "what acts is what the device says";
 }
 
-// Tests that other gains let the voltage where it was, and that the difference then passes in a straight line.
+// Tests that other gains let the voltage where it was, and that the difference then passes in a straight
+// line.
 TEST_F(LoopOnDeviceTest, GainsChangeWithoutAJump) {
   for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
   const double before = answer.voltage, after = 0.04 * 50 + 0.2;
@@ -71,7 +72,8 @@ TEST_F(LoopOnDeviceTest, GainsChangeWithoutAJump) {
   EXPECT_NEAR(voltages.back(), after, 1e-6);
 }
 
-// Tests that a voltage is put out where the application follows nothing, and zero where nothing may be obeyed.
+// Tests that a voltage is put out where the application follows nothing, and zero where nothing may be
+// obeyed.
 TEST_F(LoopOnDeviceTest, ReleaseAndHold) {
   for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
   ASSERT_EQ(bench.device.sample.source, HYDRO_SOURCE_LAW);

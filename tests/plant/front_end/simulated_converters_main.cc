@@ -1,7 +1,8 @@
-// simulated_converters URL MODEL.toml RATE: the machine behind the converters of an emulated front end (docs/front_end.md, the converter
-// link): an actuator that moves by one period of the device for each OUTPUT, and its sensors. Says "ready" once the device
-// is there, then once a second "TICK VOLTS P1 P2 MOTOR_SPEED ARM_ANGLE", and at each tick in which the voltage becomes zero or ceases
-// to be "zero TICK" or "drives TICK". Runs until a signal ends it. On SIGUSR1 it opens the interlock.
+// simulated_converters URL MODEL.toml RATE: the machine behind the converters of an emulated front end
+// (docs/front_end.md, the converter link): an actuator that moves by one period of the device for each
+// OUTPUT, and its sensors. Says "ready" once the device is there, then once a second "TICK VOLTS P1 P2
+// MOTOR_SPEED ARM_ANGLE", and at each tick in which the voltage becomes zero or ceases to be "zero TICK" or
+// "drives TICK". Runs until a signal ends it. On SIGUSR1 it opens the interlock.
 //
 // How it is wired (the configuration under test must find the scales by itself):
 //   analog input 0, 1   p1, p2: transducers of 0 to 2000 psi that give 0.5 to 4.5 V
@@ -43,19 +44,20 @@ class Machine {
   Machine(const hydro::model::ModelDescription& model, double rate_hz)
       : actuator_(model, {}), rate_hz_(rate_hz) {}
 
-  // The device's tick `tick`: until now the volts that were held acted.
+  // The device's tick `tick`: until now the volts that were held acted, from now on these do. What the
+  // sensors will read at the next tick follows from them, and has a period to get there: so the device reads
+  // what is, like one with converters of its own.
   hydro_converters Answer(const hydro_output& output) {
-    if (last_ && output.tick > *last_) {
-      elapsed_ += output.tick - *last_;
-      actuator_.Advance(-2.0 * volts_, static_cast<double>(elapsed_) / rate_hz_);
-    }
+    if (last_ && output.tick > *last_ + 1) Advance(output.tick - *last_ - 1);
     if ((output.volts == 0) != (volts_ == 0)) {
       std::printf("%s %llu\n", output.volts == 0 ? "zero" : "drives",
                   static_cast<unsigned long long>(output.tick));
       std::fflush(stdout);
     }
+    const bool next = !last_ || output.tick != *last_;  // a device that was reset begins at 0
     volts_ = output.volts;
     last_ = output.tick;
+    if (next) Advance(1);
     return Converters(output.tick);
   }
 
@@ -84,6 +86,11 @@ class Machine {
   }
 
  private:
+  void Advance(uint64_t ticks) {
+    elapsed_ += ticks;
+    actuator_.Advance(-2.0 * volts_, static_cast<double>(elapsed_) / rate_hz_);
+  }
+
   hydro::model::Actuator actuator_;
   double rate_hz_;
   uint64_t elapsed_ = 0;          // of the device's ticks
@@ -119,8 +126,12 @@ class Talk {
       if (hydro_receive(&receiver_, bytes[i], &frame) && frame.kind == HYDRO_OUTPUT)
         outputs.push_back(frame.body.output);
     }
-    link_->Flush();
     return outputs;
+  }
+
+  void Wait(std::chrono::milliseconds most) const {
+    pollfd waiting{link_->descriptor(), POLLIN, 0};
+    poll(&waiting, 1, static_cast<int>(most.count()));
   }
 
  private:
@@ -155,7 +166,7 @@ void Run(const hydro::settings::FrontEndUrl& url, Machine& machine) {
       next_show = now + 1s;
       machine.Show();
     }
-    if (outputs.empty()) std::this_thread::sleep_for(50us);
+    if (outputs.empty()) talk.Wait(10ms);
   }
 }
 
