@@ -67,7 +67,8 @@ constexpr std::array kRows{
         .tests = "driver.DriverFaultTest.test_sensor_faults plant/PlantRigTest.RigFaults "
                  "plant/driver/ComediRigTest.SaturatedInput "
                  "plant/driver/ComediRigTest.PlausibleVolts plant/driver/DeviceRigTest.NoNumber "
-                 "plant/driver/DeviceRigTest.OneSilentInput own_driver.OwnDriverTest.test_promises",
+                 "plant/driver/DeviceRigTest.OneSilentInput own_driver.OwnDriverTest.test_promises "
+                 "plant/front_end/FrontEndRigTest.NoNumberAndNoFault",
         .injected = "board_input",
     },
     SafetyRow{
@@ -115,7 +116,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, when both agree",
         .tests = "own_driver.OwnDriverTest.test_promises plant/driver/DeviceRigTest.OutputDiffers "
-                 "plant/front_end/FrontEndRigTest.ReadBack",
+                 "plant/front_end/FrontEndRigTest.ReadBack plant/front_end/FrontEndRigTest.OutputDiffers",
         .not_injected = kNoDevice,
     },
     SafetyRow{
@@ -132,6 +133,24 @@ constexpr std::array kRows{
         .tests = "driver.WaysOutTest.test_board_errors driver.DriverFaultTest.test_board_that_takes_no_zero "
                  "plant/driver/ComediRigTest.EncoderLost plant/driver/ComediRigTest.BoardErrors",
         .injected = "board_error encoder_lost",
+    },
+    SafetyRow{
+        .id = "zero_not_taken",
+        .fault =
+            "at the end of a run the output does not take the zero, or nobody says that it has: the board "
+            "refuses it, the front end or its output does not answer",
+        .detected = "driver",
+        .within = {"at the end; after half a second of a front end's silence"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V, if the device's own watchdog is there",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text =
+            "exit code 1, also where the run was complete; the line says what the output reads back",
+        .tests =
+            "front_end.LastLineTest.test_end_without_the_device plant/PlantRigTest.ARefusedZeroIsAFailure "
+            "plant/front_end/FrontEndRigTest.Zero driver.DriverFaultTest.test_board_that_takes_no_zero",
+        .not_injected = kNoDevice,
     },
     SafetyRow{
         .id = "guardian_gone",

@@ -16,6 +16,18 @@ WATCHDOG = 0.2  # s: 200 ticks of the device
 SINE = 'reference={ signal = "arm_angle", kind = "sine", amplitude = 0.2, frequency_hz = 0.5 }'
 
 
+# One step, and time to get there for a machine whose ticks come late because other tests run.
+STEP = 'reference={ signal = "arm_angle", kind = "steps", steps = [[0.2, 0.1]] }'
+
+
+def processes(*programs):
+    """With real-time priorities, where they are allowed."""
+    return "process=[%s]" % ", ".join(f'{{ program = "hydro-{name}", priority = 10 }}' for name in programs)
+
+
+REMOTE = (processes("driver", "pressure-ctrl", "position-ctrl"),)
+
+
 class FrontEndCase(stack.TestCase):
     config = "front_end.toml"
 
@@ -40,13 +52,17 @@ class FrontEndRunTest(FrontEndCase):
     def arrives(self, link):
         front = front_end.FrontEnd(self, link)
         log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
-        launch = self.launch(stack.config(self.config), *self.options(front.url), "--log", log_file)
+        launch = self.launch(stack.config(self.config), *self.options(front.url, STEP, *REMOTE), "--log", log_file)
         self.assertEqual(launch.wait(60), 0, launch.report())
         self.run_program("hydro-log", "summary", log_file, "--json", json_file)
         with open(json_file, encoding="utf-8") as file:
             summary = json.load(file)
         log = event_log.Log(log_file)
         self.assertTrue(summary["tracking"]["at_target"], summary)
+        # What acted until a tick answers the tick before the last: the link adds no tick to what a board in the computer takes.
+        delays = sorted(s.tick - s.command_tick for s in log.states if s.command_tick >= 0)
+        self.assertGreater(len(delays), 0.5 * len(log.states))
+        self.assertEqual(delays[len(delays) // 4], 2, "a quarter of a busy machine's commands may be late")
         self.assertEqual({f.code for f in log.faults} - {"stale_motor_command", "device_silent", "device_fault"}, set())
         (left,) = log.outputs_left
         self.assertEqual((left.role, bool(left.accepted), left.voltage), ("driver", True, 0))
@@ -136,6 +152,16 @@ class LastLineTest(FrontEndCase):
         self.assertEqual(self.relay.newest()[2]["state"], wire.READY)
         self.front.wait_until_zero()
 
+    # Tests that a run whose device does not say that its output is at zero has failed, and says so; the device's watchdog makes it zero.
+    def test_end_without_the_device(self):
+        run = self.driven()
+        self.relay.cut = True
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 1, run["driver"].report())
+        self.assertIn("the output has not taken zero volts at the end, and cannot be read back: cut the amplifier's supply",
+                      run["driver"].stderr)
+        self.front.wait_until_zero()
+
     # Tests that a reset in mid-run is noticed, gives zero volts, and that the device drives again only with its settings.
     def test_reset(self):
         run = self.driven()
@@ -187,7 +213,7 @@ class LastLineTest(FrontEndCase):
         self.front.wait_until_driven()
 
 
-LOOP = ('driver.mode="loop_on_device"', 'process=[{ program = "hydro-driver" }, { program = "hydro-position-ctrl" }]')
+LOOP = ('driver.mode="loop_on_device"', processes("driver", "position-ctrl"))
 
 
 class LoopOnDeviceTest(FrontEndCase):
@@ -198,7 +224,7 @@ class LoopOnDeviceTest(FrontEndCase):
     def test_arm_reaches_its_reference(self):
         front = front_end.FrontEnd(self, "pty", rate=2000)
         log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
-        launch = self.launch(stack.config(self.config), *self.options(front.url, *LOOP), "--log", log_file)
+        launch = self.launch(stack.config(self.config), *self.options(front.url, STEP, *LOOP), "--log", log_file)
         self.assertEqual(launch.wait(60), 0, launch.report())
         self.run_program("hydro-log", "summary", log_file, "--json", json_file)
         with open(json_file, encoding="utf-8") as file:
