@@ -17,23 +17,24 @@ import stack
 
 _TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))
 CONVERTERS = os.path.join(_TOOLS, "simulated_converters")
-EMULATED_RATE = 200  # ticks a second of the image for QEMU (firmware/CMakeLists.txt)
+EMULATED_RATE = 100  # ticks a second of the image for QEMU (firmware/CMakeLists.txt)
 MODEL = os.path.join(stack.CONFIG, "models", "table1.toml")
 
 
 class FrontEnd:
     """A board of its own for one test, with the actuator that moves behind it. `link`: pty, unix or udp."""
 
-    def __init__(self, case, link="udp", rate=1000):
+    def __init__(self, case, link="udp", rate=1000, model=MODEL):
         self.case, self.link, self.rate = case, link, rate
         self.address = {"pty": "pty:" + case.path("front_end"), "unix": "unix:" + case.path("front_end"), "udp": "udp:0"}[link]
         self.start()
-        self.machine = case.start(CONVERTERS, "unix:" + self.converters, MODEL, rate)
+        self.machine = case.start(CONVERTERS, "unix:" + self.converters, model, rate)
         self.machine.wait_for("^ready")
         # Hardware is never late because other tests run. Where that is not allowed, they are.
-        for process in (self.board, self.machine):
-            with contextlib.suppress(PermissionError):
-                os.sched_setscheduler(process.pid, os.SCHED_FIFO, os.sched_param(10))
+        threads = [int(thread) for process in (self.board, self.machine) for thread in os.listdir(f"/proc/{process.pid}/task")]
+        with contextlib.suppress(PermissionError, ProcessLookupError):
+            for thread in threads:
+                os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(10))
 
     def start(self):
         self.converters = self.case.path("converters")
@@ -69,13 +70,13 @@ class FrontEnd:
 class EmulatedFrontEnd(FrontEnd):
     """The firmware on a Cortex-M4 in qemu-system-arm. Skips the test where the emulator or the image is not there."""
 
-    def __init__(self, case):
+    def __init__(self, case, model):
         self.image = stack.program("front_end_mps2_an386.elf")
         if not shutil.which("qemu-system-arm"):
             case.skipTest("needs qemu-system-arm (package qemu-system-arm)")
         if not os.path.exists(self.image):
             case.skipTest("needs front_end_mps2_an386.elf, which is built where arm-none-eabi-gcc is (package gcc-arm-none-eabi)")
-        super().__init__(case, "unix", rate=EMULATED_RATE)
+        super().__init__(case, "unix", EMULATED_RATE, model)
 
     def start(self):
         self.converters = self.case.path("converters")

@@ -1,6 +1,7 @@
 """hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
 
 import json
+import re
 import signal
 import socket
 import struct
@@ -277,6 +278,44 @@ class LoopOnDeviceTest(FrontEndCase):
     def test_beside_a_pressure_loop(self):
         process = self.run_program("hydro-driver", stack.config(self.config), *self.options("unix:/nobody", LOOP[0]), expect=2)
         self.assertIn('found hydro-pressure-ctrl with driver.mode = "loop_on_device"', process.stderr)
+
+
+class EmulatorTest(FrontEndCase):
+    """The whole stack on an emulated microcontroller, its two UARTs and the FPU: 100 ticks a second, which QEMU's serial lines carry, for a
+    machine ten times as slow as the paper's. Gains and times are those of config/front_end.toml, in that machine's time."""
+
+    SLOWER = {"J": 100, "J_a": 100, "b": 10, "c_E": 0.1, "c_I": 0.1}
+    SETTINGS = ("plant.rate_hz=100", "position.sample_interval_s=0.05", "pressure.natural_frequency_rad_s=6", "position.c2=12000",
+                'driver.arm_speed={ source = "derivative", low_pass_hz = 5 }', "driver.watchdog_s=0.5", "limits.stale_input_s=0.6",
+                "time.duration_s=18", STEP)
+
+    def arrives(self, *settings):
+        with open(front_end.MODEL, encoding="utf-8") as file:
+            text = file.read()
+        for name, factor in self.SLOWER.items():
+            text, count = re.subn(rf"(?m)^{name} = (\S+)", lambda found, by=factor: f"{found[0].split()[0]} = {float(found[1]) * by}", text)
+            self.assertEqual(count, 1, name)
+        with open(self.path("slow.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        front = front_end.EmulatedFrontEnd(self, self.path("slow.toml"))
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(stack.config(self.config), *self.options(front.url, f'model.file="{self.path("slow.toml")}"', *self.SETTINGS,
+                                                                      *settings), "--log", log_file)
+        self.assertEqual(launch.wait(90), 0, launch.report())
+        log = event_log.Log(log_file)
+        self.assertRegex(launch.stderr + launch.stdout, r"\(mps2-an386, firmware [\d.]+, 100 ticks/s\)")
+        # The machine's own word, and the driver's.
+        self.assertAlmostEqual(front.shown()[5], 0.1, delta=0.03)
+        self.assertAlmostEqual(log.states[-1].arm_angle, 0.1, delta=0.03)
+        self.assertGreater(max(s.voltage for s in log.states), 1)
+        front.wait_until_zero()
+
+    # Tests that the arm reaches its reference in both modes.
+    def test_remote_io(self):
+        self.arrives(*REMOTE)
+
+    def test_loop_on_device(self):
+        self.arrives(*LOOP)
 
 
 class FrontEndInputTest(FrontEndCase):
