@@ -338,6 +338,7 @@ pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, 
 
 OutputLeft FrontEndRig::Zero() noexcept {
   OutputLeft left{.accepted = false, .voltage = NAN};
+  std::optional<int64_t> obeyed;  // the first sample that is seen to
   try {
     const auto asked = clock_.Now();
     auto next = asked;
@@ -352,9 +353,11 @@ OutputLeft FrontEndRig::Zero() noexcept {
       if (up && connection_.sampled_at() >= asked) {
         left.voltage = std::isfinite(sample.read_back) ? sample.read_back : sample.voltage;
         left.accepted = sample.state != HYDRO_ARMED && std::fabs(left.voltage) <= output_.tolerance();
-        // The sample in which a device obeys has what its output read just before: the next one tells what it
+        // The sample in which a device obeys has what its output read just before: a later one tells what it
         // left.
-        if (left.accepted && std::fabs(left.voltage) <= kNearZero) return left;
+        const int64_t samples = connection_.counts().samples;
+        if (!obeyed && sample.state != HYDRO_ARMED) obeyed = samples;
+        if (left.accepted && samples > *obeyed && std::fabs(left.voltage) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);
