@@ -265,6 +265,19 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
             self.assertIn(says, process.stderr)
 
+    # Tests that what a simulated device says is neither kept nor waited for without an end, by the check and by the driver.
+    def test_device_that_talks(self):
+        config = self.config()
+        for says, instead in (("'x' * 10_000_000", "says a line of more than 4096 bytes"), ("'not ready'", "ended before")):
+            device = ["--set", f"driver.simulated_device={[sys.executable, '-c', f'print({says})']}"]
+            check = self.check(config, *device, expect=2)
+            self.assertEqual(check.stderr.count("\n"), 1, check.stderr)
+            self.assertRegex(check.stderr, rf'driver.simulated_device: found \S+, which {instead}, allowed a program that says "ready" within 10 s')
+            driver = subprocess.run([os.path.join(TOOLS, "udp_box"), config, "--set", f"bus.url={self.url}", *device], capture_output=True,
+                                    text=True, timeout=30, check=False)
+            self.assertEqual(driver.returncode, 1, driver.stderr)
+            self.assertRegex(driver.stderr, rf'driver.simulated_device: \S+ must say "ready" within 5 s, but {instead}; start it by hand')
+
     # Tests what new-driver writes, that nothing is overwritten, and bad names.
     def test_new_driver(self):
         made = self.run_program("hydro-launch", "new-driver", "mine")
