@@ -150,7 +150,7 @@ constexpr std::array kRows{
         .tests =
             "front_end.LastLineTest.test_end_without_the_device plant/PlantRigTest.ARefusedZeroIsAFailure "
             "plant/front_end/FrontEndRigTest.Zero driver.DriverFaultTest.test_board_that_takes_no_zero",
-        .not_injected = kNoDevice,
+        .injected = "board_error",
     },
     SafetyRow{
         .id = "guardian_gone",
