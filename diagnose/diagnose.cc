@@ -67,6 +67,20 @@ bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& r
   });
 }
 
+// Whether the effect makes one channel late where there is no other: then it is the command that is early, an effect of the amplifier.
+bool IsOfTheCommand(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
+  const auto has = [&info](model::Role role) {
+    return std::any_of(info.parameters.begin(), info.parameters.end(),
+                       [role](const model::ParameterInfo& parameter) { return parameter.role == role; });
+  };
+  if (!has(model::Role::kChannel) || !has(model::Role::kTime)) return false;
+  std::set<model::Channel> measured;
+  for (const RunData* run : runs) {
+    for (const SignalData& signal : run->signals) measured.insert(signal.channel);
+  }
+  return measured.size() == 1;
+}
+
 // One change for each name that the effect can take in these runs.
 std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
   std::vector<Change> variants = {{info.id, {}, ""}};
@@ -94,7 +108,7 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
       std::any_of(runs.begin(), runs.end(), [](const RunData* run) { return !run->stimulus.bypass; });
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (info.needs_oil && !oil) continue;
+    if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
     const bool has =

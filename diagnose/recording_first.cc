@@ -25,6 +25,13 @@ bool OnlySigns(const std::vector<RecordingFinding>& findings) {
   });
 }
 
+bool OnlyUnknownUnits(const std::vector<RecordingFinding>& findings) {
+  return std::all_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) {
+    return std::all_of(finding.mistakes.begin(), finding.mistakes.end(),
+                       [](const RecordingMistake& mistake) { return mistake.IsOfUnknownUnit(); });
+  });
+}
+
 bool MayHave(const RecordingMistake& mistake, const std::vector<RecordingMistake>& possible) {
   return mistake.shaft.has_value() || std::find(possible.begin(), possible.end(), mistake) != possible.end();
 }
@@ -68,6 +75,7 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
 // What is said before all else.
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
+  remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
   if (!checked.load.empty()) remarks.push_back(checked.load);
   remarks.insert(remarks.end(), checked.repeats.begin(), checked.repeats.end());
   remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
@@ -117,7 +125,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   std::erase_if(unpredicted, [&](size_t run) { return contradicts[run]; });
   checked.unjudged = UnjudgedLine(unpredicted, all);
   checked.mistakes = contradictions;
-  for (std::string& remark : FindingRemarks(findings, all)) checked.mistakes.push_back(std::move(remark));
+  std::vector<std::string>& said = OnlyUnknownUnits(findings) ? checked.factors : checked.mistakes;
+  for (std::string& remark : FindingRemarks(findings, all)) said.push_back(std::move(remark));
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
   // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the
@@ -125,8 +134,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
-  checked.mend_first =
-      !contradictions.empty() || (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
+  checked.mend_first = !contradictions.empty() || (!findings.empty() && most && !OnlyUnknownUnits(findings) &&
+                                                   !(may_name_signs && OnlySigns(findings)));
   if (!checked.mend_first && most && OnlySigns(findings)) {
     for (const RecordingFinding& finding : findings) {
       const std::string sensor = finding.mistakes[0].InvertedSensor();
@@ -172,6 +181,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   CheckedRecordings checked = CheckFirst(model, {}, jobs, &runs, &none);
   RecordingReport report;
   report.wrong = checked.mistakes;
+  report.wrong.insert(report.wrong.end(), checked.factors.begin(), checked.factors.end());
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
   if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());

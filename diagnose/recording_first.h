@@ -15,10 +15,12 @@ namespace hydro::diagnose {
 
 struct CheckedRecordings {
   std::vector<std::string> mistakes;  // signs, exchanged channels, units: a line each, with the remedy
-  std::vector<std::string> damage;    // dropouts, spikes, cuts: a line each
-  std::vector<std::string> repeats;   // slow sensors that repeat their values: a line each
-  std::string load;                   // LoadRemark()
-  std::string unjudged;               // runs that the model as given does not predict at all; empty: none
+  // Factors that are no known unit's, a line each: oil or a hose may look like one, so the search goes on.
+  std::vector<std::string> factors;
+  std::vector<std::string> damage;   // dropouts, spikes, cuts: a line each
+  std::vector<std::string> repeats;  // slow sensors that repeat their values: a line each
+  std::string load;                  // LoadRemark()
+  std::string unjudged;              // runs that the model as given does not predict at all; empty: none
   // The mistakes make a search useless: it would name physics for them.
   bool mend_first = false;
   // Sensors of which only the sign is wrong, which is left to the search ("p1").

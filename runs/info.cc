@@ -210,15 +210,23 @@ std::vector<output_left_t> OutputsLeft(const RunMessages& messages) {
   return all;
 }
 
-// A process that stops a run says so several times, in case the network loses it.
+// One stop: said again in case the network loses it, or handed on by a process that was asked over its local socket, which
+// knows the tick that its asker (tick -1) does not.
+bool IsSameStop(const stop_t& a, const stop_t& b) {
+  const bool handed_on = a.source == b.source && (a.tick < 0) != (b.tick < 0);
+  return (a.session == b.session || handed_on) && a.reason == b.reason && a.exit_code == b.exit_code;
+}
+
+// Each stop once, with its tick where anybody knew it.
 std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   std::vector<stop_t> distinct;
   for (const stop_t& stop : all) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const stop_t& other) {
-      return other.session == stop.session && other.reason == stop.reason &&
-             other.exit_code == stop.exit_code;
-    });
-    if (!known) distinct.push_back(stop);
+    const auto known = std::find_if(distinct.begin(), distinct.end(),
+                                    [&](const stop_t& other) { return IsSameStop(stop, other); });
+    if (known == distinct.end())
+      distinct.push_back(stop);
+    else if (known->tick < 0 && stop.tick >= 0)
+      *known = stop;
   }
   return distinct;
 }

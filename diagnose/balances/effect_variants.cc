@@ -26,8 +26,7 @@ bool IsWave(const ParameterInfo& parameter) {
   return parameter.role == Role::kTorqueWave || parameter.role == Role::kDisplacementWave;
 }
 
-// Whether the effect is gone where this number is 0, and grows with it in proportion.
-bool IsAmount(const ParameterInfo& parameter) {
+bool IsSize(const ParameterInfo& parameter) {
   const bool allows_0 = parameter.min < 0 || (parameter.min == 0 && parameter.min_allowed);
   return parameter.is_number() && parameter.role == Role::kSize && allows_0 &&
          std::find(parameter.starts.begin(), parameter.starts.end(), 0.0) != parameter.starts.end();
@@ -117,7 +116,7 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
     if (IsWave(parameter)) variant.kind = EffectVariant::Kind::kWave;
     // What one channel reads late, or what its sensor does over time, grows with the time.
     const bool time = parameter.role == Role::kTime && (channel || change.effect.starts_with("sensor."));
-    if (!IsAmount(parameter) && !time) continue;
+    if (!IsSize(parameter) && !time) continue;
     variant.amounts.push_back(parameter.name);
     variant.at.parameters[parameter.name] = 0;
     variant.is_time = time;
@@ -128,6 +127,8 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
 }
 
 }  // namespace
+
+bool IsAmount(const ParameterInfo& parameter) { return IsSize(parameter) || IsWave(parameter); }
 
 const ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter) {
   const model::EffectInfo* info = InfoOf(effect);

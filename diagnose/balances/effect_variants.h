@@ -31,6 +31,9 @@ struct EffectVariant {
 // Those of all `changes` that are effects. `sizes`: what grids are scaled with.
 std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const Sizes& sizes);
 
+// Whether the effect is gone where this number is 0, and grows with it in proportion: a size, or the amplitude of a wave.
+bool IsAmount(const model::ParameterInfo& parameter);
+
 // The parameters of an effect, by its entry in the catalogue.
 const model::ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter);
 

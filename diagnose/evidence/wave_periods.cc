@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "base/parallel.h"
@@ -11,8 +13,10 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Poles, teeth, pistons and vanes of such machines are fewer. Once a turn is an eccentric shaft, which every hypothesis has.
-constexpr int kFirstPeriod = 2, kMostPeriods = 48;
+// Once a turn is an eccentric shaft, which every hypothesis has.
+constexpr int kFirstPeriod = 2;
+// How often something has to be seen to repeat.
+constexpr double kSeen = 2;
 // How many periods of each effect go on: the true one and its strongest neighbour.
 constexpr size_t kKept = 2;
 // Rows overlap: two count for one (as in the evidence).
@@ -98,10 +102,25 @@ Gains GainsIn(size_t run, const Rows& waves, const Rows& rows, const SetFit& nul
 
 }  // namespace
 
+int FewestPeriods(const std::vector<RunMotion>& runs) {
+  double turns = 0;
+  for (const RunMotion& run : runs) {
+    const auto [least, most] =
+        std::minmax_element(run.at.begin(), run.at.end(),
+                            [](const auto& a, const auto& b) { return a.motor_angle < b.motor_angle; });
+    if (!run.at.empty())
+      turns = std::max(turns, (most->motor_angle - least->motor_angle) / (2 * std::numbers::pi));
+  }
+  const bool none = turns * kMostPeriods < kSeen;
+  return none ? kMostPeriods + 1 : std::max(kFirstPeriod, static_cast<int>(std::ceil(kSeen / turns)));
+}
+
 std::vector<int> LikelyPeriods(const ScanRuns& runs, const Rows& rows, const SetEvidence& evidence,
                                int jobs) {
   std::vector<int> all;
-  for (int periods = kFirstPeriod; periods <= kMostPeriods; ++periods) all.push_back(periods);
+  for (int periods = FewestPeriods(runs.motions()); periods <= kMostPeriods; ++periods)
+    all.push_back(periods);
+  if (all.empty()) return {};
   const Rows waves = runs.MakeWaveRows(all);
   if (waves.columns.empty()) return {};
   const SetFit null = evidence.Fit({});

@@ -24,6 +24,20 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
 
 }  // namespace
 
+double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given) {
+  constexpr double kExpected = 2;  // standard deviations: nineteen values of twenty are nearer
+  double lost = 0;
+  for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
+    const auto member = model::BaseParameters()[base].member;
+    const double deviation = model::UncertaintyOf(given, base);
+    if (given.parameters.*member == 0 || !(deviation > 0)) continue;
+    const double ratio = values.*member / (given.parameters.*member);
+    const double away = (ratio > 1 ? std::log(ratio) : 1 - ratio) / deviation;
+    if (away > kExpected) lost += std::log1p(away * away) - std::log1p(kExpected * kExpected);
+  }
+  return lost;
+}
+
 Prior KnownBefore(const Hypothesis& hypothesis) {
   Prior prior;
   for (const FreeParameter& parameter : hypothesis.Free()) {

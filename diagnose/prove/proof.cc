@@ -1,7 +1,11 @@
 #include "diagnose/prove/proof.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "diagnose/balances/effect_variants.h"
+#include "diagnose/fit/closure.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/refined_values.h"
 
@@ -50,6 +54,36 @@ Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vec
     proof.sets[proof.best].hypothesis.known = proof.told.hypothesis.known;
   }
   return proof;
+}
+
+std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof) {
+  constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
+  const size_t numbers = proof.Found().Free().size();
+  if (numbers == 0) return {};
+  if (!proof.told.ok()) return std::vector<Interval>(numbers, {kUnsaid, kUnsaid});
+  return Intervals(proof.told, proof.told_runs, context.jobs);
+}
+
+std::optional<Change> NotShown(const ProofContext& context, const Proof& proof) {
+  const std::vector<Change> effects = proof.Best().Effects();
+  if (effects.empty() || !proof.told.ok()) return std::nullopt;
+  const std::vector<FreeParameter> free = proof.Found().Free();
+  const std::vector<Interval> intervals = IntervalsOf(context, proof);
+  for (const Change& change : effects) {
+    const model::EffectInfo* info = model::FindEffect(change.effect);
+    if (info == nullptr || IsClosureEffect(change.effect)) continue;
+    size_t amounts = 0, none = 0;
+    for (const model::ParameterInfo& parameter : info->parameters) {
+      const auto is = [&](const FreeParameter& one) { return one.name == info->id + "." + parameter.name; };
+      const auto fitted = std::find_if(free.begin(), free.end(), is);
+      if (!IsAmount(parameter) || fitted == free.end()) continue;
+      const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
+      ++amounts;
+      if (interval.low <= 0 && interval.high >= 0) ++none;
+    }
+    if (amounts > 0 && none == amounts) return change;
+  }
+  return std::nullopt;
 }
 
 }  // namespace hydro::diagnose

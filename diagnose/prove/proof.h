@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnose/fit/intervals.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/prove/proved_set.h"
 
@@ -40,5 +42,11 @@ struct ProofRoles {
 // `told`: windows as the values were fitted to them. Those that the best set cannot be simulated over are left out.
 Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vector<RunData> told,
               std::vector<ProvedSet> sets, const ProofRoles& roles);
+
+// 95 % intervals of the best set's free numbers, in the order of Hypothesis::Free(); NaN where they are not known.
+std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof);
+
+// An effect of the best set that may as well be none: the intervals of all its amounts hold 0. Not of curves.
+std::optional<Change> NotShown(const ProofContext& context, const Proof& proof);
 
 }  // namespace hydro::diagnose

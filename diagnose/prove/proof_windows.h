@@ -19,6 +19,7 @@ struct JudgingWindows {
 };
 
 struct ProofWindows {
+  model::ModelDescription given;  // with how well its values are known
   // Owns all below.
   std::shared_ptr<const std::vector<RunData>> all;
   std::vector<const RunData*> told;  // of the fitted runs: what intervals rest on, more than a fit can afford

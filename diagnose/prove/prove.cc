@@ -1,6 +1,7 @@
 #include "diagnose/prove/prove.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "diagnose/fit/closure.h"
@@ -170,6 +171,18 @@ class Prover {
   ProofSets& sets_;
 };
 
+// What is reported where this set is what predicts best: its numbers as precise as they can be had.
+Proof Reported(ProofSets* sets, const Prover& prover, size_t best) {
+  const ProofContext& context = sets->context();
+  sets->SetFitted(best);
+  sets->RefineForReport(best);
+  context.Report("fitting the whole runs", 0.93);
+  const ProofWindows& windows = sets->windows();
+  std::vector<RunData> told = WithDiscrepancy(windows.told, (*sets)[best].hypothesis.model, context.jobs);
+  return ProofOf(context, windows, std::move(told), sets->all(),
+                 {ProofSets::kGiven, prover.BestValues(), best});
+}
+
 }  // namespace
 
 Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
@@ -193,17 +206,15 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
     best = prover.Choice();
   }
   best = prover.WithWhatBalancesSay(prover.TakeGivenValues(best));
-  sets.SetFitted(best);
-  sets.RefineForReport(best);
-  context.Report("fitting the whole runs", 0.93);
-  const ProofWindows& windows = sets.windows();
-  std::vector<RunData> told = WithDiscrepancy(windows.told, sets[best].hypothesis.model, context.jobs);
+  Proof proof = Reported(&sets, prover, best);
+  while (const std::optional<Change> change = NotShown(context, proof)) {
+    best = sets.Without(best, *change);
+    if (best >= sets.size()) break;
+    proof = Reported(&sets, prover, best);
+  }
   // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.
-  const bool at_the_noise = TypicalGap(sets[best].near) < 2;
-  return ProvedOnWholeRuns(
-      context, as_given,
-      ProofOf(context, windows, std::move(told), sets.all(), {kGiven, prover.BestValues(), best}),
-      at_the_noise, said.unlikely);
+  const bool at_the_noise = TypicalGap(proof.Best().near) < 2;
+  return ProvedOnWholeRuns(context, as_given, std::move(proof), at_the_noise, said.unlikely);
 }
 
 }  // namespace hydro::diagnose

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
 
+// What odds of this logarithm are worth, as the logarithm of the gap's fall.
+double FallWorth(double odds) { return kEven * odds / std::log(kWorthIt); }
+
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   std::vector<double> logarithms;
   for (const WindowGap& gap : gaps) {
@@ -57,6 +60,7 @@ std::vector<Change> ProvedSet::Effects() const {
 }
 
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {
+  set->price_of_values = FallWorth(OddsLostBy(set->hypothesis.model.parameters, windows.given));
   const auto model = [set](size_t run) -> const model::ModelDescription& { return set->ModelOf(run); };
   set->near = GapsOfWindows(model, windows.near, jobs);
   set->far.clear();
@@ -78,19 +82,21 @@ bool PredictsBetter(const ProvedSet& other, const ProvedSet& set) {
   if (!other.tested()) return false;
   if (!set.tested()) return true;
   const GapFall far = FallOf(set.far, other.far);
-  return FallOf(set.near, other.near).Exceeds(0) && far.logarithm >= -far.error;
+  GapFall near = FallOf(set.near, other.near);
+  near.logarithm -= other.price_of_values - set.price_of_values;
+  return near.Exceeds(0) && far.logarithm >= -far.error;
 }
 
 GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
   GapFall worth = FallOf(from.near, to.near);
-  worth.logarithm -= to.price - from.price;
+  worth.logarithm -= to.price - from.price + to.price_of_values - from.price_of_values;
   return worth;
 }
 
 double PriceOf(double weight) {
   constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never have exactly one
   const double odds = std::clamp(weight / std::max(1 - weight, 1e-9), 1 / kMostOdds, kMostOdds);
-  return kEven * (1 - std::log(odds) / std::log(kWorthIt));
+  return kEven - FallWorth(std::log(odds));
 }
 
 double LogOddsOf(double fall) { return fall / kEven * std::log(kWorthIt); }
@@ -99,7 +105,9 @@ bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price)
   if (!with.tested() || !without.tested()) return true;
   const GapFall near = FallOf(without.near, with.near);
   if (near.windows == 0) return true;
-  return near.logarithm - near.error >= price && !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
+  const double values = with.price_of_values - without.price_of_values;
+  return near.logarithm - near.error >= price + values &&
+         !FallOf(with.far, without.far).Exceeds(kPartOfAnEffect);
 }
 
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {

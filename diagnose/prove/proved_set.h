@@ -19,6 +19,7 @@ struct ProvedSet {
   std::vector<WindowGap> far;  // empty until a comparison needs them
   double weight = 0;           // of the proposal, 0 of what was not proposed
   double price = 0;            // of all its effects (PriceOf())
+  double price_of_values = 0;  // of how far its base values are from those given, in the same measure
   bool refined = false;        // as far as sets are to be compared
 
   bool tested() const { return IsTested(near); }
@@ -28,7 +29,7 @@ struct ProvedSet {
   }
 };
 
-// Predicts the near windows with the set's values.
+// Predicts the near windows with the set's values, and prices these.
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set);
 
 // Predicts the far windows, unless that is done.
@@ -48,7 +49,7 @@ double PriceOf(double weight);
 // The same exchange the other way: what a fall of this logarithm is worth, as the logarithm of odds.
 double LogOddsOf(double fall);
 
-// The fall of the near windows' gap from one set to another, less what the price rises.
+// The fall of the near windows' gap from one set to another, less what the prices of effects and values rise.
 GapFall WorthOf(const ProvedSet& from, const ProvedSet& to);
 
 // Of the gap: what is more than chance whatever the balances say. A further effect takes it in hardly any rig that lacks none.

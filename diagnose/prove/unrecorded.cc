@@ -5,6 +5,7 @@
 
 #include "base/word_list.h"
 #include "diagnose/evidence/change_set.h"
+#include "diagnose/evidence/wave_periods.h"
 #include "diagnose/prove/blind_changes.h"
 
 namespace hydro::diagnose {
@@ -33,6 +34,23 @@ std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
 
 }  // namespace
 
+namespace {
+
+// What repeats with a shaft that nobody saw turn far enough.
+std::vector<Unjudged> UnseenWaves(const ScanRuns& runs) {
+  if (FewestPeriods(runs.motions()) <= kMostPeriods) return {};
+  Unjudged unseen{{}, "the motor turns too little to show whether anything repeats with its shaft"};
+  for (const EffectVariant& variant : runs.setup().variants) {
+    if (variant.kind == EffectVariant::Kind::kWave) unseen.effects.push_back(variant.change.effect);
+  }
+  std::sort(unseen.effects.begin(), unseen.effects.end());
+  unseen.effects.erase(std::unique(unseen.effects.begin(), unseen.effects.end()), unseen.effects.end());
+  if (unseen.effects.empty()) return {};
+  return {unseen};
+}
+
+}  // namespace
+
 bool NamesARun(const ChangeSet& set) {
   return std::any_of(set.begin(), set.end(),
                      [](const std::string& name) { return name.starts_with("run."); });
@@ -41,7 +59,8 @@ bool NamesARun(const ChangeSet& set) {
 std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
                                  const std::vector<std::string>& names) {
   const std::vector<std::string> missing = MissingSignals(runs.motions());
-  if (missing.empty()) return {};
+  std::vector<Unjudged> unjudged = UnseenWaves(runs);
+  if (missing.empty()) return unjudged;
   const std::set<std::string> oil = runs.OilOnly();
   std::set<std::string> judged, some_oil, all;
   for (const std::string& name : names) {
@@ -64,7 +83,6 @@ std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& ru
     if (judged.contains(id)) continue;
     (some_oil.contains(id) ? one_class : gone).effects.push_back(id);
   }
-  std::vector<Unjudged> unjudged;
   for (const Unjudged& one : {gone, one_class}) {
     if (!one.effects.empty()) unjudged.push_back(one);
   }

@@ -44,6 +44,8 @@ const char* NameOf(SignalOfRun signal) {
 
 bool RecordingMistake::IsSign() const { return !factors.empty() && factors[0].second == -1; }
 
+bool RecordingMistake::IsOfUnknownUnit() const { return !factors.empty() && unit.empty() && !IsSign(); }
+
 bool RecordingMistake::IsOfOnePressure() const {
   return factors.size() == 1 && (factors[0].first == &Run::p1 || factors[0].first == &Run::p2);
 }

@@ -29,7 +29,8 @@ struct RecordingMistake {
   double span = 0;
 
   bool operator==(const RecordingMistake&) const = default;
-  bool IsSign() const;  // of one signal or more
+  bool IsSign() const;           // of one signal or more
+  bool IsOfUnknownUnit() const;  // a factor that no unit has
   bool IsOfOnePressure() const;
   // The sensor of which only the sign is wrong ("motor_speed"), as the effect sensor.sign has it; else "".
   std::string InvertedSensor() const;

@@ -93,7 +93,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   const WholeRuns whole = OverWholeRuns(context, proof);
   DescribeGaps(context, whole, &d);
   d.horizons = HorizonGaps(context, proof);
-  d.verdict = VerdictOn(d, proof, ExactSensors(context.runs), SampleInterval(context.runs));
+  d.verdict = VerdictOn(d, proof, proposed.scores, ExactSensors(context.runs), SampleInterval(context.runs));
   if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
     // Other values that are surely no others stay as given.
     Proof nothing = proof;

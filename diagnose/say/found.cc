@@ -6,7 +6,6 @@
 
 #include "base/word_list.h"
 #include "diagnose/fit/closure.h"
-#include "diagnose/fit/intervals.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
 #include "diagnose/say/found_values.h"
@@ -18,13 +17,6 @@ namespace {
 constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 // Standard errors: of a normal distribution, 95 % are within.
 constexpr double kToldApart = 2;
-
-std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof) {
-  const size_t numbers = proof.Found().Free().size();
-  if (numbers == 0) return {};
-  if (!proof.told.ok()) return std::vector<Interval>(numbers, {kUnsaid, kUnsaid});
-  return Intervals(proof.told, proof.told_runs, context.jobs);
-}
 
 FoundEffect Describe(const Change& change, const model::ModelDescription& model,
                      const std::vector<FreeParameter>& free, const std::vector<Interval>& intervals) {
@@ -123,8 +115,9 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
     if (!may_be && !other.Effects().empty()) continue;
     const GapFall fall = FallOf(other.near, proof.Best().near);
     const double told_apart = std::max(kEqual, (may_be ? kToldApart : 1) * fall.error);
-    // An effect in its place that is less likely has to be worth it: one that does nothing explains nothing.
-    const double dearer = std::max(0.0, other.price - proof.Best().price);
+    // What is less likely in its place, an effect or far values, has to be worth it: an effect that does nothing explains nothing.
+    const double dearer = std::max(0.0, other.price - proof.Best().price) +
+                          std::max(0.0, other.price_of_values - proof.Best().price_of_values);
     if (fall.windows > 0 && fall.logarithm + dearer > told_apart) continue;
     if (!InPlace(other, proof.Best()).empty()) ties.push_back(i);
   }

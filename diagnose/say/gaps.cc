@@ -17,7 +17,6 @@ constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
 constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
 
 using Runs = std::vector<const RunData*>;
-using GapsByModel = std::array<std::vector<WindowGap>, kComparedModels>;
 
 std::array<const ProvedSet*, kComparedModels> SetsOf(const Proof& proof) {
   return {&proof.Given(), &proof.Values(), &proof.Best()};
@@ -129,10 +128,24 @@ GapsByModel GapsOver(const SpreadWindows& spread, const Proof& proof, bool held_
       gaps[m][w] = GapOf(held_out ? set.ModelOf(spread.runs[w]) : set.hypothesis.model, *spread.windows[w]);
     });
   }
+  KeepCommon(&gaps);
   return gaps;
 }
 
 }  // namespace
+
+void KeepCommon(GapsByModel* gaps) {
+  std::array<bool, kComparedModels> follows{};
+  for (size_t m = 0; m < kComparedModels; ++m) follows[m] = IsTested((*gaps)[m]);
+  for (size_t w = 0; w < gaps->front().size(); ++w) {
+    bool common = true;
+    for (size_t m = 0; m < kComparedModels; ++m) common = common && (!follows[m] || (*gaps)[m][w].tested);
+    for (size_t m = 0; m < kComparedModels; ++m) {
+      const bool is_compared = common && follows[m];
+      if (!is_compared) (*gaps)[m][w].tested = false;
+    }
+  }
+}
 
 WholeRuns OverWholeRuns(const ProofContext& context, const Proof& proof) {
   WholeRuns whole;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/evidence/change_set.h"
+#include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
 #include "maths/range.h"
@@ -60,19 +61,36 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
   return OpenHorizon(d, *near, exact) == nullptr;
 }
 
-// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
-bool HasOneWitness(const Diagnosis& d) {
+// How much of its score a set owes to the effect; nothing where it does not have it, or the rest was not tried.
+double OwedTo(const std::string& id, const ScoredSet& one, const std::vector<ScoredSet>& scores) {
+  ChangeSet rest = one.set;
+  std::erase_if(rest, [&](const std::string& change) { return EffectOf(change) == id; });
+  if (rest.size() == one.set.size()) return 0;
+  const auto same =
+      std::find_if(scores.begin(), scores.end(), [&](const ScoredSet& other) { return other.set == rest; });
+  return rest.empty() ? one.score : same == scores.end() ? 0 : one.score - same->score;
+}
+
+// Of the balances: that they do not deny it. One in twenty, by weight, or as far below the likeliest set as weights are tempered: what
+// simulation refutes may have led.
+bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   constexpr double kAWord = 0.05;
+  double weight = 0;
+  for (const WeightedSet& one : d.explanations) {
+    const bool has = std::any_of(one.changes.begin(), one.changes.end(),
+                                 [&](const std::string& change) { return EffectOf(change) == id; });
+    weight += has ? one.weight : 0;
+  }
+  return weight >= kAWord || std::any_of(scores.begin(), scores.end(), [&](const ScoredSet& one) {
+           const double least = scores.front().score + kTemperature * std::log(kAWord);  // the best first
+           return one.score > least && OwedTo(id, one, scores) > 0;
+         });
+}
+
+// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
+bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   if (d.effects.empty() || d.explanations.empty()) return false;
-  const auto said = [&](const std::string& id) {
-    double weight = 0;
-    for (const WeightedSet& one : d.explanations) {
-      const bool has = std::any_of(one.changes.begin(), one.changes.end(),
-                                   [&](const std::string& change) { return EffectOf(change) == id; });
-      weight += has ? one.weight : 0;
-    }
-    return weight >= kAWord;
-  };
+  const auto said = [&](const std::string& id) { return IsSpokenFor(id, d, scores); };
   return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
     if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
     // Where other values do as well, not even the windows say that anything is missing.
@@ -131,7 +149,9 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   return true;
 }
 
-Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, double sample) {
+Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
+                  bool exact_sensors, double sample) {
+  const bool one_witness = HasOneWitness(d, scores);
   // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
                       !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
@@ -139,10 +159,10 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, bool exact_sensors, do
   // A curve is no cause: what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
   if (!IsGapClosed(d, proof, exact_sensors) || !d.closures.empty())
-    return something && !HasOneWitness(d) ? Verdict::kPartly : Verdict::kUnexplained;
+    return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
-  if (HasOneWitness(d) && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
+  if (one_witness && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
   const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
                                 [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
   return tied ? Verdict::kTied : Verdict::kNamed;

@@ -250,6 +250,27 @@ TEST(Diagnose, ARunOfAFifthOfASecond) {
     EXPECT_EQ(candidate.id.find("line.wave"), std::string::npos) << candidate.id;
 }
 
+// Tests that where one signal was recorded it is the command that is early, not the signal late; and that where the motor hardly turns,
+// what repeats with its shaft cannot be judged.
+TEST(Diagnose, OneSignalOfAMotorThatHardlyTurns) {
+  testing::NoisyRig rig;
+  rig.model = Table1With({{"amp.delay", {{"delay", 0.01}}, {}}});
+  rig.model.parameters.J *= 1000;
+  diagnose::RunData run = rig.Record("bare", model::Shaft::kClamped, 0, 1, true,
+                                     [](double t) { return std::fmod(t, 0.2) < 0.1 ? 8.0 : -8.0; });
+  run.measured.p1 = run.measured.p2 = run.measured.motor_speed = {};
+  model::ModelDescription given = Table1With();
+  given.parameters.J *= 1000;
+  diagnose::DiagnoseOptions options;
+  options.effects = {"amp.delay", "amp.lag", "motor.cogging", "sensor.skew"};
+  options.free = {"b"};
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, {run.measured}, {}, options, {});
+  for (const diagnose::Candidate& candidate : d.candidates)
+    EXPECT_EQ(candidate.id.find("sensor.skew"), std::string::npos) << candidate.id;
+  ASSERT_EQ(d.unjudged.size(), 1u);
+  EXPECT_THAT(d.unjudged[0].effects, ElementsAre("motor.cogging"));
+}
+
 // Tests that a diagnosis that a time limit ended says so before anything else.
 TEST(Diagnose, SaysThatItIsUnfinished) {
   diagnose::DiagnoseOptions options = Few();

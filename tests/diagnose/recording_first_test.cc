@@ -92,6 +92,24 @@ TEST(RecordingFirst, MendFirst) {
   EXPECT_THAT(ReportOnRecordings(kGiven, runs, 1).wrong, ::testing::ElementsAre(HasSubstr("wrong sign")));
 }
 
+// Tests that a factor that is no known unit's is said, and ends no search: an effect may look like one.
+TEST(RecordingFirst, UnknownFactor) {
+  std::vector<runs::MeasuredRun> runs = Bench(1, 1), none;
+  for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
+    for (double& value : (runs[0].*signal).values) value *= 2.5;
+  }
+  const CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &none);
+  EXPECT_THAT(checked.factors, ::testing::ElementsAre(HasSubstr("times too large; no known unit")));
+  EXPECT_THAT(checked.mistakes, IsEmpty());
+  EXPECT_FALSE(checked.mend_first);
+  EXPECT_EQ(ReportOnRecordings(kGiven, runs, 1).wrong, checked.factors);
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kNamed;
+  AddChecked(checked, &diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNamed);
+  EXPECT_EQ(diagnosis.remarks, checked.factors);
+}
+
 // Tests that an inverted sensor is left to the search where sensor.sign may be named, and that nothing else then
 // stays named.
 TEST(RecordingFirst, InvertedSensor) {

@@ -106,6 +106,24 @@ TEST_F(InfoTest, RepeatedStops) {
   EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
 }
 
+// Tests that a stop over the bus, which knows no tick, and the plant's, which it asked over its socket, are one stop.
+TEST_F(InfoTest, HandedOnStop) {
+  for (const bool asker_first : {true, false}) {
+    RunLog log;
+    for (const bool asker : {asker_first, !asker_first}) {
+      stop_t stop{};
+      stop.session = asker ? 30 : 20;
+      stop.source = "scope";
+      stop.tick = asker ? -1 : 1596;
+      stop.reason = "STOP on the page";
+      log.messages.Of<stop_t>().push_back(stop);
+    }
+    const LogInfo info = Summarise(log, false);
+    ASSERT_EQ(info.stops.size(), 1u);
+    EXPECT_EQ(info.stops[0].tick, 1596);
+  }
+}
+
 // Tests that figures are in SI on request.
 TEST_F(InfoTest, SiUnits) {
   const LogInfo info = InfoOf(log::SampleRun(3), true);

@@ -41,5 +41,19 @@ TEST(WavePeriods, NoneWithoutSuchEffects) {
   EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::IsEmpty());
 }
 
+// Tests that a shaft that turns by a third of a turn shows two periods of what repeats six times a turn, and none of five.
+TEST(WavePeriods, SeenToRepeat) {
+  std::vector<diagnose::RunMotion> runs(2);
+  EXPECT_GT(diagnose::FewestPeriods(runs), diagnose::kMostPeriods);
+  for (const double angle : {0.5, 0.5 + 2.1, 1.0}) {
+    model::KnownMotion at;
+    at.motor_angle = angle;
+    runs[1].at.push_back(at);
+  }
+  EXPECT_EQ(diagnose::FewestPeriods(runs), 6);
+  for (model::KnownMotion& at : runs[1].at) at.motor_angle *= 0.1;  // less than two of kMostPeriods
+  EXPECT_GT(diagnose::FewestPeriods(runs), diagnose::kMostPeriods);
+}
+
 }  // namespace
 }  // namespace hydro::testing

@@ -30,6 +30,27 @@ TEST(KnownBefore, WeighsByUncertainty) {
   EXPECT_DOUBLE_EQ(prior.weight[1], 2 / std::pow(0.1 * Table1().T_s, 2));
 }
 
+// Tests that values lose odds by standard deviations, on both sides, slowly where they are many; and what was given as 0 none.
+TEST(OddsLostBy, CountsDeviations) {
+  const model::ModelDescription given = Table1With();
+  EXPECT_EQ(diagnose::OddsLostBy(given.parameters, given), 0);
+  const auto lost = [&](double factor) {
+    model::Parameters values = given.parameters;
+    values.J *= factor;
+    return diagnose::OddsLostBy(values, given);
+  };
+  constexpr double kDeviation = 0.05;  // of a data sheet's value
+  EXPECT_EQ(lost(std::exp(1.99 * kDeviation)), 0);
+  EXPECT_EQ(lost(1 - 1.99 * kDeviation), 0);
+  EXPECT_NEAR(lost(std::exp(3 * kDeviation)), std::log(10.0 / 5), 1e-9);
+  EXPECT_NEAR(lost(1 - 3 * kDeviation), std::log(10.0 / 5), 1e-9);
+  EXPECT_NEAR(lost(std::exp(100 * kDeviation)), std::log(1e4 / 5), 1e-3);
+  model::Parameters values = given.parameters;
+  ASSERT_EQ(values.f, 0);
+  values.f = 1;
+  EXPECT_EQ(diagnose::OddsLostBy(values, given), 0);
+}
+
 // Tests that only its order of magnitude is known of a value that is given as 0, and nothing without knowledge.
 TEST(KnownBefore, LittleOfZero) {
   diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"f"});

@@ -58,8 +58,9 @@ class ProveTest : public ::testing::Test {
     return proposal;
   }
 
-  Proof Prove(const std::vector<Proposal>& proposals, const std::vector<Change>& blind = {}) {
-    return diagnose::ProveProposals(context_, as_given_, allowed_, proposals, blind);
+  Proof Prove(const std::vector<Proposal>& proposals, const std::vector<Change>& blind = {},
+              const diagnose::SaidByBalances& said = {}) {
+    return diagnose::ProveProposals(context_, as_given_, allowed_, proposals, blind, said);
   }
 
   std::vector<diagnose::RunData> runs_;
@@ -126,6 +127,15 @@ TEST_F(ProveTest, NothingStaysNothing) {
   EXPECT_THAT(proved.Found().base, IsEmpty());
   const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
+}
+
+// Tests that an effect whose amount may as well be 0 is not said, however sure of it the balances are.
+TEST_F(ProveTest, WhatMayBeNoneIsNotSaid) {
+  Record(Table1With());
+  diagnose::SaidByBalances sure;
+  sure.weights["amp.bias"] = 0.9999;
+  EXPECT_THAT(Prove({Proposed({}, {}), Proposed({kBias}, {Bias(0.001)})}, {}, sure).Found().changes,
+              IsEmpty());
 }
 
 // Tests that a wrong value is said as a value, although an effect was proposed for it.

@@ -28,7 +28,9 @@ struct Judged {
     d.effects.emplace_back().id = "amp.lag";
   }
 
-  Verdict Of() const { return VerdictOn(d, proof, false, kSample); }
+  Verdict Of(const std::vector<diagnose::ScoredSet>& scores = {}) const {
+    return VerdictOn(d, proof, scores, false, kSample);
+  }
   // The model as given, or other values of it, is best.
   void FindNoEffect(const std::vector<std::string>& values) {
     d.effects.clear();
@@ -68,6 +70,12 @@ TEST(VerdictOn, AGapBesideASingleWitness) {
   EXPECT_EQ(one.Of(), Verdict::kPartly);
   one.d.explanations = {{{"amp.delay"}, 1}};
   EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  EXPECT_EQ(one.Of({{{"amp.delay"}, 60}, {{"amp.lag"}, 58}}), Verdict::kPartly)
+      << "balances hardly tell them apart";
+  EXPECT_EQ(one.Of({{{"amp.delay"}, 60}, {{"amp.lag"}, 40}}), Verdict::kUnexplained);
+  EXPECT_EQ(one.Of({{{"amp.delay"}, 19}, {{"amp.delay", "amp.lag"}, 17}, {{}, 0}, {{"amp.lag"}, -2}}),
+            Verdict::kUnexplained)
+      << "it only lowers what another has";
   one.d.effects[0].tied_with = {"amp.delay"};
   EXPECT_EQ(one.Of(), Verdict::kPartly);
   one.d.effects[0].tied_with.clear();
@@ -165,8 +173,8 @@ TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
 // Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
 TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   Judged one({50, 50, 2}, {50, 50, 2});
-  EXPECT_EQ(VerdictOn(one.d, one.proof, false, kSample), Verdict::kPartly);
-  EXPECT_EQ(VerdictOn(one.d, one.proof, true, kSample), Verdict::kNamed);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, false, kSample), Verdict::kPartly);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, true, kSample), Verdict::kNamed);
   const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
   EXPECT_FALSE(diagnose::ExactSensors(PointersTo(noisy)));
   NoisyRig exact;
