@@ -58,8 +58,8 @@ inline bool DecodedAll(int decoded, const void* data, int size) {
   return decoded == size || (decoded >= 0 && decoded == SizeWithoutSeal(data, size));
 }
 
-// Whether a message that was decoded from another process can be sent on: LCM's strings end at the first zero byte, which a
-// changed or made-up message may have anywhere. Only messages with strings can fail.
+// Whether a message that was decoded from another process can be sent on: LCM's strings end at the first zero
+// byte, which a changed or made-up message may have anywhere. Only messages with strings can fail.
 template <class Message>
 bool CanBeEncoded(const Message& message) {
   if constexpr (std::is_trivially_copyable_v<Message>) return true;
@@ -182,6 +182,10 @@ class Bus {
   // its flag after each call. A bus on a simulated clock never waits: with no message pending, it advances
   // the clock to the deadline and returns. A handler must not call this (std::logic_error).
   virtual int HandleUntil(TimePoint deadline) = 0;
+
+  // From now on HandleUntil() also returns, 0 or more, while `descriptor` (-1: none) has something to read.
+  // Transports without sockets wait for messages alone.
+  virtual void WakeOn(int /*descriptor*/) {}
 
   // Messages that arrived on a subscribed channel but could not be decoded as its type.
   int64_t undecodable() const { return undecodable_; }

@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
+#include "hydro_log/device_answers.h"
 #include "hydro_log/record_gap.h"
 #include "hydro_log/recorded_run.h"
 #include "position_ctrl/position_app.h"
@@ -80,7 +81,16 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
     gap = lost;
   }
   const int64_t not_compared = CutAt(gap, recorded);
-  pressure_ctrl::PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
+  const auto& driver = replayer.config().driver;
+  const bool on_device = driver && driver->kind == settings::DriverKind::kFrontEnd &&
+                         driver->front_end.mode == settings::FrontEndMode::kLoopOnDevice;
+  DeviceAnswers device(replayer.config(), recorded);
+  std::optional<pressure_ctrl::PressureApp> app;
+  if (on_device) {
+    app.emplace(replayer.bus(), replayer.clock(), replayer.config(), device);
+  } else {
+    app.emplace(replayer.bus(), replayer.clock(), replayer.config());
+  }
   std::map<int64_t, motor_command_t> answers;
   replayer.bus().Subscribe<motor_command_t>(replayer.channels().Of<motor_command_t>(),
                                             [&](const motor_command_t& command) {
@@ -99,7 +109,10 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   runs::RunMessages record, replay;
   record.Of<motor_command_t>() = Unnumbered(recorded);
   replay.Of<motor_command_t>() = Unnumbered(answers);
-  return WithGap(Compare(replayer, record, replay, recorded.size()), gap, not_compared);
+  ReplayResult result = WithGap(Compare(replayer, record, replay, recorded.size()), gap, not_compared);
+  result.on_device = on_device;
+  result.not_judged = device.not_judged();
+  return result;
 }
 
 ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {

@@ -35,9 +35,17 @@ int Print(const std::string& name, const char* commands, const ReplayResult& res
   const std::string shown = Printable(name);
   if (result.difference) {
     std::printf("%s: %s\n", shown.c_str(), result.difference->c_str());
+  } else if (result.on_device) {
+    std::printf("%s: equal in single precision, %lld %s of the device from %lld states\n", shown.c_str(),
+                static_cast<long long>(result.answers - result.not_judged), commands,
+                static_cast<long long>(result.states));
   } else {
     std::printf("%s: identical, %lld %s from %lld states\n", shown.c_str(),
                 static_cast<long long>(result.answers), commands, static_cast<long long>(result.states));
+  }
+  if (result.not_judged > 0) {
+    std::printf("%s: %lld %s are not compared: a change of gains was on its way to the device, or passed\n",
+                shown.c_str(), static_cast<long long>(result.not_judged), commands);
   }
   if (result.gap_tick) {
     std::printf(

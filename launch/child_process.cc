@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "process/role.h"
 #include "process/spawn.h"
 #include "process/supervision.h"
 
@@ -52,7 +53,8 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   request.out = out.write;
   request.err = err.write;
   if (spec_.own) {
-    request.in = -1;  // it would take the beats for what it is to read
+    // A loop would take the beats for what it is to read. A driver must notice when its launcher hangs.
+    if (!process::IsPlant(spec_.own->role)) request.in = -1;
     request.environment = spec_.own->environment;
     request.folder = spec_.own->folder;
     request.cpu = spec_.own->cpu;

@@ -16,7 +16,8 @@ namespace hydro::launch {
 // TryReap() has succeeded, and Signal() can reach no other process.
 class ChildProcess : public Stoppable {
  public:
-  // Starts the program (process/spawn.h), one of ours with a socket for Beat() as stdin. Throws StartError.
+  // Starts the program (process/spawn.h); one of ours, or a driver, has a socket for Beat() as stdin. Throws
+  // StartError.
   explicit ChildProcess(ChildSpec spec);
   ~ChildProcess() override;
   ChildProcess(const ChildProcess&) = delete;

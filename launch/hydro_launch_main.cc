@@ -13,6 +13,7 @@
 #include "launch/logic/operator_request.h"
 #include "launch/make_key.h"
 #include "launch/new_controller.h"
+#include "launch/new_driver.h"
 #include "launch/rearm_json.h"
 #include "launch/stop_stack.h"
 #include "process/stack_bus.h"
@@ -30,6 +31,7 @@ struct Options {
   bool make_key = false;
   bool doctor = false;
   std::string new_controller;
+  std::string new_driver;
 };
 
 void AddOptions(hydro::settings::CommandLine* line, Options* options) {
@@ -63,6 +65,10 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "--new-controller", &options->new_controller,
       "NAME write a controller of your own to begin with, NAME.py, and a stack with it, NAME.toml, "
       "into this folder; starts nothing. Also: hydro-launch new-controller NAME");
+  line->AddOption(
+      "--new-driver", &options->new_driver,
+      "NAME make a folder NAME with a driver of your own to begin with, a simulated device for it, and a "
+      "stack with both, NAME/NAME.toml; starts nothing. Also: hydro-launch new-driver NAME");
 }
 
 // The one flag given of those that start nothing; empty when none is. Throws InputError when two are.
@@ -72,7 +78,8 @@ std::string FlagInstead(const Options& options) {
       {"--rearm", options.rearm},
       {"--make-key", options.make_key},
       {"--doctor", options.doctor},
-      {"--new-controller", !options.new_controller.empty()}};
+      {"--new-controller", !options.new_controller.empty()},
+      {"--new-driver", !options.new_driver.empty()}};
   std::string first;
   for (const auto& [flag, given] : flags) {
     if (!given) continue;
@@ -90,7 +97,7 @@ void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::strin
   std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed", "--joint"};
   if (flag == "--doctor") allowed.emplace_back("--host");
   if (flag == "--rearm") allowed.emplace_back("--json");
-  if (flag == "--new-controller") allowed.clear();
+  if (flag.starts_with("--new-")) allowed.clear();
   for (const std::string& given : line.Given()) {
     if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
     throw hydro::InputError(
@@ -120,12 +127,12 @@ int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop,
 
 int Run(const hydro::settings::CommandLine& line, const Options& options) {
   const std::string& config = options.common.config;
-  if (const std::string flag = FlagInstead(options); !flag.empty()) CheckNoneIgnored(line, flag);
-  if (!options.new_controller.empty()) {
-    if (!config.empty())
-      throw hydro::InputError("--new-controller: found " + config + ", allowed is NAME alone");
-    return hydro::launch::NewController(options.new_controller);
-  }
+  const std::string flag = FlagInstead(options);
+  if (!flag.empty()) CheckNoneIgnored(line, flag);
+  if (flag.starts_with("--new-") && !config.empty())
+    throw hydro::InputError(flag + ": found " + config + ", allowed is NAME alone");
+  if (!options.new_controller.empty()) return hydro::launch::NewController(options.new_controller);
+  if (!options.new_driver.empty()) return hydro::launch::NewDriver(options.new_driver);
   if (options.doctor) {
     return hydro::launch::RunDoctor(config, options.common.overrides, options.request.host);
   }
@@ -145,7 +152,8 @@ constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
                                                           {"rearm", "--rearm"},
                                                           {"doctor", "--doctor"},
                                                           {"make-key", "--make-key"},
-                                                          {"new-controller", "--new-controller"}};
+                                                          {"new-controller", "--new-controller"},
+                                                          {"new-driver", "--new-driver"}};
 
 // `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`. Throws InputError for a word that is near a verb and no file:
 // `hydro-launch stopp CONFIG`.
@@ -176,7 +184,8 @@ int main(int argc, char** argv) {
       {"hydro-launch config/demo.toml --log run.lcmlog      start, record, until the run ends or Ctrl-C",
        "hydro-launch stop config/demo.toml                  end the stack that runs, from anywhere",
        "hydro-launch doctor config/demo.toml                is this machine fit for it?",
-       "hydro-launch new-controller NAME                    a controller of your own to begin with"},
+       "hydro-launch new-controller NAME                    a controller of your own to begin with",
+       "hydro-launch new-driver NAME                        a driver of your own to begin with"},
       "docs/launch.md");
   Options options;
   AddOptions(&line, &options);

@@ -40,9 +40,13 @@ std::string Join(const std::set<std::string>& names) {
   return text;
 }
 
+std::string RoleOf(const settings::ProcessSection& process) {
+  return process.command.empty() ? process::RoleOf(process.program) : process.role;
+}
+
 // Waits for the logger before the run begins.
-bool AwaitsLogger(const settings::ProcessSection& process) {
-  return process::IsPlant(process::RoleOf(process.program));
+bool AwaitsLogger(const settings::ProcessSection& process, const LaunchRequest& request) {
+  return !request.log_file.empty() && process::IsPlant(RoleOf(process));
 }
 
 // Which joints a limb's process has, where it does not have them all.
@@ -88,7 +92,8 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
   std::vector<settings::ProcessSection> here;
   bool names_logger = false;
   for (const settings::ProcessSection& process : config.processes) {
-    if (process.program == "hydro-driver") settings::CheckDriver(config);
+    if (RoleOf(process) == "driver")
+      settings::CheckDriver(config, process.command.empty() ? process.program : settings::NameOf(process));
     const bool logger = process.program == kLogger;
     names_logger |= logger;
     if (logger && !with_log) continue;  // such a section only says where and how a logger would run
@@ -131,13 +136,12 @@ ChildSpec ChildFor(const settings::ProcessSection& process, const settings::Stac
   for (const std::string& joint : ChosenJoints(process, config)) {
     child.argv.insert(child.argv.end(), {"--joints", joint});
   }
-  const bool with_log = !request.log_file.empty();
   if (program != kLogger) child.joints = settings::JointsOf(process, config);
   if (program == kLogger) {
     child.last = true;
     child.argv.insert(child.argv.end(), {"-o", request.log_file});
     if (request.force) child.argv.emplace_back("--force");
-  } else if (with_log && AwaitsLogger(process)) {
+  } else if (AwaitsLogger(process, request)) {
     child.argv.insert(child.argv.end(), {"--expect", "logger"});
   }
   for (const std::string& joint : JointsElsewhere(process, child, config)) {
@@ -154,8 +158,9 @@ ChildSpec OwnChildFor(const settings::ProcessSection& section, const settings::S
   own.role = section.role;
   own.name = settings::NameOf(section);
   own.folder = file.parent_path().string();
-  own.environment =
-      process::OwnEnvironment(config, {section.role, file.string(), request.overrides}, programs_folder);
+  process::OwnTask task{section.role, file.string(), request.overrides};
+  if (AwaitsLogger(section, request)) task.expected.emplace_back("logger");
+  own.environment = process::OwnEnvironment(config, task, programs_folder);
   own.cpu = section.cpu;
   own.priority = section.priority;
   ChildSpec child;

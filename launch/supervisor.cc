@@ -126,7 +126,7 @@ void Supervisor::Reap() {
     ReadRest(*child, Stream::kOut);
     ReadRest(*child, Stream::kErr);
     const ChildSpec& spec = child->process.spec();
-    ended_.push_back({spec.label, spec.program(), child->process.pid(), *child->process.end(),
+    ended_.push_back({spec.label, spec.program(), spec.role(), child->process.pid(), *child->process.end(),
                       stop_.terminated(&child->process), stop_.hung(&child->process)});
   }
 }

@@ -31,6 +31,13 @@ std::vector<std::string> WithControllers(std::vector<std::string> roles) {
   return roles;
 }
 
+std::string NotAtZero(const OutputLeft& left) {
+  const std::string holds =
+      std::isnan(left.voltage) ? "cannot be read back" : fmt::format("reads back {:.4g} V", left.voltage);
+  return fmt::format("the output has not taken zero volts at the end, and {}: cut the amplifier's supply",
+                     holds);
+}
+
 }  // namespace
 
 PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
@@ -64,6 +71,8 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
       realtime_(config.time.mode == settings::TimeMode::kRealtime),
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
                      config.model.description.parameters.k_1),
+      pacemaker_(realtime_ ? rig.pacemaker() : nullptr),
+      ticks_ahead_(pacemaker_ != nullptr ? 1 : 0),
       pressure_ticks_(config.pressure_interval_ticks),
       position_ticks_(config.position_interval_ticks),
       command_monitor_(stale_time_) {
@@ -130,9 +139,14 @@ bool PlantApp::Begin() {
 
 int PlantApp::End() {
   const OutputLeft left = rig_.Zero();
+  const std::string failure = left.accepted ? "" : NotAtZero(left);
+  if (!failure.empty()) {
+    if (participant_.stop()) spdlog::error("{}", failure);  // otherwise the request says it
+    participant_.RequestStop(failure, 1);
+  }
   RequestStop();
   PublishOutputLeft(left);
-  return participant_.Leave();
+  return participant_.Leave(failure);
 }
 
 void PlantApp::OnRigError(const RigError& error) {
@@ -212,6 +226,7 @@ bool PlantApp::WaitForParticipants() {
     }
     participant_.bus().HandleUntil(until);
     PollDue(participant_.clock().Now());
+    rig_.Attend();
   }
   return false;
 }
@@ -219,6 +234,7 @@ bool PlantApp::WaitForParticipants() {
 // Puts out the chosen voltage first and publishes the faults second.
 void PlantApp::Drive() {
   voltage_ = rig_.Drive(voltage_);
+  if (pacemaker_ != nullptr) command_tick_ = pacemaker_->acting_command_tick();
   const std::vector<RigFault>& faults = rig_.faults();
   if (!faults.empty() || !rig_faults_.empty()) PublishRigFaults(faults);
   safety_.PublishFaults();
@@ -240,7 +256,7 @@ void PlantApp::PublishRigFaults(const std::vector<RigFault>& faults) {
 }
 
 void PlantApp::PollDue(bus::Clock::TimePoint now) {
-  participant_.statistics().set_lost_messages(command_monitor_.lost());
+  participant_.statistics().set_lost_messages(LostMessages());
   participant_.Poll(now);
   tuning_.Poll(now);
   if (now >= next_description_) PublishDescription();

@@ -7,7 +7,8 @@
 //
 // Real time: it wakes at each tick of wall time, reads the rig (a simulated one advances under the voltage it
 // holds), publishes the state, and takes the newest command. When it wakes late, the time it missed has
-// passed under that voltage; it then publishes one state and counts the ticks it skipped.
+// passed under that voltage; it then publishes one state and counts the ticks it skipped. A rig with a clock
+// of its own (rig.h, Pacemaker) wakes it instead, and is sent each command as soon as it is there.
 //
 // In both modes OutputSafety holds the voltage at zero while anything is wrong (docs/safety.md), and the
 // command computed from tick k acts from tick k + plant.command_delay_ticks on.
@@ -27,6 +28,7 @@
 
 #include "base/multiples.h"
 #include "base/ring_queue.h"
+#include "base/saturating.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
 #include "plant/output_safety.h"
@@ -36,6 +38,7 @@
 #include "plant/tuning_desk.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
+#include "timing/followed_rate_loop.h"
 #include "timing/round_trip_monitor.h"
 
 namespace hydro::plant {
@@ -50,10 +53,10 @@ struct WakeUp {
 
 class PlantApp {
  public:
-  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger"), and joints of the same limb
-  // in other processes ("joint:knee").
-  // `heartbeat`: whether one of the launcher's has come since it was asked last (process/supervision.h); from the
-  // first on, their absence is a fault. None: nobody is asked.
+  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger"),
+  // and joints of the same limb in other processes ("joint:knee"). `heartbeat`: whether one of the launcher's
+  // has come since it was asked last (process/supervision.h); from the first on, their absence is a fault.
+  // None: nobody is asked.
   PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
            const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant",
            std::function<bool()> heartbeat = {});
@@ -62,31 +65,37 @@ class PlantApp {
   // exception. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
   int Run();
 
-  // The changes that were decided in another run, to be made again at the same ticks (TuningDesk). Before Run().
+  // The changes that were decided in another run, to be made again at the same ticks (TuningDesk). Before
+  // Run().
   void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
-  // The run in steps, for who paces several rigs at once (limb/). Run() takes the same ones, in the order of these lines:
+  // The run in steps, for who paces several rigs at once (limb/). Run() takes the same ones, in the order of
+  // these lines:
 
   // Waits until everyone who is expected is there. False: the run is over before it has begun.
   bool Begin();
   // Lockstep, each tick: true once all that is due at this tick has arrived.
   bool AwaitAnswers();
-  // Both: the checks of the command in force and of what is measured; then the voltage that follows from them; then puts it out.
+  // Both: the checks of the command in force and of what is measured; then the voltage that follows from
+  // them; then puts it out.
   void Check(bus::Clock::TimePoint now);
   void ChooseVoltage();
   void Drive();
-  // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and publishes the state.
+  // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and
+  // publishes the state.
   void Start();  // at tick 0
   void AdvanceTo(int64_t tick);
   void PublishState();
-  // Real time: both, as many ticks later as have elapsed. Returns when the state was sent, as far as that matters.
+  // Real time: both, as many ticks later as have elapsed. Returns when the state was sent, as far as that
+  // matters.
   bus::Clock::TimePoint Wake(const WakeUp& wake_up);
   void Poll(bus::Clock::TimePoint now);
   // Whether somebody has asked for the end.
   bool Ended() const;
   // Zero volts, and everyone is told. Returns the process's exit code.
   int End();
-  // Takes a step that touches the rig. When the rig fails: zero volts, a fault, the end of the run, and false.
+  // Takes a step that touches the rig. When the rig fails: zero volts, a fault, the end of the run, and
+  // false.
   template <class Step>
   bool Safely(Step&& step);
 
@@ -112,6 +121,9 @@ class PlantApp {
   void RequestStop();
   void RunLockstep();
   void RunRealtime();
+  void RunAtThePaceOf(Pacemaker& device);
+  int64_t AwaitSample(Pacemaker& device, timing::FollowedRateLoop& loop);
+  bool AwaitsAnswer() const;
   bool AwaitAnswers(bus::Clock::TimePoint* now);
   bool Fails(const char* who, bool late) const;
   [[gnu::cold]] void RequestStopFor(const char* who);
@@ -138,6 +150,7 @@ class PlantApp {
   bus::Clock::Duration AgeOfAnswer() const;
   void PollIfDue(bus::Clock::TimePoint now);
   [[gnu::cold]] void PollDue(bus::Clock::TimePoint now);
+  int64_t LostMessages() const { return SaturatingSum(command_monitor_.lost(), rig_.lost_messages()); }
 
   settings::StackConfig config_;
   Rig& rig_;
@@ -157,6 +170,8 @@ class PlantApp {
   const bus::Clock::Duration stall_time_;
   const bool realtime_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
+  Pacemaker* const pacemaker_;  // in real time, where the rig is one
+  const int64_t ticks_ahead_;   // what is driven at a tick acts so many ticks later
 
   int64_t tick_ = 0;
   Multiples pressure_ticks_, position_ticks_;         // at which each loop answers

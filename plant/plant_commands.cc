@@ -85,7 +85,7 @@ bus::Clock::Duration PlantApp::AgeOfAnswer() const {
 }
 
 void PlantApp::Check(bus::Clock::TimePoint now) {
-  const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
+  const int64_t newest_allowed = tick_ + ticks_ahead_ - config_.plant.command_delay_ticks;
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
     command_ = waiting_commands_.front();
     waiting_commands_.pop_front();
@@ -109,6 +109,7 @@ void PlantApp::ChooseVoltage() {
   const bool obeys = !held && command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
   command_tick_ = obeys ? command_->tick : -1;
+  rig_.Obey(command_tick_);
 }
 
 // The pressure loop's faults are told by its commands.

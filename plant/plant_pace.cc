@@ -79,7 +79,7 @@ inline const char* PlantApp::Unanswered() const {
 // What is due, if anything is.
 inline void PlantApp::PollIfDue(bus::Clock::TimePoint now) {
   const bool due = participant_.IsDue(now) || tuning_.IsDue(now) || now >= next_description_ ||
-                   command_monitor_.lost() != participant_.statistics().lost_messages();
+                   LostMessages() != participant_.statistics().lost_messages();
   if (due) PollDue(now);
 }
 
@@ -162,6 +162,7 @@ bus::Clock::TimePoint PlantApp::Wake(const WakeUp& wake_up) {
 }
 
 void PlantApp::RunRealtime() {
+  if (pacemaker_ != nullptr) return RunAtThePaceOf(*pacemaker_);
   const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
   timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics(),
                              config_.last_tick);
@@ -177,6 +178,50 @@ void PlantApp::RunRealtime() {
     logger_watch_.Poll(now);
     PollIfDue(now);
   }
+}
+
+void PlantApp::RunAtThePaceOf(Pacemaker& device) {
+  const std::chrono::duration<double> period(1 / config_.plant.rate_hz);
+  timing::FollowedRateLoop loop(participant_.clock(), period, participant_.statistics(), config_.last_tick);
+  Measure(0);
+  Publish(0, loop.woke());
+  Check(loop.woke());
+  while (tick_ != config_.last_tick) {
+    const int64_t elapsed = AwaitSample(device, loop);
+    if (elapsed == 0) return;  // the run has ended
+    const auto now = Wake({elapsed, loop.skipped(), loop.woke(), loop.late()});
+    Check(now);
+    logger_watch_.Poll(now);
+    PollIfDue(now);
+  }
+}
+
+// What is driven goes out with the answer to this tick, or at once where none is waited for. Without an
+// answer the command in force is repeated when the next sample has come: the device hears of this process in
+// each tick.
+int64_t PlantApp::AwaitSample(Pacemaker& device, timing::FollowedRateLoop& loop) {
+  bus::Bus& bus = participant_.bus();
+  int64_t elapsed = 0;
+  for (bool driven = false; elapsed == 0 && !Ended();) {
+    bus.WakeOn(device.descriptor());
+    const int handled = AwaitsAnswer() || driven ? bus.HandleUntil(loop.deadline()) : 0;
+    bus.WakeOn(-1);
+    if (handled > 0) participant_.statistics().RecordQueueDepth(handled);
+    const auto arrived = device.Arrived();
+    const auto now = participant_.clock().Now();
+    elapsed = loop.Elapsed(now, arrived);
+    if (driven || (elapsed == 0 && AwaitsAnswer())) continue;
+    Check(now);
+    ChooseVoltage();
+    Drive();
+    driven = true;
+  }
+  return elapsed;
+}
+
+// Not while something is wrong: zero volts go out first.
+bool PlantApp::AwaitsAnswer() const {
+  return asks_pressure_ && newest_command_tick_ < tick_ && !safety_.holds() && rig_.faults().empty();
 }
 
 // The same steps for others.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +37,25 @@ struct OutputLeft {
   double voltage = 0;    // V of eq. (1), read back; NaN: it cannot be read
 };
 
+// A rig that samples and puts out by a clock of its own, behind a link. In real time its samples are the
+// ticks: each one begins a tick as it arrives, and a command goes out as soon as it is there. It acts from
+// the device's next sample on, that is from tick k + 1, and not another tick or two later, as where two
+// clocks wait for each other.
+class Pacemaker {
+ public:
+  virtual ~Pacemaker() = default;
+
+  // Takes what has come over the link. Returns the device's number of the newest sample, one more for each
+  // tick, if one has come since the last call.
+  virtual std::optional<int64_t> Arrived() = 0;
+
+  // Has something to read when something arrives; -1: the link is cut.
+  virtual int descriptor() const = 0;
+
+  // Of the voltage that Drive() returned last: the tick of its command; -1: none.
+  virtual int64_t acting_command_tick() const = 0;
+};
+
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -54,6 +74,19 @@ class Rig {
   // Holds the amplifier voltage (V, of eq. (1)) from now on; it is zero before the first call. Returns the
   // voltage that actually acts, which a limit may have reduced. Throws RigError.
   virtual double Drive(double voltage) = 0;
+
+  // The tick of the command that the voltage of the next Drive() is from; -1: it is zero because something is
+  // wrong or nobody commands.
+  virtual void Obey(int64_t /*command_tick*/) {}
+
+  // Null: the rig samples when it is read.
+  virtual Pacemaker* pacemaker() { return nullptr; }
+
+  // Called often while the run has not begun, and nothing is read or driven.
+  virtual void Attend() {}
+
+  // Messages from the machine that were lost on their way, in all.
+  virtual int64_t lost_messages() const { return 0; }
 
   // A simulated rig's sensors have this noise from now on; a real one's have their own.
   virtual void SetNoise(const settings::NoiseSection&) {}

@@ -60,6 +60,12 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
   participant_.Announce(process_status_t::READY);
 }
 
+PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+                         DeviceLoop& loop)
+    : PressureApp(bus, clock, config) {
+  device_ = &loop;
+}
+
 void PressureApp::ForgetPressureCommands() {
   waiting_commands_.clear();
   pressure_command_.reset();
@@ -198,6 +204,7 @@ inline void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now)
   TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t& command = ZeroVolts(state.tick, motor_command_t::SAFE);
+  follows_ = false;
   const int64_t stale = TicksStale(state.tick);
   if (pressure_command_) {
     command.pressure_ref = PressureReference(stale);
@@ -209,7 +216,7 @@ inline void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now)
     if (pressure_command_ && pressure_command_->open_loop) {
       ApplyOpenLoop(&command);
     } else {
-      ApplyLaw(state, &command);
+      device_ == nullptr ? ApplyLaw(state, &command) : FollowOnDevice(state, &command);
     }
   }
   Send();
@@ -255,6 +262,17 @@ inline void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command
   if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
 }
 
+// What the log shows is the device's own answer to this state: the one that it has put out.
+void PressureApp::FollowOnDevice(const state_t& state, motor_command_t* command) {
+  law_before_.reset();  // the change passes on the device
+  follows_ = true;
+  const DeviceLoop::Answer answer = device_->Follow(state, command->pressure_ref, values_.pressure);
+  command->status = answer.by_law ? motor_command_t::LAW : motor_command_t::OPEN_LOOP;
+  command->voltage = answer.voltage;
+  command->saturated = answer.saturated;
+  if (answer.by_law) command->pressure_ref = answer.pressure_ref;
+}
+
 // The inputs are finite, but a product of gains and reference overflows.
 void PressureApp::RaiseNonfinite(const motor_command_t& command, double voltage) {
   participant_.Raise("nonfinite_motor_command",
@@ -268,6 +286,7 @@ void PressureApp::Send() {
   command_.utime = participant_.clock().Utime();
   command_.session = participant_.session();
   command_.sequence = sequence_++;
+  if (device_ != nullptr && !follows_) device_->Release();
   publisher_.Send(command_);
   answered_ = true;
   acted_by_law_ = command_.status == motor_command_t::LAW;
@@ -289,6 +308,7 @@ void PressureApp::Poll() {
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
     ZeroVolts(participant_.tick(), motor_command_t::SAFE);
+    follows_ = false;
     Send();  // zero volts first, explanation second
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
@@ -301,6 +321,7 @@ bool PressureApp::finished() const { return participant_.stop().has_value(); }
 
 int PressureApp::Finish() {
   ZeroVolts(participant_.tick(), motor_command_t::STOPPED);
+  follows_ = false;
   Send();
   return participant_.Leave();
 }

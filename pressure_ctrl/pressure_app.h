@@ -29,11 +29,34 @@ namespace hydro::pressure_ctrl {
 // The voltage that a law of the user's own asks for at a state, V; `pressure_ref`: the reference in force for p2 - p1, psi.
 using OwnPressureLaw = std::function<double(const state_t& state, double pressure_ref)>;
 
+// A pressure loop beside the machine, that of a front end (docs/front_end.md), which this application leads: it gets the reference
+// and the gains, and says what it has put out.
+class DeviceLoop {
+ public:
+  struct Answer {
+    bool by_law = false;      // the device acts by eq. (16); false: its output is zero
+    double voltage = 0;       // V, computed by the device from this state
+    double pressure_ref = 0;  // psi, that it computed this with
+    bool saturated = false;
+  };
+
+  virtual ~DeviceLoop() = default;
+
+  // From now on it follows this reference with these gains; its answer to `state`.
+  virtual Answer Follow(const state_t& state, double pressure_ref, const PressureLawSettings& law) = 0;
+
+  // It follows no reference any more: what the motor command of the plant says acts.
+  virtual void Release() = 0;
+};
+
 class PressureApp : public process::App {
  public:
   // With `own` that law is in the place of eq. (16): all else, the limit on its voltage too, is the same, and hydro-set, which knows
   // no gains of it, is told so.
   PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, OwnPressureLaw own = {});
+  // With the law on a device: all checks stay here; eq. (16), the limit on its voltage and the passing of a change of gains are there.
+  // `loop` must outlive it.
+  PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, DeviceLoop& loop);
 
   void Poll() override;
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
@@ -48,6 +71,7 @@ class PressureApp : public process::App {
   void Answer(const state_t& state, bus::Clock::TimePoint now);
   void ApplyOpenLoop(motor_command_t* command) const;
   void ApplyLaw(const state_t& state, motor_command_t* command);
+  void FollowOnDevice(const state_t& state, motor_command_t* command);
   [[gnu::cold]] void RaiseNonfinite(const motor_command_t& command, double voltage);
   bool AllIsWell(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) const;
   [[gnu::cold]] bool CheckInputs(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now);
@@ -73,6 +97,8 @@ class PressureApp : public process::App {
 
   process::Participant participant_;
   const OwnPressureLaw own_;  // may be empty
+  DeviceLoop* device_ = nullptr;
+  bool follows_ = false;  // the command that is being made is the device's answer
   const bool lockstep_;
   bus::Publisher<motor_command_t> publisher_;
   Multiples interval_;           // ticks between two commands of this loop

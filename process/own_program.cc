@@ -23,6 +23,12 @@ bool IsFile(const fs::path& path) {
 
 bool IsProgram(const fs::path& path) { return IsFile(path) && access(path.c_str(), X_OK) == 0; }
 
+std::string Lines(const std::vector<std::string>& words) {
+  std::string lines;
+  for (const std::string& word : words) lines += (lines.empty() ? "" : "\n") + word;
+  return lines;
+}
+
 }  // namespace
 
 std::string ProgramOnPath(const std::string& name) {
@@ -67,12 +73,11 @@ std::vector<std::string> OwnEnvironment(const settings::StackConfig& config, con
       variables[text.substr(0, equals)] = text.substr(equals + 1);
     }
   }
-  std::string set;
-  for (const std::string& override : task.overrides) set += (set.empty() ? "" : "\n") + override;
   const bool position = task.role == "position_ctrl";
   variables["HYDRO_ROLE"] = task.role;
   variables["HYDRO_CONFIG"] = task.config_file;
-  variables["HYDRO_SET"] = set;
+  variables["HYDRO_SET"] = Lines(task.overrides);
+  variables["HYDRO_EXPECT"] = Lines(task.expected);
   variables["HYDRO_BUS_URL"] = config.bus.url;
   variables["HYDRO_CHANNEL_SUFFIX"] = config.bus.channel_suffix;
   variables["HYDRO_RATE_HZ"] = ShortestNumber(config.plant.rate_hz);

@@ -30,31 +30,18 @@ std::string OurProgramFor(const std::string& role) {
   return "";
 }
 
-// The plant and the driver hold the output at zero volts when something is wrong, and the log is the evidence of
-// that: these stay ours.
+// The log is the evidence of what happened, and the plant a part of this project: these stay ours.
 void ReadRole(SectionReader& section, std::string* role) {
   section.Text("role", role);
-  section.Require("role", "\"position_ctrl\" or \"pressure_ctrl\", whose place the command takes");
-  if (role->empty() || *role == kPressure || *role == kPosition) return;
-  std::string allowed = "\"position_ctrl\", \"pressure_ctrl\"";
+  section.Require("role",
+                  "\"position_ctrl\", \"pressure_ctrl\" or \"driver\", whose place the command takes");
+  if (role->empty() || *role == kPressure || *role == kPosition || *role == kDriver) return;
+  std::string allowed = "\"position_ctrl\", \"pressure_ctrl\", \"driver\"";
   if (const std::string ours = OurProgramFor(*role); !ours.empty()) {
     allowed += "; the " + *role + " is always " + ours;
-    if (*role == kPlant || *role == kDriver) allowed += ", which keeps the output safe";
+    if (*role == kPlant) allowed += "; a machine of your own is a driver";
   }
   throw section.Error("role", Quoted(*role), allowed);
-}
-
-void ReadCommand(SectionReader& section, std::vector<std::string>* command) {
-  const TomlNode* node = section.Take("command");
-  if (!node->is(TomlNode::Kind::kArray)) throw section.Error("command", node->Shown(), kExample);
-  for (const TomlNode& word : node->items) {
-    if (!word.is(TomlNode::Kind::kString)) throw section.Error("command", word.Shown() + " in it", kExample);
-    if (word.text.find('\0') != std::string::npos) {
-      throw section.Error("command", "a zero byte in it", kExample);
-    }
-    command->push_back(word.text);
-  }
-  if (command->empty() || command->front().empty()) throw section.Error("command", "no program", kExample);
 }
 
 void ReadProgram(SectionReader& section, ProcessSection* process) {
@@ -92,7 +79,8 @@ ProcessSection ReadProcess(SectionReader section) {
     if (section.Has("program")) {
       throw section.Error("command", "it beside program", "one of the two: a program of ours or your own");
     }
-    ReadCommand(section, &process.command);
+    process.command = ReadCommand(section, "command", kExample);
+    if (process.command.empty()) throw section.Error("command", "no program", kExample);
     ReadRole(section, &process.role);
   } else {
     ReadProgram(section, &process);
@@ -121,7 +109,7 @@ void CheckBeside(const ProcessSection& process, const std::vector<ProcessSection
   for (const ProcessSection& other : others) {
     if (other.joint != process.joint) continue;  // each joint has a stack of its own
     if (other.role == twin) {
-      throw KeyError(process.place, key, process.program + " beside " + other.program,
+      throw KeyError(process.place, key, NameOf(process) + " beside " + NameOf(other),
                      "one of the two: both send states");
     }
     // Several loggers do no harm; two of any other role would contradict each other on the bus.
@@ -135,6 +123,21 @@ void CheckBeside(const ProcessSection& process, const std::vector<ProcessSection
 }
 
 }  // namespace
+
+std::vector<std::string> ReadCommand(SectionReader& section, const std::string& key,
+                                     const std::string& example) {
+  const TomlNode* node = section.Take(key);
+  if (node == nullptr) return {};
+  if (!node->is(TomlNode::Kind::kArray)) throw section.Error(key, node->Shown(), example);
+  std::vector<std::string> command;
+  for (const TomlNode& word : node->items) {
+    if (!word.is(TomlNode::Kind::kString)) throw section.Error(key, word.Shown() + " in it", example);
+    if (word.text.find('\0') != std::string::npos) throw section.Error(key, "a zero byte in it", example);
+    command.push_back(word.text);
+  }
+  if (!command.empty() && command.front().empty()) throw section.Error(key, "no program", example);
+  return command;
+}
 
 void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* processes) {
   const TomlNode* node = document.Take("process");

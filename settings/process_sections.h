@@ -8,6 +8,11 @@
 
 namespace hydro::settings {
 
+// A command, the program and its arguments as a list of texts such as `example`; empty when there is none.
+// Throws InputError.
+std::vector<std::string> ReadCommand(SectionReader& section, const std::string& key,
+                                     const std::string& example);
+
 // Reads them; without any, the three programs of a simulated stack. Throws InputError.
 void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* processes);
 

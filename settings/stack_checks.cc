@@ -5,6 +5,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "model/effects/catalogue.h"
+#include "settings/process_sections.h"
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
 
@@ -156,6 +157,16 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
   if (position.braking_rad_s2 && !(position.c1 > 0 && position.c2 > 0)) {
     throw KeyError(root, "position.braking", "it without c1 and c2",
                    "it with c1 and c2 above 0, whose ratio is the curve's slope at the target");
+  }
+
+  const bool on_device = config.driver && config.driver->kind == DriverKind::kFrontEnd &&
+                         config.driver->front_end.mode == FrontEndMode::kLoopOnDevice;
+  for (const ProcessSection& process : config.processes) {
+    if (!on_device || process.role != "pressure_ctrl" || process.place.empty())
+      continue;  // those that nobody named
+    throw KeyError(process.place, process.command.empty() ? "process.program" : "process.command",
+                   NameOf(process) + " with driver.mode = \"loop_on_device\"",
+                   "a stack without it: the front end runs the pressure loop");
   }
 
   const ModelSection& model = config.model;

@@ -27,12 +27,14 @@ namespace {
 hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig& config) {
   for (const hydro::settings::ProcessSection& process : config.processes) {
     if (process.command.empty()) continue;
+    const bool driver = process.role == "driver";  // the model stands for whatever machine
     std::fprintf(stderr,
                  "hydro-sim: warning: %s: %s is a program of your own; the simulation runs our %s in its "
-                 "place, `hydro-launch %s --time lockstep` runs yours\n",
+                 "place, `hydro-launch %s%s` runs yours\n",
                  hydro::Printable(process.place).c_str(),
-                 hydro::Printable(hydro::settings::NameOf(process)).c_str(), process.role.c_str(),
-                 hydro::Printable(config.file).c_str());
+                 hydro::Printable(hydro::settings::NameOf(process)).c_str(),
+                 driver ? "model" : process.role.c_str(), hydro::Printable(config.file).c_str(),
+                 driver ? "" : " --time lockstep");
   }
   return hydro::settings::WithoutOwnPrograms(config);
 }

@@ -51,7 +51,7 @@ FaultyRig::FaultyRig(const settings::StackConfig& config, const SimulatedProcess
   good_readings_.fill(kGoodReadings);
 }
 
-// As plant::BoardRig reads its sensors: what is not credible is missing, and a fault until ten readings in a row are good.
+// As plant::DeviceRig reads its sensors: what is not credible is missing, and a fault until ten readings in a row are good.
 void FaultyRig::ReadBoard(model::Measurement* measured) {
   if (std::exchange(board_->refuses_reading, false))
     throw plant::RigError("board_error", "/dev/comedi0 (simulated): driver.p1: the board does not answer");

@@ -40,8 +40,8 @@ void LaunchedChildren::Reap() {
     if (!child->running() || !process.ended()) continue;
     child->reaped = true;
     const launch::ProcessEnd end{process.killed() ? 0 : process.exit_code(), process.killed_by()};
-    ended_.push_back({child->spec.label, child->spec.program(), process.identity().id, end,
-                      stop_.terminated(child.get()), stop_.hung(child.get())});
+    ended_.push_back({child->spec.label, child->spec.program(), child->spec.role(), process.identity().id,
+                      end, stop_.terminated(child.get()), stop_.hung(child.get())});
   }
 }
 

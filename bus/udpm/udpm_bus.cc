@@ -45,9 +45,10 @@ bool IsPassing(int error) {
          error == ENOBUFS || error == EPERM;  // the last: a firewall
 }
 
-enum class Wait { kReadable, kDeadline, kSignal };
+enum class Wait { kReadable, kOther, kDeadline, kSignal };
 
-Wait WaitReadable(int fd, Bus::TimePoint deadline) {
+// `other`: ends the wait too; -1: none.
+Wait WaitReadable(int fd, int other, Bus::TimePoint deadline) {
   while (true) {
     timespec timeout{};
     const auto now = std::chrono::steady_clock::now();
@@ -56,9 +57,9 @@ Wait WaitReadable(int fd, Bus::TimePoint deadline) {
       timeout.tv_sec = left / 1'000'000'000;
       timeout.tv_nsec = left % 1'000'000'000;
     }
-    pollfd waiting{fd, POLLIN, 0};
-    const int ready = ppoll(&waiting, 1, &timeout, nullptr);
-    if (ready > 0) return Wait::kReadable;
+    pollfd waiting[] = {{fd, POLLIN, 0}, {other, POLLIN, 0}};
+    const int ready = ppoll(waiting, 2, &timeout, nullptr);
+    if (ready > 0) return waiting[0].revents != 0 ? Wait::kReadable : Wait::kOther;
     if (ready < 0 && errno == EINTR) return Wait::kSignal;
     if (ready < 0) throw BusError(std::string("waiting for messages failed: ") + std::strerror(errno));
     if (deadline <= now || std::chrono::steady_clock::now() >= deadline) return Wait::kDeadline;
@@ -174,7 +175,7 @@ int UdpmBus::HandleUntil(TimePoint deadline) {
   int handled = 0;
   for (int seen = 0; seen < kMostPerCall; ++seen) {
     // Once a message has been handled, only those already waiting count.
-    if (handled == 0 && WaitReadable(socket_.fd(), deadline) != Wait::kReadable) break;
+    if (handled == 0 && WaitReadable(socket_.fd(), wake_on_, deadline) != Wait::kReadable) break;
     const Outcome outcome = HandleNext();
     if (outcome == Outcome::kHandled) ++handled;
     if (outcome == Outcome::kNoneWaited && handled > 0) break;

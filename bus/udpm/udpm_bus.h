@@ -35,6 +35,7 @@ class UdpmBus : public Bus {
   // Returns 0 early when a signal arrives. Handles at most 4096 messages per call, so that a flood cannot
   // trap it.
   int HandleUntil(TimePoint deadline) override;
+  void WakeOn(int descriptor) override { wake_on_ = descriptor; }
 
   int receive_buffer_bytes() const { return receive_buffer_.given; }
 
@@ -92,6 +93,7 @@ class UdpmBus : public Bus {
   std::deque<Subscription> subscriptions_;  // a handler may subscribe: existing ones stay in place
   std::vector<uint8_t> encoded_;            // reused for each message
   bool handling_ = false;
+  int wake_on_ = -1;
 
   bool introduced_ = false;
   std::deque<HeldMessage> held_;

@@ -39,6 +39,7 @@ using process::StartError;
 struct Ended {
   std::string label;
   std::string program;
+  std::string role;
   int32_t pid = -1;
   ProcessEnd end;
   bool terminated = false;  // the stop had sent it SIGTERM

@@ -57,7 +57,7 @@ void StackLaunch::OnSignals() {
 
 void StackLaunch::OnEnded(const Ended& ended) {
   const ProcessEnd& end = ended.end;
-  plant_killed_ = plant_killed_ || (end.signal != 0 && process::IsPlant(process::RoleOf(ended.program)));
+  plant_killed_ = plant_killed_ || (end.signal != 0 && process::IsPlant(ended.role));
   if (killed_) return;
   if (ended.hung) {
     Fail(ended.program + " did not end on SIGTERM and was killed", 1);
@@ -86,8 +86,7 @@ void StackLaunch::OnEnded(const Ended& ended) {
   if (end.signal == 0 && end.exit_code == 1 && failing_) return;  // because the run has failed
   std::string text = DescribeEnd(ended.program, end);
   // A joint that has failed ends alone, and its process with the last of its joints (limb.on_joint_fault).
-  const bool of_joints =
-      !config_.joints_concern_each_other && process::IsPlant(process::RoleOf(ended.program));
+  const bool of_joints = !config_.joints_concern_each_other && process::IsPlant(ended.role);
   if (of_joints && end.signal == 0 && end.exit_code == 1 && watch_.HasPlant()) {
     PrintError(text + ": its joints have ended; the others go on (limb.on_joint_fault)");
     exit_code_ = 1;

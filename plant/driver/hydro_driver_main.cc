@@ -1,49 +1,37 @@
-// hydro-driver CONFIG: the real actuator, behind a data-acquisition board.
-#include "plant/driver/board_rig.h"
+// hydro-driver CONFIG: the real actuator, behind a data-acquisition board or a front end.
 #include "plant/driver/check_sensors.h"
-#include "plant/plant_app.h"
-#include "process/process_main.h"
-#include "process/stop_signal.h"
-#include "process/supervision.h"
-
-namespace {
-
-int CheckSensors(const hydro::settings::CommonOptions& options) {
-  const hydro::settings::StackConfig config =
-      hydro::settings::LoadStackConfig(options.config, options.overrides);
-  hydro::settings::CheckDriver(config);
-  hydro::process::CatchStopSignals();
-  return hydro::plant::CheckSensors(config, hydro::bus::WallClock());
-}
-
-}  // namespace
+#include "plant/driver/comedi_device.h"
+#include "plant/driver/device_rig.h"
+#include "plant/driver/driver_main.h"
+#include "plant/driver/guarded_front_end.h"
+#include "plant/front_end/check_front_end.h"
 
 int main(int argc, char** argv) {
-  hydro::settings::CommandLine command_line(
-      "hydro-driver",
-      "The real actuator behind a data-acquisition board (Comedi): publishes the sensors' readings and puts "
-      "out the pressure loop's commands.");
-  command_line.AddExamples({"hydro-driver config/driver.toml"}, "docs/hardware.md");
-  hydro::settings::CommonOptions options;
-  std::vector<std::string> expected;
-  bool check_sensors = false;
-  command_line.AddCommon(&options);
-  command_line.AddOption(
-      "--expect", &expected,
-      "ROLE also wait for this process, besides the two controllers, e.g. logger; or for joint:NAME of "
-      "the same limb");
-  command_line.AddFlag("--check-sensors", &check_sensors,
-                       "print the sensors' readings and drive nothing, for --duration or until stopped");
-  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  if (check_sensors)
-    return hydro::settings::RunProgram("hydro-driver", [&] { return CheckSensors(options); });
-  return hydro::process::RunProcess(
-      "hydro-driver", options,
-      [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
-        hydro::settings::CheckDriver(config);
-        hydro::plant::BoardRig rig(config, clock);
-        return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-driver",
-                                      hydro::process::HeartbeatArrived)
-            .Run();
-      });
+  using hydro::bus::Clock;
+  using hydro::plant::ComediDevice;
+  using hydro::settings::StackConfig;
+  const auto is_front_end = [](const StackConfig& config) {
+    return config.driver->kind == hydro::settings::DriverKind::kFrontEnd;
+  };
+  hydro::plant::RigProgram program;
+  program.name = "hydro-driver";
+  program.about =
+      "The real actuator behind a data-acquisition board (Comedi) or a front end (a microcontroller): "
+      "publishes "
+      "the sensors' readings and puts out the pressure loop's commands.";
+  program.examples = {"hydro-driver config/driver.toml"};
+  program.page = "docs/hardware.md";
+  program.make_rig = [&](const StackConfig& config,
+                         const Clock& clock) -> std::unique_ptr<hydro::plant::Rig> {
+    if (is_front_end(config)) return std::make_unique<hydro::plant::GuardedFrontEnd>(config, clock);
+    return std::make_unique<hydro::plant::DeviceRig>(config, clock,
+                                                     std::make_unique<ComediDevice>(config, clock, true));
+  };
+  program.check_sensors = [&](const StackConfig& config, const Clock& clock) {
+    if (is_front_end(config)) return hydro::plant::CheckFrontEnd(config, clock);
+    ComediDevice device(config, clock, false);
+    return hydro::plant::CheckSensors(config, clock, device);
+  };
+  program.beside = hydro::plant::LeadLoopOnDevice;
+  return hydro::plant::RunRigProgram(argc, argv, program);
 }

@@ -6,11 +6,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "plant/driver/zero_output.h"
 
 namespace hydro::plant {
 namespace {
@@ -18,41 +22,46 @@ namespace {
 constexpr char kDismissed = 'd';
 constexpr int kExitTimeout_ms = 500;  // for a dismissed guardian
 
-// Closes every descriptor but these two: a pipe or socket that the guardian held open would make the driver
-// look alive.
-void CloseAllBut(int first, int second) {
-  const unsigned low = static_cast<unsigned>(first < second ? first : second);
-  const unsigned high = static_cast<unsigned>(first < second ? second : first);
-  if (low > 0) close_range(0, low - 1, 0);
-  if (high > low + 1) close_range(low + 1, high - 1, 0);
-  close_range(high + 1, ~0U, 0);
+// Closes every descriptor but these, in rising order: a pipe or socket that the guardian held open would make
+// the driver look alive.
+void CloseAllBut(const std::vector<int>& files) {
+  unsigned next = 0;
+  for (const int file : files) {
+    const auto kept = static_cast<unsigned>(file);
+    if (kept > next) close_range(next, kept - 1, 0);
+    next = kept + 1;
+  }
+  close_range(next, ~0U, 0);
 }
 
 // Runs in the fork of a process that may have threads: only system calls from here on.
-[[noreturn]] void Guard(const ZeroOutput& output, int pipe) {
+[[noreturn]] void Guard(Device& device, const std::vector<int>& files, double zero, int pipe) {
   prctl(PR_SET_NAME, "hydro-zero");
-  // Only the driver's end may end the guardian: it must survive a SIGTERM to the whole process group.
+  // Only the driver's end may end the guardian.
   for (int signal = 1; signal < NSIG; ++signal) {
     if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
   }
-  CloseAllBut(pipe, comedi_fileno(output.device));
+  CloseAllBut(files);
   char word = 0;
   ssize_t got = 0;
   do {
     got = read(pipe, &word, 1);
   } while (got < 0 && errno == EINTR);
-  if (got != 1 || word != kDismissed) output.Write();
+  if (got != 1 || word != kDismissed) WriteZeroTo(device, zero);
   _exit(0);
 }
 
 }  // namespace
 
-ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
+ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double zero) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
     throw std::runtime_error(std::string("cannot create the output guardian's pipe: ") +
                              std::strerror(errno));
   }
+  std::vector<int> kept = files;  // the child allocates nothing
+  kept.push_back(ends[0]);
+  std::sort(kept.begin(), kept.end());
   pid_ = fork();
   if (pid_ < 0) {
     const int error = errno;
@@ -62,8 +71,11 @@ ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
   }
   if (pid_ == 0) {
     close(ends[1]);
-    Guard(output, ends[0]);
+    Guard(device, kept, zero, ends[0]);
   }
+  // It must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends what a
+  // program of the user's own has left. From here, because the child may not run for a while.
+  setpgid(pid_, pid_);
   close(ends[0]);
   pipe_ = ends[1];
 }

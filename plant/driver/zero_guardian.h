@@ -4,17 +4,19 @@
 
 #include <sys/types.h>
 
-#include "plant/driver/zero_output.h"
+#include <vector>
+
+#include "plant/driver/device.h"
 
 namespace hydro::plant {
 
 class ZeroGuardian {
  public:
-  // Forks a child that shares the open device and sleeps until this process has gone. It then writes
-  // `output`, unless Dismiss() was called before, and exits. It outlives this process by no more than that,
-  // ignores the terminal's signals, and keeps none of this process's files and sockets except the device.
-  // Throws std::runtime_error when it cannot be started.
-  explicit ZeroGuardian(const ZeroOutput& output);
+  // Forks a child that shares the open device and sleeps until this process has gone. It then has `device`
+  // put out `zero`, unless Dismiss() was called before, and exits. It outlives this process by no more than
+  // that, ignores signals, also those to this process's group, and keeps none of this process's descriptors
+  // except `files`. Throws std::runtime_error when it cannot be started.
+  ZeroGuardian(Device& device, const std::vector<int>& files, double zero);
   ~ZeroGuardian() { Dismiss(); }
   ZeroGuardian(const ZeroGuardian&) = delete;
   ZeroGuardian& operator=(const ZeroGuardian&) = delete;

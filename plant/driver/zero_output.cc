@@ -11,16 +11,16 @@ namespace {
 
 constexpr int kTries = 10;
 
-// What the handlers see: the pointer is null, or the struct it points to is complete.
-ZeroOutput armed_output;
-std::atomic<const ZeroOutput*> armed{nullptr};
-static_assert(std::atomic<const ZeroOutput*>::is_always_lock_free, "signal handlers need it lock-free");
+// What the handlers see: while the pointer is not null, the number beside it is the device's.
+double armed_zero = 0;
+std::atomic<Device*> armed{nullptr};
+static_assert(std::atomic<Device*>::is_always_lock_free, "signal handlers need it lock-free");
 
 std::terminate_handler previous_terminate = nullptr;
 alignas(16) char handler_stack[64 * 1024];  // separate, because the normal stack may be what has overflowed
 
 void WriteArmed() noexcept {
-  if (const ZeroOutput* output = armed.load()) output->Write();
+  if (Device* const device = armed.load()) WriteZeroTo(*device, armed_zero);
 }
 
 [[noreturn]] void OnTerminate() {
@@ -79,29 +79,18 @@ void CatchEndingSignals() {
 
 }  // namespace
 
-bool ZeroOutput::Write() const noexcept {
+bool WriteZeroTo(Device& device, double zero) noexcept {
   const int error = errno;
-  bool written = false;
-  for (int i = 0; i < kTries && !written; ++i) {
-    written = comedi_data_write(device, subdevice, channel, range, reference, zero_code) >= 0;
-  }
-  if (has_watchdog) comedi_dio_write(device, watchdog_subdevice, watchdog_channel, 0);
+  bool taken = false;
+  for (int i = 0; i < kTries && !taken; ++i) taken = device.Zero(zero);
   errno = error;
-  return written;
+  return taken;
 }
 
-std::optional<uint32_t> ZeroOutput::ReadBack() const noexcept {
-  lsampl_t code = 0;
-  for (int i = 0; i < kTries; ++i) {
-    if (comedi_data_read(device, subdevice, channel, range, reference, &code) >= 0) return code;
-  }
-  return std::nullopt;
-}
-
-void ArmZero(const ZeroOutput& output) {
+void ArmZero(Device& device, double zero) {
   armed.store(nullptr);
-  armed_output = output;
-  armed.store(&armed_output);
+  armed_zero = zero;
+  armed.store(&device);
   static const bool installed = [] {
     std::atexit([] { WriteArmed(); });
     std::at_quick_exit([] { WriteArmed(); });

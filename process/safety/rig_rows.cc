@@ -1,10 +1,13 @@
 // Sensors, the board, and readings beyond the limits.
 #include <array>
+#include <string_view>
 
 #include "process/safety/safety_table.h"
 
 namespace hydro::process {
 namespace {
+
+constexpr std::string_view kNoDevice = "a simulated board is driven, no device of one's own and no front end";
 
 constexpr std::array kRows{
     SafetyRow{
@@ -51,7 +54,7 @@ constexpr std::array kRows{
     },
     SafetyRow{
         .id = "sensor_input",
-        .fault = "a sensor's input at an end of its range, or outside its allowed readings",
+        .fault = "a sensor's input at an end of its range, or outside its allowed readings, or no number",
         .detected = "driver",
         .codes =
             "sensor_p1 sensor_p2 sensor_motor_angle sensor_motor_speed sensor_arm_angle sensor_arm_speed",
@@ -62,9 +65,59 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, after ten good readings in a row",
         .tests = "driver.DriverFaultTest.test_sensor_faults plant/PlantRigTest.RigFaults "
-                 "plant/driver/BoardRigTest.SaturatedInput "
-                 "plant/driver/BoardRigTest.PlausibleVolts",
+                 "plant/driver/ComediRigTest.SaturatedInput "
+                 "plant/driver/ComediRigTest.PlausibleVolts plant/driver/DeviceRigTest.NoNumber "
+                 "plant/driver/DeviceRigTest.OneSilentInput own_driver.OwnDriverTest.test_promises "
+                 "plant/front_end/FrontEndRigTest.NoNumberAndNoFault",
         .injected = "board_input",
+    },
+    SafetyRow{
+        .id = "device_silent",
+        .fault = "a device on a network or bus answers no more, or reports a fault of its own",
+        .detected = "driver",
+        .codes = "device_silent device_fault",
+        .within = {"`stale_input_s` after its last answer; the tick in which it reports the fault", 5},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "NaN in the state, 0 V, as far as the device still hears it",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, when it answers again or is well",
+        .tests =
+            "own_driver.OwnDriverTest.test_promises plant/driver/DeviceRigTest.SilentDevice "
+            "plant/driver/DeviceRigTest.FaultOfTheDevice front_end.LastLineTest.test_unplugged "
+            "front_end.LastLineTest.test_reset plant/front_end/FrontEndRigTest.SilentDevice "
+            "plant/front_end/FrontEndRigTest.PulledCable plant/front_end/FrontEndRigTest.FaultsOfTheDevice",
+        .not_injected = kNoDevice,
+    },
+    SafetyRow{
+        .id = "front_end_hears_nothing",
+        .fault = "a front end hears no command: the computer is killed or frozen, the cable is cut",
+        .detected = "the front end itself, by its own ticks",
+        .within = {"`driver.watchdog_s`, in whole ticks of the device"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by the driver, which arms it again with the next command that is obeyed",
+        .tests = "front_end.LastLineTest.test_killed front_end.LastLineTest.test_frozen "
+                 "front_end.LastLineTest.test_unplugged front_end.LastLineTest.test_explicit_rearm "
+                 "plant/front_end/FrontEndRigTest.PulledCable",
+        .not_injected = kNoDevice,
+    },
+    SafetyRow{
+        .id = "output_differs",
+        .fault = "the output that a device reads back is not what was put out",
+        .detected = "driver, where the device says what its output holds",
+        .codes = "output_differs",
+        .within = {"`stale_input_s` + 5 ticks", 5},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V, if the device does as it is told",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, when both agree",
+        .tests = "own_driver.OwnDriverTest.test_promises plant/driver/DeviceRigTest.OutputDiffers "
+                 "plant/front_end/FrontEndRigTest.ReadBack plant/front_end/FrontEndRigTest.OutputDiffers",
+        .not_injected = kNoDevice,
     },
     SafetyRow{
         .id = "board_refuses",
@@ -78,8 +131,26 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kRunEnds,
         .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
         .tests = "driver.WaysOutTest.test_board_errors driver.DriverFaultTest.test_board_that_takes_no_zero "
-                 "plant/driver/BoardRigTest.EncoderLost plant/driver/BoardRigTest.BoardErrors",
+                 "plant/driver/ComediRigTest.EncoderLost plant/driver/ComediRigTest.BoardErrors",
         .injected = "board_error encoder_lost",
+    },
+    SafetyRow{
+        .id = "zero_not_taken",
+        .fault =
+            "at the end of a run the output does not take the zero, or nobody says that it has: the board "
+            "refuses it, the front end or its output does not answer",
+        .detected = "driver",
+        .within = {"at the end; after half a second of a front end's silence"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V, if the device's own watchdog is there",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text =
+            "exit code 1, also where the run was complete; the line says what the output reads back",
+        .tests =
+            "front_end.LastLineTest.test_end_without_the_device plant/PlantRigTest.ARefusedZeroIsAFailure "
+            "plant/front_end/FrontEndRigTest.Zero driver.DriverFaultTest.test_board_that_takes_no_zero",
+        .injected = "board_error",
     },
     SafetyRow{
         .id = "guardian_gone",
@@ -93,7 +164,7 @@ constexpr std::array kRows{
         .restart = Cleared::kRunEnds,
         .explicit_rearm = Cleared::kRunEnds,
         .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
-        .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/BoardRigTest.WithoutAGuardianNoVoltage",
+        .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/ComediRigTest.WithoutAGuardianNoVoltage",
         .injected = "guardian_gone",
     },
     SafetyRow{

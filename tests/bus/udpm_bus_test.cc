@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -75,6 +76,31 @@ TEST_F(UdpmBusTest, SignalEndsTheWait) {
   EXPECT_LT(std::chrono::steady_clock::now(), deadline);
   const itimerval off{};
   setitimer(ITIMER_REAL, &off, nullptr);
+}
+
+// Tests that what can be read elsewhere ends the wait too, that messages are handled all the same, and that
+// it no longer does once it is not asked for.
+TEST_F(UdpmBusTest, WakesOnADescriptor) {
+  UdpmBus& bus = Open(FreeBusUrl());
+  int pipe_ends[2];
+  ASSERT_EQ(pipe2(pipe_ends, O_CLOEXEC), 0);
+  bus.WakeOn(pipe_ends[0]);
+  EXPECT_EQ(bus.HandleUntil(Soon(1ms)), 0) << "there is nothing yet";
+  ASSERT_EQ(write(pipe_ends[1], "x", 1), 1);
+  const auto deadline = Soon(100s);
+  EXPECT_EQ(bus.HandleUntil(deadline), 0);
+  EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+  int handled = 0;
+  bus.Subscribe<state_t>("HYDRO_STATE", [&](const state_t&) { ++handled; });
+  bus.Publish("HYDRO_STATE", state_t{});
+  while (handled == 0 && std::chrono::steady_clock::now() < deadline) bus.HandleUntil(deadline);
+  EXPECT_EQ(handled, 1);
+  bus.WakeOn(-1);
+  const auto soon = Soon(20ms);
+  EXPECT_EQ(bus.HandleUntil(soon), 0);
+  EXPECT_GE(std::chrono::steady_clock::now(), soon);
+  close(pipe_ends[0]);
+  close(pipe_ends[1]);
 }
 
 // Tests that a channel name that LCM cannot carry is refused, for sending and for listening.

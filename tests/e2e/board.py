@@ -23,7 +23,7 @@ _ORDER_AT = 8
 ZERO_CODE = 0x8000
 MAX_COUNT = 0xFFFFFF
 
-ORDERS = ("nothing", "reads_fail", "writes_fail", "next_write_fails", "interrupt", "input0_high", "input0_open", "",
+ORDERS = ("nothing", "reads_fail", "writes_fail", "next_write_fails", "interrupt", "input0_high", "input0_open", "output_lies",
           "throw", "throw_number", "terminate", "exit", "quick_exit", "underscore_exit", "abort", "null_pointer",
           "stack_overflow")
 

@@ -259,7 +259,7 @@ class QemuTest(BoardTest):
         n = 60
         body = settings(watchdog=n, sensors=SENSORS)
         identity, held = self.computer.connect(body)
-        self.assertEqual((identity["board"].rstrip(b"\0"), identity["tick_rate_hz"]), (b"mps2-an386", 500))
+        self.assertEqual((identity["board"].rstrip(b"\0"), identity["tick_rate_hz"]), (b"mps2-an386", 100))
         self.assertEqual((held["refused"], held["settings"], held["fingerprint"]), (0, body, fingerprint(body)))
         self.computer.arm(send=lambda: self.computer.voltage(0))
         driven = self.computer.sample(lambda s: s["voltage"] == 2.5, send=lambda: self.computer.voltage(2.5), seconds=30)

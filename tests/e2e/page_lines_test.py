@@ -16,7 +16,7 @@ import stack
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OWN_TESTS = {"start.md": "start_page_test.py", "your_tools.md": "your_tools_test.py", "own_controller.md": "own_controller_test.py",
-             "front_end.md": "front_end_firmware_test.py"}
+             "own_driver.md": "own_driver_test.py", "front_end.md": "front_end_test.py"}
 # What begins a command; what a page shows as a program's output, a diagram or a file does not.
 COMMAND = re.compile(r"(?:\$ |\w+\$ +)?((?:build/(?:bin|tests)/|\./|scripts/)[\w./-]+|hydro-[a-z-]+(?![\w:-])|for|mkdir|cp|cd|cmake|export|fpath=|apt|javac|openssl|nginx|"
                      r"npm|node|systemd-sysusers|systemctl|journalctl)(?=[\s=(]|$)")

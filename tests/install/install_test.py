@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import socket
 import subprocess
 import sys
 import tempfile
@@ -77,6 +78,23 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, "^position_ctrl: HYDRO_CONFIG: found nothing, allowed the path")
 
+    def test_a_driver_builds_and_runs(self):
+        """Tests that what `hydro-launch new-driver` writes builds on what is installed, and runs at once; and that the other example builds."""
+        folder = pathlib.Path(self.folder.name) / "drivers"
+        folder.mkdir()
+        subprocess.run([BUILD / "bin/hydro-launch", "new-driver", "mine"], cwd=folder, check=True, capture_output=True, timeout=60)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        for source, program in ((folder / "mine", "mine"), (SOURCE / "examples/own_driver/cia402", "cia402")):
+            built = folder / program / "build"
+            run("cmake", "-S", source, "-B", built, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+            run("cmake", "--build", built)
+            self.assertIn("--check-sensors", run(built / program, "--help"))
+        said = subprocess.run([BUILD / "bin/hydro-launch", folder / "mine/mine.toml", "--duration", "0.5", "--set", "limits.stale_input_s=1",
+                               "--set", f"bus.url=udpm://239.255.76.67:{port}?ttl=0"], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
+
     def test_headers_name_installed_headers(self):
         """Tests that no installed header includes one of the project's that is not installed, and none of the upper floors is."""
         include = self.prefix / "include/hydro"
@@ -85,7 +103,9 @@ class InstallTest(unittest.TestCase):
         for header in headers:
             for name in re.findall(r'#include "([^"]+)"', (include / header).read_text()):
                 self.assertTrue((include / name).is_file(), f"{header} includes {name}")
-        self.assertEqual([name for name in headers if re.match("tests|diagnose|experiments|launch|plant", name)], [])
+        self.assertEqual([name for name in headers if re.match("tests|diagnose|experiments|launch", name)], [])
+        self.assertEqual([name for name in headers if name.startswith("plant")],
+                         ["plant/driver/device.h", "plant/driver/driver_main.h", "plant/driver/simulated_device.h", "plant/rig.h"])
 
     def test_headers_have_their_libraries(self):
         """Tests that what an installed header declares is in an installed library."""

@@ -161,8 +161,37 @@ TEST_F(LaunchPlanTest, ChecksTheDriver) {
   EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
 }
 
-// Tests that a controller of the user's own is found from the configuration's folder, told where it takes part, runs on the host
-// that its section names, and keeps its arguments.
+// Tests that a driver of the user's own is refused where the configuration is none for it, and else told to
+// wait for the logger where there is one.
+TEST_F(LaunchPlanTest, StartsADriverOfTheUsersOwn) {
+  settings::ProcessSection& own = config_.processes.emplace_back();
+  own.command = {"./crane"};
+  own.role = "driver";
+  request_.config_file = (folder_ / "stack.toml").string();
+  MakeProgram(folder_ / "crane");
+  EXPECT_THAT(Error(),
+              HasSubstr("driver: found nothing, allowed a section [driver], which ./crane (driver) needs"));
+  config_.driver.emplace();
+  config_.driver->arm_angle.source = settings::SensorSection::Source::kAnalog;
+  EXPECT_THAT(Error(), HasSubstr("driver.kind: found \"comedi\", allowed \"own\" with ./crane (driver)"));
+  config_.driver->kind = settings::DriverKind::kOwn;
+  const LaunchPlan alone = Plan();
+  ASSERT_EQ(alone.children.size(), 1u);
+  EXPECT_EQ(alone.children[0].label, "driver");
+  EXPECT_THAT(alone.children[0].argv, ElementsAre((folder_ / "crane").string()));
+  ASSERT_TRUE(alone.children[0].own);
+  EXPECT_THAT(alone.children[0].own->environment,
+              ::testing::IsSupersetOf({std::string("HYDRO_ROLE=driver"), std::string("HYDRO_EXPECT=")}));
+  request_.log_file = "a.lcmlog";
+  MakeProgram(folder_ / "hydro-logger");
+  EXPECT_THAT(Plan().children[0].own->environment, ::testing::Contains("HYDRO_EXPECT=logger"));
+  config_.time.mode = settings::TimeMode::kLockstep;
+  EXPECT_THAT(Error(),
+              HasSubstr("time.mode: found \"lockstep\", allowed \"realtime\" with ./crane (driver)"));
+}
+
+// Tests that a controller of the user's own is found from the configuration's folder, told where it takes
+// part, runs on the host that its section names, and keeps its arguments.
 TEST_F(LaunchPlanTest, StartsAProgramOfTheUsersOwn) {
   Processes({{"hydro-plant", ""}});
   settings::ProcessSection& own = config_.processes.emplace_back();

@@ -60,7 +60,8 @@ class FakeChildren : public Children {
   size_t unread() const override { return unread_bytes; }
 
   void End(const std::string& program, ProcessEnd end, bool terminated = false) {
-    ended_.push_back({specs_[program].label, program, pids.at(program), end, terminated, false});
+    ended_.push_back(
+        {specs_[program].label, program, specs_[program].role(), pids.at(program), end, terminated, false});
     pids.erase(program);
   }
 

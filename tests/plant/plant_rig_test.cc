@@ -124,6 +124,16 @@ TEST_F(PlantRigTest, SaysWhatItLeft) {
   EXPECT_TRUE(std::isnan(left[1].voltage));
 }
 
+// Tests that a run whose output does not take the zero at the end has failed, however well it went, and says
+// so.
+TEST_F(PlantRigTest, ARefusedZeroIsAFailure) {
+  rig_.accepts_zero = false;
+  rig_.reads_back = 1.25;
+  EXPECT_EQ(Run(), 1);
+  EXPECT_THAT(failure_,
+              ::testing::HasSubstr("the output has not taken zero volts at the end, and reads back 1.25 V"));
+}
+
 // Tests that without a command nothing but zero is driven.
 TEST_F(PlantRigTest, ZeroUntilTheFirstCommand) {
   answers_ = false;
@@ -171,8 +181,8 @@ TEST_F(PlantRigTest, RigFaults) {
   EXPECT_EQ(faults_[0].source, "driver");
 }
 
-// Tests that with limits.rearm = "explicit" a rig's fault holds the voltage at zero long after it has ended, and that a
-// run that ends so is no success.
+// Tests that with limits.rearm = "explicit" a rig's fault holds the voltage at zero long after it has ended,
+// and that a run that ends so is no success.
 TEST_F(PlantRigTest, RigFaultWaitsForARearm) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   rig_.on_read = [this](int64_t tick) {
@@ -226,8 +236,8 @@ TEST_F(PlantRigTest, NothingIsDrivenOnceTheRunHasEnded) {
   EXPECT_EQ(rig_.driven[50], 0);
 }
 
-// Tests that what a loop has commanded before it said that it runs with another configuration never acts, and that what had
-// acted before it is as old as it was.
+// Tests that what a loop has commanded before it said that it runs with another configuration never acts, and
+// that what had acted before it is as old as it was.
 TEST_F(PlantRigTest, CommandsOfAMisconfiguredLoopDoNotAct) {
   config_.limits.stale_input_s = 0.005;
   bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
@@ -249,7 +259,8 @@ TEST_F(PlantRigTest, CommandsOfAMisconfiguredLoopDoNotAct) {
   for (size_t k = 60; k < rig_.driven.size(); ++k) EXPECT_EQ(rig_.driven[k], 0) << k;
 }
 
-// Tests that a command from before a fault does not act again when the fault has ended: only a fresh one does.
+// Tests that a command from before a fault does not act again when the fault has ended: only a fresh one
+// does.
 TEST_F(PlantRigTest, NothingOldActsAfterAFault) {
   config_.last_tick = 120;
   bus_.Subscribe<state_t>("HYDRO_STATE",

@@ -36,6 +36,28 @@ source = "derivative"
 source = "derivative"
 )";
 
+constexpr const char* kFrontEnd = R"(
+[driver]
+kind = "front_end"
+url = "unix:/front_end"
+[driver.voltage]
+scale = 1
+[driver.p1]
+source = "analog"
+channel = 0
+scale = 1
+[driver.p2]
+source = "analog"
+channel = 1
+scale = 1
+[driver.motor_angle]
+source = "counter"
+channel = 0
+scale = 1
+[driver.motor_speed]
+source = "derivative"
+)";
+
 // A document in which the readers ask for some of the keys; `section` has its `kind` or `source`.
 struct Probe {
   std::string section;
@@ -73,6 +95,7 @@ std::vector<Probe> Probes() {
       std::string("[driver.arm_angle]\nsource = \"counter\"\nsubdevice = 3\nchannel = 0\nscale = 1\n");
   speeds = std::regex_replace(speeds, std::regex("\"derivative\""),
                               "\"analog\"\nsubdevice = 0\nchannel = 3\nscale = 1");
+  probes.push_back({"", "", kFrontEnd});
   probes.push_back({"driver.motor_speed", "analog", speeds});
   probes.push_back({"driver.arm_speed", "analog", speeds});
   return probes;
@@ -209,6 +232,8 @@ const std::vector<HandWritten>& HandWrittenDefaults() {
       {"limits.arm_angle", "from the model's V_ms and c"},
       {"limits.rearm", "with a [driver] another"},
       {"driver.watchdog", "a section that may be missing"},
+      {"driver.watchdog_s", "limits.stale_input_s"},
+      {"driver.simulated_device", "a list"},
       {"driver.motor_angle", "a section that may be missing"},
       {"driver.arm_angle", "a section that may be missing"},
       {"driver.arm_speed", "a section that may be missing"},

@@ -115,11 +115,11 @@ TEST(DriverSectionTest, ReadsEveryKey) {
   EXPECT_EQ(driver.p1.scale, 500);
   EXPECT_EQ(driver.p1.offset, -250);
   EXPECT_EQ(driver.p1.low_pass_hz, 400);
-  EXPECT_EQ(driver.p1.minimum_V, 0.4);
-  EXPECT_EQ(driver.p1.maximum_V, 4.6);
+  EXPECT_EQ(driver.p1.minimum, 0.4);
+  EXPECT_EQ(driver.p1.maximum, 4.6);
   EXPECT_EQ(driver.p2.reference, AnalogReference::kOther);
   EXPECT_EQ(driver.p2.scale, 100);
-  EXPECT_TRUE(std::isnan(driver.p2.minimum_V) && std::isnan(driver.p2.maximum_V));
+  EXPECT_TRUE(std::isnan(driver.p2.minimum) && std::isnan(driver.p2.maximum));
   EXPECT_EQ(driver.motor_angle.source, Source::kCounter);
   EXPECT_EQ(driver.motor_angle.scale, 0.0015);
   EXPECT_EQ(driver.motor_angle.offset, 0.1);
@@ -128,7 +128,81 @@ TEST(DriverSectionTest, ReadsEveryKey) {
   EXPECT_EQ(driver.arm_angle.source, Source::kCounter);
   EXPECT_EQ(driver.arm_speed.source, Source::kAnalog);
   // The effective text, which goes into the log, says the same.
-  EXPECT_EQ(Parsed(config.text).driver->p1.maximum_V, 4.6);
+  EXPECT_EQ(Parsed(config.text).driver->p1.maximum, 4.6);
+}
+
+constexpr char kOwnDriver[] = R"(
+[driver]
+kind = "own"
+device = "can0"
+simulated_device = ["./drive", "5"]
+[driver.own]
+node = 5
+[driver.voltage]
+scale = 0.01
+[driver.p1]
+source = "analog"
+input = "ai1"
+scale = 500
+minimum = 0.4
+[driver.p2]
+source = "analog"
+scale = 500
+[driver.motor_speed]
+source = "analog"
+scale = 1
+[driver.arm_angle]
+source = "counter"
+input = "encoder"
+scale = 0.001
+)";
+
+// Tests the keys of a device with a driver of the user's own, and that they survive in the effective text.
+TEST(DriverSectionTest, OwnDriver) {
+  const StackConfig config = Parsed(std::string(kConfigText) + kOwnDriver);
+  for (const DriverSection& driver : {*config.driver, *Parsed(config.text).driver}) {
+    EXPECT_EQ(driver.kind, DriverKind::kOwn);
+    EXPECT_EQ(driver.device, "can0");
+    EXPECT_THAT(driver.simulated_device, ::testing::ElementsAre("./drive", "5"));
+    ASSERT_NE(driver.own.Find("node"), nullptr);
+    EXPECT_EQ(driver.own.Find("node")->integer, 5);
+    EXPECT_EQ(driver.p1.input, "ai1");
+    EXPECT_EQ(driver.p1.minimum, 0.4);
+    EXPECT_EQ(driver.p1.limit_suffix, "");
+    EXPECT_EQ(driver.p2.input, "");
+    EXPECT_EQ(driver.arm_angle.input, "encoder");
+  }
+  EXPECT_EQ(InputErrorOf([&] { CheckDriver(config, "./crane (driver)"); }), "");
+  EXPECT_THAT(InputErrorOf([&] { CheckDriver(config); }),
+              HasSubstr("driver.kind: found \"own\", allowed \"comedi\" or \"front_end\" with hydro-driver; "
+                        "a driver of your own"));
+  EXPECT_THAT(InputErrorOf([&] { CheckDriver(Parsed(WithDriver()), "./crane (driver)"); }),
+              HasSubstr("driver.kind: found \"comedi\", allowed \"own\" with ./crane (driver)"));
+}
+
+// Tests that what only a board has, and what only another device has, is refused with the other.
+TEST(DriverSectionTest, KeysOfTheOtherKind) {
+  const std::string own = std::string(kConfigText) + kOwnDriver;
+  const std::vector<std::pair<std::string, std::string>> table = {
+      {Replaced(own, "device = \"can0\"\n", ""),
+       "driver.device: found nothing, allowed what the driver opens"},
+      {Replaced(own, "kind = \"own\"", "kind = \"mine\""),
+       "driver.kind: found \"mine\", allowed \"comedi\", \"front_end\" or \"own\""},
+      {Replaced(own, "[driver.own]", "settle_ns = 5\n[driver.own]"),
+       "driver: \"settle_ns\": found an unknown key"},
+      {Replaced(own, "[driver.own]", "[driver.watchdog]"), "driver: \"watchdog\": found an unknown key"},
+      {Replaced(own, "input = \"ai1\"", "subdevice = 0"), "driver.p1: \"subdevice\": found an unknown key"},
+      {Replaced(own, "minimum = 0.4", "minimum_V = 0.4"), "driver.p1: \"minimum_V\": found an unknown key"},
+      {Replaced(own, "minimum = 0.4", "minimum = 4\nmaximum = 4"),
+       "driver.p1.minimum: found 4, allowed below maximum = 4"},
+      {Replaced(own, "[\"./drive\", \"5\"]", "[\"./drive\", 5]"), "driver.simulated_device: found 5 in it"},
+      {Replaced(own, "[driver.own]\nnode = 5", "own = 5"),
+       "driver.own: found 5, allowed a section [driver.own]"},
+      {WithDriver("[driver]\nown = 3\n"), "driver: \"own\": found an unknown key"},
+  };
+  for (const auto& [text, says] : table) {
+    EXPECT_THAT(InputErrorOf([&, &text = text] { Parsed(text); }), HasSubstr(says)) << text;
+  }
 }
 
 // Tests the defaults, and that a stack without [driver] has none.

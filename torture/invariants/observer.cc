@@ -248,7 +248,11 @@ void Observer::OnEnd(const SimulatedProcess& process) {
     return;
   }
   if (IsOfKnee(process.role())) return;  // of its messages only those matter that the others hear
-  if (process.role() == Role::kPlant) CheckLeft(RecordOf(process));
+  if (process.role() == Role::kPlant) {
+    CheckLeft(RecordOf(process));
+    // However the run was ended.
+    if (RecordOf(process).zero_refused && process.exit_code() == 1) return;
+  }
   // One that finds itself misconfigured leaves alone.
   if (process.misconfigured() && process.exit_code() == 1) return;
   const auto stop = stops_.find(process.number());

@@ -5,7 +5,7 @@
 #include "firmware/boards/converter_link.h"
 
 #ifndef HYDRO_TICK_RATE_HZ
-#define HYDRO_TICK_RATE_HZ 500 /* what the emulator's UARTs carry, byte by byte */
+#define HYDRO_TICK_RATE_HZ 100 /* what the emulator's UARTs carry, byte by byte */
 #endif
 
 enum { CLOCK_HZ = 25000000, RING_BYTES = 2048 }; /* a power of two */

@@ -157,7 +157,8 @@ int Read(comedi_t* device, unsigned subdevice, unsigned channel, lsampl_t* data)
     if (channel == 0 && board.order == SimulatedBoard::kInput0Open) code = SimulatedBoard::kZeroCode;
     *data = static_cast<lsampl_t>(code);
   } else if (subdevice == 1) {
-    *data = static_cast<lsampl_t>(board.outputs[channel]);
+    const bool lies = board.order == SimulatedBoard::kOutputLies;
+    *data = static_cast<lsampl_t>(lies ? SimulatedBoard::kMaxCode : board.outputs[channel]);
   } else {
     return Fail(EINVAL);
   }

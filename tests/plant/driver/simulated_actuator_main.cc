@@ -1,5 +1,7 @@
-// simulated_actuator FILE MODEL.toml: the rig behind a SimulatedBoard, an actuator that moves in
-// its own time. Makes FILE, says "ready" and runs until a signal ends it.
+// simulated_actuator FILE MODEL.toml: the rig behind a SimulatedBoard, an actuator that moves in its own
+// time. Makes FILE, says "ready" and runs until a signal ends it. Does what hydro-driver-check orders on
+// standard input (plant/driver/simulated_device.h), as far as a board can: one that is silent refuses
+// readings.
 //
 // How it is wired (the configuration under test must find the scales by itself):
 //   analog input 0, 1   p1, p2: transducers of 0 to 2000 psi that give 0.5 to 4.5 V
@@ -9,6 +11,7 @@
 //   analog output 0     the amplifier, inverting: -2 V of eq. (1) per V
 //   line 0              the watchdog: without a change for 0.5 s it keeps the voltage from the motor
 #include <linux/futex.h>
+#include <poll.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -18,6 +21,8 @@
 #include <cstdio>
 #include <ctime>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "model/actuator.h"
 #include "settings/model_file.h"
@@ -45,6 +50,53 @@ int64_t Code(double volts) {
 
 double Volts(int64_t code) { return 20 * static_cast<double>(code) / SimulatedBoard::kMaxCode - 10; }
 
+// What a checker asks, a word a line, looked for between two requests of the driver.
+class Orders {
+ public:
+  explicit Orders(SimulatedBoard& board) : board_(board) {}
+
+  bool slow() const { return slow_; }
+
+  void Look() {
+    pollfd waits{.fd = open_ ? STDIN_FILENO : -1, .events = POLLIN, .revents = 0};
+    if (poll(&waits, 1, 0) <= 0) return;
+    char text[256];
+    const ssize_t got = read(STDIN_FILENO, text, sizeof text);
+    open_ = got > 0;
+    for (ssize_t i = 0; i < got; ++i) {
+      if (text[i] == '\n') {
+        Obey(std::exchange(line_, ""));
+      } else {
+        line_ += text[i];
+      }
+    }
+  }
+
+ private:
+  void Obey(const std::string& word) {
+    static constexpr std::pair<const char*, int64_t> kOrders[] = {{"none", SimulatedBoard::kNothing},
+                                                                  {"silent", SimulatedBoard::kReadsFail},
+                                                                  {"nan", SimulatedBoard::kInput0High},
+                                                                  {"lies", SimulatedBoard::kOutputLies},
+                                                                  {"slow", SimulatedBoard::kNothing}};
+    std::string answer = "no";
+    if (word == "output") answer = "output " + std::to_string(board_.voltage);
+    for (const auto& [name, order] : kOrders) {
+      if (word != name) continue;
+      board_.order = order;
+      slow_ = word == "slow";
+      answer = "ok";
+    }
+    std::puts(answer.c_str());
+    std::fflush(stdout);
+  }
+
+  SimulatedBoard& board_;
+  bool open_ = true;
+  bool slow_ = false;
+  std::string line_;
+};
+
 class Rig {
  public:
   Rig(SimulatedBoard& board, const hydro::model::ModelDescription& model)
@@ -60,7 +112,8 @@ class Rig {
       last_edge_ = time;
     }
     const bool enabled = edges_ > 0 && time - last_edge_ < kWatchdogTime;
-    if (board_.enabled != 0 && !enabled) ++board_.trips;
+    const bool driven = board_.opened > board_.closed;  // after its end a driver changes the line no more
+    if (board_.enabled != 0 && !enabled && driven) ++board_.trips;
     board_.enabled = enabled ? 1 : 0;
     board_.voltage = enabled ? -2 * Volts(board_.outputs[0]) : 0;
     if (time > actuator_.time()) actuator_.Advance(board_.voltage, time);
@@ -107,12 +160,15 @@ int main(int argc, char** argv) {
     board->attended = 1;
     std::puts("ready");
     std::fflush(stdout);
+    Orders orders(*board);
     const int64_t start = Now();
     for (std::atomic_ref<uint32_t> request(board->request), reply(board->reply);;) {
       const uint32_t asked = request.load();
       const bool waits = reply.load() != asked;
       rig.Run(1e-9 * static_cast<double>((waits ? board->asked_ns : Now() - kLag) - start));
+      orders.Look();
       if (waits) {
+        if (orders.slow()) usleep(20000);
         reply.store(asked);
         syscall(SYS_futex, &board->reply, FUTEX_WAKE, 1, nullptr, nullptr, 0);
       }

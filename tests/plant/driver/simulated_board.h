@@ -33,7 +33,8 @@ struct SimulatedBoard {
     kInterrupt,   // every other read or write is interrupted by a signal
     kInput0High,  // analog input 0 is beyond its range
     kInput0Open,  // analog input 0 reads 0 V: its wire is broken
-    kLastToStay,
+    kOutputLies,  // an output reads back as its highest code, whatever it is
+    kLastToStay = kOutputLies,
     kThrow,        // a std::exception
     kThrowNumber,  // something that is none
     kTerminate,
@@ -68,7 +69,7 @@ struct SimulatedBoard {
   int64_t edges = 0;  // changes of line 0
   // What the process behind it says.
   int64_t enabled = 0;  // the watchdog lets the voltage through
-  int64_t trips = 0;    // how often it stopped to
+  int64_t trips = 0;    // how often it stopped to, while a driver had the board open
   double time_s = 0;
   double voltage = 0;  // V of eq. (1), at the motor
   double p1 = 0;

@@ -1,5 +1,3 @@
-#include "plant/driver/board_rig.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -11,6 +9,8 @@
 
 #include "base/input_error.h"
 #include "plant/driver/check_sensors.h"
+#include "plant/driver/comedi_device.h"
+#include "plant/driver/device_rig.h"
 #include "tests/plant/driver/simulated_board.h"
 #include "tests/stack_fixture.h"
 
@@ -21,10 +21,10 @@ using ::testing::HasSubstr;
 using testing::SimulatedBoard;
 using Source = settings::SensorSection::Source;
 
-// A rig on a board whose registers the test sets, with a clock that the test moves.
-class BoardRigTest : public ::testing::Test {
+// The rig behind a board whose registers the test sets, with a clock that the test moves.
+class ComediRigTest : public ::testing::Test {
  protected:
-  BoardRigTest() : file_("/tmp/hydro_board_rig_test_" + std::to_string(getpid())) {
+  ComediRigTest() : file_("/tmp/hydro_comedi_rig_test_" + std::to_string(getpid())) {
     board_ = testing::CreateBoard(file_.c_str());
     config_ = testing::SmallStack();
     config_.file = "rig.toml";
@@ -38,7 +38,7 @@ class BoardRigTest : public ::testing::Test {
     driver.motor_speed = Analog(2, -100, 0);
     config_.driver = driver;
   }
-  ~BoardRigTest() override { std::filesystem::remove(file_); }
+  ~ComediRigTest() override { std::filesystem::remove(file_); }
 
   static settings::SensorSection Analog(int channel, double scale, double offset) {
     settings::SensorSection section;
@@ -58,7 +58,10 @@ class BoardRigTest : public ::testing::Test {
     config_.driver->motor_speed.low_pass_hz = low_pass_hz;
   }
 
-  std::unique_ptr<BoardRig> Open() { return std::make_unique<BoardRig>(config_, clock_); }
+  std::unique_ptr<DeviceRig> Open() {
+    return std::make_unique<DeviceRig>(config_, clock_,
+                                       std::make_unique<ComediDevice>(config_, clock_, true));
+  }
 
   std::string OpenError() {
     try {
@@ -72,7 +75,7 @@ class BoardRigTest : public ::testing::Test {
   void SetVolts(int input, double volts) { board_->inputs[input] = std::lround((volts + 10) / 20 * 0xffff); }
   double Terminal() const { return 20.0 * static_cast<double>(board_->outputs[0]) / 0xffff - 10; }
 
-  model::Measurement Read(BoardRig& rig) {
+  model::Measurement Read(DeviceRig& rig) {
     clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(1));
     return rig.Read(tick_++);
   }
@@ -85,11 +88,11 @@ class BoardRigTest : public ::testing::Test {
 };
 
 // Tests that opening the board sets the output to zero, whatever it was, and that closing it does so again.
-TEST_F(BoardRigTest, ZeroWhenOpenedAndWhenClosed) {
+TEST_F(ComediRigTest, ZeroWhenOpenedAndWhenClosed) {
   ASSERT_NE(board_->outputs[0], SimulatedBoard::kZeroCode);
   auto rig = Open();
   EXPECT_EQ(board_->outputs[0], SimulatedBoard::kZeroCode);
-  EXPECT_EQ(board_->line_writes, 0) << "the watchdog is for ticks only";
+  EXPECT_EQ(board_->edges, 0) << "the watchdog is for ticks only";
   EXPECT_EQ(rig->Drive(4), 4);
   EXPECT_NE(board_->outputs[0], SimulatedBoard::kZeroCode);
   rig.reset();
@@ -100,7 +103,7 @@ TEST_F(BoardRigTest, ZeroWhenOpenedAndWhenClosed) {
 }
 
 // Tests that Zero() works at any time and twice.
-TEST_F(BoardRigTest, Zero) {
+TEST_F(ComediRigTest, Zero) {
   const auto rig = Open();
   rig->Drive(-3);
   rig->Zero();
@@ -118,7 +121,7 @@ TEST_F(BoardRigTest, Zero) {
 }
 
 // Tests scale, sign and offset of the amplifier, and that an offset also moves the zero.
-TEST_F(BoardRigTest, AmplifierScale) {
+TEST_F(ComediRigTest, AmplifierScale) {
   config_.driver->voltage.offset = 0.5;  // V at the motor with 0 V at the terminal
   const auto rig = Open();
   EXPECT_NEAR(Terminal(), 0.25, 2e-4);
@@ -132,7 +135,7 @@ TEST_F(BoardRigTest, AmplifierScale) {
 
 // Tests that the limit, or else the output's range, cuts the voltage and that the rig reports it; that a
 // voltage that is not finite becomes zero.
-TEST_F(BoardRigTest, Limits) {
+TEST_F(ComediRigTest, Limits) {
   config_.driver->voltage.limit_V = 1.5;
   {
     const auto rig = Open();
@@ -150,21 +153,22 @@ TEST_F(BoardRigTest, Limits) {
 }
 
 // Tests that the watchdog line changes once with each voltage, and not when the board refuses the voltage.
-TEST_F(BoardRigTest, Watchdog) {
+TEST_F(ComediRigTest, Watchdog) {
   const auto rig = Open();
   EXPECT_EQ(board_->directions, 1 << 3);
+  const int64_t idle = board_->line_writes;  // low, with the first zero
   for (int i = 1; i <= 5; ++i) {
     rig->Drive(0);
     EXPECT_EQ(board_->lines, i % 2 == 1 ? 1 << 3 : 0);
-    EXPECT_EQ(board_->line_writes, i);
+    EXPECT_EQ(board_->line_writes, idle + i);
   }
   board_->order = SimulatedBoard::kNextWriteFails;
   EXPECT_THROW(rig->Drive(1), RigError);
-  EXPECT_EQ(board_->line_writes, 5);
+  EXPECT_EQ(board_->line_writes, idle + 5);
 }
 
 // Tests scales, signs and offsets of analog inputs, and that unwired inputs are not measured.
-TEST_F(BoardRigTest, AnalogInputs) {
+TEST_F(ComediRigTest, AnalogInputs) {
   const auto rig = Open();
   SetVolts(0, 1.5);
   SetVolts(1, 4);
@@ -180,7 +184,7 @@ TEST_F(BoardRigTest, AnalogInputs) {
 }
 
 // Tests the low pass of a channel: after 1/(2 pi f) a step has reached 63 %.
-TEST_F(BoardRigTest, LowPassOfAChannel) {
+TEST_F(ComediRigTest, LowPassOfAChannel) {
   config_.driver->p1.low_pass_hz = 1000 / (2 * M_PI) / 10;  // 10 ticks
   const auto rig = Open();
   SetVolts(0, 1);
@@ -192,7 +196,7 @@ TEST_F(BoardRigTest, LowPassOfAChannel) {
 
 // Tests that both ends of the range are no readings and give a fault of that sensor's name, that the other
 // sensors are not affected, and that the fault ends only after ten good readings in a row.
-TEST_F(BoardRigTest, SaturatedInput) {
+TEST_F(ComediRigTest, SaturatedInput) {
   const auto rig = Open();
   for (const int64_t end : {int64_t{0}, SimulatedBoard::kMaxCode}) {
     board_->inputs[1] = end;
@@ -217,9 +221,10 @@ TEST_F(BoardRigTest, SaturatedInput) {
 }
 
 // Tests that a sensor's own limits find a broken wire, and that an end of the range within them is a reading.
-TEST_F(BoardRigTest, PlausibleVolts) {
-  config_.driver->p1.minimum_V = 0.4;
-  config_.driver->p1.maximum_V = 20;
+TEST_F(ComediRigTest, PlausibleVolts) {
+  config_.driver->p1.minimum = 0.4;
+  config_.driver->p1.maximum = 20;
+  config_.driver->p1.limit_suffix = "_V";
   const auto rig = Open();
   SetVolts(0, 0.3);
   EXPECT_TRUE(std::isnan(Read(*rig).p1));
@@ -232,7 +237,7 @@ TEST_F(BoardRigTest, PlausibleVolts) {
 
 // Tests the encoder: sign, wrap, and the speed from its counts over the time that has passed, also where a
 // wake-up was late.
-TEST_F(BoardRigTest, EncoderAndSpeed) {
+TEST_F(ComediRigTest, EncoderAndSpeed) {
   UseEncoder();
   board_->counters[1] = SimulatedBoard::kMaxCount - 4;
   const auto rig = Open();
@@ -249,7 +254,7 @@ TEST_F(BoardRigTest, EncoderAndSpeed) {
 }
 
 // Tests that a rate is filtered and its angle is not.
-TEST_F(BoardRigTest, FilteredSpeed) {
+TEST_F(ComediRigTest, FilteredSpeed) {
   UseEncoder(1000 / (2 * M_PI));
   const auto rig = Open();
   Read(*rig);
@@ -260,7 +265,7 @@ TEST_F(BoardRigTest, FilteredSpeed) {
 }
 
 // Tests that a counter that has jumped ends the run: its angle is lost.
-TEST_F(BoardRigTest, EncoderLost) {
+TEST_F(ComediRigTest, EncoderLost) {
   UseEncoder();
   const auto rig = Open();
   Read(*rig);
@@ -274,7 +279,7 @@ TEST_F(BoardRigTest, EncoderLost) {
 }
 
 // Tests that an error of the board names key, channel and cause, and that an interrupted call is no error.
-TEST_F(BoardRigTest, BoardErrors) {
+TEST_F(ComediRigTest, BoardErrors) {
   const auto rig = Open();
   board_->order = SimulatedBoard::kInterrupt;
   for (int i = 0; i < 10; ++i) EXPECT_NO_THROW(Read(*rig));
@@ -290,7 +295,7 @@ TEST_F(BoardRigTest, BoardErrors) {
 }
 
 // Tests that the pause for the multiplexer is requested where it is set, for analog inputs only.
-TEST_F(BoardRigTest, Settling) {
+TEST_F(ComediRigTest, Settling) {
   UseEncoder();
   config_.driver->settle_ns = 5000;
   const auto rig = Open();
@@ -301,7 +306,7 @@ TEST_F(BoardRigTest, Settling) {
 
 // Tests that a feature that the board lacks is bad input that names the key, and leaves no trace on the
 // board.
-TEST_F(BoardRigTest, WhatTheBoardLacks) {
+TEST_F(ComediRigTest, WhatTheBoardLacks) {
   config_.driver->p2.line.channel = 8;
   EXPECT_THAT(OpenError(), HasSubstr("rig.toml: driver.p2.channel: found 8, allowed 0 to 7"));
   config_.driver->p2.line = {4, 0};
@@ -313,14 +318,14 @@ TEST_F(BoardRigTest, WhatTheBoardLacks) {
 }
 
 // Tests that a board that takes no zero is never driven.
-TEST_F(BoardRigTest, RefusedZero) {
+TEST_F(ComediRigTest, RefusedZero) {
   board_->order = SimulatedBoard::kWritesFail;
   EXPECT_THROW(Open(), RigError);
 }
 
 // Tests that the guardian writes the zero when the process ends without a word, and does nothing once
 // dismissed.
-TEST_F(BoardRigTest, Guardian) {
+TEST_F(ComediRigTest, Guardian) {
   for (const bool dismissed : {false, true}) {
     const pid_t child = fork();
     if (child == 0) {
@@ -344,7 +349,7 @@ TEST_F(BoardRigTest, Guardian) {
 
 // Tests that no voltage is put out once the guardian has been killed, or stands still: a kill of the driver
 // would leave it.
-TEST_F(BoardRigTest, WithoutAGuardianNoVoltage) {
+TEST_F(ComediRigTest, WithoutAGuardianNoVoltage) {
   for (const int signal : {SIGKILL, SIGSTOP}) {
     board_->nonzero_writes = 0;
     auto rig = Open();
@@ -372,27 +377,26 @@ TEST_F(BoardRigTest, WithoutAGuardianNoVoltage) {
 }
 
 // Tests that a stopped guardian does not keep us from ending.
-TEST_F(BoardRigTest, StoppedGuardian) {
-  ComediBoard board(config_.file, file_, 0);
-  ZeroOutput output;
-  output.device = board.device();
-  output.subdevice = 1;
-  output.zero_code = SimulatedBoard::kZeroCode;
-  ZeroGuardian guardian(output);
+TEST_F(ComediRigTest, StoppedGuardian) {
+  ComediDevice board(config_, clock_, true);
+  ZeroGuardian guardian(board, board.Describe().files, 0);
   kill(guardian.pid(), SIGSTOP);
   guardian.Dismiss();
   EXPECT_EQ(kill(guardian.pid(), 0), -1) << "it has gone";
 }
 
 // Tests the lines of --check-sensors, and that it leaves the board alone.
-TEST_F(BoardRigTest, CheckSensorsLines) {
+TEST_F(ComediRigTest, CheckSensorsLines) {
   UseEncoder();
-  ComediBoard board(config_.file, file_, 0);
-  BoardSensors sensors(board, *config_.driver, clock_);
+  ComediDevice board(config_, clock_, false);
+  DeviceSensors sensors(board.Describe(), config_);
   SetVolts(0, 2);
   board_->inputs[1] = SimulatedBoard::kMaxCode;
   board_->counters[1] = 100;
-  const model::Measurement measured = sensors.Read();
+  DeviceReadings readings;
+  readings.inputs.resize(board.Describe().inputs.size());
+  board.Read(readings);
+  const model::Measurement measured = sensors.Take(readings, clock_.Now());
   const auto all = sensors.all();
   EXPECT_THAT(DescribeReading(*all[0], measured.p1, {}),
               ::testing::ContainsRegex("p1 +analog 0/0 .* 2.000. V +750.* psi$"));

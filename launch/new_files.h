@@ -1,0 +1,31 @@
+// Files to begin with, which hydro-launch new-controller and new-driver make of the examples.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace hydro::launch {
+
+// Throws InputError, which begins with `option`, for a name that neither Python nor CMake nor a shell takes
+// as it is.
+void CheckNewName(const std::string& option, const std::string& name);
+
+// Throws std::logic_error when `old` is not in `text`.
+std::string Replaced(std::string text, const std::string& old, const std::string& by);
+
+// The path of an installed file under share/hydro/config. Throws InputError when it is not there.
+std::string InstalledConfig(const std::string& file);
+
+struct NewFile {
+  std::string path;
+  std::string text;
+  mode_t mode = 0666;
+};
+
+// Writes all of them or none. Unlike other files, these never take the place of what is there: somebody may
+// have worked on it. Throws InputError.
+void WriteNewFiles(const std::vector<NewFile>& files);
+
+}  // namespace hydro::launch

@@ -1,0 +1,80 @@
+// A driver under test on a network of its own, the two loops that it obeys, and what it says.
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <hydro/fault_t.hpp>
+#include <hydro/motor_command_t.hpp>
+#include <hydro/output_left_t.hpp>
+#include <hydro/state_t.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/udpm/udpm_bus.h"
+#include "process/participant.h"
+#include "process/process_end.h"
+#include "settings/stack_config.h"
+
+namespace hydro::plant {
+
+class CheckedStack {
+ public:
+  // Starts the configuration's driver, which has the bus of `config` to itself. `overrides`: with which
+  // `config` was loaded. `verbose`: what it prints is shown.
+  CheckedStack(const settings::StackConfig& config, const std::vector<std::string>& overrides, bool verbose);
+  ~CheckedStack();
+  CheckedStack(const CheckedStack&) = delete;
+  CheckedStack& operator=(const CheckedStack&) = delete;
+
+  // The loops take part from now on and command a voltage that changes its sign, so that the machine stays
+  // where it is.
+  void StartLoops();
+  void set_silent(bool silent) { silent_ = silent; }
+  // What is commanded instead of the alternating voltage.
+  void set_voltage(std::optional<double> voltage) { voltage_ = voltage; }
+  double amplitude() const { return amplitude_; }  // V
+
+  // Handles messages until `done`, for `limit_s` at most. Returns whether it came to that.
+  bool Await(const std::function<bool()>& done, double limit_s);
+  double Now() const;  // s
+
+  bool ready() const { return driver_pid_ > 0; }
+  pid_t driver() const { return driver_pid_; }  // as it announces itself: `command` may be a script
+  pid_t guardian() const;                       // its child hydro-zero; 0: none
+  bool Ended();
+  const process::ProcessEnd& end() const { return *end_; }
+
+  int64_t states() const { return states_; }
+  const state_t& state() const { return state_; }
+  const std::optional<output_left_t>& left() const { return left_; }
+  // Whether a fault of that code was heard since Forget().
+  bool Heard(const std::string& code) const;
+  // The first that zeroes the voltage and is none of the loops'; empty: none.
+  std::string HeardFault() const;
+  void Forget() { faults_.clear(); }
+  void SendStop();
+
+ private:
+  void Start(const std::vector<std::string>& overrides, bool verbose);
+  void OnState(const state_t& state);
+
+  settings::StackConfig config_;
+  std::unique_ptr<bus::UdpmBus> bus_;
+  bus::WallClock clock_;
+  std::unique_ptr<process::Participant> pressure_, position_;
+  double amplitude_;
+  bool silent_ = false;
+  std::optional<double> voltage_;
+  int64_t sequence_ = 0;
+  pid_t started_ = -1, driver_pid_ = -1;
+  std::optional<process::ProcessEnd> end_;
+  int64_t states_ = 0;
+  state_t state_{};
+  std::vector<std::string> faults_;
+  std::optional<output_left_t> left_;
+};
+
+}  // namespace hydro::plant

@@ -1,0 +1,46 @@
+// A device and its driver, both fresh, for one case.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bus/udpm/reserved_port.h"
+#include "plant/check/checked_device.h"
+#include "plant/check/checked_stack.h"
+#include "plant/check/driver_cases.h"
+
+namespace hydro::plant {
+
+class DriverTrial {
+ public:
+  explicit DriverTrial(const TrialSettings& settings);
+
+  CheckedDevice& device() { return *device_; }
+  CheckedStack& stack() { return *stack_; }
+  double stale_s() const { return stale_s_; }
+  double tick_s() const { return tick_s_; }
+
+  // Waits until the driver has said that it is there. Throws std::runtime_error when it does not.
+  void AwaitReady();
+  // The same, then lets the loops begin and waits for a voltage at the machine.
+  void Drive();
+  bool AwaitVoltage(double limit_s);
+
+  // Waits until the machine has had zero volts for longer than the alternating voltage holds a value. Returns
+  // when that began, in seconds from now; nothing when it has not within the limit.
+  std::optional<double> AwaitZero(double limit_s);
+  // The same for the end of the driver.
+  bool AwaitEnd(double limit_s) {
+    return stack_->Await([this] { return stack_->Ended(); }, limit_s);
+  }
+
+  static bool IsZero(double voltage);
+
+ private:
+  bus::ReservedPort port_;
+  double stale_s_, tick_s_;
+  std::optional<CheckedDevice> device_;
+  std::optional<CheckedStack> stack_;
+};
+
+}  // namespace hydro::plant

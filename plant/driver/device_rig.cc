@@ -1,0 +1,111 @@
+#include "plant/driver/device_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <utility>
+
+#include "base/number_text.h"
+#include "plant/driver/zero_output.h"
+#include "settings/toml/section_reader.h"
+
+namespace hydro::plant {
+namespace {
+
+constexpr int kFirstTries = 100;  // about 1 ms each, for the first readings of all inputs
+
+}  // namespace
+
+DeviceRig::DeviceRig(const settings::StackConfig& config, const bus::Clock& clock,
+                     std::unique_ptr<Device> device)
+    : amplifier_(config.driver->voltage),
+      clock_(clock),
+      device_(std::move(device)),
+      description_(device_->Describe()),
+      sensors_(description_, config),
+      watch_(description_, bus::FromSeconds(config.limits.stale_input_s), clock.Now()),
+      zero_(Terminal(0)) {
+  readings_.inputs.resize(description_.inputs.size());
+  const DeviceOutput& output = description_.output;
+  if (zero_ < output.low || zero_ > output.high) {
+    throw settings::KeyError(config.file, "driver.voltage.offset", ShortestNumber(amplifier_.offset),
+                             "one with which zero volts are within the output's range, " +
+                                 ShortestNumber(output.low) + " to " + ShortestNumber(output.high) + " " +
+                                 output.unit + " at the terminal");
+  }
+  const auto [reach_low, reach_high] = std::minmax({amplifier_.scale * output.low + amplifier_.offset,
+                                                    amplifier_.scale * output.high + amplifier_.offset});
+  min_voltage_ = std::max(reach_low, -amplifier_.limit_V);
+  max_voltage_ = std::min(reach_high, amplifier_.limit_V);
+
+  if (!WriteZero()) {
+    device_->Drive(zero_);  // throws, with the reason that Zero() cannot give
+    throw DeviceError(description_.name + " does not accept zero volts");
+  }
+  guardian_ = std::make_unique<ZeroGuardian>(*device_, description_.files, zero_);
+  ArmZero(*device_, zero_);
+}
+
+DeviceRig::~DeviceRig() {
+  if (!WriteZero()) {
+    std::fprintf(stderr, "driver: %s does not accept zero volts: cut the amplifier's supply\n",
+                 description_.name.c_str());
+  }
+  DisarmZero();
+  guardian_->Dismiss();
+}
+
+// Since the rig was made the loops may have kept us waiting for long. Many a device answers only to what is
+// put out.
+void DeviceRig::AwaitReadings() {
+  const auto fresh = [&](const Reading& reading) { return clock_.Now() - reading.at <= watch_.patience(); };
+  for (int i = 0; i < kFirstTries; ++i) {
+    device_->Read(readings_);
+    if (std::all_of(readings_.inputs.begin(), readings_.inputs.end(), fresh)) return;
+    device_->Drive(zero_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+model::Measurement DeviceRig::Read(int64_t /*tick*/) {
+  if (std::exchange(begun_, true)) {
+    device_->Read(readings_);
+  } else {
+    AwaitReadings();
+  }
+  faults_.clear();
+  const bus::Clock::TimePoint now = clock_.Now();
+  const bool silent = watch_.Look(readings_, now, &faults_);
+  // What a silent device has said last is no measurement of now.
+  const model::Measurement measured = silent ? sensors_.Nothing() : sensors_.Take(readings_, now);
+  for (const DeviceSensor* sensor : sensors_.all()) {
+    if (sensor->fault()) faults_.push_back(*sensor->fault());
+  }
+  return measured;
+}
+
+bool DeviceRig::WriteZero() noexcept { return WriteZeroTo(*device_, zero_); }
+
+OutputLeft DeviceRig::Zero() noexcept {
+  OutputLeft left{.accepted = WriteZero(), .voltage = NAN};
+  left.voltage = amplifier_.scale * device_->ReadBack() + amplifier_.offset;
+  return left;
+}
+
+double DeviceRig::Drive(double voltage) {
+  if (!std::isfinite(voltage)) voltage = 0;
+  voltage = std::clamp(voltage, min_voltage_, max_voltage_);
+  if (!guardian_->Watches()) {
+    throw RigError(
+        "guardian_gone",
+        "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
+        "stands still; allowed is a run with one: find out what ended it, and start again");
+  }
+  const double output = Terminal(voltage);
+  watch_.OnDriven(output, clock_.Now());
+  device_->Drive(output);
+  return voltage;
+}
+
+}  // namespace hydro::plant

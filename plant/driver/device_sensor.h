@@ -1,0 +1,70 @@
+// One measured signal of a rig: its input of the device, its scaling, and whether its readings are credible.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "bus/clock.h"
+#include "plant/driver/device.h"
+#include "plant/driver/signal_conditioning.h"
+#include "plant/rig.h"
+#include "settings/driver_section.h"
+#include "settings/stack_config.h"
+
+namespace hydro::plant {
+
+class DeviceSensor {
+ public:
+  // `name`: of its section, e.g. "p1". `angle`: for source "derivative" the sensor whose rate this one is; it
+  // must outlive this one and be read before it. Throws InputError when the device has no such input.
+  DeviceSensor(const DeviceDescription& device, const settings::StackConfig& config, const std::string& name,
+               const settings::SensorSection& section, const DeviceSensor* angle = nullptr);
+
+  // The signal of these readings. Rates and low passes use the time of the reading, so that a late wake-up
+  // causes no false speed. NaN: not measured, or not credible (no number, older than limits.stale_input_s, at
+  // an end of the input's range or outside what the configuration allows). Throws RigError "encoder_lost"
+  // when a counter has moved too far to be followed.
+  double Take(const DeviceReadings& readings, bus::Clock::TimePoint now);
+
+  // The device is silent: no signal, and filters and rates start again.
+  void Interrupt();
+
+  // The fault "sensor_NAME": lasts from the first reading that is not credible until kGoodReadings good ones
+  // in a row.
+  const std::optional<RigFault>& fault() const { return fault_; }
+  static constexpr int kGoodReadings = 10;
+
+  // The last reading, for display.
+  const std::string& name() const { return name_; }
+  const settings::SensorSection& section() const { return section_; }
+  const DeviceInput& input() const { return input_; }
+  const Reading& reading() const { return reading_; }
+
+ private:
+  double Signal(const DeviceReadings& readings, bus::Clock::TimePoint now);
+  double Value();
+  double Counted();
+  double NotCredible(std::string text, double found, double allowed);
+  void Judge(bool good);
+
+  std::string name_;
+  settings::SensorSection section_;
+  bool from_device_;
+  const DeviceSensor* angle_;
+  bus::Clock::Duration patience_;
+  size_t index_ = 0;  // of its input
+  DeviceInput input_;
+  EncoderCount count_{0};
+  Derivative derivative_;
+  LowPass low_pass_;
+  Reading reading_;
+  std::optional<bus::Clock::TimePoint> read_at_;
+  double elapsed_s_ = 0;  // between the last two readings; of a rate, those of its angle
+  double unfiltered_ = NAN;
+  RigFault wrong_;  // what is wrong with the last reading
+  std::optional<RigFault> fault_;
+  int good_readings_ = kGoodReadings;
+};
+
+}  // namespace hydro::plant

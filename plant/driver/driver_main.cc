@@ -1,0 +1,128 @@
+#include "plant/driver/driver_main.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "plant/driver/check_sensors.h"
+#include "plant/driver/device_rig.h"
+#include "plant/driver/stand_in.h"
+#include "plant/plant_app.h"
+#include "process/process_main.h"
+#include "process/stop_signal.h"
+#include "process/supervision.h"
+#include "settings/process_sections.h"
+#include "timing/real_time.h"
+
+namespace hydro::plant {
+namespace {
+
+constexpr char kOurs[] = "hydro-driver";
+
+std::vector<std::string> LinesOf(const char* variable) {
+  const char* text = std::getenv(variable);
+  std::istringstream stream(text != nullptr ? text : "");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// What hydro-launch tells a program of the user's own, whose command line is the user's.
+void AddFromEnvironment(settings::CommonOptions* options, std::vector<std::string>* expected) {
+  if (!options->config.empty()) return;
+  if (const char* config = std::getenv("HYDRO_CONFIG")) options->config = config;
+  if (options->config.empty()) {
+    throw InputError("found no CONFIG, allowed the stack's configuration, as an argument or in HYDRO_CONFIG");
+  }
+  const std::vector<std::string> overrides = LinesOf("HYDRO_SET");
+  options->overrides.insert(options->overrides.begin(), overrides.begin(), overrides.end());
+  const std::vector<std::string> awaited = LinesOf("HYDRO_EXPECT");
+  expected->insert(expected->end(), awaited.begin(), awaited.end());
+}
+
+// hydro-launch sets the processor and the priority of a program of the user's own; memory can only be locked
+// from within.
+void LockMemory(const settings::StackConfig& config) {
+  const settings::ProcessSection* section = settings::OwnProgramFor(config, "driver");
+  if (section == nullptr || section->priority == 0) return;
+  timing::RealTimeRequest request;
+  request.lock_memory = true;
+  timing::ApplyRealTime(request);
+}
+
+std::unique_ptr<Device> Open(const OpenDevice& open, const settings::StackConfig& config,
+                             const bus::Clock& clock, bool drives) {
+  settings::SectionReader own(config.driver->own, "driver.own");
+  DeviceSettings settings{config, config.driver->device, own, clock, drives};
+  std::unique_ptr<Device> device = open(settings);
+  own.Finish();
+  return device;
+}
+
+int CheckSensorsOf(const RigProgram& program, const settings::CommonOptions& options) {
+  const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
+  settings::CheckDriver(config, program.name);
+  process::CatchStopSignals();
+  const StandIn stand_in(config);
+  const bus::WallClock clock;
+  return program.check_sensors(config, clock);
+}
+
+int RunStack(const RigProgram& program, const settings::CommonOptions& options,
+             const std::vector<std::string>& expected, const std::string& described) {
+  return process::RunProcess(
+      program.name, options, [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
+        settings::CheckDriver(config, program.name);
+        if (program.name != kOurs) LockMemory(config);
+        const StandIn stand_in(config);  // outlives the rig, which leaves it at zero volts
+        const std::unique_ptr<Rig> rig = program.make_rig(config, clock);
+        PlantApp app(bus, clock, config, *rig, expected, described, process::HeartbeatArrived);
+        const std::function<void()> end_beside =
+            program.beside ? program.beside(bus, clock, config, *rig) : std::function<void()>();
+        const int exit_code = app.Run();
+        if (end_beside) end_beside();
+        return exit_code;
+      });
+}
+
+}  // namespace
+
+int RunRigProgram(int argc, char** argv, const RigProgram& program) {
+  const std::string file = std::filesystem::path(argc > 0 ? argv[0] : "driver").filename().string();
+  const bool own = program.name != kOurs;
+  const std::string shown = own ? file : program.name;
+  settings::CommandLine command_line(shown, program.about);
+  command_line.AddExamples(program.examples, program.page);
+  settings::CommonOptions options;
+  std::vector<std::string> expected;
+  bool check_sensors = false;
+  command_line.AddCommon(&options, !own);
+  command_line.AddOption(
+      "--expect", &expected,
+      "ROLE also wait for this process, besides the two controllers, e.g. logger; or for joint:NAME of "
+      "the same limb");
+  command_line.AddFlag("--check-sensors", &check_sensors,
+                       "print the sensors' readings and drive nothing, for --duration or until stopped");
+  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
+  return settings::RunProgram(shown, [&] {
+    if (own) AddFromEnvironment(&options, &expected);
+    return check_sensors ? CheckSensorsOf(program, options) : RunStack(program, options, expected, shown);
+  });
+}
+
+int RunDriver(int argc, char** argv, const std::string& about, const OpenDevice& open) {
+  RigProgram program;
+  program.name = "driver";
+  program.about = about;
+  program.page = "docs/own_driver.md";
+  program.make_rig = [&](const settings::StackConfig& config, const bus::Clock& clock) {
+    return std::make_unique<DeviceRig>(config, clock, Open(open, config, clock, true));
+  };
+  program.check_sensors = [&](const settings::StackConfig& config, const bus::Clock& clock) {
+    return CheckSensors(config, clock, *Open(open, config, clock, false));
+  };
+  return RunRigProgram(argc, argv, program);
+}
+
+}  // namespace hydro::plant

@@ -1,0 +1,33 @@
+#include "plant/driver/guarded_front_end.h"
+
+#include <memory>
+
+#include "plant/driver/zero_output.h"
+#include "pressure_ctrl/pressure_app.h"
+
+namespace hydro::plant {
+
+GuardedFrontEnd::GuardedFrontEnd(const settings::StackConfig& config, const bus::Clock& clock)
+    : FrontEndRig(config, clock) {
+  Connect();
+  ArmZero(zero_, 0);
+}
+
+GuardedFrontEnd::~GuardedFrontEnd() { DisarmZero(); }
+
+std::function<void()> LeadLoopOnDevice(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+                                       Rig& rig) {
+  const settings::DriverSection& driver = *config.driver;
+  const bool leads = driver.kind == settings::DriverKind::kFrontEnd &&
+                     driver.front_end.mode == settings::FrontEndMode::kLoopOnDevice;
+  auto* const front_end = dynamic_cast<FrontEndRig*>(&rig);
+  if (!leads || front_end == nullptr) return {};
+  const auto app = std::make_shared<pressure_ctrl::PressureApp>(bus, clock, config, *front_end);
+  front_end->set_beside([app] { app->Poll(); });
+  return [app, front_end] {
+    front_end->set_beside({});
+    app->Finish();
+  };
+}
+
+}  // namespace hydro::plant

@@ -1,0 +1,256 @@
+#include "plant/front_end/connection.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "plant/front_end/refusals.h"
+#include "settings/toml/section_reader.h"
+
+namespace hydro::plant {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRequestPeriod = 50ms;  // of what is asked again until the answer comes
+constexpr auto kOpenPeriod = 100ms;
+constexpr auto kKeepAlivePeriod = 100ms;  // the device gives up on a session after 250 ms
+constexpr size_t kChunk = 4096;
+constexpr int kMostChunks = 64;  // in one turn: whoever floods the link does not stop the loop
+
+bool SameSettings(const hydro_settings& a, const hydro_settings& b) {
+  std::array<uint8_t, HYDRO_WIRE_MAX> wires[2] = {};
+  hydro_frame frame{};
+  frame.kind = HYDRO_SETTINGS;
+  frame.body.settings = a;
+  const size_t bytes = hydro_encode(&frame, wires[0].data());
+  frame.body.settings = b;
+  return hydro_encode(&frame, wires[1].data()) == bytes && wires[0] == wires[1];
+}
+
+}  // namespace
+
+Connection::Connection(std::string file, std::unique_ptr<Link> link, uint32_t session,
+                       SettingsFor settings_for)
+    : file_(std::move(file)),
+      link_(std::move(link)),
+      session_(session),
+      settings_for_(std::move(settings_for)) {
+  hydro_frame zero{};
+  zero.kind = HYDRO_ZERO;
+  zero.session = session_;
+  zero_bytes_ = hydro_encode(&zero, zero_frame_.data());
+}
+
+void Connection::Poll(TimePoint now) {
+  if (!link_->is_open()) Reopen(now);
+  const int64_t before = counts_.samples;
+  Receive(now);
+  if (counts_.samples != before) link_->ForgetOld();
+  link_->Flush();
+  counts_.damaged = damaged_before_ + receiver_.bad;
+  counts_.left_out = link_->frames_left_out();
+  if (phase_ == Phase::kHello && Due(now, kRequestPeriod)) Send(HYDRO_HELLO);
+  if (phase_ == Phase::kSettings && Due(now, kRequestPeriod)) {
+    hydro_frame frame{};
+    frame.kind = HYDRO_SETTINGS;
+    frame.body.settings = settings_;
+    Send(&frame);
+  }
+  // No samples: the device may have reset itself, and then knows nobody until it is greeted.
+  if (phase_ == Phase::kUp && now - sampled_at_ > kRequestPeriod && Due(now, kRequestPeriod))
+    Send(HYDRO_HELLO);
+}
+
+void Connection::Reopen(TimePoint now) {
+  if (now < next_open_) return;
+  next_open_ = now + kOpenPeriod;
+  if (!link_->Open()) return;
+  hydro_receive_anew(&receiver_);
+  phase_ = Phase::kHello;
+  next_request_ = now;
+}
+
+void Connection::Receive(TimePoint now) {
+  std::array<uint8_t, kChunk> chunk;
+  hydro_frame frame{};
+  for (int i = 0; i < kMostChunks; ++i) {
+    const size_t got = link_->Read(chunk);
+    bytes_ += static_cast<int64_t>(got);
+    for (size_t at = 0; at < got; ++at) {
+      if (hydro_receive(&receiver_, chunk[at], &frame)) Take(frame, now);
+    }
+    if (got < chunk.size()) return;
+  }
+}
+
+void Connection::Take(const hydro_frame& frame, TimePoint now) {
+  if (frame.kind < HYDRO_IDENTITY) {
+    ++echoes_;
+    return;
+  }
+  if (frame.kind == HYDRO_IDENTITY) return OnIdentity(frame);
+  if (frame.session != session_ || !IsNewer(frame)) {
+    ++counts_.refused;
+    return;
+  }
+  if (frame.kind == HYDRO_SETTINGS_HELD) OnHeld(frame.body.held);
+  if (frame.kind == HYDRO_SAMPLE) OnSample(frame.body.sample, now);
+}
+
+// Frames that are not newer count for nothing, not even as a sign of life.
+bool Connection::IsNewer(const hydro_frame& frame) {
+  if (heard_ && !hydro_is_newer(frame.sequence, newest_)) return false;
+  if (heard_) counts_.lost += frame.sequence - newest_ - 1;
+  heard_ = true;
+  newest_ = frame.sequence;
+  return true;
+}
+
+void Connection::OnIdentity(const hydro_frame& frame) {
+  if (frame.protocol != HYDRO_PROTOCOL) {
+    other_protocol_ = frame.protocol;
+    return;
+  }
+  const hydro_identity& identity = frame.body.identity;
+  const bool another = !identified_ || identity.boot != identity_.boot;
+  if (another) heard_ = false;  // it counts from the beginning
+  if (!IsNewer(frame)) {
+    ++counts_.refused;
+    return;
+  }
+  if (another && identified_ && was_up_) ++resets_;
+  identified_ = true;
+  identity_ = identity;
+  if (identity.session_in_charge != session_) {
+    phase_ = Phase::kHello;
+    return;
+  }
+  if (phase_ == Phase::kUp && !another && identity.fingerprint == fingerprint_) return;
+  settings_ = settings_for_(identity);
+  fingerprint_ = hydro_fingerprint(&settings_);
+  sampled_ = false;
+  // After a cut link the device still holds them, and may even be armed.
+  phase_ = identity.fingerprint == fingerprint_ ? Phase::kUp : Phase::kSettings;
+  next_request_ = {};
+}
+
+void Connection::OnHeld(const hydro_settings_held& held) {
+  if (phase_ != Phase::kSettings) return;
+  if (held.refused != HYDRO_TAKEN) throw RefusalError(file_, held);
+  if (held.fingerprint != fingerprint_ || !SameSettings(held.settings, settings_)) {
+    throw settings::KeyError(
+        file_, "driver.url",
+        fmt::format("a front end that holds other settings (fingerprint {:08x}) than those that it "
+                    "was sent ({:08x})",
+                    held.fingerprint, fingerprint_),
+        "one that keeps them: give it the firmware of this version");
+  }
+  phase_ = Phase::kUp;
+}
+
+void Connection::OnSample(const hydro_sample& sample, TimePoint now) {
+  if (phase_ != Phase::kUp) return;
+  CountOfDevice(sample);
+  sample_ = sample;
+  sampled_ = true;
+  sampled_at_ = now;
+  was_up_ = true;
+  ++counts_.samples;
+}
+
+// The device's counts go round at 2^16.
+void Connection::CountOfDevice(const hydro_sample& sample) {
+  if (!sampled_) return;
+  counts_.device_damaged += static_cast<uint16_t>(sample.frames_bad - sample_.frames_bad);
+  counts_.device_refused += static_cast<uint16_t>(sample.frames_refused - sample_.frames_refused);
+}
+
+bool Connection::Due(TimePoint now, bus::Clock::Duration period) {
+  if (now < next_request_) return false;
+  next_request_ = now + period;
+  return true;
+}
+
+void Connection::Send(uint8_t kind) {
+  hydro_frame frame{};
+  frame.kind = kind;
+  Send(&frame);
+}
+
+void Connection::Send(hydro_frame* frame) {
+  frame->session = session_;
+  frame->sequence = ++sent_;
+  std::array<uint8_t, HYDRO_WIRE_MAX> wire;
+  const size_t bytes = hydro_encode(frame, wire.data());
+  const bool each_tick = frame->kind == HYDRO_VOLTAGE || frame->kind == HYDRO_PRESSURE;
+  link_->Write({wire.data(), bytes}, !each_tick);
+}
+
+void Connection::AskToArm(TimePoint now) {
+  if (now < next_arm_) return;
+  next_arm_ = now + kRequestPeriod;
+  hydro_frame frame{};
+  frame.kind = HYDRO_ARM;
+  frame.body.arm = {.fingerprint = fingerprint_, .trips = sample_.trips};
+  Send(&frame);
+}
+
+uint32_t Connection::CommandVoltage(int64_t host_tick, float voltage) {
+  hydro_frame frame{};
+  frame.kind = HYDRO_VOLTAGE;
+  frame.body.command.fingerprint = fingerprint_;
+  frame.body.command.host_tick = host_tick;
+  frame.body.command.voltage = voltage;
+  Send(&frame);
+  return sent_;
+}
+
+void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {
+  hydro_frame frame{};
+  frame.kind = HYDRO_PRESSURE;
+  frame.body.command.fingerprint = fingerprint_;
+  frame.body.command.host_tick = host_tick;
+  frame.body.command.pressure_ref = pressure_ref;
+  frame.body.command.gains = gains;
+  Send(&frame);
+}
+
+void Connection::KeepAlive(TimePoint now) {
+  if (phase_ == Phase::kUp && Due(now, kKeepAlivePeriod)) Send(HYDRO_HELLO);
+}
+
+LinkTrouble Connection::WhyNot() const {
+  if (!link_->is_open()) {
+    if (!link_->trouble().found.empty()) return link_->trouble();
+    return {"a link that was cut", "one that stays: is the device powered, the cable whole?"};
+  }
+  if (other_protocol_ != 0) {
+    return {fmt::format("a front end that speaks protocol {}", other_protocol_),
+            fmt::format("protocol {}: give it the firmware of this version (docs/front_end.md)",
+                        int{HYDRO_PROTOCOL})};
+  }
+  if (identified_ && identity_.session_in_charge != session_) {
+    return {fmt::format("a front end that another program commands (its session is {:08x})",
+                        identity_.session_in_charge),
+            "one that nobody else commands: end that program, or cut the device's power for a moment"};
+  }
+  if (identified_) {
+    return {"a front end that says who it is, but sends no samples",
+            "one whose firmware runs (docs/front_end.md)"};
+  }
+  if (echoes_ > 0) {
+    return {"only what this computer itself had sent",
+            "a front end, and not a cable that leads back or a terminal that echoes"};
+  }
+  if (bytes_ > 0) {
+    return {fmt::format("{} bytes that are no frames", bytes_),
+            "a front end (docs/front_end.md): is it another device, or another baud rate?"};
+  }
+  return {"nothing that answers",
+          "a front end (docs/front_end.md): is it powered, does its firmware run, is the address its own?"};
+}
+
+}  // namespace hydro::plant

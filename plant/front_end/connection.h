@@ -1,0 +1,119 @@
+// The conversation with a front end (docs/front_end.md): who is there, its settings, and then samples one way
+// and commands the other. Time is passed in; nothing waits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bus/clock.h"
+#include "firmware/frames.h"
+#include "plant/front_end/link.h"
+
+namespace hydro::plant {
+
+// What has become of the frames, since the start.
+struct FrameCounts {
+  int64_t samples = 0;         // taken
+  int64_t lost = 0;            // of the device's, by gaps in its sequence
+  int64_t damaged = 0;         // that arrived here
+  int64_t refused = 0;         // whole, but of another session, old or repeated
+  int64_t left_out = 0;        // commands that the link was too slow for
+  int64_t device_damaged = 0;  // that the device reports
+  int64_t device_refused = 0;  // that the device reports
+};
+
+class Connection {
+ public:
+  using TimePoint = bus::Clock::TimePoint;
+
+  // The settings that a device gets; throws InputError when it is the wrong one for the configuration.
+  using SettingsFor = std::function<hydro_settings(const hydro_identity&)>;
+
+  // `file`: the configuration's, for errors. `session`: at random, not 0.
+  Connection(std::string file, std::unique_ptr<Link> link, uint32_t session, SettingsFor settings_for);
+
+  // Takes all that has come, and goes on with the handshake where one is due: also again, after the link was
+  // cut or the device has reset itself. Throws InputError like SettingsFor, or when the device refuses its
+  // settings.
+  void Poll(TimePoint now);
+
+  // The device holds the settings, and a sample of it has come since.
+  bool is_up() const { return link_->is_open() && phase_ == Phase::kUp && sampled_; }
+  bool link_is_open() const { return link_->is_open(); }
+
+  // Meaningful once is_up() was true.
+  const hydro_identity& identity() const { return identity_; }
+  const hydro_settings& settings() const { return settings_; }
+  const hydro_sample& sample() const { return sample_; }
+  TimePoint sampled_at() const { return sampled_at_; }  // when the newest sample came
+
+  // How often the device has begun anew while this connection was up.
+  int64_t resets() const { return resets_; }
+  const FrameCounts& counts() const { return counts_; }
+  const Link& link() const { return *link_; }
+
+  // Why there is no connection yet, for a message: what was found and what is allowed.
+  LinkTrouble WhyNot() const;
+
+  // Asks the device to arm, unless it was asked a moment ago.
+  void AskToArm(TimePoint now);
+  // Commands for the computer's tick. The device's samples name that of a voltage by the sequence that is
+  // returned.
+  uint32_t CommandVoltage(int64_t host_tick, float voltage);
+  void CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
+  // Keeps the session in charge while there is nothing to command.
+  void KeepAlive(TimePoint now);
+  // Zero volts, until re-armed. Async-signal-safe.
+  void Zero() const noexcept { link_->WriteAtOnce({zero_frame_.data(), zero_bytes_}); }
+
+ private:
+  enum class Phase { kHello, kSettings, kUp };
+
+  void Reopen(TimePoint now);
+  void Receive(TimePoint now);
+  void Take(const hydro_frame& frame, TimePoint now);
+  bool IsNewer(const hydro_frame& frame);
+  void OnIdentity(const hydro_frame& frame);
+  void OnHeld(const hydro_settings_held& held);
+  void OnSample(const hydro_sample& sample, TimePoint now);
+  void CountOfDevice(const hydro_sample& sample);
+  bool Due(TimePoint now, bus::Clock::Duration period);
+  void Send(uint8_t kind);
+  void Send(hydro_frame* frame);
+
+  const std::string file_;
+  std::unique_ptr<Link> link_;
+  const uint32_t session_;
+  const SettingsFor settings_for_;
+  std::array<uint8_t, HYDRO_WIRE_MAX> zero_frame_{};
+  size_t zero_bytes_ = 0;
+
+  Phase phase_ = Phase::kHello;
+  bool was_up_ = false;
+  TimePoint next_open_{};
+  TimePoint next_request_{};  // of HELLO, SETTINGS
+  TimePoint next_arm_{};
+  uint32_t sent_ = 0;  // sequence of the newest frame sent
+  hydro_receiver receiver_{};
+  int64_t damaged_before_ = 0;  // by receivers before
+  bool heard_ = false;          // a frame of this device, by whose sequence the next is judged
+  uint32_t newest_ = 0;         // its sequence
+  int64_t bytes_ = 0;
+  int64_t echoes_ = 0;  // our own frames that came back
+  uint8_t other_protocol_ = 0;
+
+  hydro_identity identity_{};
+  bool identified_ = false;
+  hydro_settings settings_{};
+  uint32_t fingerprint_ = 0;
+  hydro_sample sample_{};
+  bool sampled_ = false;
+  TimePoint sampled_at_{};
+  int64_t resets_ = 0;
+  FrameCounts counts_;
+};
+
+}  // namespace hydro::plant

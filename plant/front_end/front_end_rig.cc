@@ -1,0 +1,369 @@
+#include "plant/front_end/front_end_rig.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <utility>
+
+#include "base/text_file.h"
+#include "bus/sleep_until.h"
+#include "plant/front_end/front_end_settings.h"
+#include "plant/front_end/refusals.h"
+#include "process/stop_signal.h"
+#include "settings/toml/section_reader.h"
+
+namespace hydro::plant {
+namespace {
+
+using namespace std::chrono_literals;
+using Source = settings::SensorSection::Source;
+
+constexpr auto kTurn = 1ms;           // between two turns of what waits
+constexpr auto kZeroRepeat = 10ms;    // a lost ZERO is sent again
+constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of it
+constexpr double kNearZero = 0.05;    // V: offsets of converters are below it
+constexpr double kSampleBytes = 107;  // on the wire
+constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop
+
+uint32_t RandomSession() {
+  std::random_device random;
+  return std::uniform_int_distribution<uint32_t>(1)(random);
+}
+
+double SecondsOf(double ticks, double ticks_per_s) { return ticks / ticks_per_s; }
+
+}  // namespace
+
+FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock)
+    : FrontEndRig(config, clock, MakeLink(config.driver->front_end.address), RandomSession()) {}
+
+FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock,
+                         std::unique_ptr<Link> link, uint32_t session)
+    : config_(config),
+      clock_(clock),
+      connection_(config.file, std::move(link), session,
+                  [this](const hydro_identity& identity) { return FrontEndSettings(config_, identity); }),
+      stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
+      ticks_per_s_(config.plant.rate_hz),
+      voltage_limit_(config.driver->voltage.limit_V),
+      output_(*config.driver, stale_time_) {
+  CheckSpeed();
+}
+
+FrontEndRig::~FrontEndRig() {
+  connection_.Zero();
+  const FrameCounts& counts = connection_.counts();
+  if (counts.samples == 0) return;
+  spdlog::info(
+      "{}: {} samples; of its frames {} were lost, {} damaged, {} repeated or late; of ours it found {} "
+      "damaged and refused {}, "
+      "and {} were left out",
+      Describe(), counts.samples, counts.lost, counts.damaged, counts.refused, counts.device_damaged,
+      counts.device_refused, counts.left_out);
+}
+
+std::string FrontEndRig::Describe() const {
+  const hydro_identity& identity = connection_.identity();
+  const std::string board(identity.board, strnlen(identity.board, HYDRO_BOARD_NAME_BYTES));
+  return fmt::format("{} ({}, firmware {}.{}.{}, {} ticks/s)", config_.driver->front_end.url,
+                     Printable(board), identity.firmware[0], identity.firmware[1], identity.firmware[2],
+                     identity.tick_rate_hz);
+}
+
+// A line that cannot carry all samples would be behind by more and more of them.
+void FrontEndRig::CheckSpeed() const {
+  const int baud = config_.driver->front_end.address.baud;
+  const double needed = kSampleBytes * kBitsPerByte * ticks_per_s_;
+  if (baud == 0 || baud >= needed) return;
+  throw settings::KeyError(
+      config_.file, "driver.url", fmt::format("baud={}", baud),
+      fmt::format("at least {:.0f} for {:.6g} samples a second of {:.0f} bytes (plant.rate_hz)", needed,
+                  ticks_per_s_, kSampleBytes));
+}
+
+bool FrontEndRig::Poll() {
+  now_ = clock_.Now();
+  connection_.Poll(now_);
+  return connection_.is_up();
+}
+
+void FrontEndRig::Connect() {
+  const auto refuse = [&](const LinkTrouble& trouble, const std::string& when) {
+    return settings::KeyError(config_.file, "driver.url", trouble.found + when, trouble.allowed);
+  };
+  const auto deadline = clock_.Now() + bus::FromSeconds(config_.time.start_timeout_s);
+  bool done = Poll();
+  if (!connection_.link_is_open()) throw refuse(connection_.WhyNot(), "");
+  while (!done && process::StopSignal() == 0) {
+    if (now_ >= deadline) {
+      throw refuse(connection_.WhyNot(),
+                   fmt::format(" at {} within {} s (time.start_timeout_s)", config_.driver->front_end.url,
+                               config_.time.start_timeout_s));
+    }
+    bus::SleepUntil(now_ + kTurn);
+    done = Poll();
+  }
+  if (done) spdlog::info("{}", Describe());
+}
+
+model::Measurement FrontEndRig::Read(int64_t tick) {
+  // This process stood still: nothing was commanded meanwhile. Ordinary late wake-ups must not hide a device
+  // that lags behind.
+  if (static_cast<double>(tick - tick_) > 0.5 * config_.limits.stale_input_s * ticks_per_s_)
+    driving_since_ = tick;
+  tick_ = tick;
+  if (!polled_) TakeTurn();
+  polled_ = false;
+  faults_.clear();
+  read_ = {};
+  if (FindSilence()) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    driving_since_.reset();
+    return {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+  }
+  read_ = connection_.sample();
+  FindSensorFaults(read_);
+  FindDeviceFaults(read_);
+  FindOldCommands(read_);
+  trips_ = read_.trips;
+  return Measured();
+}
+
+// A turn within the run, where another device is no error of the configuration.
+void FrontEndRig::TakeTurn() {
+  try {
+    Poll();
+  } catch (const InputError& error) {
+    throw RigError("board_error", error.what());
+  }
+  if (beside_) beside_();
+}
+
+std::optional<int64_t> FrontEndRig::Arrived() {
+  TakeTurn();
+  polled_ = true;
+  const int64_t before = std::exchange(arrived_before_, connection_.counts().samples);
+  if (!connection_.is_up() || arrived_before_ == before) return std::nullopt;
+  return static_cast<int64_t>(connection_.sample().tick / connection_.settings().sample_interval_ticks);
+}
+
+// Another program shall not take the device meanwhile, nor old samples wait.
+void FrontEndRig::Attend() {
+  Poll();
+  connection_.KeepAlive(now_);
+  if (beside_) beside_();
+}
+
+model::Measurement FrontEndRig::Measured() {
+  const hydro_sample& sample = read_;
+  const settings::DriverSection& driver = *config_.driver;
+  // A count is exact where an angle in single precision is not.
+  const auto angle = [](const settings::SensorSection& section, float value, int32_t count,
+                        DeviceCount* counted) {
+    if (section.source != Source::kCounter || std::isnan(value)) return static_cast<double>(value);
+    return section.scale * static_cast<double>(counted->Update(count)) + section.offset;
+  };
+  model::Measurement measured;
+  measured.p1 = sample.value[HYDRO_P1];
+  measured.p2 = sample.value[HYDRO_P2];
+  const bool filtered_motor = driver.motor_angle.low_pass_hz > 0,
+             filtered_arm = driver.arm_angle.low_pass_hz > 0;
+  measured.motor_angle = filtered_motor ? static_cast<double>(sample.value[HYDRO_MOTOR_ANGLE])
+                                        : angle(driver.motor_angle, sample.value[HYDRO_MOTOR_ANGLE],
+                                                sample.motor_count, &motor_count_);
+  measured.motor_speed = sample.value[HYDRO_MOTOR_SPEED];
+  measured.arm_angle =
+      filtered_arm ? static_cast<double>(sample.value[HYDRO_ARM_ANGLE])
+                   : angle(driver.arm_angle, sample.value[HYDRO_ARM_ANGLE], sample.arm_count, &arm_count_);
+  measured.arm_speed = sample.value[HYDRO_ARM_SPEED];
+  return measured;
+}
+
+void FrontEndRig::Add(std::string code, std::string text, double value, double limit) {
+  faults_.push_back({std::move(code), std::move(text), value, limit});
+}
+
+// True: what the newest sample says no longer counts.
+bool FrontEndRig::FindSilence() {
+  const double silence = bus::ToSeconds(now_ - connection_.sampled_at());
+  const double allowed = config_.limits.stale_input_s;
+  const std::string& url = config_.driver->front_end.url;
+  if (!connection_.link_is_open()) {
+    Add("device_silent",
+        fmt::format("the link to {} is cut; allowed is one that stays: plug it in again", url), silence,
+        allowed);
+    return true;
+  }
+  if (resets_ != connection_.resets()) {
+    Add("device_fault",
+        fmt::format("the front end at {} has reset itself; allowed is one that keeps its supply: it gets its "
+                    "settings anew",
+                    url));
+    if (connection_.is_up()) resets_ = connection_.resets();
+    trips_.reset();
+    motor_count_.Forget();
+    arm_count_.Forget();
+    return true;
+  }
+  if (connection_.is_up() && now_ - connection_.sampled_at() <= stale_time_) return false;
+  Add("device_silent",
+      fmt::format("no sample from {} for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)", url,
+                  1e3 * silence, 1e3 * allowed),
+      silence, allowed);
+  return true;
+}
+
+// A signal that is no number is missing, whatever the device says of it. That of a rate is the fault of its
+// angle.
+void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
+  const bool answered = (sample.faults_present & HYDRO_FAULT_CONVERTER) == 0;
+  for (int i = 0; i < HYDRO_SENSORS; ++i) {
+    const uint8_t kind = connection_.settings().sensors[i].kind;
+    const bool by_device = (sample.sensor_faults & (1 << i)) != 0;
+    const bool of_angle = kind == HYDRO_SENSOR_RATE && !std::isfinite(sample.value[i - 1]);
+    const bool expected = kind != HYDRO_SENSOR_NONE && answered && !of_angle;
+    const std::string code = std::string("sensor_") + SensorName(i);
+    if (by_device) {
+      Add(code, fmt::format("the front end's reading of {} is not credible: an end of its range, or outside "
+                            "of what driver.{} allows",
+                            SensorName(i), SensorName(i)));
+    } else if (expected && !std::isfinite(sample.value[i])) {
+      Add(code, fmt::format("the front end gives {} for {} and reports no fault of it; allowed is a number",
+                            sample.value[i], SensorName(i)));
+    }
+    // Not to be taken for a signal by anyone.
+    if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
+  if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
+    output_.Look(sample, now_, &faults_);
+  } else {
+    Add("output_differs",
+        fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,
+                    sample.voltage),
+        sample.read_back, sample.voltage);
+  }
+  const bool tripped = trips_ && *trips_ != sample.trips;
+  constexpr unsigned kNamed = HYDRO_FAULT_SENSOR | HYDRO_FAULT_READ_BACK;
+  const unsigned others = sample.faults_present & ~kNamed;
+  if (others != 0 || tripped) {
+    Add("device_fault",
+        fmt::format(
+            "the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
+            DescribeDeviceFaults(static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U)))));
+  }
+}
+
+// Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that
+// were queued somewhere.
+void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
+  const double allowed = config_.limits.stale_input_s;
+  if (arming_since_ && now_ - *arming_since_ > stale_time_ && sample.state != HYDRO_ARMED) {
+    const double waited = bus::ToSeconds(now_ - *arming_since_);
+    Add("device_fault",
+        fmt::format("the front end was asked to arm {:.0f} ms ago and has not, allowed are {:.0f} ms",
+                    1e3 * waited, 1e3 * allowed),
+        waited, allowed);
+  }
+  if (!driving_since_ || sample.state != HYDRO_ARMED) return;
+  const auto age = static_cast<double>(tick_ - std::max(sample.host_tick, *driving_since_));
+  if (age <= allowed * ticks_per_s_ + 1) return;
+  Add("device_silent",
+      fmt::format(
+          "the front end obeys commands of {:.0f} ms ago, allowed are {:.0f} ms (limits.stale_input_s)",
+          1e3 * SecondsOf(age, ticks_per_s_), 1e3 * allowed),
+      SecondsOf(age, ticks_per_s_), allowed);
+}
+
+double FrontEndRig::Drive(double voltage) {
+  // The motor command of a loop on the device is its answer to the very state that was read.
+  acting_command_tick_ = read_.source == HYDRO_SOURCE_LAW ? tick_ : output_.CommandTick(read_);
+  if (!connection_.is_up()) {
+    arming_since_.reset();
+    return read_.voltage;
+  }
+  const bool armed = Armed();
+  const bool obeys = MayDrive() && std::isfinite(voltage);
+  if (!armed && obeys) {
+    if (!arming_since_) arming_since_ = now_;
+    connection_.AskToArm(now_);
+  } else {
+    arming_since_.reset();
+  }
+  if (!armed) driving_since_.reset();
+  if (armed && !driving_since_) driving_since_ = tick_;
+  if (!armed && !obeys) {
+    connection_.KeepAlive(now_);
+  } else if (armed && obeys && followed_) {
+    if (!followed_->sent) SendFollowed();
+    followed_->sent = false;
+  } else {
+    // Zero until it is known to be armed.
+    SendVoltage(armed && obeys ? std::clamp(voltage, -voltage_limit_, voltage_limit_) : 0.0);
+  }
+  return read_.voltage;
+}
+
+void FrontEndRig::SendVoltage(double voltage) {
+  const auto told = static_cast<float>(voltage);
+  const uint32_t sequence = connection_.CommandVoltage(tick_, told);
+  output_.OnTold(sequence, told, command_tick_, now_);
+}
+
+void FrontEndRig::SendFollowed() {
+  connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  followed_->sent = true;
+}
+
+pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, double pressure_ref,
+                                                      const pressure_ctrl::PressureLawSettings& law) {
+  followed_ = Followed{.pressure_ref = static_cast<float>(pressure_ref),
+                       .gains = {.k_p = static_cast<float>(law.gains.k_p),
+                                 .k_v = static_cast<float>(law.gains.k_v),
+                                 .reference_feedforward = static_cast<float>(law.reference_feedforward),
+                                 .arm_speed_ratio = static_cast<float>(law.arm_speed_ratio)}};
+  if (!Armed() || !MayDrive()) return {};
+  SendFollowed();
+  // The sample that the state was made from has the voltage that the device computed from it.
+  return {.by_law = read_.source == HYDRO_SOURCE_LAW,
+          .voltage = read_.voltage,
+          .pressure_ref = read_.pressure_ref,
+          .saturated = read_.saturated != 0};
+}
+
+OutputLeft FrontEndRig::Zero() noexcept {
+  OutputLeft left{.accepted = false, .voltage = NAN};
+  std::optional<int64_t> obeyed;  // the first sample that is seen to
+  try {
+    const auto asked = clock_.Now();
+    auto next = asked;
+    do {
+      if (clock_.Now() >= next) {
+        connection_.Zero();
+        next = clock_.Now() + kZeroRepeat;
+      }
+      if (!clock_.simulated()) bus::SleepUntil(clock_.Now() + kTurn);
+      const bool up = Poll();
+      const hydro_sample& sample = connection_.sample();
+      if (up && connection_.sampled_at() >= asked) {
+        left.voltage = std::isfinite(sample.read_back) ? sample.read_back : sample.voltage;
+        left.accepted = sample.state != HYDRO_ARMED && std::fabs(left.voltage) <= output_.tolerance();
+        // The sample in which a device obeys has what its output read just before: a later one tells what it
+        // left.
+        const int64_t samples = connection_.counts().samples;
+        if (!obeyed && sample.state != HYDRO_ARMED) obeyed = samples;
+        if (left.accepted && samples > *obeyed && std::fabs(left.voltage) <= kNearZero) return left;
+      }
+      if (!connection_.link_is_open()) return left;
+    } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);
+  } catch (const std::exception&) {  // another device has taken its place
+  }
+  return left;
+}
+
+}  // namespace hydro::plant

@@ -1,0 +1,158 @@
+#include "plant/front_end/front_end_settings.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "base/number_text.h"
+#include "plant/front_end/refusals.h"
+#include "settings/toml/section_reader.h"
+#include "tuning/tuned_values.h"
+
+namespace hydro::plant {
+namespace {
+
+using settings::KeyError;
+using Source = settings::SensorSection::Source;
+
+// The device judges in single precision: what is just within a limit here shall not be beyond it there.
+float RoundedUp(double limit) {
+  const auto rounded = static_cast<float>(limit);
+  return static_cast<double>(rounded) < limit
+             ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+             : rounded;
+}
+
+// What the device says that it puts out shall not be beyond the limit here.
+float RoundedDown(double limit) {
+  const auto rounded = static_cast<float>(limit);
+  return static_cast<double>(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded;
+}
+
+uint8_t KindOf(Source source) {
+  switch (source) {
+    case Source::kAnalog:
+      return HYDRO_SENSOR_ANALOG;
+    case Source::kCounter:
+      return HYDRO_SENSOR_COUNTER;
+    case Source::kDerivative:
+      return HYDRO_SENSOR_RATE;
+    case Source::kNone:
+      break;
+  }
+  return HYDRO_SENSOR_NONE;
+}
+
+void CheckChannel(const settings::StackConfig& config, const std::string& name, int channel, int channels,
+                  const char* what) {
+  if (channel < channels) return;
+  throw KeyError(config.file, "driver." + name + ".channel", std::to_string(channel),
+                 channels == 0
+                     ? fmt::format("a front end with {}s: this one has none", what)
+                     : fmt::format("0 to {}: the front end has {} {}s", channels - 1, channels, what));
+}
+
+hydro_sensor_settings SensorSettings(const settings::StackConfig& config, const std::string& name,
+                                     const settings::SensorSection& section, const hydro_identity& identity) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  hydro_sensor_settings sensor{};
+  sensor.kind = KindOf(section.source);
+  if (sensor.kind == HYDRO_SENSOR_ANALOG) {
+    CheckChannel(config, name, section.line.channel, identity.analog_inputs, "analog input");
+  }
+  if (sensor.kind == HYDRO_SENSOR_COUNTER) {
+    CheckChannel(config, name, section.line.channel, identity.counters, "counter");
+    sensor.counter_bits = static_cast<uint8_t>(section.counter_bits);
+  }
+  sensor.channel = static_cast<uint8_t>(section.line.channel);
+  sensor.scale = static_cast<float>(section.scale);
+  sensor.offset = static_cast<float>(section.offset);
+  const double corner = 2 * std::numbers::pi * section.low_pass_hz / identity.tick_rate_hz;
+  sensor.low_pass_share = section.low_pass_hz > 0 ? static_cast<float>(-std::expm1(-corner)) : 1.0F;
+  sensor.minimum_V = std::isnan(section.minimum) ? -kInfinity : static_cast<float>(section.minimum);
+  sensor.maximum_V = std::isnan(section.maximum) ? kInfinity : static_cast<float>(section.maximum);
+  return sensor;
+}
+
+void CheckMode(const settings::StackConfig& config, const hydro_identity& identity, int mode) {
+  if ((identity.modes & (1 << (mode - 1))) != 0) return;
+  throw KeyError(config.file, "driver.mode", mode == HYDRO_REMOTE_IO ? "\"remote_io\"" : "\"loop_on_device\"",
+                 fmt::format("a mode that the front end has: {}",
+                             mode == HYDRO_REMOTE_IO ? "\"loop_on_device\"" : "\"remote_io\""));
+}
+
+uint16_t SampleInterval(const settings::StackConfig& config, const hydro_identity& identity) {
+  const double ticks = identity.tick_rate_hz / config.plant.rate_hz;
+  const double whole = std::round(ticks);
+  if (whole >= 1 && whole <= 65535 && std::fabs(ticks - whole) < 1e-9 * whole)
+    return static_cast<uint16_t>(whole);
+  throw KeyError(
+      config.file, "plant.rate_hz", ShortestNumber(config.plant.rate_hz),
+      fmt::format("a rate that divides the front end's {} ticks per second", identity.tick_rate_hz));
+}
+
+uint32_t WatchdogTicks(const settings::StackConfig& config, const hydro_identity& identity) {
+  const double seconds = config.driver->front_end.watchdog_s.value_or(config.limits.stale_input_s);
+  const double ticks = std::floor(seconds * identity.tick_rate_hz + 1e-9);
+  if (ticks >= 1 && ticks <= identity.tick_rate_hz) return static_cast<uint32_t>(ticks);
+  throw KeyError(config.file, "driver.watchdog_s", ShortestNumber(seconds),
+                 fmt::format("{} to 1: from one tick of the front end to a second",
+                             ShortestNumber(1.0 / identity.tick_rate_hz)));
+}
+
+// What the output can reach, V of eq. (1), must hold zero volts.
+void CheckOutput(const settings::StackConfig& config, const hydro_identity& identity) {
+  const settings::AmplifierSection& amplifier = config.driver->voltage;
+  const double zero_V = -amplifier.offset / amplifier.scale;
+  if (zero_V >= identity.output_min_V && zero_V <= identity.output_max_V) return;
+  throw KeyError(
+      config.file, "driver.voltage.offset", ShortestNumber(amplifier.offset),
+      fmt::format(
+          "one with which zero volts are within the front end's output, {:.6g} to {:.6g} V at the terminal",
+          identity.output_min_V, identity.output_max_V));
+}
+
+void SetLimits(const settings::StackConfig& config, hydro_settings* settings) {
+  const auto& driver = *config.driver;
+  const model::Parameters& parameters = config.model.description.parameters;
+  const bool loop = settings->mode == HYDRO_LOOP_ON_DEVICE;
+  settings->voltage_limit = RoundedDown(std::min(driver.voltage.limit_V, parameters.T_pmax / parameters.k_1));
+  settings->pressure_limit = RoundedUp(config.limits.pressure_psi);
+  settings->motor_speed_limit = RoundedUp(config.limits.motor_speed_rad_s);
+  const bool measured = driver.arm_angle.source != Source::kNone;
+  settings->arm_angle_limit =
+      measured ? RoundedUp(config.limits.arm_angle_rad) : std::numeric_limits<float>::infinity();
+  settings->reference_limit = loop ? RoundedUp(1.000001 * tuning::ValuesOf(config).position.pressure_limit)
+                                   : std::numeric_limits<float>::infinity();
+}
+
+}  // namespace
+
+hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro_identity& identity) {
+  const settings::DriverSection& driver = *config.driver;
+  hydro_settings settings{};
+  settings.mode =
+      driver.front_end.mode == settings::FrontEndMode::kRemoteIo ? HYDRO_REMOTE_IO : HYDRO_LOOP_ON_DEVICE;
+  CheckMode(config, identity, settings.mode);
+  settings.sample_interval_ticks = SampleInterval(config, identity);
+  settings.watchdog_ticks = WatchdogTicks(config, identity);
+  settings.transfer_ticks =
+      static_cast<uint32_t>(std::min(std::round(config.limits.transfer_s * identity.tick_rate_hz), 4e9));
+  CheckOutput(config, identity);
+  SetLimits(config, &settings);
+  settings.output_scale = static_cast<float>(driver.voltage.scale);
+  settings.output_offset = static_cast<float>(driver.voltage.offset);
+  settings.read_back_tolerance = static_cast<float>(driver.front_end.read_back_tolerance_V);
+  const settings::SensorSection* const sections[] = {
+      &driver.p1, &driver.p2, &driver.motor_angle, &driver.motor_speed, &driver.arm_angle, &driver.arm_speed};
+  for (int i = 0; i < HYDRO_SENSORS; ++i) {
+    settings.sensors[i] = SensorSettings(config, SensorName(i), *sections[i], identity);
+  }
+  return settings;
+}
+
+}  // namespace hydro::plant

@@ -1,0 +1,14 @@
+// From the configuration to the settings of a front end.
+#pragma once
+
+#include "firmware/frames.h"
+#include "settings/stack_config.h"
+
+namespace hydro::plant {
+
+// What the device gets: its wiring, and the limits that it holds on its own. Throws InputError when the
+// device that says `identity` is not one for this configuration: its modes, its ticks, its channels or the
+// range of its output.
+hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro_identity& identity);
+
+}  // namespace hydro::plant

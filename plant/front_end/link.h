@@ -1,0 +1,82 @@
+// The way to a front end: bytes to and from a serial port or a socket. Nothing here waits.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "settings/front_end_url.h"
+
+namespace hydro::plant {
+
+// What is wrong with a link that cannot be opened, in the words of an error message.
+struct LinkTrouble {
+  std::string found;    // "\"/dev/ttyACM0\" (Permission denied)"
+  std::string allowed;  // what is allowed, and what to do
+};
+
+class Link {
+ public:
+  enum class Kind { kPort, kStream, kDatagrams };
+
+  explicit Link(Kind kind) : kind_(kind) {}
+  virtual ~Link() { Close(); }
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() says why. Takes no
+  // longer than the system call, also with nobody at the other end.
+  bool Open();
+  void Close();
+  bool is_open() const { return descriptor_ >= 0; }
+  int descriptor() const { return descriptor_; }  // to wait on; -1: closed
+  const LinkTrouble& trouble() const { return trouble_; }
+
+  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other. A
+  // link whose other end has gone is closed.
+  size_t Read(std::span<uint8_t> into);
+
+  // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
+  // new one replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.
+  // What is not a command of each tick `must_leave`: commands do not replace it.
+  void Write(std::span<const uint8_t> frame, bool must_leave = false);
+  void Flush();
+  // The tick of what waits is over: unless it must leave, it is left out.
+  void ForgetOld();
+
+  // For signal handlers: the frame as one system call, whatever waits.
+  void WriteAtOnce(std::span<const uint8_t> frame) const noexcept;
+
+  // Frames that Write() had to leave out because the link was too slow for them.
+  int64_t frames_left_out() const { return frames_left_out_; }
+
+ protected:
+  // The open, non-blocking descriptor; -1 after Trouble().
+  virtual int OpenDescriptor() = 0;
+  // Bytes that the kernel still has to send; 0 where it does not tell.
+  virtual size_t BytesOnTheirWay(int) const { return 0; }
+  int Trouble(std::string found, std::string allowed);
+
+ private:
+  void Send(std::span<const uint8_t> bytes);
+  ssize_t Put(std::span<const uint8_t> bytes) const noexcept;
+  bool datagrams() const { return kind_ == Kind::kDatagrams; }
+
+  const Kind kind_;
+  int descriptor_ = -1;
+  LinkTrouble trouble_;
+  std::vector<uint8_t> begun_;    // the rest of a frame that has partly left
+  std::vector<uint8_t> waiting_;  // the newest frame that has not begun to leave
+  bool waiting_must_leave_ = false;
+  int64_t frames_left_out_ = 0;
+};
+
+// Not yet open.
+std::unique_ptr<Link> MakeLink(const settings::FrontEndUrl& url);
+
+}  // namespace hydro::plant

@@ -1,0 +1,218 @@
+// The three kinds of links: how each is opened, and what to do when it cannot be.
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <linux/sockios.h>
+#include <netdb.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/un.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+#include "base/text_file.h"
+#include "plant/front_end/link.h"
+
+namespace hydro::plant {
+namespace {
+
+constexpr int kPriority = 6;  // of packets, above all others on this machine's way out
+
+std::string Found(const std::string& what, int error) {
+  return Quoted(what) + " (" + std::strerror(error) + ")";
+}
+
+// Raw bytes, both ways, no modem lines; the speed where one is asked for.
+bool MakeRaw(int port, int baud) {
+  termios settings = {};
+  if (tcgetattr(port, &settings) != 0) return false;
+  cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CRTSCTS | CSTOPB);
+  settings.c_cc[VMIN] = 1;  // with 0, a read that finds nothing would look like the end of the port
+  settings.c_cc[VTIME] = 0;
+  if (baud != 0) {
+    const speed_t speed = *settings::BaudConstant(baud);
+    if (cfsetispeed(&settings, speed) != 0 || cfsetospeed(&settings, speed) != 0) return false;
+  }
+  return tcsetattr(port, TCSANOW, &settings) == 0;
+}
+
+// tcsetattr() succeeds when any of what it was asked for was done.
+bool HasSpeed(int port, int baud) {
+  termios settings = {};
+  return tcgetattr(port, &settings) == 0 && cfgetospeed(&settings) == *settings::BaudConstant(baud);
+}
+
+// USB converters collect what comes for up to 16 ms otherwise. Where a port does not know this, nothing is
+// lost.
+void AskForLowLatency(int port) {
+  serial_struct serial = {};
+  if (ioctl(port, TIOCGSERIAL, &serial) != 0) return;
+  serial.flags |= ASYNC_LOW_LATENCY;
+  ioctl(port, TIOCSSERIAL, &serial);
+  serial.closing_wait = ASYNC_CLOSING_WAIT_NONE;  // close() must not wait for a device that takes nothing
+  ioctl(port, TIOCSSERIAL, &serial);              // on its own: only root may set it
+}
+
+// TIOCEXCL would outlive us on a pseudo terminal, whose other end stays open.
+bool IsPseudoTerminal(int port) {
+  constexpr unsigned kFirst = 136, kLast = 143;  // majors of the kernel's list of devices
+  struct stat status = {};
+  return fstat(port, &status) == 0 && major(status.st_rdev) >= kFirst && major(status.st_rdev) <= kLast;
+}
+
+class SerialLink : public Link {
+ public:
+  SerialLink(std::string path, int baud) : Link(Kind::kPort), path_(std::move(path)), baud_(baud) {}
+
+ protected:
+  int OpenDescriptor() override {
+    const int port = open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (port < 0) return CannotOpen(errno);
+    const int result = SetUp(port);
+    if (result < 0) close(port);
+    return result;
+  }
+
+  size_t BytesOnTheirWay(int port) const override {
+    int bytes = 0;
+    return ioctl(port, TIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
+  }
+
+ private:
+  int SetUp(int port) {
+    if (isatty(port) == 0) {
+      return Trouble(Quoted(path_) + ", which is no serial port",
+                     "the port of the front end; ls -l /dev/serial/by-id lists those of USB");
+    }
+    // TIOCEXCL keeps out everybody but root; the lock, those who ask for it.
+    if (flock(port, LOCK_EX | LOCK_NB) != 0) return CannotOpen(EBUSY);
+    if (!IsPseudoTerminal(port)) ioctl(port, TIOCEXCL);
+    if (!MakeRaw(port, baud_)) {
+      return Trouble(Found(path_, errno),
+                     "a port that carries raw bytes" + AtItsSpeed() + "; try another baud rate");
+    }
+    if (baud_ != 0 && !HasSpeed(port, baud_)) {
+      return Trouble("baud=" + std::to_string(baud_) + " for " + Quoted(path_),
+                     "a rate that this port can do: it kept the one that it had");
+    }
+    AskForLowLatency(port);
+    tcflush(port, TCIOFLUSH);
+    return port;
+  }
+
+  int CannotOpen(int error) {
+    std::string allowed =
+        "a serial port; ls -l /dev/serial/by-id lists those of USB: is the device plugged in?";
+    if (error == EACCES || error == EPERM) {
+      allowed = "a port that you may use: sudo usermod -aG dialout \"$USER\", then log in again";
+    } else if (error == EBUSY) {
+      allowed = "a port that no other program has open; fuser -v " + path_ +
+                " names it (often ModemManager or a terminal)";
+    } else if (error == EISDIR) {
+      allowed = "the port of the front end, not a folder";
+    }
+    return Trouble(Found(path_, error), allowed);
+  }
+
+  std::string AtItsSpeed() const { return baud_ == 0 ? "" : " at " + std::to_string(baud_) + " baud"; }
+
+  std::string path_;
+  int baud_;
+};
+
+class UdpLink : public Link {
+ public:
+  UdpLink(std::string host, std::string port)
+      : Link(Kind::kDatagrams), host_(std::move(host)), port_(std::move(port)) {}
+  ~UdpLink() override {
+    if (addresses_ != nullptr) freeaddrinfo(addresses_);
+  }
+
+ protected:
+  // The name is looked up once: what a name server takes is too long for a run.
+  int OpenDescriptor() override {
+    if (addresses_ == nullptr && !LookUp()) return -1;
+    const int opened = socket(addresses_->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    // Connected, so that the kernel drops what others than the device send.
+    if (opened < 0 || connect(opened, addresses_->ai_addr, addresses_->ai_addrlen) != 0) {
+      const int error = errno;
+      if (opened >= 0) close(opened);
+      return Trouble(Found(host_ + ":" + port_, error),
+                     "an address that this machine has a route to; ip route get " + host_);
+    }
+    setsockopt(opened, SOL_SOCKET, SO_PRIORITY, &kPriority, sizeof kPriority);
+    return opened;
+  }
+
+ private:
+  bool LookUp() {
+    addrinfo hints = {};
+    hints.ai_socktype = SOCK_DGRAM;
+    const int error = getaddrinfo(host_.c_str(), port_.c_str(), &hints, &addresses_);
+    if (error == 0) return true;
+    addresses_ = nullptr;
+    Trouble(Quoted(host_) + " (" + gai_strerror(error) + ")",
+            "the name or the address of the front end; ping " + host_);
+    return false;
+  }
+
+  std::string host_;
+  std::string port_;
+  addrinfo* addresses_ = nullptr;
+};
+
+class UnixLink : public Link {
+ public:
+  explicit UnixLink(std::string path) : Link(Kind::kStream), path_(std::move(path)) {}
+
+ protected:
+  int OpenDescriptor() override {
+    sockaddr_un address = {};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, path_.c_str(), path_.size() + 1);
+    const int opened = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (opened >= 0 && connect(opened, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
+      return opened;
+    const int error = errno;
+    if (opened >= 0) close(opened);
+    std::string allowed = "the socket on which the front end listens: has it been started?";
+    if (error == EACCES || error == EPERM) allowed = "a socket that you may write to: ls -l " + path_;
+    if (error == EAGAIN) allowed = "a front end that takes a connection: another program has it";
+    if (error == EPROTOTYPE) allowed = "a stream socket";
+    return Trouble(Found(path_, error), allowed);
+  }
+
+  // What the device has not read yet, with what the kernel adds to it: nothing, or more than a frame.
+  size_t BytesOnTheirWay(int opened) const override {
+    int bytes = 0;
+    return ioctl(opened, SIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
+  }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> MakeLink(const settings::FrontEndUrl& url) {
+  switch (url.kind) {
+    case settings::FrontEndUrl::Kind::kSerial:
+      return std::make_unique<SerialLink>(url.path, url.baud);
+    case settings::FrontEndUrl::Kind::kUdp:
+      return std::make_unique<UdpLink>(url.host, url.port);
+    case settings::FrontEndUrl::Kind::kUnix:
+      break;
+  }
+  return std::make_unique<UnixLink>(url.path);
+}
+
+}  // namespace hydro::plant

@@ -1,0 +1,58 @@
+// What a front end was told to put out, what it says that it does, and what its output reads back.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "bus/clock.h"
+#include "firmware/frames.h"
+#include "plant/rig.h"
+#include "settings/driver_section.h"
+
+namespace hydro::plant {
+
+class OutputWatch {
+ public:
+  // `patience`: how long the output may take to follow (limits.stale_input_s).
+  OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience);
+
+  // The frame `sequence` has told it a voltage, which came from the motor command for `command_tick` (-1:
+  // from none).
+  void OnTold(uint32_t sequence, double voltage, int64_t command_tick, bus::Clock::TimePoint now);
+
+  // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
+  // told, or not zero though the device is not armed, or while the output reads back, twice in a row, a
+  // voltage that was not put out within the patience.
+  void Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+
+  double tolerance() const { return tolerance_; }  // V of eq. (1), of what is read back
+
+  // Of the voltage that a sample reports as that of a command, the tick of the motor command; -1: it came
+  // from none.
+  int64_t CommandTick(const hydro_sample& sample) const;
+
+ private:
+  struct Told {
+    uint32_t sequence;
+    double voltage;
+    int64_t command_tick;
+    bus::Clock::TimePoint at;
+  };
+  struct PutOut {
+    double voltage;
+    bus::Clock::TimePoint at;
+  };
+
+  const Told* Find(const hydro_sample& sample) const;
+  void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
+  void LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+
+  const bus::Clock::Duration patience_;
+  const double tolerance_;       // V of eq. (1)
+  std::deque<Told> told_;        // within the patience, and the one before
+  std::deque<PutOut> reported_;  // the same, by the device
+  int differing_ = 0;            // readings in a row
+};
+
+}  // namespace hydro::plant

@@ -1,0 +1,379 @@
+"""hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
+
+import json
+import re
+import signal
+import socket
+import struct
+
+import event_log
+import front_end
+import front_end_wire as wire
+import outcome
+import stack
+
+STALE = 0.3     # s, above what wake-ups are late by here
+WATCHDOG = 0.2  # s: 200 ticks of the device
+SINE = 'reference={ signal = "arm_angle", kind = "sine", amplitude = 0.2, frequency_hz = 0.5 }'
+
+
+# One step, and time to get there for a machine whose ticks come late because other tests run.
+STEP = 'reference={ signal = "arm_angle", kind = "steps", steps = [[0.2, 0.1]] }'
+
+
+def processes(*programs):
+    """With real-time priorities, where they are allowed."""
+    return "process=[%s]" % ", ".join(f'{{ program = "hydro-{name}", priority = 10 }}' for name in programs)
+
+
+REMOTE = (processes("driver", "pressure-ctrl", "position-ctrl"),)
+
+
+class FrontEndCase(stack.TestCase):
+    config = "front_end.toml"
+
+    def options(self, url, *settings):
+        options = [f'driver.url="{url}"', f"driver.watchdog_s={WATCHDOG}", f"limits.stale_input_s={STALE}", 'limits.rearm="restart"',
+                   *settings]
+        return [argument for option in options for argument in ("--set", option)]
+
+    def run_by_hand(self, url, *settings, log=None, loops=("position_ctrl", "pressure_ctrl")):
+        network = self.new_url()
+        run = self.stack(stack.config(self.config), "--duration", "0", *self.options(url, SINE, *settings), url=network)
+        run.url = network
+        if log:
+            run.start("logger", "-o", log)
+        for loop in loops:
+            run.start(loop)
+        run.start("driver", *(["--expect", "logger"] if log else []))
+        return run
+
+
+class FrontEndRunTest(FrontEndCase):
+    def arrives(self, link):
+        front = front_end.FrontEnd(self, link)
+        log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
+        launch = self.launch(stack.config(self.config), *self.options(front.url, STEP, *REMOTE), "--log", log_file)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.run_program("hydro-log", "summary", log_file, "--json", json_file)
+        with open(json_file, encoding="utf-8") as file:
+            summary = json.load(file)
+        log = event_log.Log(log_file)
+        self.assertTrue(summary["tracking"]["at_target"], summary)
+        # What acted until a tick answers the tick before the last: the link adds no tick to what a board in the computer takes.
+        delays = sorted(s.tick - s.command_tick for s in log.states if s.command_tick >= 0)
+        self.assertGreater(len(delays), 0.5 * len(log.states))
+        self.assertEqual(delays[len(delays) // 4], 2, "a quarter of a busy machine's commands may be late")
+        self.assertEqual({f.code for f in log.faults} - {"stale_motor_command", "device_silent", "device_fault"}, set())
+        (left,) = log.outputs_left
+        self.assertEqual((left.role, bool(left.accepted), left.voltage), ("driver", True, 0))
+        front.wait_until_zero()
+        # The machine's own word.
+        self.assertAlmostEqual(log.states[-1].arm_angle, 0.1, delta=0.01)
+        self.assertAlmostEqual(front.shown()[5], 0.1, delta=0.02)
+        # The encoder's counter has wrapped; the angle has not.
+        self.assertGreater(max(s.motor_angle for s in log.states), 1)
+        self.assertLess(max(abs(b.motor_angle - a.motor_angle) for a, b in zip(log.states, log.states[1:])), 50)
+
+    # Tests that the arm reaches its reference through driver, link and firmware, over each kind of link.
+    def test_pseudo_terminal(self):
+        self.arrives("pty")
+
+    def test_unix_socket(self):
+        self.arrives("unix")
+
+    def test_udp(self):
+        self.arrives("udp")
+
+
+class LastLineTest(FrontEndCase):
+    """The device puts out zero volts within its own limit, counted in its ticks, whatever becomes of the computer."""
+
+    def driven(self, *settings):
+        self.front = front_end.FrontEnd(self)
+        self.relay = front_end.Relay(self, self.front.port)
+        run = self.run_by_hand(self.relay.url, *settings)
+        self.front.wait_until_driven()
+        return run
+
+    def armed(self):
+        newest = self.relay.newest()
+        return newest and newest[2]["state"] == wire.ARMED
+
+    def assert_tripped_in_time(self):
+        self.front.wait_until_zero()
+        front_end.wait(lambda: not self.armed(), "a sample that says so")
+        age, after = front_end.age_at_trip(self.relay.samples())
+        self.assertEqual(after["voltage"], 0)
+        self.assertEqual(after["state"], wire.TRIPPED)
+        self.assertEqual(after["faults_latched"], wire.WATCHDOG)
+        ticks = round(WATCHDOG * self.front.rate)
+        # A board that is a process may wake up late, and then counts several ticks as one.
+        samples = self.relay.samples()
+        late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
+        self.assertGreaterEqual(age, ticks)
+        self.assertLess(age, ticks + late)
+
+    # Tests a computer that stands still.
+    def test_frozen(self):
+        run = self.driven()
+        run["driver"].send(signal.SIGSTOP)
+        self.assert_tripped_in_time()
+        run["driver"].send(signal.SIGCONT)
+        self.front.wait_until_driven()  # limits.rearm = "restart"
+
+    # Tests a cable that is pulled, and plugged in again.
+    def test_unplugged(self):
+        run = self.driven()
+        self.relay.cut = True
+        self.assert_tripped_in_time()
+        run["driver"].wait_for("no sample from")
+        self.relay.cut = False
+        self.front.wait_until_driven()
+        run["driver"].send(signal.SIGTERM)
+        self.assertEqual(run["driver"].wait(), 0)
+
+    # Tests the end by a signal that nothing can catch.
+    def test_killed(self):
+        run = self.driven()
+        run["driver"].kill()
+        self.front.wait_until_zero()
+        front_end.wait(lambda: not self.armed(), "a sample that says so")
+        samples = self.relay.samples()
+        age, after = front_end.age_at_trip(samples)
+        late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
+        self.assertEqual(after["voltage"], 0)
+        self.assertLess(age, round(WATCHDOG * self.front.rate) + late)
+
+    # Tests that an ordered end leaves the device disarmed, at once.
+    def test_ordered_end(self):
+        run = self.driven()
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 0)
+        self.assertEqual(self.relay.newest()[2]["state"], wire.READY)
+        self.front.wait_until_zero()
+
+    # Tests that a run whose device does not say that its output is at zero has failed, and says so; the device's watchdog makes it zero.
+    def test_end_without_the_device(self):
+        run = self.driven()
+        self.relay.cut = True
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 1, run["driver"].report())
+        self.assertIn("the output has not taken zero volts at the end, and cannot be read back: cut the amplifier's supply",
+                      run["driver"].stderr)
+        self.front.wait_until_zero()
+
+    # Tests that a reset in mid-run is noticed, gives zero volts, and that the device drives again only with its settings.
+    def test_reset(self):
+        run = self.driven()
+        boots = lambda: {fields["boot"] for kind, _, _, fields in self.relay.frames() if kind == wire.IDENTITY}
+        self.assertEqual(len(boots()), 1)
+        self.front.board.send(signal.SIGUSR1)
+        self.front.wait_until_zero()
+        run["driver"].wait_for("device_fault.*has reset itself|has reset itself")
+        self.front.wait_until_driven()
+        self.assertEqual(len(boots()), 2)
+
+    # Tests frames that somebody else has made: those of another session change nothing but counts, on both sides.
+    def test_forged_frames(self):
+        run = self.driven()
+        session, sequence, fields = front_end.wait(self.relay.newest, "a sample")
+        refused = fields["frames_refused"]
+        body = struct.pack("<Iqf", self.relay.command()[3].get("fingerprint", 0), 0, 9.0)
+        for i in range(20):
+            self.relay.device.send(wire.frame(wire.VOLTAGE, session ^ 0x55, 0x70000000 + i, body))
+            self.relay.driver.sendto(self.relay.kept[-1], self.relay.peer)  # once more
+        front_end.wait(lambda: self.relay.newest()[2]["frames_refused"] - refused >= 20, "20 refused frames")
+        self.assertTrue(self.armed())
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 0)
+        self.assertGreaterEqual(int(run["driver"].wait_for(r"(\d+) repeated or late").group(1)), 20)
+        self.assertNotIn(9.0, [s["voltage"] for s in self.relay.samples()])
+
+    # Tests a command made for other settings, whole and of the right session: the device stops, the driver says why.
+    def test_wrong_fingerprint(self):
+        run = self.driven()
+        session, _, _ = front_end.wait(self.relay.newest, "a sample")
+        command = front_end.wait(lambda: (c := self.relay.command()) and c[0] == wire.VOLTAGE and c, "a command")
+        body = struct.pack("<Iqf", command[3]["fingerprint"] ^ 1, command[3]["host_tick"], 5.0)
+        self.relay.device.send(wire.frame(wire.VOLTAGE, session, command[2] + 5, body))
+        run["driver"].wait_for("a command made for other settings")
+        self.assertNotIn(5.0, [s["voltage"] for s in self.relay.samples()])
+
+    # Tests that with limits.rearm = "explicit" a device that has tripped stays at zero until somebody asks.
+    def test_explicit_rearm(self):
+        run = self.driven('limits.rearm="explicit"')
+        self.relay.cut = True
+        self.assert_tripped_in_time()
+        self.relay.cut = False
+        run["driver"].wait_for("put out zero volts by itself")
+        count = len(self.relay.kept)
+        front_end.wait(lambda: len(self.relay.kept) > count + 500, "half a second of samples")
+        self.assertFalse(self.armed())
+        self.run_program("hydro-launch", stack.config(self.config), "--set", f"bus.url={run.url}", "--rearm")
+        self.front.wait_until_driven()
+
+
+LOOP = ('driver.mode="loop_on_device"', processes("driver", "position-ctrl"))
+
+
+class LoopOnDeviceTest(FrontEndCase):
+    """The pressure loop runs on the device; hydro-driver leads it, and there is no hydro-pressure-ctrl."""
+
+    # Tests that the arm reaches its reference, that the commands in the log are the device's own, and that a replay in single precision
+    # agrees with each of them.
+    def test_arm_reaches_its_reference(self):
+        front = front_end.FrontEnd(self, "pty", rate=2000)
+        log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
+        launch = self.launch(stack.config(self.config), *self.options(front.url, STEP, *LOOP), "--log", log_file)
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.run_program("hydro-log", "summary", log_file, "--json", json_file)
+        with open(json_file, encoding="utf-8") as file:
+            self.assertTrue(json.load(file)["tracking"]["at_target"])
+        self.assertAlmostEqual(front.shown()[5], 0.1, delta=0.02)
+        log = event_log.Log(log_file)
+        by_law = [c for c in log.motor_commands if c.status == 0]
+        self.assertGreater(len(by_law), 0.5 * len(log.states))
+        # Single precision, which only the device has.
+        self.assertEqual({struct.unpack("<f", struct.pack("<f", c.voltage))[0] == c.voltage for c in by_law}, {True})
+        replay = self.run_program("hydro-log", "replay", log_file, timeout=120)
+        self.assertRegex(replay.stdout, r"pressure: equal in single precision, \d+ motor commands of the device")
+        self.assertIn("position: identical", replay.stdout)
+
+    # Tests that hydro-set changes the gains of the device while it runs, without a jump of the voltage.
+    def test_hydro_set(self):
+        front = front_end.FrontEnd(self)
+        log_file = self.path("run.lcmlog")
+        run = self.run_by_hand(front.url, *LOOP, log=log_file, loops=("position_ctrl",))
+        front.wait_until_driven()
+        done = self.run_program("hydro-set", stack.config(self.config), "--set", f"bus.url={run.url}", *self.options(front.url, *LOOP),
+                                "pressure.natural_frequency_rad_s=140")
+        self.assertRegex(done.stdout, "acts from tick")
+        ticks = front.shown()[0]
+        self.wait_until(lambda: front.shown()[0] > ticks + 1000, "a second more")
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 0)
+        self.assertEqual(run["logger"].wait(), 0)
+        replay = self.run_program("hydro-log", "replay", log_file, timeout=120)
+        self.assertRegex(replay.stdout, r"pressure: equal in single precision, \d{3,} motor commands of the device")
+        self.assertRegex(replay.stdout, r"pressure: \d+ motor commands are not compared: a change of gains")
+
+    # Tests that the device stops by itself in this mode too.
+    def test_killed(self):
+        front = front_end.FrontEnd(self)
+        relay = front_end.Relay(self, front.port)
+        run = self.run_by_hand(relay.url, *LOOP, loops=("position_ctrl",))
+        front.wait_until_driven()
+        front_end.wait(lambda: (n := relay.newest()) and n[2]["source"] == 2, "the law")
+        run["driver"].kill()
+        front.wait_until_zero()
+        front_end.wait(lambda: relay.newest()[2]["state"] != wire.ARMED, "a sample that says so")
+        samples = relay.samples()
+        age, after = front_end.age_at_trip(samples)
+        late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
+        self.assertEqual(after["voltage"], 0)
+        self.assertLess(age, round(WATCHDOG * front.rate) + late)
+
+    # Tests that a second pressure loop is refused before anything starts.
+    def test_beside_a_pressure_loop(self):
+        process = self.run_program("hydro-driver", stack.config(self.config), *self.options("unix:/nobody", LOOP[0]), expect=2)
+        self.assertIn('found hydro-pressure-ctrl with driver.mode = "loop_on_device"', process.stderr)
+
+
+class EmulatorTest(FrontEndCase):
+    """The whole stack on an emulated microcontroller, its two UARTs and the FPU: 100 ticks a second, which QEMU's serial lines carry, for a
+    machine ten times as slow as the paper's. Gains and times are those of config/front_end.toml, in that machine's time."""
+
+    SLOWER = {"J": 100, "J_a": 100, "b": 10, "c_E": 0.1, "c_I": 0.1}
+    SETTINGS = ("plant.rate_hz=100", "position.sample_interval_s=0.05", "pressure.natural_frequency_rad_s=6", "position.c2=12000",
+                'driver.arm_speed={ source = "derivative", low_pass_hz = 5 }', "driver.watchdog_s=0.5", "limits.stale_input_s=0.6",
+                "time.duration_s=18", STEP)
+
+    def arrives(self, *settings):
+        with open(front_end.MODEL, encoding="utf-8") as file:
+            text = file.read()
+        for name, factor in self.SLOWER.items():
+            text, count = re.subn(rf"(?m)^{name} = (\S+)", lambda found, by=factor: f"{found[0].split()[0]} = {float(found[1]) * by}", text)
+            self.assertEqual(count, 1, name)
+        with open(self.path("slow.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        front = front_end.EmulatedFrontEnd(self, self.path("slow.toml"))
+        log_file = self.path("run.lcmlog")
+        launch = self.launch(stack.config(self.config), *self.options(front.url, f'model.file="{self.path("slow.toml")}"', *self.SETTINGS,
+                                                                      *settings), "--log", log_file)
+        self.assertEqual(launch.wait(90), 0, launch.report())
+        log = event_log.Log(log_file)
+        self.assertRegex(launch.stderr + launch.stdout, r"\(mps2-an386, firmware [\d.]+, 100 ticks/s\)")
+        # The machine's own word, and the driver's.
+        self.assertAlmostEqual(front.shown()[5], 0.1, delta=0.03)
+        self.assertAlmostEqual(log.states[-1].arm_angle, 0.1, delta=0.03)
+        self.assertGreater(max(s.voltage for s in log.states), 1)
+        front.wait_until_zero()
+
+    # Tests that the arm reaches its reference in both modes.
+    def test_remote_io(self):
+        self.arrives(*REMOTE)
+
+    def test_loop_on_device(self):
+        self.arrives(*LOOP)
+
+
+class FrontEndInputTest(FrontEndCase):
+    def refused(self, url, *settings, expect=2):
+        process = self.run_program("hydro-driver", stack.config(self.config), "--set", f"bus.url={self.url}",
+                                   *self.options(url, *settings), expect=expect)
+        lines = [line for line in process.stderr.splitlines() if "[info]" not in line]
+        self.assertEqual(len(lines), 1, process.report())
+        return lines[0]
+
+    # Tests each way in which the device is not there, not the right one, or not ours.
+    def test_refused(self):
+        self.assertIn('driver.url: found "/dev/ttyNone0" (No such file or directory), allowed a serial port',
+                      self.refused("serial:/dev/ttyNone0"))
+        self.assertIn("which is no serial port", self.refused("serial:/dev/null"))
+        self.assertIn("baud=RATE with one of 9600", self.refused("serial:/dev/ttyACM0?baud=123456"))
+        self.assertIn("at least 1070000 for 1000 samples a second", self.refused("serial:/dev/ttyACM0?baud=115200"))
+        self.assertIn("serial:/dev/NAME?baud=RATE, udp://HOST:PORT or unix:/PATH", self.refused("ttyACM0"))
+        self.assertIn("has it been started?", self.refused("unix:" + self.path("nobody")))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as silent:
+            silent.bind(("127.0.0.1", 0))
+            line = self.refused("udp://127.0.0.1:%d" % silent.getsockname()[1], "time.start_timeout_s=0.3")
+        self.assertIn("found nothing that answers at udp://127.0.0.1:", line)
+        self.assertIn("within 0.3 s (time.start_timeout_s), allowed a front end", line)
+
+    # Tests a port that another program has, and a device that another session commands.
+    def test_busy(self):
+        front = front_end.FrontEnd(self, "pty")
+        first = self.run_by_hand(front.url)
+        front.wait_until_driven()
+        self.assertIn("(Device or resource busy), allowed a port that no other program has open", self.refused(front.url))
+        first["driver"].send(signal.SIGINT)
+        self.assertEqual(first["driver"].wait(), 0)
+        over_udp = front_end.FrontEnd(self)
+        self.run_by_hand(over_udp.url)
+        over_udp.wait_until_driven()
+        self.assertIn("another program commands", self.refused(over_udp.url, "time.start_timeout_s=0.5"))
+
+    # Tests devices that cannot do what the configuration asks for.
+    def test_wrong_device(self):
+        front = front_end.FrontEnd(self, rate=1500)
+        self.assertIn("plant.rate_hz: found 1000, allowed a rate that divides the front end's 1500 ticks per second",
+                      self.refused(front.url))
+        self.assertIn("driver.motor_angle.channel: found 7, allowed 0 to 1: the front end has 2 counters",
+                      self.refused(front.url, "plant.rate_hz=500", "position.sample_interval_s=0.006",
+                                   "driver.motor_angle.channel=7"))
+
+    # Tests the table of readings: nothing is armed for it.
+    def test_check_sensors(self):
+        front = front_end.FrontEnd(self)
+        relay = front_end.Relay(self, front.port)
+        check = self.run_program("hydro-driver", stack.config(self.config), "--check-sensors", "--duration", "0.7",
+                                 *self.options(relay.url))
+        self.assertRegex(check.stdout, r"p1 +analog 0 +100\.?\d* psi")
+        self.assertRegex(check.stdout, r"motor_angle +counter 0 +-0\.0\d+ rad")
+        self.assertEqual({s["state"] for s in relay.samples()}, {wire.READY})
+        self.assertEqual(front.changes(), [])
+
+
+if __name__ == "__main__":
+    outcome.main()

@@ -1,0 +1,307 @@
+"""A driver of one's own: the examples of examples/own_driver with their simulated devices, and what hydro-driver-check finds."""
+
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+
+import board
+import event_log
+import outcome
+import stack
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+EXAMPLES = os.path.join(os.environ.get("HYDRO_EXAMPLES", os.path.join(ROOT, "examples")), "own_driver")
+TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))  # where the examples are built
+
+# A box that does not hear what a guardian says: its datagrams have the sequence 0.
+DEAF = """
+import socket, struct, subprocess, sys, threading
+device = subprocess.Popen(sys.argv[3:], stdin=sys.stdin)
+box = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+box.connect(("127.0.0.1", int(sys.argv[2])))
+here = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+here.bind(("127.0.0.1", int(sys.argv[1])))
+driver = []
+def back():
+    while True:
+        try:
+            here.sendto(box.recv(1000), driver[-1])
+        except ConnectionRefusedError:
+            pass
+started = False
+while True:
+    datagram, address = here.recvfrom(1000)
+    if not driver:
+        threading.Thread(target=back, daemon=True).start()
+    driver.append(address)
+    sequence = struct.unpack("<I", datagram[4:8])[0]
+    started = started or sequence > 0
+    if sequence > 0 or not started:
+        box.send(datagram)
+"""
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+class Device:
+    """A simulated device that a test starts itself, and so can ask when its driver has gone."""
+
+    def __init__(self, case, *argv):
+        self.child = subprocess.Popen(argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1)
+        case.addCleanup(self.end)
+        case.assertEqual(self.child.stdout.readline(), "ready\n")
+
+    def end(self):
+        self.child.kill()
+        self.child.communicate()
+
+    def ask(self, word):
+        self.child.stdin.write(word + "\n")
+        return self.child.stdout.readline().strip()
+
+    def output(self):
+        return float(self.ask("output").split()[1])
+
+
+class OwnDriverCase(stack.TestCase):
+    def setUp(self):
+        super().setUp()
+        self.port = free_port()
+
+    def config(self, example="udp_box", *changes, name=None):
+        """An example's configuration here, with its programs as they are built."""
+        with open(os.path.join(EXAMPLES, example, example + ".toml"), encoding="utf-8") as file:
+            text = file.read()
+        built = {f"build/{example}": os.path.join(TOOLS, example), "build/simulated_device": os.path.join(TOOLS, example + "_device"),
+                 "../../../config": stack.CONFIG, "5005": str(self.port), "build/can.sock": "can.sock"}
+        for old, new in (*built.items(), *changes):
+            self.assertIn(old, text) if (old, new) in changes else None
+            text = text.replace(old, new)
+        # Real-time priorities, where allowed: the test machine may have much else to do. The device inherits its driver's.
+        text = re.sub(r'(?m)^((role = "driver")|(program = "hydro-p.*"))$', r"\1\npriority = 10", text)
+        path = self.path((name or example) + ".toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def device(self):
+        return Device(self, os.path.join(TOOLS, "udp_box_device"), str(self.port), os.path.join(stack.CONFIG, "models", "table1.toml"))
+
+    def check(self, *arguments, expect=0):
+        return self.run_program("hydro-driver-check", *arguments, expect=expect, timeout=150)
+
+
+class OwnDriverTest(OwnDriverCase):
+    # Tests that hydro-launch runs each example with its simulated device: the arm reaches its target through scales, inputs and
+    # outputs of the example, and it is the driver's run in the log.
+    def test_arm_reaches_its_target(self):
+        for example in ("udp_box", "cia402"):
+            with self.subTest(example):
+                log_file = self.path(example + ".lcmlog")
+                launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
+                self.assertEqual(launch.wait(60), 0, launch.report())
+                self.assertRegex(launch.stderr + launch.stdout, "stands for the device.*nothing real moves")
+                log = event_log.Log(log_file)
+                self.assertAlmostEqual(log.states[-1].arm_angle, 0.2, delta=0.02)
+                self.assertEqual(log.descriptions[0].program, example)
+                self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
+                self.assertEqual([f.text for f in log.faults if f.code.startswith(("sensor", "device", "output"))], [])
+                (left,) = log.outputs_left
+                self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
+                self.assertLess(abs(left.voltage), 0.01)
+                self.assertIn("driver", {s.role for s in log.statistics})
+                self.assertIn('role = "driver"', log.descriptions[0].config_text)
+
+    # Tests that each of them, and hydro-driver on the simulated board, keeps what docs/safety.md promises.
+    def test_promises(self):
+        for example in ("udp_box", "cia402"):
+            with self.subTest(example):
+                table = self.check(self.config(example)).stdout
+                self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
+                self.assertRegex(table, r"(?m)^device silent .* kept .*device_silent")
+                self.assertRegex(table, r"(?m)^device gives NaN .* kept .*sensor_p1")
+                self.assertRegex(table, r"(?m)^read-back lies .* kept .*output_differs")
+
+    def test_promises_of_ours(self):
+        os.environ["LD_PRELOAD"] = board.LIBRARY
+        self.addCleanup(os.environ.pop, "LD_PRELOAD")
+        file = self.path("board")
+        device = [board.ACTUATOR, file, os.path.join(stack.CONFIG, "models", "table1.toml")]
+        table = self.check(stack.config("driver.toml"), "--set", f"driver.device={file}", "--set", f"driver.simulated_device={device}",
+                           "--set", "limits.stale_input_s=0.3").stdout
+        self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
+        self.assertRegex(table, r"(?m)^device silent .* kept .*board_error, exit code 1")
+        self.assertRegex(table, r"(?m)^read-back lies .* kept .*said at the end: ")
+
+    # Tests that a broken promise is found: the zero of a guardian that its device does not hear.
+    def test_broken_promise(self):
+        with open(self.path("deaf.py"), "w", encoding="utf-8") as file:
+            file.write(DEAF)
+        behind = free_port()
+        device = [sys.executable, "deaf.py", str(self.port), str(behind), os.path.join(TOOLS, "udp_box_device"), str(behind),
+                  os.path.join(stack.CONFIG, "models", "table1.toml")]
+        config = self.config("udp_box")
+        table = self.check(config, "--set", f"driver.simulated_device={device}", "--only", "SIGKILL", "--only", "dead loops", expect=1).stdout
+        self.assertRegex(table, r"(?m)^SIGKILL .* BROKEN +the machine has -?\d")
+        self.assertRegex(table, r"(?m)^dead loops .* kept ")
+        self.assertRegex(table, r"(?m)^1 kept, 1 broken, 0 not tried$")
+
+    # Tests that a driver that is killed under hydro-launch, which then kills all that is left of its group, still leaves
+    # zero volts, by its guardian and before the box's own watchdog; that the launch names it and ends with 1.
+    def test_killed_under_hydro_launch(self):
+        device = self.device()
+        launch = self.launch(self.config(), "--duration", "0", "--set", "driver.simulated_device=[]",
+                             "--set", 'reference={ signal = "arm_angle", kind = "sine", amplitude = 0.2, frequency_hz = 1.0 }',
+                             "--log", self.path("run.lcmlog"))
+        self.wait_until(lambda: abs(device.output()) > 0.3, "a voltage")
+        log = stack.LiveLog(self, self.path("run.lcmlog"))
+        pid = log.wait_for("HYDRO_PROCESS_STATUS", lambda s: s.role == "driver", "the driver").pid
+        os.kill(pid, signal.SIGKILL)
+        self.assertEqual(launch.wait(30), 1, launch.report())
+        self.assertRegex(launch.stderr, r"udp_box \(driver\) was killed by signal 9")
+        self.assertRegex(launch.stderr, "make sure that the output is at zero")
+        self.wait_until(lambda: device.output() == 0, "zero volts")
+
+    # Tests that a launcher that hangs is noticed by a driver of the user's own as by ours: zero volts.
+    def test_launcher_hangs(self):
+        device = self.device()
+        launch = self.launch(self.config(), "--duration", "0", "--set", "driver.simulated_device=[]", "--set", 'limits.rearm="restart"',
+                             "--set", 'reference={ signal = "arm_angle", kind = "sine", amplitude = 0.2, frequency_hz = 1.0 }',
+                             "--log", self.path("run.lcmlog"))
+        self.wait_until(lambda: abs(device.output()) > 0.3, "a voltage")
+        log = stack.LiveLog(self, self.path("run.lcmlog"))
+        launch.send(signal.SIGSTOP)
+        log.wait_for("HYDRO_FAULT", lambda f: f.code == "supervisor_gone" and f.active, "supervisor_gone")
+        self.wait_until(lambda: device.output() == 0, "zero volts")
+        launch.send(signal.SIGCONT)
+        self.wait_until(lambda: abs(device.output()) > 0.3, "a voltage again")
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(30), 0, launch.report())
+
+    # Tests --check-sensors of a driver of the user's own, started by hand.
+    def test_check_sensors(self):
+        config = self.config()
+        good = subprocess.run([os.path.join(TOOLS, "udp_box"), config, "--check-sensors", "--duration", "0.3"], capture_output=True,
+                              text=True, timeout=30, check=False)
+        self.assertEqual(good.returncode, 0, good.stderr)
+        self.assertRegex(good.stdout, r"p1 +analog ai0 +0[.]7000 V +100 psi\n")
+        self.assertRegex(good.stdout, r"motor_angle +counter encoder +0 +0 rad\n")
+        self.assertRegex(good.stdout, r"arm_speed +rate of the angle")
+
+
+class OwnDriverInputTest(OwnDriverCase):
+    def refused(self, *changes, example="udp_box", program="hydro-launch", more=()):
+        process = self.run_program(program, self.config(example, *changes), "--set", f"bus.url={self.url}", *more, expect=2)
+        self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+        return process.stderr
+
+    # Tests what the configuration may not say of a driver: each refused before anything is started, in one line.
+    def test_configuration(self):
+        cases = [
+            ((('kind = "own"', 'kind = "comedi"'),), 'driver: "own": found an unknown key'),
+            ((('kind = "own"\n', ""),), 'driver: "own": found an unknown key'),
+            ((('device = "udp', '# "'),), "driver.device: "),
+            ((('role = "driver"', 'role = "plant"'),), r'process.role: found "plant", allowed "position_ctrl", "pressure_ctrl", "driver"; '
+             "the plant is always hydro-plant; a machine of your own is a driver"),
+            ((('input = "ai0"', 'input = 0'),), "driver.p1.input: found 0, allowed"),
+            ((('minimum = 0.4', 'minimum_V = 0.4'),), 'driver.p1: "minimum_V": found an unknown key'),
+            ((('minimum = 0.4', 'minimum = 5'),), "driver.p1.minimum: found 5, allowed below maximum = 4.6"),
+            ((('simulated_device = ["', 'simulated_device = [5, "'),), "driver.simulated_device: found 5 in it, allowed the program"),
+            ((('[driver.own]', 'own = 3\n[driver.owned]'),), "driver.own"),
+        ]
+        for changes, says in cases:
+            self.assertRegex(self.refused(*changes), says)
+        self.assertRegex(self.refused(more=("--time", "lockstep")), r'time.mode: found "lockstep", allowed "realtime" with \S*udp_box \(driver\)')
+        two = ('[[process]]\nprogram = "hydro-pressure-ctrl"', '[[process]]\nprogram = "hydro-plant"\n[[process]]\nprogram = "hydro-pressure-ctrl"')
+        self.assertRegex(self.refused(two), r"udp_box \(driver\)")
+
+    # Tests that hydro-driver refuses a configuration for a driver of the user's own, and says what to write.
+    def test_hydro_driver_refuses(self):
+        self.assertRegex(self.refused(program="hydro-driver"), r'driver.kind: found "own", allowed "comedi".* with hydro-driver; a driver of your own '
+                         r'is started by \[\[process\]\] with command = \[\.\.\.\] and role = "driver"')
+
+    # Tests what only the driver knows: exit 2 and one line, which names the input, the key of its own, the device's address.
+    def test_driver(self):
+        for changes, says in (
+                ((('input = "ai3"', 'input = "ai9"'),), r'driver.arm_angle.input: found "ai9", allowed "ai0", "ai1", "ai2" or "ai3", which udp://\S+ has'),
+                ((('input = "encoder"', 'input = "ai1"'),), 'driver.motor_angle.input: found "ai1", allowed "encoder"'),
+                ((('answer_ms = 1000', 'answer_ms = 0'),), "driver.own.answer_ms: found 0, allowed"),
+                ((('answer_ms = 1000', 'anser_ms = 1000'),), 'driver.own: "anser_ms": found an unknown key, allowed "answer_ms"'),
+                ((('device = "udp://127.0.0.1:', 'device = "udp:/127.0.0.1:'),), "driver.device: found .*allowed udp://HOST:PORT")):
+            process = subprocess.run([os.path.join(TOOLS, "udp_box"), self.config("udp_box", *changes), "--set", f"bus.url={self.url}"],
+                                     capture_output=True, text=True, timeout=30, check=False)
+            self.assertEqual(process.returncode, 2, process.stderr)
+            self.assertRegex(process.stderr.splitlines()[-1], says)
+        env = {name: value for name, value in os.environ.items() if name != "HYDRO_CONFIG"}  # these tests' own folder has that name
+        nobody = subprocess.run([os.path.join(TOOLS, "udp_box")], capture_output=True, text=True, timeout=30, check=False, env=env)
+        self.assertEqual((nobody.returncode, nobody.stderr.count("\n")), (2, 1), nobody.stderr)
+        self.assertIn("found no CONFIG", nobody.stderr)
+
+    # Tests that a device that does not answer ends the program with 1 and its address.
+    def test_nobody_answers(self):
+        config = self.config("udp_box", ("answer_ms = 1000", "answer_ms = 50"))
+        process = subprocess.run([os.path.join(TOOLS, "udp_box"), config, "--set", f"bus.url={self.url}", "--set", "driver.simulated_device=[]"],
+                                 capture_output=True, text=True, timeout=30, check=False)
+        self.assertEqual(process.returncode, 1, process.stderr)
+        self.assertRegex(process.stderr, rf"udp://127.0.0.1:{self.port} has not answered within 50 ms")
+
+    # Tests what hydro-driver-check refuses.
+    def test_check(self):
+        config = self.config()
+        for arguments, says in (
+                ((config, "--only", "SIGFOO"), '--only: found "SIGFOO", allowed "start", '),
+                ((config, "--set", "driver.simulated_device=[]"), "driver.simulated_device: found nothing, allowed a program"),
+                ((config, "--set", 'driver.simulated_device=["./nothing"]'), "driver.simulated_device: found \"./nothing\", and there is no program"),
+                ((stack.config("demo.toml"),), "process: found no driver")):
+            process = self.check(*arguments, expect=2)
+            self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+            self.assertIn(says, process.stderr)
+
+    # Tests that what a simulated device says is neither kept nor waited for without an end, by the check and by the driver.
+    def test_device_that_talks(self):
+        config = self.config()
+        for says, instead in (("'x' * 10_000_000", "says a line of more than 4096 bytes"), ("'not ready'", "ended before")):
+            device = ["--set", f"driver.simulated_device={[sys.executable, '-c', f'print({says})']}"]
+            check = self.check(config, *device, expect=2)
+            self.assertEqual(check.stderr.count("\n"), 1, check.stderr)
+            self.assertRegex(check.stderr, rf'driver.simulated_device: found \S+, which {instead}, allowed a program that says "ready" within 10 s')
+            driver = subprocess.run([os.path.join(TOOLS, "udp_box"), config, "--set", f"bus.url={self.url}", *device], capture_output=True,
+                                    text=True, timeout=30, check=False)
+            self.assertEqual(driver.returncode, 1, driver.stderr)
+            self.assertRegex(driver.stderr, rf'driver.simulated_device: \S+ must say "ready" within 5 s, but {instead}; start it by hand')
+
+    # Tests what new-driver writes, that nothing is overwritten, and bad names.
+    def test_new_driver(self):
+        made = self.run_program("hydro-launch", "new-driver", "mine")
+        self.assertIn("wrote mine/: mine.cc", made.stdout)
+        self.assertEqual(sorted(os.listdir(self.path("mine"))),
+                         ["CMakeLists.txt", "frames.h", "mine.cc", "mine.toml", "simulated_device.cc"])
+        with open(self.path("mine/mine.toml"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertNotIn("udp_box", text)
+        self.assertIn('command = ["build/mine"]', text)
+        again = self.run_program("hydro-launch", "--new-driver", "mine", expect=2)
+        self.assertRegex(again.stderr, "mine: is there already and is not overwritten")
+        for name in ("a/b", "1st", "", "simulated_device"):
+            self.assertRegex(self.run_program("hydro-launch", "--new-driver", name, expect=2).stderr, "--new-driver.*allowed|new-driver")
+        self.assertFalse(os.path.exists(self.path("simulated_device")))
+        # Where it is built, it runs: what the configuration names is where CMake puts it.
+        os.mkdir(self.path("mine/build"))
+        shutil.copy(os.path.join(TOOLS, "udp_box"), self.path("mine/build/mine"))
+        shutil.copy(os.path.join(TOOLS, "udp_box_device"), self.path("mine/build/simulated_device"))
+        with open(self.path("mine/mine.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("5005", str(self.port)))
+        launch = self.launch(self.path("mine/mine.toml"), "--duration", "0.5", "--set", "limits.stale_input_s=0.3")
+        self.assertEqual(launch.wait(60), 0, launch.report())
+
+
+if __name__ == "__main__":
+    outcome.main()

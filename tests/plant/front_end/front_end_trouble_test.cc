@@ -1,0 +1,252 @@
+// What damage on the way, and devices that are not the right ones, do to a rig behind a front end.
+#include <gmock/gmock.h>
+
+#include "base/input_error.h"
+#include "tests/plant/front_end/device_bench.h"
+
+namespace hydro::plant {
+namespace {
+
+using settings::InputErrorOf;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+float VoltageOf(int64_t host_tick) { return static_cast<float>(host_tick % 13) - 6; }
+float PressureOf(uint64_t tick) { return static_cast<float>(tick % 1000); }
+
+struct Outcome {
+  FrameCounts counts;
+  int faults = 0;
+  int wrong = 0;   // samples or voltages that nobody has sent
+  int oldest = 0;  // ms, of the newest sample
+  uint32_t trips = 0;
+  bool connected = false;
+};
+
+// Two seconds of driving over such a wire.
+Outcome Driven(const Damage& damage) {
+  DeviceBench bench(kFrontEndText, damage);
+  bench.before_tick = [&](uint64_t tick) { bench.readings.analog_V[0] = PressureOf(tick) / 500; };
+  Outcome outcome;
+  outcome.connected = bench.Connect(2000);
+  if (!outcome.connected) return outcome;
+  for (int i = 0; i < 2000; ++i) {
+    bench.Tick(VoltageOf(bench.tick + 1));
+    outcome.faults += !bench.rig->faults().empty();
+    const hydro_sample& sample = bench.rig->connection().sample();
+    const bool as_commanded = sample.source == HYDRO_SOURCE_ZERO ||
+                              sample.voltage == VoltageOf(sample.host_tick) || sample.voltage == 0;
+    outcome.wrong += !as_commanded || std::fabs(sample.value[HYDRO_P1] - PressureOf(sample.tick)) > 1e-3;
+    const auto age = static_cast<int>((bench.device.tick - sample.tick) / DeviceBench::kTicks);
+    if (i > 20) outcome.oldest = std::max(outcome.oldest, age);
+  }
+  outcome.counts = bench.rig->connection().counts();
+  outcome.trips = bench.device.trips;
+  return outcome;
+}
+
+// Tests that frames which are flipped in a bit, lost, doubled or late, up to one in a hundred of each, change
+// nothing but counts.
+TEST(FrontEndTroubleTest, DamageChangesNothingButCounts) {
+  int64_t seen = 0;
+  for (const double rate : {0.0, 1e-5, 1e-4, 1e-3, 1e-2}) {
+    const Outcome outcome =
+        Driven({.flipped_frame = rate, .lost_frame = rate, .doubled_frame = rate, .late_frame = rate});
+    ASSERT_TRUE(outcome.connected) << rate;
+    EXPECT_EQ(outcome.faults, 0) << rate;
+    EXPECT_EQ(outcome.wrong, 0) << rate;
+    EXPECT_EQ(outcome.trips, 0U) << rate;
+    const FrameCounts& counts = outcome.counts;
+    const int64_t all =
+        counts.lost + counts.damaged + counts.refused + counts.device_damaged + counts.device_refused;
+    EXPECT_GE(all, seen) << rate;
+    seen = all;
+    if (rate == 0) {
+      EXPECT_EQ(all, 0);
+      EXPECT_EQ(outcome.oldest, 1) << "the newest sample is that of the tick before";
+    }
+    if (rate < 1e-2) continue;
+    EXPECT_GT(counts.lost, 0);
+    EXPECT_GT(counts.damaged, 0);
+    EXPECT_GT(counts.refused, 0);
+    EXPECT_GT(counts.device_damaged, 0);
+    EXPECT_GT(counts.device_refused, 0);
+  }
+}
+
+// Tests the same with errors in each bit: at 1e-2 no frame arrives, and that is silence, not a wrong one.
+TEST(FrontEndTroubleTest, BitErrors) {
+  for (const double rate : {1e-5, 1e-4, 1e-3}) {
+    const Outcome outcome = Driven({.bit = rate});
+    ASSERT_TRUE(outcome.connected) << rate;
+    EXPECT_EQ(outcome.faults, 0) << rate;
+    EXPECT_EQ(outcome.wrong, 0) << rate;
+    EXPECT_EQ(outcome.trips, 0U) << rate;
+    EXPECT_GT(outcome.counts.damaged, 0) << rate;
+  }
+  EXPECT_FALSE(Driven({.bit = 1e-2}).connected);
+}
+
+// Tests that a wire which suddenly carries nothing whole is a fault, that nothing is obeyed then, and that
+// all is well once it is.
+TEST(FrontEndTroubleTest, WireThatBreaksAndHeals) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  bench.to_device = Wire({.bit = 0.02}, 3);
+  bench.to_computer = Wire({.bit = 0.02}, 4);
+  bench.Ticks(150, 3);
+  EXPECT_NE(bench.Fault("device_silent"), "");
+  EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
+  EXPECT_EQ(bench.volts, 0);
+  bench.to_device = bench.to_computer = Wire({}, 5);
+  bench.Ticks(200, 3);
+  EXPECT_TRUE(bench.rig->faults().empty());
+  EXPECT_EQ(bench.volts, -1.5);
+}
+
+// Tests that commands which no longer reach the device are noticed by the age of what it obeys, where its
+// samples still come.
+TEST(FrontEndTroubleTest, OneWay) {
+  DeviceBench bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05", "watchdog_s = 1"));
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  bench.to_device = Wire({.lost_frame = 1}, 3);
+  int ticks = 0;
+  for (; ticks < 500 && bench.rig->faults().empty(); ++ticks) bench.Tick(3);
+  EXPECT_NEAR(ticks, 103, 3);
+  EXPECT_THAT(bench.Fault("device_silent"), HasSubstr("obeys commands of"));
+}
+
+// Tests the same where this process wakes up late all the time, and so skips ticks.
+TEST(FrontEndTroubleTest, OneWayAndLate) {
+  DeviceBench bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05", "watchdog_s = 1"));
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  bench.to_device = Wire({.lost_frame = 1}, 3);
+  const int64_t begin = bench.tick;
+  while (bench.tick < begin + 500 && bench.rig->faults().empty()) {
+    bench.tick += 4;
+    bench.Tick(3);
+  }
+  EXPECT_NEAR(static_cast<double>(bench.tick - begin), 103, 6);
+}
+
+std::string WhyNot(const std::function<void(DeviceBench&)>& change) {
+  DeviceBench bench;
+  change(bench);
+  EXPECT_FALSE(bench.Connect(300));
+  const LinkTrouble trouble = bench.rig->connection().WhyNot();
+  return trouble.found + ", allowed " + trouble.allowed;
+}
+
+Bytes Encoded(hydro_frame frame) {
+  uint8_t wire[HYDRO_WIRE_MAX];
+  const size_t count = hydro_encode(&frame, wire);
+  return Bytes(wire, wire + count);
+}
+
+// Tests what is said when no front end answers, or one that is not ours to command.
+TEST(FrontEndTroubleTest, NobodyOrSomebodyElse) {
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) { bench.device_runs = false; }),
+              HasSubstr("nothing that answers, allowed a front end"));
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) {
+                bench.device_runs = false;
+                bench.rig->Poll();
+                bench.SendToComputer({'H', 'e', 'l', 'l', 'o', '\r', '\n', 0, 'x', 0});
+              }),
+              AllOf(HasSubstr("10 bytes that are no frames"), HasSubstr("another baud rate")));
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) {
+                bench.device_runs = false;
+                bench.rig->Poll();
+                hydro_frame hello{};
+                hello.kind = HYDRO_HELLO;
+                bench.SendToComputer(Encoded(hello));
+              }),
+              HasSubstr("only what this computer itself had sent"));
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) {
+                bench.device_runs = false;
+                bench.rig->Poll();
+                uint8_t frame[76] = {2, HYDRO_IDENTITY};  // of protocol 2
+                const uint32_t crc = hydro_crc32(0, frame, 72);
+                for (int i = 0; i < 4; ++i) frame[72 + i] = static_cast<uint8_t>(crc >> (8 * i));
+                Bytes wire = {0, 0};
+                size_t code_at = 1;
+                for (const uint8_t byte : frame) {
+                  if (byte == 0) {
+                    wire[code_at] = static_cast<uint8_t>(wire.size() - code_at);
+                    code_at = wire.size();
+                  }
+                  wire.push_back(byte);
+                }
+                wire[code_at] = static_cast<uint8_t>(wire.size() - code_at);
+                wire.push_back(0);
+                bench.SendToComputer(wire);
+              }),
+              HasSubstr("a front end that speaks protocol 2, allowed protocol 1"));
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) {
+                bench.device.session = 0xabcd;
+                bench.before_tick = [&](uint64_t) { bench.device.heard_ticks = 0; };
+              }),
+              HasSubstr("another program commands (its session is 0000abcd)"));
+  EXPECT_THAT(WhyNot([](DeviceBench& bench) { bench.link->plugged = false; }),
+              HasSubstr("\"cable\" (No such file or directory)"));
+}
+
+// Tests that a session which nobody uses any more is taken over.
+TEST(FrontEndTroubleTest, TakesOver) {
+  DeviceBench bench;
+  bench.device.session = 0xabcd;
+  EXPECT_TRUE(bench.Connect());
+  EXPECT_EQ(bench.device.session, 0x1234U);
+}
+
+// What is said of a device that is wrong for the configuration.
+std::string Wrong(
+    const std::string& driver,
+    const std::function<void(hydro_board_facts&)>& change = [](hydro_board_facts&) {}) {
+  DeviceBench bench(driver);
+  change(bench.facts);
+  bench.Reset();
+  return InputErrorOf([&] { bench.Connect(); });
+}
+
+// Tests that a device which cannot do what the configuration names is refused, with the key.
+TEST(FrontEndTroubleTest, WrongDevice) {
+  const std::string text = kFrontEndText;
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    return settings::Replaced(text, from, to);
+  };
+  EXPECT_EQ(Wrong(text), "");
+  EXPECT_EQ(Wrong(text, [](auto& facts) { facts.tick_rate_hz = 4500; }),
+            "stack.toml: plant.rate_hz: found 1000, allowed a rate that divides the front end's 4500 ticks "
+            "per second");
+  EXPECT_EQ(
+      Wrong(text, [](auto& facts) { facts.analog_inputs = 2; }),
+      "stack.toml: driver.arm_angle.channel: found 2, allowed 0 to 1: the front end has 2 analog inputs");
+  EXPECT_EQ(Wrong(text, [](auto& facts) { facts.counters = 0; }),
+            "stack.toml: driver.motor_angle.channel: found 0, allowed a front end with counters: this one "
+            "has none");
+  EXPECT_EQ(Wrong(changed("scale = -2.0", "scale = -2.0\noffset = 30"),
+                  [](auto& facts) { facts.output_max_V = 5; }),
+            "stack.toml: driver.voltage.offset: found 30, allowed one with which zero volts are within the "
+            "front end's output, -10 "
+            "to 5 V at the terminal");
+  EXPECT_EQ(Wrong(changed("0.05", "0.0001")),
+            "stack.toml: driver.watchdog_s: found 0.0001, allowed 0.0002 to 1: from one tick of the front "
+            "end to a second");
+}
+
+// Tests that a serial line that is too slow for the samples is refused before anything is sent.
+TEST(FrontEndTroubleTest, SlowLine) {
+  const std::string slow =
+      settings::Replaced(kFrontEndText, "udp://127.0.0.1:7", "serial:/dev/ttyS0?baud=115200");
+  EXPECT_EQ(InputErrorOf([&] { const DeviceBench bench(slow); }),
+            "stack.toml: driver.url: found baud=115200, allowed at least 1070000 for 1000 samples a second "
+            "of 107 bytes (plant.rate_hz)");
+  EXPECT_EQ(InputErrorOf([&] { const DeviceBench bench(settings::Replaced(slow, "115200", "1152000")); }),
+            "");
+}
+
+}  // namespace
+}  // namespace hydro::plant

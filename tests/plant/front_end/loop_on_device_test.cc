@@ -1,0 +1,104 @@
+// The pressure loop on the device: what the rig passes on, and what comes back.
+#include <gmock/gmock.h>
+
+#include "tests/plant/front_end/device_bench.h"
+
+namespace hydro::plant {
+namespace {
+
+using pressure_ctrl::PressureLawSettings;
+using Answer = pressure_ctrl::DeviceLoop::Answer;
+
+PressureLawSettings Law(double k_p) {
+  PressureLawSettings law;
+  law.gains = {.k_p = k_p, .k_v = 0.5};
+  law.voltage_limit = 10;
+  law.reference_feedforward = 0.002;
+  return law;
+}
+
+class LoopOnDeviceTest : public ::testing::Test {
+ protected:
+  LoopOnDeviceTest()
+      : bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05",
+                                 "watchdog_s = 0.05\nmode = \"loop_on_device\"")) {
+    bench.readings.analog_V[1] = 0.35F;  // p2 - p1 = 50
+    EXPECT_TRUE(bench.Connect());
+  }
+
+  // A tick in which the application follows `reference`, as PressureApp does between two ticks of the plant.
+  Answer Follow(double reference, const PressureLawSettings& law) {
+    bench.measured = bench.rig->Read(++bench.tick);
+    bench.rig->Obey(bench.rig->faults().empty() ? bench.tick : -1);
+    bench.rig->Drive(answer.voltage);
+    answer = bench.rig->Follow(state_t{}, reference, law);
+    bench.RunDevice();
+    bench.Wait();
+    return answer;
+  }
+
+  DeviceBench bench;
+  Answer answer;
+};
+
+// Tests that the device acts by eq. (16) with the reference and gains that it is sent, once it is armed, and
+// that its answers are what it has put out for the very state that was read.
+TEST_F(LoopOnDeviceTest, AnswersEachState) {
+  EXPECT_EQ(bench.device.settings.mode, HYDRO_LOOP_ON_DEVICE);
+  EXPECT_FALSE(Follow(100, Law(0.02)).by_law) << "not armed";
+  for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
+  EXPECT_TRUE(answer.by_law);
+  EXPECT_EQ(answer.pressure_ref, 100);
+  EXPECT_FLOAT_EQ(static_cast<float>(answer.voltage), 0.02F * (100 - 50) + 0.002F * 100);
+  EXPECT_FALSE(answer.saturated);
+  for (int i = 0; i < 10; ++i) Follow(700, Law(0.02));
+  EXPECT_EQ(answer.voltage, 8) << "limit_V";
+  EXPECT_TRUE(answer.saturated);
+  EXPECT_EQ(bench.rig->Drive(answer.voltage), 8) << "what acts is what the device says";
+}
+
+// Tests that other gains let the voltage where it was, and that the difference then passes in a straight
+// line.
+TEST_F(LoopOnDeviceTest, GainsChangeWithoutAJump) {
+  for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
+  const double before = answer.voltage, after = 0.04 * 50 + 0.2;
+  std::vector<double> voltages;
+  for (int i = 0; i < 110; ++i) voltages.push_back(Follow(100, Law(0.04)).voltage);
+  for (size_t i = 1; i < voltages.size(); ++i) {
+    EXPECT_LE(std::fabs(voltages[i] - voltages[i - 1]), 1.01 * (after - before) / 100) << i;
+  }
+  EXPECT_NEAR(voltages[1], before, 0.03 * (after - before));
+  EXPECT_NEAR(voltages[50], (before + after) / 2, 0.03 * (after - before));
+  EXPECT_NEAR(voltages.back(), after, 1e-6);
+}
+
+// Tests that a voltage is put out where the application follows nothing, and zero where nothing may be
+// obeyed.
+TEST_F(LoopOnDeviceTest, ReleaseAndHold) {
+  for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
+  ASSERT_EQ(bench.device.sample.source, HYDRO_SOURCE_LAW);
+  bench.rig->Release();
+  bench.Ticks(3, 2.5);
+  EXPECT_EQ(bench.device.sample.source, HYDRO_SOURCE_VOLTAGE);
+  EXPECT_EQ(bench.device.sample.voltage, 2.5F);
+  for (int i = 0; i < 3; ++i) Follow(100, Law(0.02));
+  ASSERT_EQ(bench.device.sample.source, HYDRO_SOURCE_LAW);
+  for (int i = 0; i < 3; ++i) {
+    bench.Tick(1, /*obeys=*/false);
+    EXPECT_FALSE(bench.rig->Follow(state_t{}, 100, Law(0.02)).by_law);
+    EXPECT_EQ(bench.volts, 0) << "the hold is stronger than the loop";
+  }
+}
+
+// Tests that a reference beyond what the configuration allows stops the device.
+TEST_F(LoopOnDeviceTest, ReferenceLimit) {
+  for (int i = 0; i < 10; ++i) Follow(100, Law(0.02));
+  const double limit = bench.device.settings.reference_limit;
+  bench.device.settings.reference_limit = 90;  // as if it had a limit of its own
+  for (int i = 0; i < 3; ++i) Follow(100, Law(0.02));
+  EXPECT_EQ(bench.volts, 0);
+  EXPECT_GT(limit, 90);
+}
+
+}  // namespace
+}  // namespace hydro::plant
