@@ -24,14 +24,14 @@ struct FallsFromCorner {
                               .meaning = "speed up to which T_pmax is there",
                               .starts = {0.5},
                               .scale = Scale::kSpeed,
-                              .example = 5},
+                              .example = 4},
                              {.name = "speed_range",
                               .unit = "rad/s",
                               .min_allowed = false,
                               .meaning = "from there to the speed at which no torque is left",
                               .starts = {0.7, 1.5},
                               .scale = Scale::kSpeed,
-                              .example = 295}},
+                              .example = 16}},
               // motor.speed_torque_limit is nearly the same with one parameter less.
               .on_request = true},
      .make = MakeEffect<TorqueLine<FallsFromCorner>>});
