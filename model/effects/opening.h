@@ -22,8 +22,10 @@ T OpeningMargin(int position, const T& drive) {
 
 template <class T>
 int8_t NextOpening(int position, const T& drive) {
-  if (position != 1) return 1;
-  return drive < T(0.5) ? 0 : 2;
+  if (position == 1) return drive < T(0.5) ? 0 : 2;
+  // At a start, and where a motion is known at samples only, the drive may be beyond the ramp.
+  if (position <= 0) return drive < T(1.0) ? 1 : 2;
+  return drive > T(0.0) ? 1 : 0;
 }
 
 }  // namespace hydro::model

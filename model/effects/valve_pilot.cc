@@ -3,8 +3,10 @@
 // side 1, with a pilot piston of `ratio` times the seat's area,
 //   drive = (p3 - p1 + ratio (p2 - p3) - cracking)/range,
 // from closed at 0 to wide open at 1, and the flow out of the side is conductance opening (p1 - p3). The piston pushes and never
-// pulls: p2 below p3 counts as p3. They replace the ideal valves. Switches: the opening of each side, and for each side whether
-// its piston pushes (1).
+// pulls: p2 below p3 counts as p3, a corner of what opens the valve and not of its flow. They replace the ideal valves. One switch
+// for each side.
+
+#include <algorithm>
 
 #include "model/effects/effect.h"
 #include "model/effects/opening.h"
@@ -15,7 +17,7 @@ namespace {
 
 class Pilot : public EffectOf<Pilot> {
  public:
-  int switches() const override { return 4; }
+  int switches() const override { return 2; }
   bool replaces_valves() const override { return true; }
 
   template <class T>
@@ -29,18 +31,12 @@ class Pilot : public EffectOf<Pilot> {
     T* own = margin + kFirstEffectSwitch + first_switch();
     for (int side = 0; side < 2; ++side) {
       own[side] = OpeningMargin(Position(x, side), Drive(x, side));
-      own[2 + side] = Pushes(x, side) ? Piloting(x, side) : T(-Piloting(x, side));
     }
   }
 
   template <class T>
   void OwnCross(int which, const Terms<T>& x, T* /*state*/, Mode* mode) const {
-    int8_t& position = mode->effects[first_switch() + which];
-    if (which < 2) {
-      position = NextOpening(Position(x, which), Drive(x, which));
-    } else {
-      position = Pushes(x, which - 2) ? 0 : 1;
-    }
+    mode->effects[first_switch() + which] = NextOpening(Position(x, which), Drive(x, which));
   }
 
   void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
@@ -56,18 +52,11 @@ class Pilot : public EffectOf<Pilot> {
     return x.mode->effects[first_switch() + side];
   }
   template <class T>
-  bool Pushes(const Terms<T>& x, int side) const {
-    return Position(x, 2 + side) > 0;
-  }
-  template <class T>
-  static T Piloting(const Terms<T>& x, int side) {
-    return (side == 0 ? x.p2 : x.p1) - x.p_3;
-  }
-  template <class T>
-  T Drive(const Terms<T>& x, int side) const {
-    T drive = x.p_3 - (side == 0 ? x.p1 : x.p2) - x.own[1];
-    if (Pushes(x, side)) drive += x.own[0] * Piloting(x, side);
-    return drive / x.own[2];
+  static T Drive(const Terms<T>& x, int side) {
+    const T& own = side == 0 ? x.p1 : x.p2;
+    const T& other = side == 0 ? x.p2 : x.p1;
+    const T pilot = std::max<T>(other - x.p_3, T(0.0));
+    return (x.p_3 - own + x.own[0] * pilot - x.own[1]) / x.own[2];
   }
 };
 

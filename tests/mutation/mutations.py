@@ -412,7 +412,7 @@ MUTATIONS = [
            ("rate_limit.sign", "Side(x) * x.own[0];", "-Side(x) * x.own[0];"),
            ("rate_limit.turns", "behind > T(0.0) ? 1 : -1", "behind > T(0.0) ? -1 : 1")),
     *_rows("model/effects/valve_pilot.cc",
-           ("pilot.pilot", "drive += x.own[0] *", "drive -= x.own[0] *"),
+           ("pilot.pilot", "- own + x.own[0] * pilot", "- own - x.own[0] * pilot"),
            ("pilot.flow_1", "* (x.p1 - x.p_3);", "* (x.p_3 - x.p1);"),
            ("pilot.beside_ideal", "replaces_valves() const override { return true; }",
             "replaces_valves() const override { return false; }")),

@@ -58,7 +58,7 @@ TEST(ModelFileTest, RefusesContradictorySides) {
     return InputErrorOf([&] { ParseModel(text, "m.toml"); });
   };
   const auto c = [](const std::string& to) { return Changed("r = 1.83\nd = 2.20\n", to); };
-  EXPECT_THAT(error(c("c_1 = 3\n")), AllOf(HasSubstr("parameters.c_2"), HasSubstr("found no value")));
+  EXPECT_THAT(error(c("c_1 = 3\n")), AllOf(HasSubstr("parameters.c_2"), HasSubstr("found nothing")));
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\nc = 4\n")),
               HasSubstr("parameters.c: found it beside c_1, allowed c_1 and c_2, or c"));
   EXPECT_THAT(error(c("c_1 = 3\nc_2 = -4\n")), HasSubstr("parameters.c_2: found -4"));

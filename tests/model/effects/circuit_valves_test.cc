@@ -24,7 +24,7 @@ void ExpectFlow(double p1, double p2, int position, double flow) {
   double rate[model::kMaxStates], margin[model::kMaxSwitches];
   for (int round = 0; round < 6; ++round) {
     equations.Rates(0, 0, mode, state.data(), rate, margin);
-    for (int which = model::kFirstEffectSwitch; which < model::kFirstEffectSwitch + 4; ++which) {
+    for (int which = model::kFirstEffectSwitch; which < model::kFirstEffectSwitch + 2; ++which) {
       if (margin[which] < 0) equations.Cross(which, 0, 0, state.data(), &mode);
     }
   }
