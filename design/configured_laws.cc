@@ -7,18 +7,20 @@
 #include <stdexcept>
 
 #include "base/input_error.h"
+#include "model/sides.h"
 
 namespace hydro::design {
 
 pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) {
   const model::Parameters& parameters = config.model.description.parameters;
+  const model::Differences differ = model::DifferencesOf(config.model.description);
   const settings::PressureSection& section = config.pressure;
   pressure_ctrl::PressureLawSettings law;
   try {
     law.gains = section.k_p ? pressure_ctrl::PressureGains{*section.k_p, section.k_v.value_or(0)}
                             : pressure_ctrl::DerivePressureGains(
                                   parameters, 0, section.natural_frequency_rad_s.value(),
-                                  section.damping_ratio.value(), section.compressed_sides);
+                                  section.damping_ratio.value(), section.compressed_sides, differ);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: pressure.natural_frequency_rad_s: {}", config.file, error.what()));
   }
@@ -28,6 +30,7 @@ pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackC
   } else if (section.reference_feedforward) {
     law.reference_feedforward = pressure_ctrl::SteadyStateFeedforward(parameters, law.gains);
   }
+  law.sides = {differ.areas, differ.displacements, parameters.p_3};
   if (section.arm_speed_feedforward) law.arm_speed_ratio = parameters.c / parameters.D;
   return law;
 }

@@ -123,8 +123,9 @@ struct LinearStack::Parts {
 RowVectorXd LinearStack::Parts::Voltage(const MatrixXd& y, const RowVectorXd& reference_row,
                                         double share) const {
   const RowVectorXd speed = y.row(kSpeed) - pressure.arm_speed_ratio * y.row(kArmRate);
-  const RowVectorXd fed_back =
-      pressure.gains.k_p * (y.row(kFirst) - y.row(kSecond) - pressure.gains.k_v * speed);
+  const double areas = pressure.sides.areas;
+  const RowVectorXd load_pressure = (1 + areas) * y.row(kSecond) - (1 - areas) * y.row(kFirst);
+  const RowVectorXd fed_back = -pressure.gains.k_p * (load_pressure + pressure.gains.k_v * speed);
   // The reference comes through the same amplifier: a factor on the voltage is one on all of eq. (16).
   return share * (fed_back + (pressure.gains.k_p + pressure.reference_feedforward) * reference_row);
 }

@@ -5,6 +5,7 @@
 
 #include "base/number_text.h"
 #include "model/effects/catalogue.h"
+#include "model/sides.h"
 #include "model/terms/state.h"
 #include "settings/stack_checks.h"
 
@@ -104,8 +105,7 @@ std::vector<Running> WaysToRun(const model::ModelDescription& model) {
 
 }  // namespace
 
-double LargestArmAngle(const model::Parameters& p, double limit, double farthest) {
-  const double stop = p.V_ms / p.c;
+double LargestArmAngle(double stop, double limit, double farthest) {
   if (limit < settings::kArmAngleShare * stop) return limit;
   return std::min(std::max(kUsualShare * stop, farthest), settings::kArmAngleShare * stop);
 }
@@ -116,7 +116,8 @@ double LargestArmAngle(const settings::StackConfig& config) {
     const auto reference = settings::MakeTrajectory(config.reference.trajectory);
     farthest = std::max({farthest, std::fabs(reference->Min()), std::fabs(reference->Max())});
   }
-  return LargestArmAngle(config.model.description.parameters, config.limits.arm_angle_rad, farthest);
+  return LargestArmAngle(model::TravelOf(config.model.description).nearer(), config.limits.arm_angle_rad,
+                         farthest);
 }
 
 std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config) {

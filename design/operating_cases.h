@@ -21,8 +21,8 @@ struct OperatingCase {
 // as far as the reference goes if that is more.
 double LargestArmAngle(const settings::StackConfig& config);
 
-// The same of its parts: `limit`, of limits.arm_angle; `farthest`, of where the arm starts and where the reference goes.
-double LargestArmAngle(const model::Parameters& parameters, double limit, double farthest);
+// The same of its parts: `stop`, the end of the stroke, model::Travel::nearer(); `limit`, of limits.arm_angle; `farthest`, of where the arm starts and where the reference goes.
+double LargestArmAngle(double stop, double limit, double farthest);
 
 // The arm at mid-stroke and at LargestArmAngle on either side (where a clamped arm is; at the middle and the ends of a
 // driven one's motion). In each place with both sides compressing and with each side held at p_3 by its valve. A model with effects is looked

@@ -42,6 +42,7 @@ pressure_ctrl::PressureLawSettings PaperUnits::Law(pressure_ctrl::PressureLawSet
   law.gains.k_v *= Factor("psi s/rad", 0);
   law.reference_feedforward *= Factor("V/psi", 0);
   law.arm_speed_ratio /= Factor("rad", 1);
+  law.sides.charge *= Factor("psi", 0);
   return law;
 }
 

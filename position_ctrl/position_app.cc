@@ -8,6 +8,7 @@
 
 #include "base/input_error.h"
 #include "design/configured_laws.h"
+#include "model/sides.h"
 #include "process/fault_codes.h"
 
 namespace hydro::position_ctrl {
@@ -41,6 +42,8 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       signal_(config.reference.signal),
       reference_text_(settings::ReferenceText(config)),
       torque_per_pressure_(config.model.description.parameters.k_2),
+      stop_(model::TravelOf(config.model.description).nearer()),
+      areas_(model::DifferencesOf(config.model.description).areas),
       section_(config.position),
       parameters_(config.model.description.parameters),
       units_(config.model.description.units),
@@ -186,9 +189,9 @@ inline double PositionApp::Present(const state_t& state) const {
     case settings::ReferenceSignal::kArmAngle:
       return state.arm_angle;
     case settings::ReferenceSignal::kPressure:
-      return state.p2 - state.p1;
+      return model::LoadPressure(areas_, state.p1, state.p2);
     case settings::ReferenceSignal::kTorque:
-      return (state.p2 - state.p1) * torque_per_pressure_;
+      return model::LoadPressure(areas_, state.p1, state.p2) * torque_per_pressure_;
     case settings::ReferenceSignal::kVoltage:
       return 0;
   }

@@ -72,6 +72,8 @@ class PositionApp : public process::App {
   std::string reference_in_force_;
   double reference_from_ = 0;         // s, plant time at which it begins
   const double torque_per_pressure_;  // k_2
+  const double stop_;                 // rad: the nearer end of the stroke
+  const double areas_;                // model::Differences: the two sides' areas
   const settings::PositionSection section_;
   const model::Parameters parameters_;
   const UnitSystem units_;

@@ -41,7 +41,7 @@ void PositionApp::Follow(const settings::TrajectorySpec& reference) {
 
 // A planner may go where the loops are judged to be stable (tuning/change_check.h).
 double PositionApp::PlannersReach() const {
-  return design::LargestArmAngle(parameters_, values_.limits.arm_angle_rad, farthest_);
+  return design::LargestArmAngle(stop_, values_.limits.arm_angle_rad, farthest_);
 }
 
 void PositionApp::OnPlan(const arm_plan_t& plan) {

@@ -140,12 +140,12 @@ model::StateText ReadState(SectionReader section, const std::string& name) {
   section.Require("rate", "a formula for its rate per second");
   section.Text("start", &state.start);
   if (const TomlNode* node = section.Take("scale")) {
+    static const std::vector<std::string> names = {"pressure", "flow",  "torque", "arm",
+                                                   "angle",    "speed", "voltage"};
     const bool named =
-        node->is(TomlNode::Kind::kString) &&
-        (node->text == "pressure" || node->text == "flow" || node->text == "torque" || node->text == "arm");
+        node->is(TomlNode::Kind::kString) && std::find(names.begin(), names.end(), node->text) != names.end();
     if (!named && !(node->is_number() && kPositive.Holds(node->AsDouble()))) {
-      throw section.Error("scale", node->Shown(),
-                          R"("pressure", "flow", "torque", "arm" or a number above 0)");
+      throw section.Error("scale", node->Shown(), QuotedList(names) + ", or a number above 0");
     }
     state.scale = named ? node->text : NumberText(node->AsDouble());
   }

@@ -74,6 +74,81 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
 }
 
+// A base parameter that is the mean of two sides, and what its sides are called.
+struct SideNames {
+  const char* mean;
+  const char* first;
+  const char* second;
+  const char* effect;  // has their difference
+};
+
+constexpr SideNames kSides[] = {{"c", "c_1", "c_2", "actuator.unequal_areas"},
+                                {"V_ms", "V_1", "V_2", "actuator.unequal_volumes"},
+                                {"D", "D_1", "D_2", "pump.unequal_displacements"}};
+
+model::EffectDescription SideDifference(const SideNames& names, double difference) {
+  return {.id = names.effect, .parameters = {{"difference", difference}}, .names = {}};
+}
+
+// c_1 and c_2 in the place of c, and so on. False where the file has neither.
+bool ReadSides(SectionReader& section, const SideNames& names, const model::ParameterInfo& info,
+               const UnitSystem& units, double* mean, std::vector<model::EffectDescription>* effects) {
+  double first = 0, second = 0;
+  const std::string wanted = Wanted(info, units);
+  const bool has_first = section.Number(names.first, &first, kPositive);
+  const bool has_second = section.Number(names.second, &second, kPositive);
+  if (!has_first && !has_second) return false;
+  section.Require(names.first, wanted + " (of side 1, beside " + names.second + ")");
+  section.Require(names.second, wanted + " (of side 2, beside " + names.first + ")");
+  if (section.Take(names.mean) != nullptr) {
+    throw section.Error(
+        names.mean, "it beside " + std::string(names.first),
+        std::string(names.first) + " and " + names.second + ", or " + names.mean + ", not both");
+  }
+  *mean = (first + second) / 2;
+  if (first != second) effects->push_back(SideDifference(names, (second - first) / (first + second)));
+  return true;
+}
+
+// c is the mean of the sides where there is an area_ratio, c_2 over c_1.
+void ReadAreaRatio(SectionReader& section, bool has_sides, std::vector<model::EffectDescription>* effects) {
+  double ratio = 1;
+  if (!section.Number("area_ratio", &ratio, kPositive)) return;
+  if (has_sides)
+    throw section.Error("area_ratio", "it beside c_1", "c_1 and c_2, or c and area_ratio, not both");
+  if (ratio != 1) effects->push_back(SideDifference(kSides[0], (ratio - 1) / (ratio + 1)));
+}
+
+// [parameters]. What makes the two sides unequal becomes an effect, as which the equations have it.
+void ReadParameters(SectionReader& section, model::ModelDescription* model) {
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
+    const model::ParameterInfo& info = parameter.info;
+    double* value = &(model->parameters.*parameter.member);
+    bool has_sides = false;
+    for (const SideNames& names : kSides) {
+      if (info.name == names.mean)
+        has_sides = ReadSides(section, names, info, model->units, value, &model->effects);
+    }
+    if (info.name == "c") ReadAreaRatio(section, has_sides, &model->effects);
+    if (has_sides) continue;
+    if (info.name == "c") {
+      ReadDisplacement(section, info, model->units, value);
+    } else {
+      section.Number(info.name, value, RangeOf(info));
+      section.Require(info.name, Wanted(info, model->units));
+    }
+  }
+  section.Finish();
+}
+
+// Throws InputError where [effects] has the difference of two sides that [parameters] has given too.
+void CheckSides(const SectionReader& effects, const std::vector<model::EffectDescription>& sides) {
+  for (const model::EffectDescription& side : sides) {
+    if (!effects.Has(side.id)) continue;
+    throw effects.Error("\"" + side.id + "\"", "it beside unequal sides in [parameters]", "one of the two");
+  }
+}
+
 // [uncertainty]: relative standard deviations by base parameter.
 std::map<std::string, double> ReadUncertainty(SectionReader section) {
   std::map<std::string, double> uncertainty;
@@ -100,17 +175,12 @@ model::ModelDescription ReadModel(const TomlNode& root) {
   description.uncertainty = ReadUncertainty(document.Section("uncertainty"));
   document.Finish();
 
-  for (const model::BaseParameter& parameter : model::BaseParameters()) {
-    double* value = &(description.parameters.*parameter.member);
-    if (parameter.info.name == "c") {
-      ReadDisplacement(parameters, parameter.info, description.units, value);
-    } else {
-      parameters.Number(parameter.info.name, value, RangeOf(parameter.info));
-      parameters.Require(parameter.info.name, Wanted(parameter.info, description.units));
-    }
+  ReadParameters(parameters, &description);
+  CheckSides(effects, description.effects);
+  for (model::EffectDescription& effect :
+       ReadEffects(std::move(effects), root.Find("effects"), description.units)) {
+    description.effects.push_back(std::move(effect));
   }
-  parameters.Finish();
-  description.effects = ReadEffects(std::move(effects), root.Find("effects"), description.units);
   return description;
 }
 

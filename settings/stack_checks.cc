@@ -5,6 +5,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "model/effects/catalogue.h"
+#include "model/sides.h"
 #include "settings/process_sections.h"
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
@@ -27,11 +28,12 @@ std::string ArmText(const std::string& number, double value, const UnitSystem& u
   return units.linear_arm ? text : text + " (" + ShortNumber(Degrees(value)) + " deg)";
 }
 
-// The arm angle that `what` takes must leave V_1, V_2 > 0: V_ms - c |alpha| > 0, eqs. (6), (7).
+// The arm angle that `what` takes must leave V_1, V_2 > 0, eqs. (6), (7).
 // `allowed` is limits.arm_angle.
 void CheckAngle(const TomlNode& root, const std::string& key, double angle,
                 const model::ModelDescription& model, double allowed) {
-  const double limit = model.parameters.V_ms / model.parameters.c;
+  const model::Travel travel = model::TravelOf(model);
+  const double limit = angle < 0 ? -travel.least : travel.most;
   if (std::abs(angle) < limit && std::abs(angle) <= allowed) return;
   throw KeyError(root, key,
                  (model.units.linear_arm ? "arm position " : "arm angle ") +
@@ -39,7 +41,8 @@ void CheckAngle(const TomlNode& root, const std::string& key, double angle,
                  allowed < limit ? "|alpha| <= " + ArmText(ShortestNumber(allowed), allowed, model.units) +
                                        ", which is limits.arm_angle"
                                  : "|alpha| < " + ArmText(ShortNumber(limit), limit, model.units) +
-                                       ", the end of the stroke (V_ms/c)");
+                                       ", the end of the stroke" +
+                                       (travel.least == -travel.most ? " (V_ms/c)" : " on that side"));
 }
 
 // The key that gives a trajectory the value `extreme`.
@@ -204,8 +207,10 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
     if (position == nullptr || position->Find("dac_range") == nullptr) checked->position.dac_range_psi *= psi;
   }
   // A shaft that something else holds or moves is not ours to stop.
-  if (!given && model.shaft == model::Shaft::kFree)
-    checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
+  if (!given && model.shaft == model::Shaft::kFree) {
+    const double shorter = model::TravelOf(model.description).nearer() / (p.V_ms / p.c);
+    checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c * shorter;
+  }
   const StackConfig& config = *checked;
   const double allowed = config.limits.arm_angle_rad;
   CheckAngle(root, "model.arm_angle", model.arm_angle_rad, model.description, allowed);

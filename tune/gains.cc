@@ -6,6 +6,7 @@
 
 #include "base/number_text.h"
 #include "design/configured_laws.h"
+#include "model/sides.h"
 
 namespace hydro::tune {
 namespace {
@@ -20,7 +21,8 @@ Gains GainsOf(const settings::StackConfig& config) {
   pressure_ctrl::SecondOrder loop;
   if (pressure.k_p) {
     loop = pressure_ctrl::PressureLoopDynamics(config.model.description.parameters, 0,
-                                               design::PressureLawSettingsFor(config).gains, 2);
+                                               design::PressureLawSettingsFor(config).gains, 2,
+                                               model::DifferencesOf(config.model.description));
   } else {
     loop = {pressure.natural_frequency_rad_s.value_or(0), pressure.damping_ratio.value_or(0)};
   }
@@ -41,7 +43,8 @@ settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
   if (pressure.k_p) {
     try {
       const pressure_ctrl::PressureGains derived = pressure_ctrl::DerivePressureGains(
-          config.model.description.parameters, 0, gains.natural_frequency, gains.damping_ratio, 2);
+          config.model.description.parameters, 0, gains.natural_frequency, gains.damping_ratio, 2,
+          model::DifferencesOf(config.model.description));
       pressure.k_p = Rounded(derived.k_p);
       pressure.k_v = Rounded(derived.k_v);
     } catch (const std::invalid_argument& error) {

@@ -7,6 +7,7 @@
 #include "design/bang_bang.h"
 #include "design/configured_laws.h"
 #include "design/operating_cases.h"
+#include "model/sides.h"
 #include "model/terms/drawn_model.h"
 #include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
@@ -28,8 +29,7 @@ constexpr double kPaperTravel = 0.8578;
 
 std::vector<double> StepsFor(const settings::StackConfig& config, const Goals& goals) {
   if (goals.step) return {0.8 * *goals.step, *goals.step, 1.25 * *goals.step};
-  const model::Parameters& p = config.model.description.parameters;
-  const double travel = p.V_ms / p.c;
+  const double travel = model::TravelOf(config.model.description).nearer();
   // The same numbers on every actuator of about the paper's travel.
   const double scale = std::fabs(travel / kPaperTravel - 1) < 0.5 ? 1 : travel / kPaperTravel;
   std::vector<double> steps;

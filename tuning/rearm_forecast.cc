@@ -7,6 +7,7 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "model/sides.h"
 #include "tuning/change_check.h"
 
 namespace hydro::tuning {
@@ -27,7 +28,8 @@ struct Referred {
 
 Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
   const UnitSystem& units = config.model.description.units;
-  const double pressure = state.p2 - state.p1;
+  const double pressure =
+      model::LoadPressure(model::DifferencesOf(config.model.description).areas, state.p1, state.p2);
   switch (config.reference.signal) {
     case ReferenceSignal::kArmAngle:
       return {"arm_angle", "the arm", units.UnitFor("rad", 1), state.arm_angle};

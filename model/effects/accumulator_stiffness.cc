@@ -1,47 +1,16 @@
 // accumulator.stiffness: p3 rises by `stiffness` per volume returned to the accumulator, and falls by as much
-// per volume that the one-way valves take from it. One state: p3, which starts at the base parameter p_3.
-//
-// An open ideal valve holds its side at the moving p3 and passes the flow that this takes,
-//   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
-// so p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for it.
+// per volume that the one-way valves take from it, as where a spring loads it.
 
-#include "model/effects/effect.h"
+#include "model/effects/accumulator.h"
 
 namespace hydro::model {
 
 namespace {
 
-class Accumulator : public EffectOf<Accumulator> {
- public:
-  int states() const override { return 1; }
-  int p_3_state() const override { return first_state(); }
-  std::vector<std::string> StateNames() const override { return {"p3"}; }
-  void Scales(const StateSizes& of, double* scale) const override { scale[0] = of.pressure; }
-
+struct LoadedBySpring {
   template <class T>
-  void OwnStart(const Terms<T>& x, T* state) const {
-    state[first_state()] = x.parameters->p_3;
-    if (x.returned != nullptr) state[first_state()] += x.own[0] * *x.returned;
-  }
-
-  template <class T>
-  void OwnProperties(Terms<T>& x) const {
-    x.p_3 = x.state[first_state()];
-  }
-
-  template <class T>
-  void OwnBalances(Terms<T>& x, T* rate) const {
-    T flow = x.outer_flow_1 + x.outer_flow_2 + (x.valve_flow_1 + x.valve_flow_2);
-    T held = T(0.0);  // in^3/psi, compliance of the sides that are held at p3
-    const auto hold = [&](const T& compliance, const T& free_rate) {
-      held += compliance;
-      flow += compliance * free_rate;
-    };
-    const bool open_2 = x.bypass ? x.mode->valve_1 != 0 : x.mode->valve_2 != 0;
-    if (x.mode->valve_1 != 0) hold(x.V_1 / x.beta_1, x.free_rate_1);
-    if (open_2) hold(x.V_2 / x.beta_2, x.free_rate_2);
-    x.p_3_rate = x.own[0] * flow / (1.0 + x.own[0] * held);
-    rate[first_state()] = x.p_3_rate;
+  static T Stiffness(const Terms<T>& x, const T& /*p_3*/) {
+    return x.own[0];
   }
 };
 
@@ -50,7 +19,7 @@ class Accumulator : public EffectOf<Accumulator> {
          {.id = "accumulator.stiffness",
           .summary = "the accumulator's pressure rises with what is returned to it",
           .equation = "p3 rises by stiffness per volume returned to the accumulator",
-          .confused_with = "parameter p3",
+          .confused_with = "parameter p3, accumulator.gas",
           .parameters = {{.name = "stiffness",
                           .unit = "psi/in^3",
                           .meaning = "pressure per volume",
@@ -60,7 +29,7 @@ class Accumulator : public EffectOf<Accumulator> {
                           .scale = Scale::kOilStiffness,
                           .example = 3000}},
           .remembers_flow = true},
-     .make = MakeEffect<Accumulator>});
+     .make = MakeEffect<Accumulator<LoadedBySpring>>});
 
 }  // namespace
 

@@ -21,16 +21,16 @@ class Flexure : public EffectOf<Flexure> {
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {
     state[first_state()] = x.arm_angle;
-    if (x.arm_free) state[first_state()] += x.parameters->k_2 * (x.p2 - x.p1) / x.own[0];  // at rest
+    if (x.arm_free) state[first_state()] += x.pressure_torque / x.own[0];  // at rest
   }
 
   template <class T>
   void OwnProperties(Terms<T>& x) const {
     if (!x.arm_free) return;
     const T twist = x.state[first_state()] - x.arm_angle;
-    x.actuator_speed = x.arm_speed + (x.parameters->k_2 * (x.p2 - x.p1) - x.own[0] * twist) / x.own[1];
-    x.V_1 -= x.parameters->c * twist;
-    x.V_2 += x.parameters->c * twist;
+    x.actuator_speed = x.arm_speed + (x.pressure_torque - x.own[0] * twist) / x.own[1];
+    x.V_1 -= x.c_1 * twist;
+    x.V_2 += x.c_2 * twist;
   }
 
   template <class T>

@@ -32,7 +32,9 @@ struct StateSizes {
   double pressure = 0;
   double flow = 0;
   double torque = 0;
-  double arm = 0;  // of an angle or position at the arm
+  double arm = 0;               // of an angle or position at the arm
+  double angle = 0, speed = 0;  // of the motor
+  double voltage = 0;
 };
 
 class Effect {

@@ -48,6 +48,12 @@ class FormulaEffect : public EffectOf<FormulaEffect> {
         *scale++ = of.torque;
       else if (state.scale == "arm")
         *scale++ = of.arm;
+      else if (state.scale == "angle")
+        *scale++ = of.angle;
+      else if (state.scale == "speed")
+        *scale++ = of.speed;
+      else if (state.scale == "voltage")
+        *scale++ = of.voltage;
       else
         *scale++ = ParseNumber(state.scale).value_or(1e-3);
     }

@@ -91,6 +91,11 @@ void CheckNumbers(const EffectDescription& effect, const ParameterInfo& info, co
   }
 }
 
+void CheckOnlyOne(bool has_one, const std::string& id, const std::string& kinds) {
+  if (!has_one) return;
+  throw ModelError("effect \"" + id + "\" is the second of its kind; allowed is one of those like " + kinds);
+}
+
 // Throws ModelError for a parameter that is missing, has an unknown name, or lies outside its bounds.
 void CheckParameters(const EffectDescription& effect, const EffectInfo& known, const UnitSystem& units) {
   for (const ParameterInfo& info : known.parameters) {
@@ -143,7 +148,10 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
                             .flow = p.D * speed,
                             .torque = 0.01 * p.T_pmax,
                             // An angle has its own size; a stroke has that of its cylinder.
-                            .arm = data_.linear_arm ? 1e-3 * p.V_ms / p.c : 1e-3};
+                            .arm = data_.linear_arm ? 1e-3 * p.V_ms / p.c : 1e-3,
+                            .angle = 0.01 * p.V_ms / p.D,
+                            .speed = speed,
+                            .voltage = 0.01 * p.T_pmax / p.k_1};
   scales_ = {0.01 * p.V_ms / p.D, speed, pressure, pressure};
   if (data_.shaft == Shaft::kFree) {
     scales_.push_back(0.01 * p.V_ms / p.c);
@@ -160,6 +168,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   data_.states = static_cast<int>(scales_.size());
   CompleteNumbers<double>(data_, &data_);
   data_.constants = WithoutDerivatives(data_);
+  FindMidVolumes();
 
   if (data_.shaft == Shaft::kDriven) {
     if (data_.motion == nullptr) throw ModelError("a driven shaft needs a motion");
@@ -191,8 +200,14 @@ void Equations::AddEffect(const EffectDescription& effect, const StateSizes& siz
   data_.switches += made.switches();
   data_.reads_late |= made.reads_late();
   data_.reach = std::max(data_.reach, made.reach());
-  if (made.replaces_valves()) data_.ideal_valves = false;
-  if (made.p_3_state() >= 0) data_.p_3_state = made.p_3_state();
+  if (made.replaces_valves()) {
+    CheckOnlyOne(!data_.ideal_valves, effect.id, "valve.check and valve.pilot");
+    data_.ideal_valves = false;
+  }
+  if (made.p_3_state() >= 0) {
+    CheckOnlyOne(data_.p_3_state >= 0, effect.id, "accumulator.stiffness and accumulator.gas");
+    data_.p_3_state = made.p_3_state();
+  }
   if (made.actuator_angle_state() >= 0) data_.actuator_angle_state = made.actuator_angle_state();
   if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
   made.Scales(sizes, scales_.data() + first);
@@ -287,7 +302,7 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
     power.kinetic += p.J_a * x.arm_speed * rate[kArmSpeed];
     power.gravity = p.mgl * (data_.linear_arm ? 1 : std::cos(x.arm_angle)) * x.arm_speed;
   } else {
-    power.shaft_in = -p.k_2 * dp * x.arm_speed;
+    power.shaft_in = -x.pressure_torque * x.arm_speed;
   }
   for (const auto& effect : data_.effects) {
     x.own = data_.own.data() + effect->first_parameter();
@@ -343,16 +358,16 @@ void Equations::SetLoad(double time, const ArmLoad& load) {
 void Equations::MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
                         double* state) const {
   const Parameters& p = data_.parameters;
-  const double turned = p.c * (angle - state[kArmAngle]);
+  const double moved = angle - state[kArmAngle];
   if (plain()) {
-    if (!mode.valve_1) state[kP1] += p.beta / (p.V_ms - p.c * angle) * turned;
-    if (!mode.valve_2) state[kP2] -= p.beta / (p.V_ms + p.c * angle) * turned;
+    if (!mode.valve_1) state[kP1] += p.beta / (p.V_ms - p.c * angle) * (p.c * moved);
+    if (!mode.valve_2) state[kP2] -= p.beta / (p.V_ms + p.c * angle) * (p.c * moved);
   } else if (!data_.bypass && data_.actuator_angle_state == kArmAngle) {
     double rate[kMaxStates];
     Terms<double> x;
     Evaluate(time, voltage, mode, state, rate, &x);
-    if (!mode.valve_1) state[kP1] += x.beta_1 / x.V_1 * turned;
-    if (!mode.valve_2) state[kP2] -= x.beta_2 / x.V_2 * turned;
+    if (!mode.valve_1) state[kP1] += x.beta_1 / x.V_1 * (x.c_1 * moved);
+    if (!mode.valve_2) state[kP2] -= x.beta_2 / x.V_2 * (x.c_2 * moved);
   }
   state[kArmAngle] = angle;
   state[kArmSpeed] = speed;
@@ -362,17 +377,36 @@ Measurement Equations::Measure(double time, const double* state, const StateHist
   return ReadSensors<double>(data_, data_, time, state, history);
 }
 
+// The effects may change the volumes and what the arm displaces, so they are asked at rest, with the arm at 0.
+void Equations::FindMidVolumes() {
+  double state[kMaxStates] = {};
+  const Mode mode;
+  Terms<double> x{};
+  x.p1 = x.p2 = data_.parameters.p_3;
+  hydro::model::SetProperties<Form::kGeneral>(data_, data_, data_.begin, 0.0, mode, state, x);
+  data_.mid_volume_1 = x.V_1;
+  data_.mid_volume_2 = x.V_2;
+  data_.c_1 = x.c_1;
+  data_.c_2 = x.c_2;
+  if (!(x.c_1 > 0) || !(x.c_2 > 0)) {
+    throw ModelError("an effect leaves the sides c = " + Number(x.c_1) + " and " + Number(x.c_2) + " " +
+                     units_.UnitFor("in^3/rad", -1) + "; both must be above 0");
+  }
+}
+
 void Equations::CheckVolumes(double arm_angle) const {
-  const Parameters& p = data_.parameters;
-  const double V_1 = p.V_ms - p.c * arm_angle - data_.fixed_volume;
-  const double V_2 = p.V_ms + p.c * arm_angle - data_.fixed_volume;
-  if (V_1 > 0 && V_2 > 0) return;
+  if (HasVolumes(arm_angle)) return;
+  const double V_1 = data_.mid_volume_1 - data_.c_1 * arm_angle;
+  const double V_2 = data_.mid_volume_2 + data_.c_2 * arm_angle;
+  const double least = -data_.mid_volume_2 / data_.c_2, most = data_.mid_volume_1 / data_.c_1;
   const bool first = !(V_1 > 0);
   const std::string unit = " " + units_.UnitFor("rad", 1);
+  const std::string needs = least == -most ? "|alpha| < " + Number(most)
+                                           : "alpha between " + Number(least) + " and " + Number(most);
   throw ModelError((data_.linear_arm ? "arm position " : "arm angle ") + Number(arm_angle) + unit +
                    " leaves " + (first ? "V_1 = " : "V_2 = ") + Number(first ? V_1 : V_2) + " " +
                    units_.UnitFor("in^3") + (data_.fixed_volume > 0 ? " at the actuator" : "") +
-                   "; V_1, V_2 > 0 needs |alpha| < " + Number((p.V_ms - data_.fixed_volume) / p.c) + unit);
+                   "; V_1, V_2 > 0 needs " + needs + unit);
 }
 
 void Equations::Command(double time, double voltage) {

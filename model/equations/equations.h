@@ -43,6 +43,8 @@ struct EquationData : NumbersOf<double> {
   bool linear_arm = false;                         // a cylinder: its weight is the same wherever it stands
   double atmosphere = 0;                           // in the model's unit of pressure
   double arm_angle = 0;                            // clamped
+  double mid_volume_1 = 0, mid_volume_2 = 0;       // in^3, at the actuator, where the arm is at 0
+  double c_1 = 0, c_2 = 0;                         // what the arm displaces of each
   double begin = 0;                                // s, where the time of effects is 0
   const trajectory::Trajectory* motion = nullptr;  // driven
   // s: `motion` is evaluated at times below this.
@@ -130,6 +132,11 @@ class Equations {
   // Throws ModelError.
   void SetLoad(double time, const ArmLoad& load);
 
+  // Whether V_1 and V_2 are above 0 there.
+  bool HasVolumes(double arm_angle) const {
+    return arm_angle * data_.c_1 < data_.mid_volume_1 && -arm_angle * data_.c_2 < data_.mid_volume_2;
+  }
+
   // Puts a free arm nearby. The fluid is compressed as by that motion, but where a valve is open, or the arm
   // is not what compresses it (bypass, arm.flexure).
   void MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
@@ -143,6 +150,8 @@ class Equations {
   void PassStop(double time);
 
  private:
+  void FindMidVolumes();
+
   // `pressure` and `flow`: magnitudes that matter, for the scales of the effect's states.
   void AddEffect(const EffectDescription& effect, const StateSizes& sizes);
 

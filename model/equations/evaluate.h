@@ -89,6 +89,9 @@ template <Form kForm, class T>
     x.V_2 = p.V_ms + p.c * x.arm_angle;  // (7)
   }
   if constexpr (kForm == Form::kGeneral) {
+    x.c_1 = x.c_2 = p.c;
+    x.pressure_torque = p.k_2 * (x.p2 - x.p1);
+    x.shaft_angle = x.motor_angle;
     x.V_1 -= n.fixed_volume;
     x.V_2 -= n.fixed_volume;
     x.time = time - m.begin;
@@ -118,7 +121,12 @@ template <Form kForm, class T>
   x.cross_flow = x.c_I * dp;
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
-  x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
+  if constexpr (kGeneralForm) {
+    x.arm_torque = x.pressure_torque;
+    x.shaft_load = T(0.0);
+  } else {
+    x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
+  }
   if (ArmIsLoaded<kForm>(m)) [[unlikely]] {
     x.arm_torque += T(LoadTorque(m, time));
   } else if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) {
@@ -127,6 +135,7 @@ template <Form kForm, class T>
   if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);
     ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddTorquesAndFlows(x); });
+    x.load += x.shaft_load;
   }
 
   x.net_torque = x.torque - x.D * dp - x.load;                   // (3), (4)
@@ -149,12 +158,14 @@ template <Form kForm, class T>
     x.free_rate_2 = -n.stiffness_2 * x.q_2;  // (14)
   } else {
     const ParametersOf<T>& p = n.parameters;
-    const T arm_flow = p.c * (kGeneralForm ? x.actuator_speed : x.arm_speed);
-    if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces circulates
-      x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
+    const T arm_flow_1 = kGeneralForm ? x.c_1 * x.actuator_speed : p.c * x.arm_speed;
+    const T arm_flow_2 = kGeneralForm ? x.c_2 * x.actuator_speed : arm_flow_1;
+    if (kGeneralForm && m.bypass) {  // one pressure; what both sides displace circulates
+      x.free_rate_1 = x.free_rate_2 =
+          -(x.q_1 + x.q_2 + (arm_flow_2 - arm_flow_1)) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
     } else {
-      x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow);  // (5), (9), (13)
-      x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow);  // (5), (10), (14)
+      x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow_1);  // (5), (9), (13)
+      x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow_2);  // (5), (10), (14)
     }
   }
 }

@@ -17,7 +17,7 @@ struct StateText {
   std::string unit;
   std::string rate;   // "(k_1 * voltage - lagged) / tau"
   std::string start;  // "0" where empty
-  // Below this size absolute rather than relative errors count: "pressure", "flow", "torque", "arm" (those of the model), or a
+  // Below this size absolute rather than relative errors count: "pressure", "flow", "torque", "arm", "angle", "speed", "voltage" (those of the model), or a
   // number in the state's unit.
   std::string scale = "0.001";
   std::string is;  // "p_3" or "actuator_angle" where it takes that quantity's place

@@ -52,6 +52,11 @@ T& FieldOf(Terms<T>& x, size_t place) {
       &X::V_1,
       &X::V_2,
       &X::actuator_speed,
+      &X::c_1,
+      &X::c_2,
+      &X::pressure_torque,
+      &X::shaft_angle,
+      &X::shaft_load,
       &X::load,
       &X::coulomb,
       &X::breakaway,
@@ -68,6 +73,7 @@ T& FieldOf(Terms<T>& x, size_t place) {
       &X::free_rate_2,
       &X::p_3_rate,
       &X::torque_asked,
+      &X::voltage_asked,
       &X::arm_load,
       &X::motor_angle,
       &X::motor_speed,
@@ -78,10 +84,10 @@ T& FieldOf(Terms<T>& x, size_t place) {
   };
   return x.*kMembers[place];
 }
-// Those from here on are the state, which no formula changes; the two before are what the effects alone set.
-inline constexpr size_t kFirstScratch = 31;
-inline constexpr size_t kFirstFixed = 33;
-inline constexpr size_t kFields = 39;
+// Those from here on are the state, which no formula changes; the three before are what the effects alone set.
+inline constexpr size_t kFirstScratch = 36;
+inline constexpr size_t kFirstFixed = 39;
+inline constexpr size_t kFields = 45;
 
 // What a channel reads, in FormulaReadings().
 const std::vector<std::string>& ReadingNames();

@@ -197,8 +197,7 @@ class ModeMachine {
   }
 
   void CheckArm(double arm_angle) const {
-    const Parameters& p = data().parameters;
-    if (!(std::abs(arm_angle) * p.c < p.V_ms - data().fixed_volume)) [[unlikely]] {
+    if (!equations_.HasVolumes(arm_angle)) [[unlikely]] {
       try {
         equations_.CheckVolumes(arm_angle);
       } catch (const ModelError& error) {

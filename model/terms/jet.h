@@ -139,6 +139,7 @@ inline Jet exp(const Jet& x) {
   const double power = std::exp(x.a);
   return {power, power * x.v};
 }
+inline Jet log(const Jet& x) { return {std::log(x.a), (1 / x.a) * x.v}; }
 inline Jet sin(const Jet& x) { return {std::sin(x.a), std::cos(x.a) * x.v}; }
 inline Jet cos(const Jet& x) { return {std::cos(x.a), -std::sin(x.a) * x.v}; }
 inline Jet pow(const Jet& x, double exponent) {

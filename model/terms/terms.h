@@ -37,11 +37,15 @@ struct Terms {
   T beta_1, beta_2;    // eq. (5)
   T V_1, V_2;          // eqs. (6), (7): the fluid whose pressure is p1, p2
   T c_E, c_I, p_3;     // eqs. (11), (12)
+  T c_1, c_2;          // eqs. (13), (14): what the actuator displaces of each side
+  T pressure_torque;   // eq. (15): what the pressures give the actuator's own shaft
   T pump_p1, pump_p2;  // p1 and p2 as the pump sees them
   T actuator_speed;    // of the actuator's own shaft: the arm's, unless something between the two gives
+  T shaft_angle;  // of what the motor's shaft carries: the motor's, unless something between the two gives
 
   // Torques and flows, from the properties; effects change them in AddTorquesAndFlows.
   T load;                        // torque against forward rotation besides D dp, b theta' and friction
+  T shaft_load;                  // the part of it that what the shaft carries makes
   T coulomb;                     // magnitude of the friction while the pump slips
   T breakaway;                   // largest torque that friction holds while the pump sticks
   T cross_flow;                  // from side 2 to side 1 at the pump
@@ -50,7 +54,9 @@ struct Terms {
   T arm_torque;                  // on the arm, eq. (15)
   T arm_load;                    // the same without the arm's own friction: what that has to hold at rest
 
-  T torque_asked;  // of the motor, where motor.speed_torque_limit gives less
+  // What an effect keeps for its own switches:
+  T torque_asked;   // of the motor, where motor.speed_torque_limit or motor.current_limit gives less
+  T voltage_asked;  // of the amplifier, where amp.input_rate_limit gives less
 
   // From the above; effects with states of their own may replace the flows in AddStates.
   T net_torque;  // T_p - D dp - load: what friction has to hold when the pump is at rest

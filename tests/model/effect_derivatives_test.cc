@@ -111,7 +111,8 @@ TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
     if (DelaysCommands(info)) continue;
     model::EffectDescription effect = SomeOfEach().at(info.id);
     for (const model::ParameterInfo& parameter : info.parameters) {
-      const bool may_vanish = !parameter.is_name() && (parameter.min < 0 || parameter.min_allowed);
+      const bool may_vanish =
+          !parameter.is_name() && (parameter.min < 0 || (parameter.min == 0 && parameter.min_allowed));
       if (may_vanish) effect.parameters[parameter.name] = 0;
     }
     for (int position = -1; position <= 1; ++position) {

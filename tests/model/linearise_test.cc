@@ -147,7 +147,10 @@ TEST(Linearise, EqualsDifferenceQuotientsWithEachEffect) {
 // Tests the same with all of them at once.
 TEST(Linearise, EqualsDifferenceQuotientsWithAllEffects) {
   std::vector<model::EffectDescription> all;
-  for (const auto& [id, effect] : SomeOfEach()) all.push_back(effect);
+  for (const auto& [id, effect] : SomeOfEach()) {
+    // A model has one kind of accumulator and one kind of one-way valves.
+    if (id != "accumulator.gas" && id != "valve.pilot") all.push_back(effect);
+  }
   ExpectDifferenceQuotientsInEveryMode(Table1Model(all));
 }
 

@@ -82,6 +82,63 @@ TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedForAwayFromMidstroke) {
   }
 }
 
+// Tests the same where areas, volumes and the pump's ports are unequal, for the load pressure that then takes the place of dp.
+TEST(PressureLawTest, DerivedGainsServeUnequalSides) {
+  model::ModelDescription model;
+  model.parameters = Table1();
+  model.effects = {{"actuator.unequal_areas", {{"difference", 0.2}}, {}},
+                   {"actuator.unequal_volumes", {{"difference", -0.1}}, {}},
+                   {"pump.unequal_displacements", {{"difference", 0.15}}, {}}};
+  const model::Differences differ = model::DifferencesOf(model);
+  for (const double arm_angle : {0.0, 0.3}) {
+    model::ActuatorOptions options;
+    options.shaft = model::Shaft::kClamped;
+    options.arm_angle = arm_angle;
+    const model::Equations equations(model, options);
+    for (const int sides : {1, 2}) {
+      model::Mode mode;
+      mode.pump = 1;
+      mode.valve_1 = sides == 1;
+      const double state[] = {0, 1, 100, 400};
+      const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state);
+      const auto A = [&](int i, int j) { return linear.A[i + j * 4]; };
+      const PressureGains gains = DerivePressureGains(model.parameters, arm_angle, 150, 0.5, sides, differ);
+      const double rise_1 = A(model::kP1, model::kMotorSpeed), rise_2 = A(model::kP2, model::kMotorSpeed);
+      const double own =
+          A(model::kMotorSpeed, model::kP1) * rise_1 + A(model::kMotorSpeed, model::kP2) * rise_2;
+      const double B = linear.B[model::kMotorSpeed];
+      const double omega = std::sqrt((1.2 * rise_2 - 0.8 * rise_1) * B * gains.k_p - own);
+      EXPECT_NEAR(omega, 150, 1e-9) << arm_angle << ", " << sides;
+      EXPECT_NEAR((B * gains.k_p * gains.k_v - A(model::kMotorSpeed, model::kMotorSpeed)) / (2 * omega), 0.5,
+                  1e-12);
+      EXPECT_NEAR(PressureLoopDynamics(model.parameters, arm_angle, gains, sides, differ).natural_frequency,
+                  150, 1e-9);
+    }
+  }
+}
+
+// Tests that with unequal sides the loop holds c_2 p2 - c_1 p1 over c, and that its feed-forward is the torque that the pump needs
+// while the side without load is at p_3, whichever side that is.
+TEST(PressureLawTest, HoldsTheLoadPressureOfUnequalSides) {
+  const double areas = 0.2, displacements = 0.1, charge = 100;
+  PressureLawSettings settings;
+  settings.gains = {0.125, 8};
+  settings.voltage_limit = 1000;
+  settings.sides = {areas, displacements, charge};
+  settings.reference_feedforward = 0.002;
+  const double out_p2 = 500, out = 1.2 * out_p2 - 0.8 * charge;
+  EXPECT_NEAR(PressureLaw(settings, {out, charge, out_p2, 0, 0}).voltage, 0.002 * 1.1 * (out_p2 - charge),
+              1e-12);
+  const double in_p1 = 700, in = 1.2 * charge - 0.8 * in_p1;
+  EXPECT_NEAR(PressureLaw(settings, {in, in_p1, charge, 0, 0}).voltage, -0.002 * 0.9 * (in_p1 - charge),
+              1e-12);
+  // The pump's speed by the arm's: c_2/D_2 under load on side 2, c_1/D_1 on side 1.
+  settings.reference_feedforward = 0;
+  settings.arm_speed_ratio = 460;
+  EXPECT_NEAR(PressureLaw(settings, {out, charge, out_p2, 460 * 1.2 / 1.1 * 0.3, 0.3}).voltage, 0, 1e-12);
+  EXPECT_NEAR(PressureLaw(settings, {in, in_p1, charge, 460 * 0.8 / 0.9 * 0.3, 0.3}).voltage, 0, 1e-12);
+}
+
 // Tests that the two-sided gains leave the one-sided mode slower by sqrt(2) and better damped by as much.
 TEST(PressureLawTest, TwoSidedGainsInTheOneSidedMode) {
   const PressureGains gains = DerivePressureGains(Table1(), 0, 150, 0.5, 2);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "model/sides.h"
 #include "model/terms/parameter_info.h"
 #include "tests/settings/texts.h"
 
@@ -30,6 +31,42 @@ TEST(ModelFileTest, ReadsTable1) {
 // Tests that c may be given instead of r and d.
 TEST(ModelFileTest, TakesTheDisplacementItself) {
   EXPECT_EQ(ParseModel(Changed("r = 1.83\nd = 2.20\n", "c = 3.7\n"), "m.toml").parameters.c, 3.7);
+}
+
+// Tests that two sides give their mean and their difference, which the equations have as an effect; and the same by a ratio.
+TEST(ModelFileTest, ReadsUnequalSides) {
+  const std::string text = Replaced(
+      Replaced(Changed("r = 1.83\nd = 2.20\n", "c_1 = 3\nc_2 = 5\n"), "V_ms = 3.16\n", "V_1 = 2\nV_2 = 6\n"),
+      "D = 0.00796\n", "D_1 = 0.004\nD_2 = 0.012\n");
+  const model::ModelDescription model = ParseModel(text, "m.toml");
+  EXPECT_EQ(model.parameters.c, 4);
+  EXPECT_EQ(model.parameters.V_ms, 4);
+  EXPECT_EQ(model.parameters.D, 0.008);
+  EXPECT_EQ(model::DifferencesOf(model),
+            (model::Differences{.areas = 0.25, .volumes = 0.5, .displacements = 0.5}));
+  EXPECT_EQ(model::DifferencesOf(ParseModel(FormatModel(model), "again.toml")), model::DifferencesOf(model));
+  const model::ModelDescription ratio =
+      ParseModel(Changed("r = 1.83\nd = 2.20\n", "c = 4\narea_ratio = 0.6\n"), "m.toml");
+  EXPECT_DOUBLE_EQ(model::DifferencesOf(ratio).areas, -0.25);
+  EXPECT_EQ(ratio.parameters.c, 4);
+  EXPECT_TRUE(ParseModel(Changed("r = 1.83\nd = 2.20\n", "c_1 = 4\nc_2 = 4\n"), "m.toml").effects.empty());
+}
+
+// Tests that sides that contradict something are refused, with the line and what is allowed.
+TEST(ModelFileTest, RefusesContradictorySides) {
+  const auto error = [](const std::string& text) {
+    return InputErrorOf([&] { ParseModel(text, "m.toml"); });
+  };
+  const auto c = [](const std::string& to) { return Changed("r = 1.83\nd = 2.20\n", to); };
+  EXPECT_THAT(error(c("c_1 = 3\n")), AllOf(HasSubstr("parameters.c_2"), HasSubstr("found nothing")));
+  EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\nc = 4\n")),
+              HasSubstr("parameters.c: found it beside c_1, allowed c_1 and c_2, or c"));
+  EXPECT_THAT(error(c("c_1 = 3\nc_2 = -4\n")), HasSubstr("parameters.c_2: found -4"));
+  EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\narea_ratio = 2\n")),
+              HasSubstr("parameters.area_ratio: found it beside c_1"));
+  EXPECT_THAT(error(c("c = 3\narea_ratio = 0\n")), HasSubstr("parameters.area_ratio: found 0"));
+  EXPECT_THAT(error(c("c_1 = 3\nc_2 = 4\n") + "[effects.\"actuator.unequal_areas\"]\ndifference = 0.1\n"),
+              HasSubstr("found it beside unequal sides in [parameters], allowed one of the two"));
 }
 
 // Tests that effects keep the file's order and their parameters.

@@ -38,10 +38,11 @@ bool IsBeside(const std::string& effect, BalanceKind balance) {
   return effect == "fluid.entrained_air" && balance >= BalanceKind::kLevel1;
 }
 
-// Each effect with each name that it can take.
+// Each effect that is looked for without being asked for, with each name that it can take.
 std::vector<diagnose::Change> AllChanges() {
   std::vector<diagnose::Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
+    if (info.on_request) continue;
     std::vector<diagnose::Change> here = {{info.id, {}, ""}};
     for (const model::ParameterInfo& parameter : info.parameters) {
       if (!parameter.is_name()) continue;

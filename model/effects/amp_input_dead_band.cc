@@ -1,0 +1,36 @@
+// amp.input_dead_band: the amplifier does nothing within +/- `width` of its command, and acts on what exceeds that: v -/+ width. It
+// comes after amp.delay and before amp.lag. The voltage is held between commands, so its corner is no event.
+
+#include <algorithm>
+
+#include "model/effects/effect.h"
+
+namespace hydro::model {
+
+namespace {
+
+class DeadBand : public EffectOf<DeadBand> {
+ public:
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    x.voltage -= std::clamp<T>(x.voltage, -x.own[0], x.own[0]);
+    x.torque = LimitedTorque(*x.parameters, x.voltage);
+  }
+};
+
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "amp.input_dead_band",
+                             .summary = "the amplifier ignores small commands",
+                             .equation = "v becomes v -/+ width, 0 within +/- width",
+                             .confused_with = "parameter T_s, pump.stribeck",
+                             .parameters = {{.name = "width",
+                                             .unit = "V",
+                                             .meaning = "command up to which nothing happens",
+                                             .example = 0.2}},
+                             // Commands that never come to rest on one side of it show a larger T_s.
+                             .on_request = true},
+                    .make = MakeEffect<DeadBand>});
+
+}  // namespace
+
+}  // namespace hydro::model

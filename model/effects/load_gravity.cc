@@ -1,0 +1,56 @@
+// load.gravity: a weight on an arm that the motor's shaft carries, torque sin(theta + phase) against forward rotation: m g l for
+// `torque`. Behind gear.backlash it is theta of the load. A weight at the hydraulic arm is the base parameter mgl.
+
+#include <cmath>
+#include <numbers>
+
+#include "model/effects/effect.h"
+
+namespace hydro::model {
+
+namespace {
+
+class ShaftWeight : public EffectOf<ShaftWeight> {
+ public:
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    x.shaft_load += Torque(x);
+  }
+
+  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
+    const double stored = Torque(x) * x.motor_speed;
+    power->viscous -= stored;  // which contains it as part of the load
+    power->effects_stored += stored;
+  }
+
+ private:
+  template <class T>
+  static T Torque(const Terms<T>& x) {
+    using std::sin;
+    return x.own[0] * sin(x.shaft_angle + x.own[1]);
+  }
+};
+
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "load.gravity",
+              .summary = "a weight hangs on the motor's shaft",
+              .equation = "T -= torque sin(theta + phase)",
+              .confused_with = "motor.cogging with one period, load.spring over a small angle",
+              .parameters = {{.name = "torque",
+                              .unit = "in-lbf",
+                              .min = -kUnbounded,
+                              .meaning = "m g l: the largest torque of the weight; negative: half a turn on",
+                              .example = 3},
+                             {.name = "phase",
+                              .unit = "rad",
+                              .min = -kUnbounded,
+                              .meaning = "angle of the weight from hanging down at theta = 0",
+                              .starts = {0, std::numbers::pi / 2},
+                              .example = 0.4}},
+              // Cogging with one period is the same term.
+              .on_request = true},
+     .make = MakeEffect<ShaftWeight>});
+
+}  // namespace
+
+}  // namespace hydro::model

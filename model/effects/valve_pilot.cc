@@ -1,0 +1,101 @@
+// valve.pilot: pilot-operated check valves between each side and the accumulator, as circuits for cylinders with a rod on one side
+// have them. A valve opens to a side that falls below p3, and, pushed by the other side's pressure, lets oil out of its own. Of
+// side 1, with a pilot piston of `ratio` times the seat's area,
+//   drive = (p3 - p1 + ratio (p2 - p3) - cracking)/range,
+// from closed at 0 to wide open at 1, and the flow out of the side is conductance opening (p1 - p3). The piston pushes and never
+// pulls: p2 below p3 counts as p3, a corner of what opens the valve and not of its flow. They replace the ideal valves. One switch
+// for each side.
+
+#include <algorithm>
+
+#include "model/effects/effect.h"
+#include "model/effects/opening.h"
+
+namespace hydro::model {
+
+namespace {
+
+class Pilot : public EffectOf<Pilot> {
+ public:
+  int switches() const override { return 2; }
+  bool replaces_valves() const override { return true; }
+
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    x.valve_flow_1 += x.own[3] * Opening(Position(x, 0), Drive(x, 0)) * (x.p1 - x.p_3);
+    x.valve_flow_2 += x.own[3] * Opening(Position(x, 1), Drive(x, 1)) * (x.p2 - x.p_3);
+  }
+
+  template <class T>
+  void OwnMargins(const Terms<T>& x, T* margin) const {
+    T* own = margin + kFirstEffectSwitch + first_switch();
+    for (int side = 0; side < 2; ++side) {
+      own[side] = OpeningMargin(Position(x, side), Drive(x, side));
+    }
+  }
+
+  template <class T>
+  void OwnCross(int which, const Terms<T>& x, T* /*state*/, Mode* mode) const {
+    mode->effects[first_switch() + which] = NextOpening(Position(x, which), Drive(x, which));
+  }
+
+  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
+    for (int side = 0; side < 2; ++side) {
+      const double over = (side == 0 ? x.p1 : x.p2) - x.p_3;
+      power->effects_dissipated += x.own[3] * Opening(Position(x, side), Drive(x, side)) * over * over;
+    }
+  }
+
+ private:
+  template <class T>
+  int Position(const Terms<T>& x, int side) const {
+    return x.mode->effects[first_switch() + side];
+  }
+  template <class T>
+  static T Drive(const Terms<T>& x, int side) {
+    const T& own = side == 0 ? x.p1 : x.p2;
+    const T& other = side == 0 ? x.p2 : x.p1;
+    const T pilot = std::max<T>(other - x.p_3, T(0.0));
+    return (x.p_3 - own + x.own[0] * pilot - x.own[1]) / x.own[2];
+  }
+};
+
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "valve.pilot",
+              .summary = "pilot-operated check valves from the accumulator to each side",
+              .equation = "the valve of a side opens with (p3 - p + ratio max(p_other - p3, 0) - "
+                          "cracking)/range, 0 to 1, and lets "
+                          "conductance opening (p - p3) out",
+              .confused_with = "valve.check, valve.flushing",
+              .parameters = {{.name = "ratio",
+                              .unit = "1",
+                              .meaning = "area of the pilot piston over that of the seat",
+                              .starts = {3},
+                              .example = 3},
+                             {.name = "cracking",
+                              .unit = "psi",
+                              .meaning = "pressure at which the valve begins to open",
+                              .starts = {0.1},
+                              .scale = Scale::kCharge,
+                              .example = 10},
+                             {.name = "range",
+                              .unit = "psi",
+                              .min_allowed = false,
+                              .meaning = "pressure from closed to wide open",
+                              .starts = {0.3},
+                              .scale = Scale::kCharge,
+                              .example = 40},
+                             {.name = "conductance",
+                              .unit = "in^3/s/psi",
+                              .meaning = "flow per pressure where it is wide open",
+                              .starts = {30},
+                              .scale = Scale::kFlow,
+                              .example = 0.005}},
+              .needs_oil = true,
+              // A symmetric actuator has no use for them.
+              .on_request = true},
+     .make = MakeEffect<Pilot>});
+
+}  // namespace
+
+}  // namespace hydro::model
