@@ -223,6 +223,10 @@ ColumnTable Make(ColumnSetup* setup, const std::vector<RunMotion>& runs, const s
         meaning.kind == ColumnMeaning::Kind::kWhole || meaning.kind == ColumnMeaning::Kind::kMoved;
     if (first && whole && UnitOf(maker, static_cast<int>(i)) > kNextToNothing) setup->units[i] = 0;
     const double unit = setup->units[i];
+    if (meaning.kind == ColumnMeaning::Kind::kEffect) {
+      const std::string& effect = setup->variants[meaning.variant].at.id;
+      maker.table.columns[i].most = ParameterOf(effect, meaning.parameter).max / unit;
+    }
     if (unit == 1) continue;
     for (auto& run : maker.table.series) {
       for (auto& balance : run) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct ScanColumn {
   std::string set;
   double sd = 1;          // of the amount, beforehand
   bool positive = false;  // the amount cannot be negative
+  // The amount cannot be larger.
+  double most = std::numeric_limits<double>::infinity();
 };
 
 // All rows of one balance of one run.

@@ -107,13 +107,17 @@ VectorXd SetEvidence::LogLikelihoods(const Solution& solution) const {
 
 double SetEvidence::LogOf(const Solution& solution) const {
   double log = LogLikelihoods(solution).sum() - solution.penalty + solution.jacobian;
-  // Half of the prior of an amount that cannot be negative is not there: 2 Phi(mean / deviation).
   for (size_t i = 0; i < solution.columns.size(); ++i) {
-    if (!grams_->columns[static_cast<size_t>(solution.columns[i])].positive) continue;
+    const ScanColumn& column = grams_->columns[static_cast<size_t>(solution.columns[i])];
+    if (!column.positive && !std::isfinite(column.most)) continue;
     const auto at = static_cast<Index>(i);
     const VectorXd unit = VectorXd::Unit(solution.amounts.size(), at);
     const double deviation = solution.normal.matrixL().solve(unit).norm();
-    log += std::log(2.0) + LogNormal(solution.amounts[at] / deviation);
+    // Half of the prior of an amount that cannot be negative is not there: 2 Phi(mean / deviation).
+    if (column.positive) log += std::log(2.0) + LogNormal(solution.amounts[at] / deviation);
+    // Nor is what lies beyond the most that it can be.
+    if (std::isfinite(column.most))
+      log += LogNormal((column.most - solution.amounts[at]) / deviation) - LogNormal(column.most / column.sd);
   }
   return log;
 }

@@ -1,5 +1,6 @@
 #include "diagnose/fit/prior.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -25,14 +26,15 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
 }  // namespace
 
 double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given) {
-  constexpr double kExpected = 2;  // standard deviations: nineteen values of twenty are nearer
+  constexpr double kExpected = 2;    // standard deviations: nineteen values of twenty are nearer
+  constexpr double kNothing = 0.01;  // of a value: less is none of it
   double lost = 0;
   for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
     const auto member = model::BaseParameters()[base].member;
     const double deviation = model::UncertaintyOf(given, base);
     if (given.parameters.*member == 0 || !(deviation > 0)) continue;
-    const double ratio = values.*member / (given.parameters.*member);
-    const double away = (ratio > 1 ? std::log(ratio) : 1 - ratio) / deviation;
+    const double ratio = std::max(kNothing, values.*member / (given.parameters.*member));
+    const double away = std::abs(std::log(ratio)) / deviation;
     if (away > kExpected) lost += std::log1p(away * away) - std::log1p(kExpected * kExpected);
   }
   return lost;

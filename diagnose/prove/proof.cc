@@ -64,9 +64,10 @@ std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proo
   return Intervals(proof.told, proof.told_runs, context.jobs);
 }
 
-std::optional<Change> NotShown(const ProofContext& context, const Proof& proof) {
+std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
   const std::vector<Change> effects = proof.Best().Effects();
-  if (effects.empty() || !proof.told.ok()) return std::nullopt;
+  if (effects.empty() || !proof.told.ok()) return {};
+  std::vector<Change> may_be_none;
   const std::vector<FreeParameter> free = proof.Found().Free();
   const std::vector<Interval> intervals = IntervalsOf(context, proof);
   for (const Change& change : effects) {
@@ -81,9 +82,9 @@ std::optional<Change> NotShown(const ProofContext& context, const Proof& proof) 
       ++amounts;
       if (interval.low <= 0 && interval.high >= 0) ++none;
     }
-    if (amounts > 0 && none == amounts) return change;
+    if (amounts > 0 && none == amounts) may_be_none.push_back(change);
   }
-  return std::nullopt;
+  return may_be_none;
 }
 
 }  // namespace hydro::diagnose

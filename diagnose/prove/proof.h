@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +45,7 @@ Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vec
 // 95 % intervals of the best set's free numbers, in the order of Hypothesis::Free(); NaN where they are not known.
 std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof);
 
-// An effect of the best set that may as well be none: the intervals of all its amounts hold 0. Not of curves.
-std::optional<Change> NotShown(const ProofContext& context, const Proof& proof);
+// The effects of the best set that may as well be none: the intervals of all their amounts hold 0. Not of curves.
+std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof);
 
 }  // namespace hydro::diagnose

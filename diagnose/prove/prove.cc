@@ -1,7 +1,6 @@
 #include "diagnose/prove/prove.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "diagnose/fit/closure.h"
@@ -183,6 +182,18 @@ Proof Reported(ProofSets* sets, const Prover& prover, size_t best) {
                  {ProofSets::kGiven, prover.BestValues(), best});
 }
 
+// The place of the best set without an effect that may be none and that windows do not show either; that of the best set where there is
+// no such effect. Amounts that stand for each other may each be 0, but not both: then windows show the effect.
+size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
+  for (const Change& change : MayBeNone(sets->context(), proof)) {
+    const size_t without = sets->Without(proof.best, change);
+    if (without >= sets->size() || without == proof.best) continue;
+    const GapFall fall = FallOf((*sets)[without].near, (*sets)[proof.best].near);
+    if (!fall.Exceeds(kPartOfValues)) return without;
+  }
+  return proof.best;
+}
+
 }  // namespace
 
 Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
@@ -207,9 +218,8 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   }
   best = prover.WithWhatBalancesSay(prover.TakeGivenValues(best));
   Proof proof = Reported(&sets, prover, best);
-  while (const std::optional<Change> change = NotShown(context, proof)) {
-    best = sets.Without(best, *change);
-    if (best >= sets.size()) break;
+  for (size_t shown = best; (shown = WithoutWhatIsNotShown(&sets, proof)) != best;) {
+    best = shown;
     proof = Reported(&sets, prover, best);
   }
   // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.

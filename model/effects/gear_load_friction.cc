@@ -12,6 +12,9 @@ namespace hydro::model {
 
 namespace {
 
+// A gear that loses more than half of what it passes on holds any load by itself.
+constexpr double kSelfLocking = 0.5;
+
 class LoadFriction : public EffectOf<LoadFriction> {
  public:
   // When every torque on the shaft is known.
@@ -39,11 +42,12 @@ class LoadFriction : public EffectOf<LoadFriction> {
                              .confused_with = "pump.pressure_friction, parameters k_1 and T_s",
                              .parameters = {{.name = "motor",
                                              .unit = "1",
-                                             .max = 1,
+                                             .max = kSelfLocking,
                                              .meaning = "friction per torque on the motor's side",
                                              .example = 0.1},
                                             {.name = "load",
                                              .unit = "1",
+                                             .max = kSelfLocking,
                                              .meaning = "friction per torque on the load's side",
                                              .example = 0.15}}},
                     .make = MakeEffect<LoadFriction>});

@@ -47,8 +47,9 @@ class ShaftWeight : public EffectOf<ShaftWeight> {
                               .meaning = "angle of the weight from hanging down at theta = 0",
                               .starts = {0, std::numbers::pi / 2},
                               .example = 0.4}},
-              // Cogging with one period is the same term.
-              .on_request = true},
+              // Behind oil, the weight is the arm's (mgl), and once a turn is an eccentric shaft.
+              .on_request = true,
+              .of_bare_motors = true},
      .make = MakeEffect<ShaftWeight>});
 
 }  // namespace

@@ -41,10 +41,11 @@ TEST(OddsLostBy, CountsDeviations) {
   };
   constexpr double kDeviation = 0.05;  // of a data sheet's value
   EXPECT_EQ(lost(std::exp(1.99 * kDeviation)), 0);
-  EXPECT_EQ(lost(1 - 1.99 * kDeviation), 0);
+  EXPECT_EQ(lost(std::exp(-1.99 * kDeviation)), 0);
   EXPECT_NEAR(lost(std::exp(3 * kDeviation)), std::log(10.0 / 5), 1e-9);
-  EXPECT_NEAR(lost(1 - 3 * kDeviation), std::log(10.0 / 5), 1e-9);
+  EXPECT_NEAR(lost(std::exp(-3 * kDeviation)), std::log(10.0 / 5), 1e-9);
   EXPECT_NEAR(lost(std::exp(100 * kDeviation)), std::log(1e4 / 5), 1e-3);
+  EXPECT_NEAR(lost(0), lost(0.01), 1e-9) << "none of it is no farther than a hundredth";
   model::Parameters values = given.parameters;
   ASSERT_EQ(values.f, 0);
   values.f = 1;
