@@ -72,7 +72,8 @@ std::string UnitMeant(std::string_view text, std::string_view wanted) {
     const std::optional<Unit> parsed = ParseUnit(unit);
     return parsed.has_value() && parsed->powers == quantity->powers;
   };
-  const std::string whole(OurSpelling(text)), rest = WithOurSigns(text);
+  std::string whole(OurSpelling(text));
+  const std::string rest = WithOurSigns(text);
   if (fits(whole)) return whole;
   std::vector<std::string> meanings = {""};  // of what has been read
   for (size_t begin = 0; begin < rest.size();) {

@@ -54,8 +54,9 @@ bool BeginsWithNumber(const std::string& text) { return ParseNumber(NumberPart(t
 // "Pa, kPa, MPa, bar, psi": what a person may choose from.
 std::string UnitsLike(const std::string& unit) {
   std::string names = unit;
-  if (const auto si = FindSiUnit(unit, 1e12); si && ParseUnit(unit) && UnitPowers(unit)->size() > 1)
-    names += ", " + si->to;
+  const auto si = FindSiUnit(unit, 1e12);
+  const auto powers = UnitPowers(unit);
+  if (si && powers && powers->size() > 1) names += ", " + si->to;
   const std::optional<hydro::Unit> own = ParseUnit(unit);
   for (const std::string_view name : UnitNames()) {
     if (name != unit && name != "lb" && own && ParseUnit(name)->powers == own->powers)

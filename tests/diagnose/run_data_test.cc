@@ -129,7 +129,7 @@ TEST(PrepareRun, RefusesTimesWithoutMotion) {
   EXPECT_EQ(error(short_gap), "");
   runs::MeasuredRun slow = WithArm(model::Shaft::kFree);
   for (double& time : slow.time) time *= 1e6;
-  EXPECT_THAT(error(slow), HasSubstr("unit = \"ms\""));
+  EXPECT_THAT(error(slow), HasSubstr("unit = \"us\""));
 }
 
 // Tests that a free arm is compared, and starts at a speed from the angle's slope.

@@ -572,7 +572,8 @@ MUTATIONS = [
         "tuning/change_check.cc",
         ("tuning.looser_limit", "if (!situation.held)\n    change.text = LoosenedLimit", "if (situation.held)\n    change.text = LoosenedLimit"),
         ("tuning.beyond_the_rig", "change.text = WhatTheRigCannotFollow(*next);", ""),
-        ("tuning.unstable", "change.text = WhyTheLoopsForbid(configured, in_force, *next, &margins);", ""),
+        ("tuning.unstable", "change.text = WhyTheLoopsForbid(configured, in_force, *next, situation.undo, &margins);", ""),
+        ("tuning.undo_of_unstable", "if (undo) {", "if (!undo) {"),
         ("tuning.real_noise", "&& !situation.simulated", "&& situation.simulated"),
     ),
     *_rows(
