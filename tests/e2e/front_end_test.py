@@ -54,17 +54,28 @@ class FrontEndCase(stack.TestCase):
         try:
             front.wait_until_arrived(0.1, delta, seconds)
         except AssertionError as error:
+            launch.send(signal.SIGINT)
+            launch.wait(60)
+            self.skip_if_commands_are_late(log_file)
             self.fail(f"{error}, at last {front.shown()[-3:]}\n{launch.report()}")
         launch.send(signal.SIGINT)
         self.assertEqual(launch.wait(60), 0, launch.report())
         return launch
 
 
+    def skip_if_commands_are_late(self, log_file):
+        """Where the quickest commands act when they should, and many others later than the gains bear: the computer is too busy."""
+        delays = sorted(s.tick - s.command_tick for s in event_log.Log(log_file).states if s.command_tick >= 0)
+        late = sum(delay > 4 for delay in delays)
+        if delays and delays[len(delays) // 10] <= 2 and late > 0.02 * len(delays):
+            self.skipTest(f"this computer is too busy: {late} of {len(delays)} commands acted more than two ticks late")
+
+
 class FrontEndRunTest(FrontEndCase):
     def arrives(self, link):
         front = front_end.FrontEnd(self, link)
         log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
-        launch = self.launch_until_arrived(front, 0.005, log_file, STEP, *REMOTE)
+        launch = self.launch_until_arrived(front, 0.0015, log_file, STEP, *REMOTE)
         self.run_program("hydro-log", "summary", log_file, "--json", json_file)
         with open(json_file, encoding="utf-8") as file:
             summary = json.load(file)
@@ -235,7 +246,7 @@ class LoopOnDeviceTest(FrontEndCase):
     def test_arm_reaches_its_reference(self):
         front = front_end.FrontEnd(self, "pty", rate=2000)
         log_file, json_file = self.path("run.lcmlog"), self.path("summary.json")
-        self.launch_until_arrived(front, 0.005, log_file, STEP, *LOOP)
+        self.launch_until_arrived(front, 0.0015, log_file, STEP, *LOOP)
         self.run_program("hydro-log", "summary", log_file, "--json", json_file)
         with open(json_file, encoding="utf-8") as file:
             self.assertTrue(json.load(file)["tracking"]["at_target"])
