@@ -189,12 +189,12 @@ void Connection::Send(hydro_frame* frame) {
   link_->Write({wire.data(), bytes}, !each_tick);
 }
 
-void Connection::AskToArm(TimePoint now) {
+void Connection::AskToArm(TimePoint now, uint32_t trips) {
   if (now < next_arm_) return;
   next_arm_ = now + kRequestPeriod;
   hydro_frame frame{};
   frame.kind = HYDRO_ARM;
-  frame.body.arm = {.fingerprint = fingerprint_, .trips = sample_.trips};
+  frame.body.arm = {.fingerprint = fingerprint_, .trips = trips};
   Send(&frame);
 }
 

@@ -58,8 +58,9 @@ class Connection {
   // Why there is no connection yet, for a message: what was found and what is allowed.
   LinkTrouble WhyNot() const;
 
-  // Asks the device to arm, unless it was asked a moment ago.
-  void AskToArm(TimePoint now);
+  // Asks the device to arm, unless it was asked a moment ago. It does so only where it has tripped `trips`
+  // times.
+  void AskToArm(TimePoint now, uint32_t trips);
   // Commands for the computer's tick. The device's samples name that of a voltage by the sequence that is
   // returned.
   uint32_t CommandVoltage(int64_t host_tick, float voltage);

@@ -291,7 +291,8 @@ double FrontEndRig::Drive(double voltage) {
   const bool obeys = MayDrive() && std::isfinite(voltage);
   if (!armed && obeys) {
     if (!arming_since_) arming_since_ = now_;
-    connection_.AskToArm(now_);
+    // As it was read: a trip that has come since is a fault first, and whether to go on is not decided here.
+    connection_.AskToArm(now_, read_.trips);
   } else {
     arming_since_.reset();
   }

@@ -99,7 +99,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
 
   void CheckSpeed() const;
   bool MayDrive() const { return command_tick_ >= 0 && faults_.empty(); }
-  bool Armed() const { return connection_.is_up() && connection_.sample().state == HYDRO_ARMED; }
+  bool Armed() const { return connection_.is_up() && read_.state == HYDRO_ARMED; }
   void SendVoltage(double voltage);
   void SendFollowed();
   model::Measurement Measured();

@@ -145,8 +145,8 @@ constexpr std::array kRows{
         .output_text = "0 V, if the device's own watchdog is there",
         .restart = Cleared::kRunEnds,
         .explicit_rearm = Cleared::kRunEnds,
-        .cleared_text =
-            "exit code 1, also where the run was complete; the line says what the output reads back",
+        .cleared_text = "the run ends with exit code 1, also where it was complete; the line says what the "
+                        "output reads back",
         .tests =
             "front_end.LastLineTest.test_end_without_the_device plant/PlantRigTest.ARefusedZeroIsAFailure "
             "plant/front_end/FrontEndRigTest.Zero driver.DriverFaultTest.test_board_that_takes_no_zero",

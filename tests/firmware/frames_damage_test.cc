@@ -79,7 +79,9 @@ TEST_F(FramesDamageTest, BytesLostDoubledExchangedAdded) {
       added.insert(added.begin() + at, static_cast<uint8_t>(random_() | 1));
       ASSERT_NO_FATAL_FAILURE(ExpectOnlyNext(added));
       std::swap(exchanged[at], exchanged[at + 1]);
-      if (exchanged != wire) ASSERT_NO_FATAL_FAILURE(ExpectOnlyNext(exchanged));
+      if (exchanged != wire) {
+        ASSERT_NO_FATAL_FAILURE(ExpectOnlyNext(exchanged));
+      }
     }
   }
 }

@@ -124,7 +124,9 @@ TEST(FramesTest, OtherProtocols) {
       bool whole = false;
       for (const uint8_t byte : wire) whole = hydro_receive(&receiver, byte, &found) || whole;
       EXPECT_EQ(whole, kind == HYDRO_HELLO || kind == HYDRO_IDENTITY) << int{kind};
-      if (whole) EXPECT_EQ(found.protocol, 2);
+      if (whole) {
+        EXPECT_EQ(found.protocol, 2);
+      }
       EXPECT_EQ(receiver.bad, whole ? 0U : 1U);
     }
   }

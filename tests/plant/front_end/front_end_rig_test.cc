@@ -195,6 +195,27 @@ TEST(FrontEndRigTest, ReadBack) {
   EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("reads back -4 V"));
 }
 
+// Tests that a trip which is heard of before it is read is not answered with another arming: it is a fault
+// first, and with limits.rearm = "explicit" an operator's to end.
+TEST(FrontEndRigTest, ATripIsAFaultFirst) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(200, 3);
+  bench.readings.interlock_closed = false;
+  bench.RunDevice();
+  bench.readings.interlock_closed = true;
+  bench.RunDevice();
+  ASSERT_EQ(bench.device.state, HYDRO_TRIPPED);
+  EXPECT_TRUE(bench.rig->Arrived());
+  bench.rig->Obey(bench.tick);  // the answer to the last reading, which was well
+  bench.rig->Drive(3);
+  bench.RunDevice();
+  EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
+  bench.Tick(3);
+  EXPECT_THAT(bench.Fault("device_fault"), HasSubstr("put out zero volts by itself"));
+  EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
+}
+
 // Tests that the driver compares too: a device that says that it puts out something else than it was told,
 // less where it names the limit, and one whose output reads back what nobody has put out, whatever it says of
 // it.
