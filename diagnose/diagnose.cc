@@ -109,7 +109,7 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
-    if (info.on_request && allowed.empty() && (oil || !info.of_bare_motors)) continue;
+    if ((info.on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
     const bool has =

@@ -48,7 +48,6 @@ class ShaftWeight : public EffectOf<ShaftWeight> {
                               .starts = {0, std::numbers::pi / 2},
                               .example = 0.4}},
               // Behind oil, the weight is the arm's (mgl), and once a turn is an eccentric shaft.
-              .on_request = true,
               .of_bare_motors = true},
      .make = MakeEffect<ShaftWeight>});
 

@@ -141,7 +141,7 @@ struct EffectInfo {
   // The gap finder looks for it only where it is asked for by name: most machines do not have it, or runs tell it from what it is
   // confused with only on a machine that is known to have it.
   bool on_request = false;
-  // Unasked too, where the motor is bare: behind oil, something else stands for it.
+  // The same where the oil takes part in some run: pressures and seals then make much of what the effect would stand for.
   bool of_bare_motors = false;
   // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
   bool listed = true;

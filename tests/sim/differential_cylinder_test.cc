@@ -34,6 +34,9 @@ TEST(DifferentialCylinder, ReachesItsTargets) {
   EXPECT_NEAR(at(1.45).arm_angle, 0.015, 5e-4);
   EXPECT_NEAR(at(2.75).arm_angle, -0.010, 5e-4);
   EXPECT_NEAR(at(4.0).arm_angle, 0.005, 5e-4);
+  // It rests, and does not swing between the modes of its valves.
+  EXPECT_NEAR(at(3.9).voltage, at(4.0).voltage, 0.1);
+  EXPECT_LT(std::abs(at(4.0).arm_speed), 1e-3);
   // At rest under its load, the forces balance by the two areas.
   EXPECT_NEAR(1.9635e-3 * at(4.0).p2 - 1.3477e-3 * at(4.0).p1, 4000, 200);
   double highest = 0;

@@ -42,7 +42,7 @@ bool IsBeside(const std::string& effect, BalanceKind balance) {
 std::vector<diagnose::Change> AllChanges() {
   std::vector<diagnose::Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (info.on_request) continue;
+    if (info.on_request || info.of_bare_motors) continue;
     std::vector<diagnose::Change> here = {{info.id, {}, ""}};
     for (const model::ParameterInfo& parameter : info.parameters) {
       if (!parameter.is_name()) continue;

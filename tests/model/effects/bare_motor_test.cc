@@ -75,7 +75,8 @@ TEST(GearLoadFriction, GrowsWithWhatTheGearPassesOn) {
   const double motor = 0.1, load = 0.2, T_s = 1, w = 1e-3 * 40;
   const auto soft = [&](double y) { return std::sqrt(y * y + w * w) - w; };
   const model::ModelDescription model =
-      BareMotor({{"gear.load_friction", Numbers{{"motor", motor}, {"load", load}}, {}},
+      BareMotor({{"gear.load_friction", Numbers{{"load", load}}, {}},
+                 {"gear.motor_friction", Numbers{{"motor", motor}}, {}},
                  {"load.gravity", Numbers{{"torque", 10}, {"phase", 0}}, {}}},
                 T_s);
   const model::Equations equations(model, Bypassed());
@@ -103,7 +104,7 @@ TEST(GearLoadFriction, GrowsWithWhatTheGearPassesOn) {
 // Tests that a gear whose load side rubs as much as it carries cannot be driven by its load, as a worm gear's.
 TEST(GearLoadFriction, LocksAWormGear) {
   for (const double load : {0.5, 1.2}) {
-    Rig rig = RigOf(BareMotor({{"gear.load_friction", Numbers{{"motor", 0}, {"load", load}}, {}},
+    Rig rig = RigOf(BareMotor({{"gear.load_friction", Numbers{{"load", load}}, {}},
                                {"load.gravity", Numbers{{"torque", 10}, {"phase", 1}}, {}}}));
     rig.simulation->Advance(0, 0.2);
     if (load > 1) {
