@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <ctime>
+#include <set>
 #include <utility>
 
 #include "base/number_text.h"
