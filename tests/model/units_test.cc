@@ -1,5 +1,5 @@
 // The same rig in other units moves in the same way: no term of the model depends on what its numbers are in.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
@@ -83,7 +83,15 @@ model::ModelDescription DrawnRig(Random& random, bool linear) {
   model.parameters.f = 1e-4 * random.Unit();
   model.parameters.mgl = 600 * (2 * random.Unit() - 1);
   for (const auto& [id, effect] : SomeOfEach()) {
-    if (random.Unit() < 0.1) model.effects.push_back(effect);
+    if (random.Unit() >= 0.1) continue;
+    model.effects.push_back(effect);
+    try {
+      const model::Equations accepted(model, {});
+    } catch (const model::ModelError& error) {
+      // A rig has one accumulator and one kind of one-way valves.
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("second of its kind"));
+      model.effects.pop_back();
+    }
   }
   return model;
 }
