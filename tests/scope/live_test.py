@@ -93,7 +93,7 @@ class LiveTest(stack.TestCase):
         self.until_time(client, 3)
         client.send({"op": "get", "id": 2, "run": 0, "channels": ["residual.p1", "p1"], "t0": 2.2, "t1": 2.7, "pixels": 4000})
         values, states = ([v for v in channel[0] if v == v] for channel in client.until(lambda m: m["op"] == "bins")["channels"])
-        self.assertGreater(len(states), 50)  # a late plant skips ticks
+        self.assertGreater(len(states), 50)  # a late plant leaves ticks out
         self.assertGreater(len(values), 0.6 * len(states))
         return sorted(map(abs, values))[len(values) // 2]
 
