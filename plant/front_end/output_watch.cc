@@ -24,7 +24,8 @@ bool Acts(const hydro_sample& sample) {
 }  // namespace
 
 OutputWatch::OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience)
-    : patience_(patience),
+    : own_loop_(driver.front_end.mode == settings::FrontEndMode::kLoopOnDevice),
+      patience_(patience),
       tolerance_(std::fabs(driver.voltage.scale) * (driver.front_end.read_back_tolerance_V > 0
                                                         ? driver.front_end.read_back_tolerance_V
                                                         : kUsualTolerance)) {}
@@ -52,14 +53,20 @@ void OutputWatch::Look(const hydro_sample& sample, bus::Clock::TimePoint now, st
   if (faults->size() == before) LookAtReadBack(sample, now, faults);
 }
 
+// By its own loop, where it has one; or by a command so old that this is the fault, unless all of late told it zero.
+bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
+  if (sample.source == HYDRO_SOURCE_LAW) return own_loop_;
+  return std::any_of(told_.begin(), told_.end(), [](const Told& told) { return told.voltage != 0; });
+}
+
 // A device may put out less than it was told, where its range ends, and says so; never more, and never the
 // other sign.
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
   const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
-  if (armed && found == nullptr) return;  // by its own loop, or by a command so old that this is the fault
-  const double told = armed ? found->voltage : 0;
+  if (armed && found == nullptr && MayPutOut(sample)) return;
+  const double told = found != nullptr ? found->voltage : 0;
   const bool less = sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
   if (voltage == told || less) return;
   faults->push_back(

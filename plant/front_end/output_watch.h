@@ -22,7 +22,7 @@ class OutputWatch {
   void OnTold(uint32_t sequence, double voltage, int64_t command_tick, bus::Clock::TimePoint now);
 
   // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
-  // told, or not zero though the device is not armed, or while the output reads back, twice in a row, a
+  // told, or not zero though the device is not armed or no command of late can have made it so, or while the output reads back, twice in a row, a
   // voltage that was not put out within the patience.
   void Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
@@ -48,6 +48,10 @@ class OutputWatch {
   void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
   void LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
+  // Whether the device may put out a voltage that no command of the driver's of late told it.
+  bool MayPutOut(const hydro_sample& sample) const;
+
+  const bool own_loop_;  // on the device
   const bus::Clock::Duration patience_;
   const double tolerance_;       // V of eq. (1)
   std::deque<Told> told_;        // within the patience, and the one before

@@ -216,6 +216,24 @@ TEST(FrontEndRigTest, ATripIsAFaultFirst) {
   EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
 }
 
+// Tests that a device which says that it drives, by its own law or by a command that was never sent, while it is told zero, is a fault.
+TEST(FrontEndRigTest, OutputByNoCommand) {
+  for (const uint8_t source : {HYDRO_SOURCE_LAW, HYDRO_SOURCE_VOLTAGE}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 0);
+    ASSERT_TRUE(bench.rig->faults().empty());
+    bench.lie = [source](hydro_sample& sample) {
+      sample.state = HYDRO_ARMED;
+      sample.source = source;
+      sample.command_sequence = 0xfffffff0;
+      sample.voltage = 10;
+    };
+    bench.Ticks(2, 0);
+    EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 10 V; it was told 0 V"));
+  }
+}
+
 // Tests that the driver compares too: a device that says that it puts out something else than it was told,
 // less where it names the limit, and one whose output reads back what nobody has put out, whatever it says of
 // it.
