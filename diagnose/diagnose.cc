@@ -70,11 +70,8 @@ bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& r
 
 // Whether the effect makes one channel late where there is no other: then it is the command that is early, an effect of the amplifier.
 bool IsOfTheCommand(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
-  const auto has = [&info](model::Role role) {
-    return std::any_of(info.parameters.begin(), info.parameters.end(),
-                       [role](const model::ParameterInfo& parameter) { return parameter.role == role; });
-  };
-  if (!has(model::Role::kChannel) || !has(model::Role::kTime)) return false;
+  if (!model::HasRole(info.id, model::Role::kChannel) || !model::HasRole(info.id, model::Role::kTime))
+    return false;
   std::set<model::Channel> measured;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) measured.insert(signal.channel);

@@ -66,7 +66,8 @@ class RunChecklist {
     double longest = 0;
     for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
-    const bool even = longest<1.5 * interval, slow = interval> kSlowestSamples;
+    const bool even = longest < 1.5 * interval;
+    const bool slow = interval > kSlowestSamples;
     Add(even && !slow ? State::kGood : State::kLook, "samples",
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +

@@ -4,26 +4,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/effects/effect.h"
+#include "model/effects/shaft_torque.h"
 
 namespace hydro::model {
 
 namespace {
 
-class ShaftWeight : public EffectOf<ShaftWeight> {
- public:
+struct ShaftWeight {
   template <class T>
-  void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.shaft_load += Torque(x);
+  static T& Load(Terms<T>& x) {
+    return x.shaft_load;
   }
-
-  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
-    const double stored = Torque(x) * x.motor_speed;
-    power->viscous -= stored;  // which contains it as part of the load
-    power->effects_stored += stored;
-  }
-
- private:
   template <class T>
   static T Torque(const Terms<T>& x) {
     using std::sin;
@@ -49,7 +40,7 @@ class ShaftWeight : public EffectOf<ShaftWeight> {
                               .example = 0.4}},
               // Behind oil, the weight is the arm's (mgl), and once a turn is an eccentric shaft.
               .of_bare_motors = true},
-     .make = MakeEffect<ShaftWeight>});
+     .make = MakeEffect<ShaftTorque<ShaftWeight>>});
 
 }  // namespace
 

@@ -1,26 +1,17 @@
 // load.spring: a spring at the motor's shaft, stiffness (theta - rest) against forward rotation. Behind gear.backlash it is theta
 // of the load.
 
-#include "model/effects/effect.h"
+#include "model/effects/shaft_torque.h"
 
 namespace hydro::model {
 
 namespace {
 
-class ShaftSpring : public EffectOf<ShaftSpring> {
- public:
+struct ShaftSpring {
   template <class T>
-  void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.shaft_load += Torque(x);
+  static T& Load(Terms<T>& x) {
+    return x.shaft_load;
   }
-
-  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
-    const double stored = Torque(x) * x.motor_speed;
-    power->viscous -= stored;  // which contains it as part of the load
-    power->effects_stored += stored;
-  }
-
- private:
   template <class T>
   static T Torque(const Terms<T>& x) {
     return x.own[0] * (x.shaft_angle - x.own[1]);
@@ -43,7 +34,7 @@ class ShaftSpring : public EffectOf<ShaftSpring> {
                               .example = 1}},
               // Clamped, the oil is such a spring.
               .on_request = true},
-     .make = MakeEffect<ShaftSpring>});
+     .make = MakeEffect<ShaftTorque<ShaftSpring>>});
 
 }  // namespace
 

@@ -4,26 +4,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/effects/shaft_torque.h"
 #include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
 namespace {
 
-class Cogging : public EffectOf<Cogging> {
- public:
+struct Cogging {
   template <class T>
-  void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.load += Torque(x);
+  static T& Load(Terms<T>& x) {
+    return x.load;
   }
-
-  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
-    const double stored = Torque(x) * x.motor_speed;
-    power->viscous -= stored;  // which contains it as part of the load
-    power->effects_stored += stored;
-  }
-
- private:
   template <class T>
   static T Torque(const Terms<T>& x) {
     using std::sin;
@@ -50,7 +42,7 @@ class Cogging : public EffectOf<Cogging> {
                                              .starts = {0, std::numbers::pi / 2},
                                              .role = Role::kPhase,
                                              .example = 0.4}}},
-                    .make = MakeEffect<Cogging>});
+                    .make = MakeEffect<ShaftTorque<Cogging>>});
 
 }  // namespace
 

@@ -2,47 +2,16 @@
 // take the surplus of unequal areas. Of side 1, opening = (p2 - p1 - shift)/range from 0 to 1, and the flow out of the side is
 // conductance opening (p1 - p3). One switch for each side.
 
-#include "model/effects/effect.h"
 #include "model/effects/opening.h"
 
 namespace hydro::model {
 
 namespace {
 
-class Flushing : public EffectOf<Flushing> {
- public:
-  int switches() const override { return 2; }
+struct Flushing {
+  static constexpr int kConductance = 2;
+  static constexpr bool kReplacesValves = false;
 
-  template <class T>
-  void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.valve_flow_1 += x.own[2] * Opening(Position(x, 0), Drive(x, 0)) * (x.p1 - x.p_3);
-    x.valve_flow_2 += x.own[2] * Opening(Position(x, 1), Drive(x, 1)) * (x.p2 - x.p_3);
-  }
-
-  template <class T>
-  void OwnMargins(const Terms<T>& x, T* margin) const {
-    for (int side = 0; side < 2; ++side) {
-      margin[kFirstEffectSwitch + first_switch() + side] = OpeningMargin(Position(x, side), Drive(x, side));
-    }
-  }
-
-  template <class T>
-  void OwnCross(int which, const Terms<T>& x, T* /*state*/, Mode* mode) const {
-    mode->effects[first_switch() + which] = NextOpening(Position(x, which), Drive(x, which));
-  }
-
-  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
-    for (int side = 0; side < 2; ++side) {
-      const double over = (side == 0 ? x.p1 : x.p2) - x.p_3;
-      power->effects_dissipated += x.own[2] * Opening(Position(x, side), Drive(x, side)) * over * over;
-    }
-  }
-
- private:
-  template <class T>
-  int Position(const Terms<T>& x, int side) const {
-    return x.mode->effects[first_switch() + side];
-  }
   template <class T>
   static T Drive(const Terms<T>& x, int side) {
     const T dp = x.p2 - x.p1;
@@ -77,7 +46,7 @@ class Flushing : public EffectOf<Flushing> {
                              .needs_oil = true,
                              // Its owner knows of it, and one-way valves hold the lower side near p3 as well.
                              .on_request = true},
-                    .make = MakeEffect<Flushing>});
+                    .make = MakeEffect<GradualValves<Flushing>>});
 
 }  // namespace
 

@@ -8,49 +8,16 @@
 
 #include <algorithm>
 
-#include "model/effects/effect.h"
 #include "model/effects/opening.h"
 
 namespace hydro::model {
 
 namespace {
 
-class Pilot : public EffectOf<Pilot> {
- public:
-  int switches() const override { return 2; }
-  bool replaces_valves() const override { return true; }
+struct Pilot {
+  static constexpr int kConductance = 3;
+  static constexpr bool kReplacesValves = true;
 
-  template <class T>
-  void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.valve_flow_1 += x.own[3] * Opening(Position(x, 0), Drive(x, 0)) * (x.p1 - x.p_3);
-    x.valve_flow_2 += x.own[3] * Opening(Position(x, 1), Drive(x, 1)) * (x.p2 - x.p_3);
-  }
-
-  template <class T>
-  void OwnMargins(const Terms<T>& x, T* margin) const {
-    T* own = margin + kFirstEffectSwitch + first_switch();
-    for (int side = 0; side < 2; ++side) {
-      own[side] = OpeningMargin(Position(x, side), Drive(x, side));
-    }
-  }
-
-  template <class T>
-  void OwnCross(int which, const Terms<T>& x, T* /*state*/, Mode* mode) const {
-    mode->effects[first_switch() + which] = NextOpening(Position(x, which), Drive(x, which));
-  }
-
-  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
-    for (int side = 0; side < 2; ++side) {
-      const double over = (side == 0 ? x.p1 : x.p2) - x.p_3;
-      power->effects_dissipated += x.own[3] * Opening(Position(x, side), Drive(x, side)) * over * over;
-    }
-  }
-
- private:
-  template <class T>
-  int Position(const Terms<T>& x, int side) const {
-    return x.mode->effects[first_switch() + side];
-  }
   template <class T>
   static T Drive(const Terms<T>& x, int side) {
     const T& own = side == 0 ? x.p1 : x.p2;
@@ -94,7 +61,7 @@ class Pilot : public EffectOf<Pilot> {
               .needs_oil = true,
               // A symmetric actuator has no use for them.
               .on_request = true},
-     .make = MakeEffect<Pilot>});
+     .make = MakeEffect<GradualValves<Pilot>>});
 
 }  // namespace
 
