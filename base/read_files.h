@@ -1,6 +1,6 @@
 // Which files this process has read, so that it never writes over one of them.
 //
-// Every reader of files (text_file.h, mapped_file.h, tables/) remembers what it opens, and every writer asks (new_file.h). A file is
+// Every reader of files (text_file.h, mapped_file.h, base/tables/) remembers what it opens, and every writer asks (new_file.h). A file is
 // the same under whatever path: another spelling, a symbolic or a hard link.
 #pragma once
 

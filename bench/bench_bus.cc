@@ -12,7 +12,7 @@
 #include "bus/in_process_bus.h"
 #include "bus/seal/authenticated_channels.h"
 #include "bus/seal/authenticator.h"
-#include "timing/histogram.h"
+#include "process/timing/histogram.h"
 
 namespace hydro {
 namespace {

@@ -20,8 +20,8 @@
 #include "bus/udpm/open_udpm_bus.h"
 #include "plant/front_end/front_end_rig.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "process/timing/histogram.h"
 #include "tests/free_udp_port.h"
-#include "timing/histogram.h"
 
 namespace hydro {
 namespace {

@@ -19,8 +19,8 @@
 #include "bus/seal/authenticated_channels.h"
 #include "bus/udpm/open_udpm_bus.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "process/timing/histogram.h"
 #include "tests/free_udp_port.h"
-#include "timing/histogram.h"
 
 namespace hydro {
 namespace {

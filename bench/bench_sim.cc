@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "base/maths/median.h"
 #include "bench/model_tick.h"
-#include "design/configured_laws.h"
-#include "log/log_writer.h"
-#include "maths/median.h"
 #include "plant/simulated_machine.h"
+#include "runs/log/log_writer.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
+#include "tune/design/configured_laws.h"
 
 namespace hydro {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "design/bang_bang.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/runs/shipped_stacks.h"
 #include "experiments/runs/stack_run.h"
 #include "experiments/studies/uncertain_steps.h"
 #include "model/actuator.h"
 #include "model/terms/drawn_model.h"
+#include "tune/design/bang_bang.h"
 
 namespace hydro::experiments {
 namespace {

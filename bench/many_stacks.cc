@@ -22,16 +22,16 @@
 #include "base/text_file.h"
 #include "bench/shared_results.h"
 #include "bus/udpm/open_udpm_bus.h"
-#include "limb/limb_app.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "process/timing/real_time.h"
 #include "settings/command_line.h"
 #include "settings/stack_config.h"
+#include "sim/limb/limb_app.h"
 #include "sim/simulation.h"
 #include "tests/free_udp_port.h"
-#include "timing/real_time.h"
 
 namespace hydro {
 namespace {

@@ -1,4 +1,4 @@
-// What a process is called and told where many simulated ones share one real process (torture/).
+// What a process is called and told where many simulated ones share one real process (sim/torture/).
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ enum class Rate {
 };
 
 // A message's role in the control loops. In lockstep the logger puts those with a role in order
-// (log/causal_order.h) and counts missing ones.
+// (runs/log/causal_order.h) and counts missing ones.
 enum class LoopPart { kNone, kState, kMotorCommand, kPressureCommand, kArmReference };
 inline constexpr size_t kLoopParts = 5;
 

@@ -2,7 +2,7 @@
 
 #include "base/input_error.h"
 #include "base/new_file.h"
-#include "timing/report/timing_report.h"
+#include "runs/timing/timing_report.h"
 
 namespace hydro::launch {
 namespace {

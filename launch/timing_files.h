@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "timing/report/timing_record.h"
+#include "runs/timing/timing_record.h"
 
 namespace hydro::launch {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "base/file_watch.h"
-#include "log/causal_order.h"
-#include "log/log_writer.h"
 #include "logger/event_queue.h"
+#include "runs/log/causal_order.h"
+#include "runs/log/log_writer.h"
 
 namespace hydro::logger {
 

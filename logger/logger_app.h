@@ -17,11 +17,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "log/causal_order.h"
 #include "logger/recording.h"
 #include "logger/refused_quota.h"
 #include "process/app.h"
 #include "process/participant.h"
+#include "runs/log/causal_order.h"
 #include "settings/stack_config.h"
 
 namespace hydro::logger {

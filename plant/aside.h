@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "tuning/change_check.h"
+#include "tune/live/change_check.h"
 
 namespace hydro::plant {
 

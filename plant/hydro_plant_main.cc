@@ -1,11 +1,11 @@
 // hydro-plant CONFIG: the simulated actuator.
 #include <spdlog/spdlog.h>
 
-#include "design/fastest_motion.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "process/process_main.h"
 #include "process/supervision.h"
+#include "tune/design/fastest_motion.h"
 
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(

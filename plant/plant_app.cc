@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "process/output_left.h"
+#include "bus/output_left.h"
 #include "process/stop_signal.h"
 
 namespace hydro::plant {
@@ -168,7 +168,7 @@ void PlantApp::RequestStop() {
   const std::string latched = safety_.Latched();
   participant_.RequestStop(
       latched.empty()
-          ? fmt::format("{} after {} s", process::kRunComplete, state_.time)
+          ? fmt::format("{} after {} s", bus::kRunComplete, state_.time)
           : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
       latched.empty() ? 0 : 1);
 }

@@ -37,13 +37,13 @@
 #include "plant/sibling_faults.h"
 #include "plant/tuning_desk.h"
 #include "process/participant.h"
+#include "process/timing/followed_rate_loop.h"
+#include "process/timing/round_trip_monitor.h"
 #include "settings/stack_config.h"
-#include "timing/followed_rate_loop.h"
-#include "timing/round_trip_monitor.h"
 
 namespace hydro::plant {
 
-// A tick of wall time, as its pacer meets it (timing/fixed_rate_loop.h).
+// A tick of wall time, as its pacer meets it (process/timing/fixed_rate_loop.h).
 struct WakeUp {
   int64_t elapsed = 1;  // ticks since the last one
   int64_t skipped = 0;  // ticks for which the pacer woke too late, in all
@@ -69,7 +69,7 @@ class PlantApp {
   // Run().
   void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
-  // The run in steps, for who paces several rigs at once (limb/). Run() takes the same ones, in the order of
+  // The run in steps, for who paces several rigs at once (sim/limb/). Run() takes the same ones, in the order of
   // these lines:
 
   // Waits until everyone who is expected is there. False: the run is over before it has begun.

@@ -6,7 +6,7 @@
 
 #include "base/copy_words.h"
 #include "plant/plant_app.h"
-#include "timing/fixed_rate_loop.h"
+#include "process/timing/fixed_rate_loop.h"
 
 namespace hydro::plant {
 namespace {

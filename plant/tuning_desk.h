@@ -1,5 +1,5 @@
 // The plant's side of a change of values while the stack runs. It holds what is in force, and decides: a request is checked
-// (tuning/change_check.h), proposed to the controllers, and, when each of them can act by it, decided for one tick; else nothing has changed.
+// (tune/live/change_check.h), proposed to the controllers, and, when each of them can act by it, decided for one tick; else nothing has changed.
 //
 //   asked -> checked -> proposed -> decided -> in force
 //              |            |
@@ -24,8 +24,8 @@
 #include "plant/aside.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
-#include "tuning/change_check.h"
-#include "tuning/tuned_values.h"
+#include "tune/live/change_check.h"
+#include "tune/live/tuned_values.h"
 
 namespace hydro::plant {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/input_error.h"
-#include "design/configured_laws.h"
 #include "model/sides.h"
 #include "process/fault_codes.h"
+#include "tune/design/configured_laws.h"
 
 namespace hydro::position_ctrl {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/input_error.h"
-#include "design/configured_laws.h"
-#include "design/operating_cases.h"
 #include "position_ctrl/position_app.h"
+#include "tune/design/configured_laws.h"
+#include "tune/design/operating_cases.h"
 
 namespace hydro::position_ctrl {
 
@@ -39,7 +39,7 @@ void PositionApp::Follow(const settings::TrajectorySpec& reference) {
                    rate_hz_);
 }
 
-// A planner may go where the loops are judged to be stable (tuning/change_check.h).
+// A planner may go where the loops are judged to be stable (tune/live/change_check.h).
 double PositionApp::PlannersReach() const {
   return design::LargestArmAngle(stop_, values_.limits.arm_angle_rad, farthest_);
 }

@@ -20,9 +20,9 @@
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
-#include "tuning/bumpless_transfer.h"
-#include "tuning/tuned_values.h"
-#include "tuning/tuning_follower.h"
+#include "tune/live/bumpless_transfer.h"
+#include "tune/live/tuned_values.h"
+#include "tune/live/tuning_follower.h"
 
 namespace hydro::pressure_ctrl {
 

@@ -19,7 +19,7 @@
 #include "process/agreement.h"
 #include "process/counted_warning.h"
 #include "process/refusal_watch.h"
-#include "timing/loop_statistics.h"
+#include "process/timing/loop_statistics.h"
 
 namespace hydro::process {
 

@@ -8,13 +8,13 @@
 #include "base/file_watch.h"
 #include "base/read_files.h"
 #include "bus/udpm/udpm_url.h"
-#include "log/log_writer.h"
 #include "process/role.h"
 #include "process/stack_bus.h"
 #include "process/stderr_log.h"
 #include "process/stop_signal.h"
 #include "process/stop_socket.h"
-#include "timing/real_time.h"
+#include "process/timing/real_time.h"
+#include "runs/log/log_writer.h"
 
 namespace hydro::process {
 namespace {

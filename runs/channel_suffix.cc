@@ -7,7 +7,7 @@
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "bus/channels.h"
-#include "log/message_kinds.h"
+#include "runs/log/message_kinds.h"
 
 namespace hydro::runs {
 namespace {

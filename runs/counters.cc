@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
-#include "maths/range.h"
 
 namespace hydro::runs {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/tables/table.h"
 #include "runs/signal_columns.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 

@@ -6,7 +6,7 @@
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "base/utf8.h"
-#include "process/output_left.h"
+#include "bus/output_left.h"
 #include "runs/info.h"
 #include "runs/sampling.h"
 #include "runs/tuning_history.h"
@@ -159,8 +159,7 @@ void AppendEnds(const LogInfo& info, std::string& text) {
            stop.exit_code);
   }
   for (const tuned_settings_t& tuning : info.tunings) Append(text, "tuned: {}\n", DescribeTuning(tuning));
-  for (const output_left_t& left : info.outputs_left)
-    Append(text, "end: {}\n", process::OutputLeftText(left));
+  for (const output_left_t& left : info.outputs_left) Append(text, "end: {}\n", bus::OutputLeftText(left));
   if (info.outputs_left.empty()) text += "end: no plant or driver says what voltage it left\n";
 }
 

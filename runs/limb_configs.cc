@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "log/message_kinds.h"
+#include "runs/log/message_kinds.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::runs {

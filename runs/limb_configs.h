@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "log/log_reader.h"
 #include "runs/channel_suffix.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::runs {
 

@@ -8,7 +8,7 @@
 #include "base/number_text.h"
 #include "base/saturating.h"
 #include "base/text_file.h"
-#include "process/output_left.h"
+#include "bus/output_left.h"
 #include "runs/limb_info.h"
 #include "runs/sampling.h"
 #include "runs/tuning_history.h"
@@ -124,8 +124,8 @@ std::string LimbSummaryText(const LimbInfo& info) {
       info.limb.tunings,
       [](const tuned_settings_t& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
   AppendList(
-      info.limb.outputs_left,
-      [](const output_left_t& left) { return Printable(process::OutputLeftText(left)); }, &text);
+      info.limb.outputs_left, [](const output_left_t& left) { return Printable(bus::OutputLeftText(left)); },
+      &text);
   return text;
 }
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/tables/table.h"
 #include "base/unit_system.h"
 #include "model/terms/actuator_options.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 

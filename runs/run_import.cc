@@ -7,7 +7,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "bus/channels.h"
-#include "log/log_writer.h"
+#include "runs/log/log_writer.h"
 #include "runs/measured_run.h"
 #include "runs/run_table.h"
 #include "settings/model_file.h"

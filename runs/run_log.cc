@@ -12,11 +12,11 @@
 #include "base/big_endian.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
-#include "log/log_format.h"
-#include "log/log_reader.h"
-#include "log/message_kinds.h"
 #include "runs/channel_suffix.h"
 #include "runs/limb_configs.h"
+#include "runs/log/log_format.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/message_kinds.h"
 
 namespace hydro::runs {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "log/log_reader.h"
 #include "runs/clock_steps.h"
+#include "runs/log/log_reader.h"
 #include "runs/run_messages.h"
 #include "runs/stack_choice.h"
 

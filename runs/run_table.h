@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
+#include "base/tables/table.h"
 #include "base/unit_system.h"
 #include "runs/run_log.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 

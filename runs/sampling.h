@@ -1,4 +1,4 @@
-// Whether a log has every state of its run, or a limb's telemetry of some of them (limb/telemetry.h).
+// Whether a log has every state of its run, or a limb's telemetry of some of them (sim/limb/telemetry.h).
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/measured_signals.h"
 #include "runs/sidecar_columns.h"
@@ -10,7 +11,6 @@
 #include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 namespace {

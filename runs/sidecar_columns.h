@@ -2,10 +2,10 @@
 #pragma once
 
 #include "base/input_error.h"
+#include "base/tables/table.h"
 #include "runs/measured_run.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/tables/table.h"
 #include "runs/measured_run.h"
-#include "tables/table.h"
 
 namespace hydro::runs {
 

@@ -8,11 +8,11 @@
 #include "base/saturating.h"
 #include "base/text_file.h"
 #include "base/units.h"
-#include "process/output_left.h"
+#include "bus/output_left.h"
 #include "runs/sampling.h"
+#include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
 #include "runs/tuning_history.h"
-#include "timing/report/timing_report.h"
 
 namespace hydro::runs {
 namespace {
@@ -63,7 +63,7 @@ const stop_t* EarlyEnd(const LogInfo& info) {
   const stop_t* first = nullptr;
   for (const stop_t& stop : info.stops) {
     if (stop.exit_code != 0) return &stop;
-    if (process::IsCompletion(stop)) return nullptr;
+    if (bus::IsCompletion(stop)) return nullptr;
     if (first == nullptr) first = &stop;
   }
   return first;
@@ -157,7 +157,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
          Printable(fault.source));
   }
   for (const tuned_settings_t& tuning : info.tunings) line("tuned: {}", Printable(DescribeTuning(tuning)));
-  for (const output_left_t& left : info.outputs_left) line("{}", Printable(process::OutputLeftText(left)));
+  for (const output_left_t& left : info.outputs_left) line("{}", Printable(bus::OutputLeftText(left)));
   return text;
 }
 

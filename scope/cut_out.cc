@@ -6,9 +6,9 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "exports/sheet_units.h"
-#include "log/log_reader.h"
-#include "log/log_writer.h"
+#include "runs/exports/sheet_units.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/log_writer.h"
 #include "runs/run_config.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"

@@ -2,11 +2,11 @@
 
 #include <hydro/messages.hpp>
 
+#include "bus/definitions/encoded_values.h"
+#include "bus/definitions/message_definition.h"
+#include "bus/definitions/ros_message.h"
 #include "bus/messages.h"
-#include "definitions/encoded_values.h"
-#include "definitions/message_definition.h"
-#include "definitions/ros_message.h"
-#include "exports/sheet_units.h"
+#include "runs/exports/sheet_units.h"
 
 namespace hydro::scope {
 namespace {

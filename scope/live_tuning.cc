@@ -7,10 +7,10 @@
 #include "base/json_text.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "hydro_set/saved_config.h"
 #include "runs/tuning_history.h"
-#include "tuning/rearm_forecast.h"
-#include "tuning/tunable_keys.h"
+#include "tune/live/rearm_forecast.h"
+#include "tune/live/saved_config.h"
+#include "tune/live/tunable_keys.h"
 
 namespace hydro::scope {
 namespace {
@@ -81,7 +81,7 @@ void LiveTuning::Describe() {
   const tuned_settings_t& in_force = *client_.in_force();
   json entries = json::array();
   try {
-    const auto values = hydro_set::ValuesInForce(*client_.run(), in_force, NumberText);
+    const auto values = tuning::ValuesInForce(*client_.run(), in_force, NumberText);
     const settings::StackConfig config = tuning::ConfigInForce(*client_.run(), in_force);
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));

@@ -10,8 +10,8 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
-#include "hydro_set/tuning_client.h"
 #include "scope/operator_desk.h"
+#include "tune/live/tuning_client.h"
 
 namespace hydro::scope {
 
@@ -33,7 +33,7 @@ class LiveTuning : public Tuning {
   bool Ready(const Done& done);
   void Describe();
 
-  hydro_set::TuningClient client_;
+  tuning::TuningClient client_;
   uint32_t run_;
   bool control_;
   Done waiting_;  // for the answer; null: nothing is asked

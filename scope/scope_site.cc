@@ -10,6 +10,7 @@
 #include "base/input_error.h"
 #include "base/json_text.h"
 #include "base/number_text.h"
+#include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/run_table.h"
 #include "scope/cut_out.h"
@@ -17,7 +18,6 @@
 #include "scope/live_messages.h"
 #include "scope/signals/log_run.h"
 #include "settings/command_line.h"
-#include "tables/table.h"
 
 namespace hydro::scope {
 namespace {

@@ -6,9 +6,9 @@
 #include "base/units.h"
 #include "model/effects/catalogue.h"
 #include "model/sides.h"
+#include "model/trajectory/trajectory.h"
 #include "settings/process_sections.h"
 #include "settings/toml/section_reader.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::settings {
 namespace {

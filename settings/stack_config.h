@@ -12,9 +12,9 @@
 #include "base/input_error.h"
 #include "model/terms/actuator_options.h"
 #include "model/terms/description.h"
+#include "model/trajectory/trajectory.h"
 #include "settings/driver_section.h"
 #include "settings/read_quantities.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::settings {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "base/number_text.h"
-#include "tables/csv_points.h"
+#include "settings/csv_points.h"
 
 namespace hydro::settings {
 namespace {
@@ -75,7 +75,7 @@ void ReadCsv(SectionReader& section, const std::string& config_file, TrajectoryS
   if (section.Has("file") && section.Has("column")) {
     const std::string file = PathBeside(config_file, spec->file);
     try {
-      spec->points = tables::ReadCsvPoints(file, spec->column);
+      spec->points = ReadCsvPoints(file, spec->column);
     } catch (const InputError& error) {
       throw InputError(std::string(error.what()) + " (" + section.path() + ".file in " + section.place() +
                        ")");

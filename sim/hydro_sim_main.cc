@@ -9,9 +9,8 @@
 #include "base/number_text.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
-#include "design/fastest_motion.h"
-#include "log/log_writer.h"
 #include "process/stop_signal.h"
+#include "runs/log/log_writer.h"
 #include "runs/run_log.h"
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
@@ -19,6 +18,7 @@
 #include "settings/model_file.h"
 #include "settings/process_sections.h"
 #include "sim/simulation.h"
+#include "tune/design/fastest_motion.h"
 
 namespace {
 

@@ -8,11 +8,11 @@
 #include "base/random.h"
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "limb/limb.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "sim/limb/limb.h"
 
 namespace hydro::sim {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/tables/csv_text.h"
 #include "batch/study/key.h"
 #include "model/terms/parameter_info.h"
-#include "tables/csv_text.h"
 
 namespace hydro::batch {
 namespace {

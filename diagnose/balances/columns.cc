@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/range.h"
 #include "base/parallel.h"
 #include "diagnose/balances/column_maker.h"
 #include "diagnose/balances/latent_pressures.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 

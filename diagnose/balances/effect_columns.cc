@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/range.h"
 #include "diagnose/balances/column_maker.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/median.h"
+#include "base/maths/median.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "maths/median.h"
+#include "base/maths/median.h"
 
 namespace hydro::diagnose {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 

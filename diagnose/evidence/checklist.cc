@@ -5,12 +5,12 @@
 #include <functional>
 #include <optional>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/range.h"
 #include "runs/measured_signals.h"
 
 namespace hydro::diagnose {

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <utility>
 
+#include "base/maths/range.h"
 #include "diagnose/balances/masks.h"
 #include "diagnose/balances/run_motion.h"
 #include "diagnose/balances/test_functions.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/range.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {

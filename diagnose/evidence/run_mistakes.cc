@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "base/maths/range.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -5,10 +5,10 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "base/maths/solve.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/solve.h"
 
 namespace hydro::diagnose {
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/maths/linear_fit.h"
 #include "base/number_text.h"
 #include "diagnose/fit/closure.h"
-#include "maths/linear_fit.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/solve.h"
+#include "base/maths/solve.h"
 
 namespace hydro::diagnose {
 

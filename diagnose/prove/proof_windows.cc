@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/maths/range.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/thinned.h"
 #include "diagnose/recording/windows.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 

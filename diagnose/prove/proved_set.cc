@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "maths/median.h"
+#include "base/maths/median.h"
 
 namespace hydro::diagnose {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/maths/median.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/thinned.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/maths/solve.h"
 #include "base/parallel.h"
 #include "diagnose/prove/proof_context.h"
-#include "maths/solve.h"
 
 namespace hydro::diagnose {
 

@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "base/maths/median.h"
+#include "base/maths/solve.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/turn.h"
-#include "maths/median.h"
-#include "maths/solve.h"
 
 namespace hydro::diagnose {
 

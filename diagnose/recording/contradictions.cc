@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/maths/median.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/stated_bypass.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/median.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/run_data.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {

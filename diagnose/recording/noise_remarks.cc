@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/maths/median.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {

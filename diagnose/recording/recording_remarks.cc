@@ -5,11 +5,11 @@
 #include <limits>
 #include <utility>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <set>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {

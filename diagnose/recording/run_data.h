@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "model/response.h"
+#include "model/trajectory/trajectory.h"
 #include "runs/measured_run.h"
 #include "runs/measured_signals.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::diagnose {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "trajectory/trajectory.h"
+#include "model/trajectory/trajectory.h"
 
 namespace hydro::diagnose {
 

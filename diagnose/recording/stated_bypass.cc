@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "diagnose/recording/oil_spring.h"
 #include "diagnose/recording/run_data.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 namespace {

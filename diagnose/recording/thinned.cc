@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/range.h"
+#include "base/maths/range.h"
 
 namespace hydro::diagnose {
 

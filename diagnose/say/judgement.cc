@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/range.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
-#include "maths/range.h"
 
 namespace hydro::diagnose {
 

@@ -1,8 +1,8 @@
 #include "diagnose/say/lacking.h"
 
+#include "base/maths/median.h"
 #include "base/parallel.h"
 #include "diagnose/balances/masks.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 

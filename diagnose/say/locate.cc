@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "base/maths/median.h"
 #include "base/number_text.h"
 #include "diagnose/say/seen.h"
-#include "maths/median.h"
 
 namespace hydro::diagnose {
 

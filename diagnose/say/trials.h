@@ -9,7 +9,7 @@
 
 #include "diagnose/recording/run_data.h"
 #include "model/response.h"
-#include "trajectory/trajectory.h"
+#include "model/trajectory/trajectory.h"
 
 namespace hydro::diagnose {
 

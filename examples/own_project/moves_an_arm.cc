@@ -5,13 +5,13 @@
 
 #include "bus/in_process_bus.h"
 #include "hydro/state_t.hpp"
-#include "log/log_reader.h"
-#include "log/log_writer.h"
 #include "model/actuator.h"
 #include "model/terms/parameter_info.h"
 #include "position_ctrl/law/position_law.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "process/fault_codes.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/log_writer.h"
 #include "settings/model_file.h"
 
 namespace {

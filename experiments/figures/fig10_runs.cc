@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "base/units.h"
-#include "design/arm_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/runs/shipped_stacks.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/retuning.h"
 #include "settings/model_file.h"
+#include "tune/design/arm_loop.h"
 
 namespace hydro::experiments {
 namespace {

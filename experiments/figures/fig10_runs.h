@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "design/bang_bang.h"
-#include "design/position_design.h"
-#include "design/sampled_position_loop.h"
 #include "experiments/studies/experiment.h"
 #include "runs/step_response.h"
-#include "tune/step_trial.h"
+#include "tune/design/bang_bang.h"
+#include "tune/design/position_design.h"
+#include "tune/design/sampled_position_loop.h"
+#include "tune/search/step_trial.h"
 
 namespace hydro::experiments {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/spread.h"
+#include "base/maths/spread.h"
 #include "model/terms/drawn_model.h"
 #include "model/terms/parameter_info.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "design/position_design.h"
+#include "tune/design/position_design.h"
 
 namespace hydro::experiments {
 

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
-#include "design/arm_loop.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig8_block_diagram.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
+#include "tune/design/arm_loop.h"
 
 namespace hydro::experiments {
 namespace {

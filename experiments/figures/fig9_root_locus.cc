@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
-#include "design/sampled_position_loop.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
 #include "runs/step_response.h"
+#include "tune/design/sampled_position_loop.h"
 
 namespace hydro::experiments {
 namespace {

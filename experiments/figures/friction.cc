@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "base/maths/linear_fit.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/pump_friction.h"
-#include "maths/linear_fit.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {

@@ -5,13 +5,13 @@
 #include <complex>
 #include <vector>
 
-#include "design/linear_loop.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/pressure_sweep.h"
 #include "experiments/studies/experiment.h"
 #include "model/linearise.h"
 #include "model/terms/description.h"
 #include "pressure_ctrl/law/pressure_law.h"
+#include "tune/design/linear_loop.h"
 
 namespace hydro::experiments {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/tables/table.h"
 #include "model/terms/description.h"
-#include "tables/table.h"
 
 namespace hydro::experiments {
 

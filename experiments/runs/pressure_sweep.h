@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "design/frequency_response.h"
 #include "experiments/runs/stack_run.h"
 #include "model/terms/description.h"
 #include "pressure_ctrl/law/pressure_law.h"
+#include "tune/design/frequency_response.h"
 
 namespace hydro::experiments {
 

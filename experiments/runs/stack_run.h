@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "tables/table.h"
+#include "base/tables/table.h"
 
 namespace hydro::experiments {
 

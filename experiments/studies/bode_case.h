@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "design/linear_loop.h"
-#include "design/second_order_fit.h"
+#include "base/tables/table.h"
 #include "experiments/runs/pressure_sweep.h"
 #include "model/terms/mode.h"
 #include "page/plot.h"
-#include "tables/table.h"
+#include "tune/design/linear_loop.h"
+#include "tune/design/second_order_fit.h"
 
 namespace hydro::experiments {
 

@@ -12,7 +12,7 @@
 #include "model/arm/planar_arm.h"
 #include "model/coupled_arm.h"
 #include "settings/stack_config.h"
-#include "tune/step_trial.h"
+#include "tune/search/step_trial.h"
 
 namespace hydro::experiments {
 namespace {

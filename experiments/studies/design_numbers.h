@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "design/position_design.h"
 #include "runs/step_response.h"
+#include "tune/design/position_design.h"
 
 namespace hydro::experiments {
 

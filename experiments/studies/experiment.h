@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/tables/table.h"
 #include "experiments/runs/stack_run.h"
 #include "page/plot.h"
-#include "tables/table.h"
 
 namespace hydro::experiments {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "maths/estimate.h"
+#include "base/maths/estimate.h"
 
 namespace hydro::experiments {
 

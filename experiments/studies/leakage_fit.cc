@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "maths/median.h"
+#include "base/maths/median.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {

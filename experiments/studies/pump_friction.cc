@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/linear_fit.h"
 #include "base/number_text.h"
-#include "maths/linear_fit.h"
 
 namespace hydro::experiments {
 namespace {

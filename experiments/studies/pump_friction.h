@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/maths/estimate.h"
 #include "experiments/studies/steady_speed.h"
-#include "maths/estimate.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

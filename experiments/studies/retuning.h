@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "design/bang_bang.h"
-#include "tune/step_trial.h"
+#include "tune/design/bang_bang.h"
+#include "tune/search/step_trial.h"
 
 namespace hydro::experiments {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maths/linear_fit.h"
-#include "maths/median.h"
+#include "base/maths/linear_fit.h"
+#include "base/maths/median.h"
 
 namespace hydro::experiments {
 namespace {

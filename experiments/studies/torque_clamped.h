@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "design/frequency_response.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/studies/experiment.h"
+#include "tune/design/frequency_response.h"
 
 namespace hydro::experiments {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "maths/spread.h"
+#include "base/maths/spread.h"
 #include "model/terms/parameter_info.h"
 #include "runs/step_response.h"
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/maths/estimate.h"
 #include "experiments/studies/uncertain_steps.h"
-#include "maths/estimate.h"
 
 namespace hydro::experiments {
 

@@ -5,12 +5,12 @@
 
 #include "base/parallel.h"
 #include "base/units.h"
-#include "design/bang_bang.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/runs/shipped_stacks.h"
 #include "experiments/studies/retuning.h"
 #include "model/terms/drawn_model.h"
 #include "runs/step_response.h"
+#include "tune/design/bang_bang.h"
 
 namespace hydro::experiments {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "tune/step_trial.h"
+#include "tune/search/step_trial.h"
 
 namespace hydro::experiments {
 

@@ -1,4 +1,4 @@
-// The processes that a launch has started, as it sees them: real ones (launch/supervisor.h) or simulated ones (torture/).
+// The processes that a launch has started, as it sees them: real ones (launch/supervisor.h) or simulated ones (sim/torture/).
 #pragma once
 
 #include <cstddef>

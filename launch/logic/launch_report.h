@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "launch/logic/run_summary.h"
-#include "timing/report/timing_record.h"
+#include "runs/timing/timing_record.h"
 
 namespace hydro::launch {
 

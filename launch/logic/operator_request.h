@@ -10,7 +10,7 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 #include "settings/stack_config.h"
-#include "tuning/rearm_forecast.h"
+#include "tune/live/rearm_forecast.h"
 
 namespace hydro::launch {
 

@@ -13,7 +13,7 @@
 #include "bus/channels.h"
 #include "bus/session.h"
 #include "launch/logic/operator_request.h"
-#include "tuning/rearm_forecast.h"
+#include "tune/live/rearm_forecast.h"
 
 namespace hydro::launch {
 namespace {

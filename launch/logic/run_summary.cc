@@ -6,10 +6,10 @@
 
 #include "base/saturating.h"
 #include "base/utf8.h"
+#include "bus/output_left.h"
 #include "process/fault_codes.h"
-#include "process/output_left.h"
 #include "process/role.h"
-#include "timing/report/timing_report.h"
+#include "runs/timing/timing_report.h"
 
 namespace hydro::launch {
 namespace {
@@ -127,7 +127,7 @@ void RunSummary::AppendOutputs(std::vector<std::string>* lines) const {
     if (zero) {
       ++at_zero;
     } else {
-      lines->push_back(process::OutputLeftText(left));
+      lines->push_back(bus::OutputLeftText(left));
     }
   }
   if (at_zero > 0) lines->push_back(fmt::format("{} outputs read back 0 V", at_zero));

@@ -18,8 +18,8 @@
 #include "bus/hosted_process.h"
 #include "launch/logic/child.h"
 #include "launch/logic/run_summary.h"
+#include "runs/timing/timing_record.h"
 #include "settings/stack_config.h"
-#include "timing/report/timing_record.h"
 
 namespace hydro::launch {
 

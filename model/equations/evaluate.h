@@ -6,7 +6,7 @@
 
 #include "model/effects/effect.h"
 #include "model/equations/equations.h"
-#include "trajectory/trajectory.h"
+#include "model/trajectory/trajectory.h"
 
 namespace hydro::model {
 

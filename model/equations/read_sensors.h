@@ -4,7 +4,7 @@
 #include "model/effects/effect.h"
 #include "model/equations/evaluate.h"
 #include "model/equations/state_history.h"
-#include "trajectory/trajectory.h"
+#include "model/trajectory/trajectory.h"
 
 namespace hydro::model {
 

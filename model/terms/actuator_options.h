@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "trajectory/trajectory.h"
+#include "model/trajectory/trajectory.h"
 
 namespace hydro::model {
 

@@ -12,8 +12,8 @@
 #include "process/process_main.h"
 #include "process/stop_signal.h"
 #include "process/supervision.h"
+#include "process/timing/real_time.h"
 #include "settings/process_sections.h"
-#include "timing/real_time.h"
 
 namespace hydro::plant {
 namespace {

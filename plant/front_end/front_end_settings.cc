@@ -11,7 +11,7 @@
 #include "base/number_text.h"
 #include "plant/front_end/refusals.h"
 #include "settings/toml/section_reader.h"
-#include "tuning/tuned_values.h"
+#include "tune/live/tuned_values.h"
 
 namespace hydro::plant {
 namespace {

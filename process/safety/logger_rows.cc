@@ -72,7 +72,7 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "`hydro-log repair` keeps what the checksums cover",
-        .tests = "hydro_log/DamageTest.Repaired torture/LogRecordTest.Damage",
+        .tests = "tools/hydro_log/DamageTest.Repaired sim/torture/LogRecordTest.Damage",
         .injected = "disk_lie crash:logger",
     },
 };

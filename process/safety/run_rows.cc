@@ -121,7 +121,7 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "when the other joint's fault has ended, with `\"explicit\"` by a re-arm of that one",
-        .tests = "limb/LimbTest.FaultOfOneHoldsTheOthers limb.LimbTest.test_a_fault_of_one_joint",
+        .tests = "sim/limb/LimbTest.FaultOfOneHoldsTheOthers limb.LimbTest.test_a_fault_of_one_joint",
         .injected = "hang:knee_plant crash:knee_pressure_ctrl",
     },
     SafetyRow{
@@ -139,7 +139,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, when it is heard again",
         .tests = "plant/SilentJointTest.HoldsZeroVolts plant/SilentJointTest.WaitsForARearm "
-                 "limb/LimbAppTest.SilenceOfAJointElsewhere limb.LimbCableTest.test_cable_out",
+                 "sim/limb/LimbAppTest.SilenceOfAJointElsewhere limb.LimbCableTest.test_cable_out",
         .injected = "hang:knee_plant partition:knee_plant",
     },
     SafetyRow{

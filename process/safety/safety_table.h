@@ -48,7 +48,7 @@ struct SafetyRow {
   std::string_view cleared_text;
   // tests/e2e: fault_loops.FaultLoopsTest.test_plant_dies; other folders of tests/: plant/PlantAppTest.ModelErrorEndsTheRun.
   std::string_view tests = {};
-  // Kinds of faults that hydro-torture injects (torture/schedule/fault_kinds.cc), each enough by itself to reach the
+  // Kinds of faults that hydro-torture injects (sim/torture/schedule/fault_kinds.cc), each enough by itself to reach the
   // row in some run: "slow", or "slow:plant" where it matters to whom.
   std::string_view injected = {};
   std::string_view not_injected = {};  // why there are none

@@ -18,9 +18,10 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "nothing has changed",
-        .tests = "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
-                 "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.RefusesWhatCannotBeJudged "
-                 "tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
+        .tests =
+            "tuning.TuningTest.test_refused tune/live/LiveTuningTest.WhatIsRefusedChangesNothing "
+            "tune/live/PrepareChange.RefusesWithTheReason tune/live/PrepareChange.RefusesWhatCannotBeJudged "
+            "tune/live/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
         .injected = "set strange_request",
     },
     SafetyRow{
@@ -35,8 +36,8 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "nothing has changed",
         .tests = "tuning.TuningTest.test_controller_restarted "
-                 "tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
-                 "tuning/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
+                 "tune/live/LiveTuningTest.AControllerThatCannotEndsTheRequest "
+                 "tune/live/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
                  "position_ctrl/PositionAppTest.ActsByTheValuesInForceWhenItJoins",
         .injected = "torn_set",
     },

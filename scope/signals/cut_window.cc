@@ -5,7 +5,7 @@
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 
-#include "log/message_kinds.h"
+#include "runs/log/message_kinds.h"
 #include "scope/signals/decoded.h"
 
 namespace hydro::scope {

@@ -1,5 +1,5 @@
 """A link of a host to the switch (process_network.py) that for a while loses or delays what the host sends. In order: what is sent
-later never arrives earlier, as in torture/machines/network.cc. The kernel that the tests run on has no netem, which would do the same."""
+later never arrives earlier, as in sim/torture/machines/network.cc. The kernel that the tests run on has no netem, which would do the same."""
 
 import collections
 import select

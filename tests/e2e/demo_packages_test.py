@@ -23,10 +23,10 @@ class DemoPackagesTest(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertNotIn("comedi", (pathlib.Path(build) / "CMakeCache.txt").read_text())
             steps = subprocess.run(["ninja", "-C", build, "-t", "commands", "demo_programs"], capture_output=True, text=True, check=True)
-            sources = re.findall(rf"{re.escape(str(ROOT))}/(\w+)/\S+\.cc\b", steps.stdout)
+            sources = re.findall(rf"{re.escape(str(ROOT))}/((?:tune/)?\w+)/\S+\.cc\b", steps.stdout)
             self.assertIn("plant", sources)
-            self.assertIn("hydro_log", sources)
-            self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "tests", "tune"}, set())
+            self.assertIn("tools", sources)
+            self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "tests", "tune/search"}, set())
 
     # Tests that ./demo requests only these, and that the full build still needs the rest.
     def test_the_rest_is_asked_for_by_the_rest(self):

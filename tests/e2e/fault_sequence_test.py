@@ -1,5 +1,5 @@
 """What torture_real_test compares, without real processes: that its comparison notices what is different, and that no schedule of
-tests/torture/real depends on chance."""
+tests/sim/torture/real depends on chance."""
 
 import unittest
 

@@ -16,7 +16,7 @@ import stack
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 # The module and the types that lcm-gen made: of the sources and their build folder, or installed.
-PYTHON = os.environ.get("HYDRO_PYTHON", os.pathsep.join([os.path.join(ROOT, "python"), os.path.join(os.path.dirname(stack.BIN), "generated", "python")]))
+PYTHON = os.environ.get("HYDRO_PYTHON", os.pathsep.join([os.path.join(ROOT, "bus", "python"), os.path.join(os.path.dirname(stack.BIN), "generated", "python")]))
 EXAMPLE = os.path.join(os.environ.get("HYDRO_EXAMPLES", os.path.join(ROOT, "examples")), "own_controller")
 PID, CONFIG = os.path.join(EXAMPLE, "pid.py"), os.path.join(EXAMPLE, "own.toml")
 TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))  # where the example in C++ is built

@@ -1,4 +1,4 @@
-"""One run of a schedule of hydro-torture on real processes over UDP. What torture/ does to simulated processes this does to
+"""One run of a schedule of hydro-torture on real processes over UDP. What sim/torture/ does to simulated processes this does to
 real ones: the same faults at the same times after the plant's first state."""
 
 import heapq
@@ -11,12 +11,12 @@ import time
 import stack
 import torture_intruder
 
-RESTART = 0.3  # s: how soon whoever watches a process starts it again, as torture/world_processes.cc
-RETURN = 5.0  # s after the last fault in which control returns, as torture/world_end.cc
-PATIENCE = 0.4  # s of the operator, as torture/programs.cc
-REQUESTS = 6  # of the operator, half a second apart, as torture/world_end.cc
-CONFIG = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "torture", "torture.toml")
-OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque=400")  # as torture/torture_config.cc
+RESTART = 0.3  # s: how soon whoever watches a process starts it again, as sim/torture/world_processes.cc
+RETURN = 5.0  # s after the last fault in which control returns, as sim/torture/world_end.cc
+PATIENCE = 0.4  # s of the operator, as sim/torture/programs.cc
+REQUESTS = 6  # of the operator, half a second apart, as sim/torture/world_end.cc
+CONFIG = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "sim", "torture", "torture.toml")
+OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque=400")  # as sim/torture/torture_config.cc
 
 
 class RealTorture:

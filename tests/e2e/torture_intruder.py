@@ -1,5 +1,5 @@
 """Somebody on the network of a run of torture_real_test.py who listens, and sends what no process of the stack would: what
-torture/intruder.cc does in the simulator. Each injection is a generator of the times at which it goes on."""
+sim/torture/intruder.cc does in the simulator. Each injection is a generator of the times at which it goes on."""
 
 import collections
 import random

@@ -1,4 +1,4 @@
-"""The schedules of tests/torture/real, each in the simulator and on real processes over UDP: the same faults in the same order.
+"""The schedules of tests/sim/torture/real, each in the simulator and on real processes over UDP: the same faults in the same order.
 
 On request (scripts/torture --real), because it takes some five minutes. HYDRO_SCHEDULE=NAME runs one of them, and
 HYDRO_SCHEDULES=FOLDER takes schedules of one's own."""

@@ -14,7 +14,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "pressure_ctrl/law/pressure_law.h"
-#include "tests/design/wave_polynomial.h"
+#include "tests/tune/design/wave_polynomial.h"
 
 namespace hydro::experiments {
 namespace {

@@ -5,11 +5,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/maths/linear_fit.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/pump_friction.h"
-#include "maths/linear_fit.h"
 #include "plant/sensor_noise.h"
 #include "settings/model_file.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "pressure_ctrl/law/pressure_law.h"
-#include "tuning/bumpless_transfer.h"
+#include "tune/live/bumpless_transfer.h"
 
 namespace hydro::firmware {
 namespace {

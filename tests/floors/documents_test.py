@@ -1,13 +1,13 @@
 """Tests that README.md and the pages of docs/ show the house as it is: its rooms, paths and headings that exist; and that docs/README.md
 lists every page."""
 
-import importlib.machinery
-import importlib.util
 import pathlib
 import re
 import sys
 import tempfile
 import unittest
+
+from floors_test import load_rooms_script
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "docs").glob("*.md"))]
@@ -18,14 +18,6 @@ PATH = re.compile(r"`((?:\./)?[\w@.+-]+(?:/[\w@.,*{}+-]+)+/?)`")
 # Files that send a reader to a page.
 SOURCES = {".cc", ".h", ".in", ".js", ".lcm", ".md", ".py", ".toml", ".txt", ""}
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|<img src=\"([^\"]+)\"")
-
-
-def load_rooms_script():
-    path = str(ROOT / "scripts/rooms")
-    loader = importlib.machinery.SourceFileLoader("rooms", path)
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("rooms", loader))
-    loader.exec_module(module)
-    return module
 
 
 def expand(path):
@@ -140,7 +132,7 @@ class DocumentsTest(unittest.TestCase):
                 (root / name).write_text(text)
             self.assertEqual(rooms.outdated(root), {})
             self.assertEqual((root / "README.md").read_text(),
-                             "a\n<!-- rooms -->\n| floors, from the top |\n|---|\n| `base/` |\n<!-- /rooms -->\nb\n")
+                             "a\n<!-- rooms -->\n| floors, from the top | |\n|---|---|\n| `base/` | text |\n<!-- /rooms -->\nb\n")
             (root / "cmake/rooms.txt").write_text("base  text\n\nmodel  equations\n")
             self.assertEqual(sorted(rooms.outdated(root)), ["README.md", "docs/architecture.md"])
             (root / "README.md").write_text("no markers\n")

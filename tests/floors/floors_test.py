@@ -1,5 +1,7 @@
 """Tests that arrows point down only: every include, and every library that CMake links, is held against the floors of cmake/rooms.txt."""
 
+import importlib.machinery
+import importlib.util
 import pathlib
 import re
 import sys
@@ -16,7 +18,7 @@ TARGET = re.compile(r"\b(hydro_library|hydro_program|target_link_libraries)\(\s*
 # Control laws and the model never read a clock, a socket or a file: what they may use of the house, and the system's headers that
 # they may not.
 PURE = {
-    "model": {"base", "trajectory", "model"},
+    "model": {"base", "model"},
     "pressure_ctrl/law": {"model", "pressure_ctrl"},
     "position_ctrl/law": {"model", "position_ctrl"},
 }
@@ -35,32 +37,46 @@ NO_PROCESS = ("experiments", "diagnose")
 PROCESS = re.compile(r"process/.*|logger/.*|plant/.*|(pressure|position)_ctrl/\w*_app\.h")
 
 
-def read_floors(text):
-    """From each room to its floor, counted from the bottom."""
-    floors, floor, empty = {}, 0, True
-    for line in text.splitlines():
-        if line.startswith("#"):
-            continue
-        if not line.strip():
-            floor, empty = floor if empty else floor + 1, True
-            continue
-        floors[line.split()[0]], empty = floor, False
-    return floors
+def load_rooms_script():
+    """scripts/rooms, which reads the list."""
+    path = str(ROOT / "scripts/rooms")
+    loader = importlib.machinery.SourceFileLoader("rooms", path)
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("rooms", loader))
+    loader.exec_module(module)
+    return module
 
 
-def room_of(path, floors):
+def read_rooms(text):
+    """From each room's path to what the list says of it."""
+    return {room.path: room for room in load_rooms_script().read_rooms(text)}
+
+
+def why_not(room, other):
+    """Why the first room may not use the second, in words; None where it may."""
+    if room.path == other.path:
+        return None
+    if room.top == other.top:
+        return None if other.place < room.place else "a room that stands higher in its folder"
+    if other.floor > room.floor:
+        return "a room on a higher floor"
+    if other.floor == room.floor:
+        return "a room on the same floor"
+    return None if other.open else "a room that only its own folder may use"
+
+
+def room_of(path, rooms):
     """The innermost room that `path`, relative to the root, lies in; None outside the house."""
     parts = path.split("/")[:-1]
     while parts:
-        if "/".join(parts) in floors:
+        if "/".join(parts) in rooms:
             return "/".join(parts)
         parts.pop()
     return None
 
 
-def problems_in(path, text, floors):
-    """A line for each include of the file at `path` that the floors do not allow."""
-    room, found = room_of(path, floors), []
+def problems_in(path, text, rooms):
+    """A line for each include of the file at `path` that the list does not allow."""
+    room, found = room_of(path, rooms), []
     pure = next((allowed for start, allowed in PURE.items() if path.startswith(start)), None)
 
     def problem(number, arrow, why):
@@ -78,7 +94,7 @@ def problems_in(path, text, floors):
             problem(number, f"{room} -> {include.group(1)}", "write the header's name, so that this check can read it")
             continue
         bracket, name = named.groups()
-        other = room_of(name, floors)
+        other = room_of(name, rooms)
         if ".." in name.split("/") or (bracket == '"' and "/" not in name):
             problem(number, f"{room} -> {name}", "write the header's path from the root")
             continue
@@ -89,10 +105,9 @@ def problems_in(path, text, floors):
         if other is None:
             continue
         arrow = f"{room} -> {other} ({name})"
-        if other != room and floors[other] > floors[room]:
-            problem(number, arrow, "a room on a higher floor")
-        elif other != room and floors[other] == floors[room]:
-            problem(number, arrow, "a room on the same floor")
+        why = why_not(rooms[room], rooms[other])
+        if why:
+            problem(number, arrow, why)
         elif pure and other.split("/")[0] not in pure:
             problem(number, arrow, "the model and the laws use only " + ", ".join(sorted(pure)))
         elif room.split("/")[0] in NO_PROCESS and PROCESS.fullmatch(name):
@@ -100,59 +115,61 @@ def problems_in(path, text, floors):
     return found
 
 
-def libraries_in(room, text, floors):
+def libraries_in(room, text, rooms):
     """[(line number, target, rooms of its sources, words)] of the text of a room's CMakeLists.txt; words: all that follows the name."""
     text = re.sub(r"#.*", "", text)
     found, rooms_of = [], {}
     for call in TARGET.finditer(text):
         target, words = call.group(2), call.group(3).split()
         sources = [word for word in words if word.endswith(".cc") and not word.startswith("$")]
-        rooms = {room_of(f"{room}/{source}", floors) for source in sources} or rooms_of.get(target, {room})
-        rooms_of.setdefault(target, rooms)
-        found.append((text[: call.start()].count("\n") + 1, target, rooms, words))
+        homes = {room_of(f"{room}/{source}", rooms) for source in sources} or rooms_of.get(target, {room_of(f"{room}/x", rooms)})
+        rooms_of.setdefault(target, homes)
+        found.append((text[: call.start()].count("\n") + 1, target, homes, words))
     return found
 
 
-def link_problems(lists, floors):
-    """A line for each link that goes up; `lists`: from each top room to the text of its CMakeLists.txt. A library of several rooms
+def link_problems(lists, rooms):
+    """A line for each link that is not allowed; `lists`: from each folder to the text of its CMakeLists.txt. A library of several rooms
     may use what any of them may: their includes are held to account one by one."""
-    calls = {room: libraries_in(room, text, floors) for room, text in lists.items()}
+    calls = {folder: libraries_in(folder, text, rooms) for folder, text in lists.items()}
     home = {}
-    for room in calls:
-        for _, target, rooms, _ in calls[room]:
-            home.setdefault(target, rooms)
+    for folder in calls:
+        for _, target, homes, _ in calls[folder]:
+            home.setdefault(target, homes)
     found = []
-    for room, targets in calls.items():
-        for number, target, rooms, words in targets:
+    for folder, targets in calls.items():
+        for number, target, homes, words in targets:
             for other in words:
-                if other == target or other not in home or home[other] & rooms:
+                if other == target or other not in home or home[other] & homes:
                     continue
-                if min(floors[each] for each in home[other]) >= max(floors[each] for each in rooms):
-                    found.append(f"{room}/CMakeLists.txt:{number}: {target} -> {other}: not on a lower floor")
+                reasons = [why_not(rooms[mine], rooms[its]) for mine in homes for its in home[other]]
+                if None not in reasons:
+                    found.append(f"{folder}/CMakeLists.txt:{number}: {target} -> {other}: {reasons[0]}")
     return found
 
 
 class FloorsTest(unittest.TestCase):
-    floors = read_floors((ROOT / "cmake/rooms.txt").read_text())
+    rooms = read_rooms((ROOT / "cmake/rooms.txt").read_text())
 
     def sources(self):
-        for top in sorted({room.split("/")[0] for room in self.floors}):
+        for top in sorted({room.split("/")[0] for room in self.rooms}):
             for path in sorted((ROOT / top).rglob("*")):
                 if path.suffix in SOURCES and path.is_file():
                     yield path.relative_to(ROOT).as_posix(), path.read_text()
 
     def test_arrows_point_down(self):
         """Tests that no source includes a header of a room above or beside its own."""
-        found = [line for path, text in self.sources() for line in problems_in(path, text, self.floors)]
+        found = [line for path, text in self.sources() for line in problems_in(path, text, self.rooms)]
         self.assertEqual(found, [], "arrows that are not allowed:\n" + "\n".join(found))
 
     def test_links_point_down(self):
         """Tests that no library or program links one of a room above or beside its own, with or without an include."""
-        tops = sorted({room.split("/")[0] for room in self.floors})
-        lists = {top: (ROOT / top / "CMakeLists.txt").read_text() for top in tops}
-        names = {name for top in tops for _, name, _, _ in libraries_in(top, lists[top], self.floors)}
+        tops = sorted({room.split("/")[0] for room in self.rooms})
+        lists = {path.parent.relative_to(ROOT).as_posix(): path.read_text() for top in tops for path in (ROOT / top).rglob("CMakeLists.txt")
+                 if "node_modules" not in path.parts}
+        names = {name for folder, text in lists.items() for _, name, _, _ in libraries_in(folder, text, self.rooms)}
         self.assertGreater(len(names), 30)
-        found = link_problems(lists, self.floors)
+        found = link_problems(lists, self.rooms)
         self.assertEqual(found, [], "links that are not allowed:\n" + "\n".join(found))
 
     def test_json_is_written_at_one_place(self):
@@ -164,14 +181,14 @@ class FloorsTest(unittest.TestCase):
     def test_every_source_lies_in_a_room(self):
         """Tests that each folder with sources is in the list, and that each room of the list is there."""
         with_sources = {pathlib.PurePath(path).parent.as_posix() for path, _ in self.sources()}
-        inside = {folder for folder in with_sources if room_of(folder + "/x", self.floors) == folder or folder.startswith("model/")}
+        inside = {folder for folder in with_sources if room_of(folder + "/x", self.rooms) == folder}
         self.assertEqual(with_sources - inside, set())
-        for room in self.floors:
+        for room in self.rooms:
             self.assertTrue((ROOT / room).is_dir(), room)
 
     def test_what_is_not_allowed_is_found(self):
         """Tests the check itself: an arrow up, one sideways, a clock in the model, a process in a figure."""
-        floors = read_floors("base  text\n\nmodel\nplant\n\nexperiments\n")
+        rooms = read_rooms("base  text\n\nmodel  text\nplant  text\n\nexperiments  text\n  runs  text\n  + open  text\n  .\n\nover  text\n")
         cases = {
             ("base/a.h", '#include "model/b.h"'): "base/a.h:1: base -> model (model/b.h): a room on a higher floor",
             ("model/a.h", '\n#include "plant/b.h"'): "model/a.h:2: model -> plant (plant/b.h): a room on the same floor",
@@ -192,17 +209,27 @@ class FloorsTest(unittest.TestCase):
                 "model/a.h:1: model -> <base/text_file.h>: the model and the laws read no clock, socket or file",
             ("base/a.h", "#include HEADER"): "base/a.h:1: base -> HEADER: write the header's name, so that this check can read it",
         }
+        cases |= {
+            ("experiments/runs/a.h", '#include "experiments/open/b.h"'):
+                "experiments/runs/a.h:1: experiments/runs -> experiments/open (experiments/open/b.h): a room that stands higher in its folder",
+            ("experiments/open/a.h", '#include "experiments/b.h"'):
+                "experiments/open/a.h:1: experiments/open -> experiments (experiments/b.h): a room that stands higher in its folder",
+            ("over/a.h", '#include "experiments/runs/b.h"'):
+                "over/a.h:1: over -> experiments/runs (experiments/runs/b.h): a room that only its own folder may use",
+        }
         for (path, text), line in cases.items():
-            self.assertEqual(problems_in(path, text, floors), [line])
-        logic = read_floors("launch/logic  text\n")
+            self.assertEqual(problems_in(path, text, rooms), [line])
+        for path, header in (("experiments/a.h", "experiments/open/b.h"), ("over/a.h", "experiments/open/b.h"), ("over/a.h", "experiments/b.h")):
+            self.assertEqual(problems_in(path, f'#include "{header}"', rooms), [])
+        logic = read_rooms("launch/logic  text\n")
         nothing = "what a launch decides asks the system nothing"
         self.assertEqual(problems_in("launch/logic/a.cc", "#include <unistd.h>\nint id = getpid();  // HostName()\n// WallClock", logic), [
             f"launch/logic/a.cc:1: launch/logic -> <unistd.h>: {nothing}", f"launch/logic/a.cc:2: int id = getpid();  // HostName(): {nothing}"])
-        self.assertEqual(problems_in("model/a.cc", '#include "base/b.h"\n#include <vector>', floors), [])
+        self.assertEqual(problems_in("model/a.cc", '#include "base/b.h"\n#include <vector>', rooms), [])
 
     def test_links_that_are_not_allowed_are_found(self):
         """Tests the check of links: up, sideways, down, and from a room within a room."""
-        floors = read_floors("base  text\n\nmodel\nplant\n\nplant/driver\nsim\n")
+        rooms = read_rooms("base  text\n\nmodel  text\n\nplant  text\n  .\n  driver  text\n\nsim  text\n")
         lists = {
             "base": "hydro_library(hydro_base SOURCES a.cc)\ntarget_link_libraries(hydro_base PRIVATE hydro_model)",
             "model": "hydro_library(hydro_model\n  SOURCES a.cc\n  PUBLIC hydro_base hydro_plant)",
@@ -210,10 +237,10 @@ class FloorsTest(unittest.TestCase):
                      "hydro_library(hydro_driver SOURCES driver/a.cc PUBLIC hydro_plant hydro_sim)\n",
             "sim": "hydro_library(hydro_sim SOURCES a.cc PUBLIC hydro_driver_lib hydro_model)",
         }
-        self.assertEqual(link_problems(lists, floors), [
-            "base/CMakeLists.txt:2: hydro_base -> hydro_model: not on a lower floor",
-            "model/CMakeLists.txt:1: hydro_model -> hydro_plant: not on a lower floor",
-            "plant/CMakeLists.txt:2: hydro_driver -> hydro_sim: not on a lower floor",
+        self.assertEqual(link_problems(lists, rooms), [
+            "base/CMakeLists.txt:2: hydro_base -> hydro_model: a room on a higher floor",
+            "model/CMakeLists.txt:1: hydro_model -> hydro_plant: a room on a higher floor",
+            "plant/CMakeLists.txt:2: hydro_driver -> hydro_sim: a room on a higher floor",
         ])
 
 

@@ -6,14 +6,14 @@ import pathlib
 import re
 import unittest
 
-from floors_test import read_floors, room_of
+from floors_test import read_rooms, room_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 ROOMS = {
-    "firmware", "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
-    "position_ctrl/law", "logger", "process/safety", "sim", "plot", "design",
+    "firmware", "model/equations", "model", "process/timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
+    "position_ctrl/law", "logger", "process/safety", "sim", "tools/hydro_plot", "tune/design",
     "experiments", "diagnose/recording", "diagnose/fit", "diagnose/balances", "diagnose/evidence", "diagnose/say",
     "diagnose/prove", "diagnose/report", "diagnose",
 }
@@ -37,13 +37,13 @@ EXEMPT = {
 }
 
 
-def headers_of(rooms, floors):
+def headers_of(names, rooms):
     """The headers of these rooms; those of a room inside another are that room's own."""
     found = set()
-    for room in rooms:
+    for room in names:
         for path in (ROOT / room).rglob("*.h"):
             name = path.relative_to(ROOT).as_posix()
-            if room_of(name, floors) == room:
+            if room_of(name, rooms) == room:
                 found.add(name)
     return found
 
@@ -55,23 +55,23 @@ def included_by(folder):
 
 
 class HeadersTest(unittest.TestCase):
-    floors = read_floors((ROOT / "cmake/rooms.txt").read_text())
+    rooms = read_rooms((ROOT / "cmake/rooms.txt").read_text())
 
     # Tests that clang-tidy looks into the headers of every folder.
     def test_clang_tidy_sees_all(self):
         listed = re.search(r"HeaderFilterRegex: '\(([\w|]+)\)/", (ROOT / ".clang-tidy").read_text())[1].split("|")
-        self.assertEqual(listed, sorted({name.split("/")[0] for name in self.floors} - {"lcmtypes"}))
+        self.assertEqual(listed, sorted({name.split("/")[0] for name in self.rooms} - {"lcmtypes"}))
 
     def test_rooms_exist(self):
-        self.assertEqual(ROOMS - set(self.floors), set())
-        self.assertEqual({room for room in ROOMS if not headers_of({room}, self.floors)}, set())
+        self.assertEqual(ROOMS - set(self.rooms), set())
+        self.assertEqual({room for room in ROOMS if not headers_of({room}, self.rooms)}, set())
 
     def test_every_header_is_included_by_a_test(self):
-        missing = headers_of(ROOMS, self.floors) - included_by(ROOT / "tests") - set(EXEMPT)
+        missing = headers_of(ROOMS, self.rooms) - included_by(ROOT / "tests") - set(EXEMPT)
         self.assertEqual(sorted(missing), [], "no file of tests/ includes these: write a test, or give the reason in EXEMPT")
 
     def test_exemptions_are_needed(self):
-        headers, included = headers_of(set(self.floors), self.floors), included_by(ROOT / "tests")
+        headers, included = headers_of(set(self.rooms), self.rooms), included_by(ROOT / "tests")
         for header, reason in EXEMPT.items():
             self.assertIn(header, headers)
             self.assertNotIn(header, included, "a test includes it: take it out of EXEMPT")

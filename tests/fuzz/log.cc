@@ -4,22 +4,22 @@
 #include <string>
 
 #include "base/read_files.h"
+#include "base/tables/table.h"
 #include "base/text_file.h"
 #include "base/utf8.h"
-#include "hydro_log/replay.h"
-#include "log/log_reader.h"
-#include "log/log_writer.h"
-#include "log/repair.h"
 #include "runs/compare.h"
 #include "runs/info.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/log_writer.h"
+#include "runs/log/repair.h"
 #include "runs/measured_run.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
 #include "runs/tracking.h"
-#include "tables/table.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"
+#include "tools/hydro_log/replay.h"
 
 namespace hydro::fuzz {
 namespace {

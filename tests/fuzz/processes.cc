@@ -9,7 +9,6 @@
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "design/configured_laws.h"
 #include "launch/logic/stack_watch.h"
 #include "logger/logger_app.h"
 #include "plant/roll_call.h"
@@ -20,6 +19,7 @@
 #include "tests/fuzz/targets.h"
 #include "tests/plant/run_plant.h"
 #include "tests/stack_fixture.h"
+#include "tune/design/configured_laws.h"
 
 namespace hydro::fuzz {
 namespace {

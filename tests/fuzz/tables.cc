@@ -2,14 +2,14 @@
 #include <string>
 #include <string_view>
 
-#include "log/log_reader.h"
+#include "base/tables/mat_sizes.h"
+#include "base/tables/table.h"
+#include "runs/log/log_reader.h"
 #include "runs/measured_run.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
+#include "settings/csv_points.h"
 #include "settings/stack_config.h"
-#include "tables/csv_points.h"
-#include "tables/mat_sizes.h"
-#include "tables/table.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"
@@ -91,7 +91,7 @@ void Points(const uint8_t* data, size_t size) {
   Accepts([&] {
     settings::TrajectorySpec spec;
     spec.kind = settings::TrajectorySpec::Kind::kCsv;
-    spec.points = tables::ParseCsvPoints(std::string(Text(data, size)), "points.csv", "value");
+    spec.points = settings::ParseCsvPoints(std::string(Text(data, size)), "points.csv", "value");
     for (const trajectory::Interpolation interpolation :
          {trajectory::Interpolation::kHold, trajectory::Interpolation::kLinear,
           trajectory::Interpolation::kCubic}) {

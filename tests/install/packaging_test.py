@@ -1,4 +1,4 @@
-"""Tests that what cmake --install gives is whole, that Debian's packages (debian/) share it out, and that man pages and completions say
+"""Tests that what cmake --install gives is whole, that Debian's packages (packaging/debian/) share it out, and that man pages and completions say
 what each program's own --help says.
 
 HYDRO_BUILD is the folder of a finished build, HYDRO_SOURCE that of the sources.
@@ -79,13 +79,13 @@ class PackagingTest(unittest.TestCase):
 
     def test_every_file_has_one_package(self):
         """Tests that each installed file is in exactly one package, and that no line of a package's list is without files."""
-        lists = {name: [line.split()[0] for line in (SOURCE / f"debian/{name}.install").read_text().splitlines()] for name in PACKAGES}
+        lists = {name: [line.split()[0] for line in (SOURCE / f"packaging/debian/{name}.install").read_text().splitlines()] for name in PACKAGES}
         files = [in_debian(path) for path in self.files()]
         self.assertGreater(len(files), 200)
         for path in files:
             takers = [name for name, patterns in lists.items() if any(claims(pattern, path) for pattern in patterns)]
-            self.assertEqual(len(takers), 1, f"{path} is in the packages {takers}, allowed is one: debian/*.install")
-        unused = [f"debian/{name}.install: {pattern}" for name, patterns in lists.items() for pattern in patterns
+            self.assertEqual(len(takers), 1, f"{path} is in the packages {takers}, allowed is one: packaging/debian/*.install")
+        unused = [f"packaging/debian/{name}.install: {pattern}" for name, patterns in lists.items() for pattern in patterns
                   if pattern not in OPTIONAL and not any(claims(pattern, path) for path in files)]
         self.assertEqual(unused, [])
 
@@ -189,16 +189,16 @@ class PackagingTest(unittest.TestCase):
 
     def test_metadata(self):
         """Tests that the package has the project's version, and that its build has the packages of install-dependencies."""
-        changelog = (SOURCE / "debian/changelog").read_text()
+        changelog = (SOURCE / "packaging/debian/changelog").read_text()
         self.assertEqual(re.match(r"hydro \(([^)]*)\)", changelog)[1], project_version())
         self.assertIn(f"\nVersion: {project_version()}\n", (self.prefix / "lib/pkgconfig/hydro.pc").read_text())
         script = (SOURCE / "scripts/install-dependencies").read_text()
         lists = re.findall(r"packages\+?=\(\n(.*?)\n\s*\)", script, re.DOTALL)
         needed = {word for text in lists for line in text.splitlines() for word in line.split("#")[0].split()}
         self.assertGreater(len(needed), 20)
-        control = (SOURCE / "debian/control").read_text().split("\n\n")[0]
+        control = (SOURCE / "packaging/debian/control").read_text().split("\n\n")[0]
         listed = set(re.findall(r"^ ([a-z0-9.+-]+)", control, re.MULTILINE))
-        self.assertEqual(needed - ONLY_TESTS - listed, set(), "not in Build-Depends of debian/control, nor in ONLY_TESTS here")
+        self.assertEqual(needed - ONLY_TESTS - listed, set(), "not in Build-Depends of packaging/debian/control, nor in ONLY_TESTS here")
 
 
 def project_version():

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "logger/refused_quota.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::logger {
 namespace {

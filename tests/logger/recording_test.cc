@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "bus/in_process_bus.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::logger {
 namespace {

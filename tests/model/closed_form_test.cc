@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

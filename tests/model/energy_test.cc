@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

@@ -9,9 +9,9 @@
 #include <complex>
 
 #include "model/terms/parameter_info.h"
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
 #include "tests/model/some_of_each.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "model/response.h"
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <ostream>
 
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

@@ -8,9 +8,9 @@
 #include <cstdint>
 
 #include "model/terms/parameter_info.h"
+#include "model/trajectory/trajectory.h"
 #include "tests/model/model_case.h"
 #include "tests/model/some_of_each.h"
-#include "trajectory/trajectory.h"
 
 namespace hydro::testing {
 namespace {

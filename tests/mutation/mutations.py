@@ -25,7 +25,7 @@ TORTURE_MUTATIONS = [
            ("B2.any_stop_is_obeyed", "stop.addressee == run_;", "true;"),
            ("configuration.said_once", "PublishConfiguration(kConfigurationAgain);", "{}"),
            ("stop.nobody_obeys", "if (meant && !stop_) stop_ = stop;", "if (false && meant && !stop_) stop_ = stop;")),
-    *_rows("log/log_examiner.cc",
+    *_rows("runs/log/log_examiner.cc",
            ("B5.a_cut_log_is_complete", "verdict_.completeness = Completeness::kIncomplete;",
             "verdict_.completeness = Completeness::kComplete;"),
            ("B5.a_changed_log_is_complete", "verdict_.completeness = Completeness::kDamaged;",
@@ -556,13 +556,13 @@ MUTATIONS = [
     ),
     # Values that change while the loops run.
     *_rows(
-        "tuning/bumpless_transfer.h",
+        "tune/live/bumpless_transfer.h",
         ("tuning.offset", "offset_ = before - after;", "offset_ = after - before;"),
         ("tuning.fade", "(1 - share) * offset_", "share * offset_"),
         ("tuning.fade_ends", "if (share >= 1) passing_ = false;", ""),
     ),
     *_rows(
-        "tuning/tuning_follower.cc",
+        "tune/live/tuning_follower.cc",
         ("tuning.tick", "tick < waiting_->acts_at) return", "tick <= waiting_->acts_at) return"),
         ("tuning.undecided", "waiting_->acts_at < 0 || tick", "tick"),
         ("tuning.withdrawn", "if (known) waiting_.reset();", ""),
@@ -572,7 +572,7 @@ MUTATIONS = [
         ("tuning.awaits_for_ever", "- *joined_ < kLongestWait", "- *joined_ >= bus::Clock::Duration{}"),
     ),
     *_rows(
-        "tuning/change_check.cc",
+        "tune/live/change_check.cc",
         ("tuning.looser_limit", "if (!situation.held)\n    change.text = LoosenedLimit", "if (situation.held)\n    change.text = LoosenedLimit"),
         ("tuning.beyond_the_rig", "change.text = WhatTheRigCannotFollow(*next);", ""),
         ("tuning.unstable", "change.text = WhyTheLoopsForbid(configured, in_force, *next, situation.undo, &margins);", ""),
@@ -580,7 +580,7 @@ MUTATIONS = [
         ("tuning.real_noise", "&& !situation.simulated", "&& situation.simulated"),
     ),
     *_rows(
-        "tuning/tuned_values.cc",
+        "tune/live/tuned_values.cc",
         ("tuning.same_laws", "return !of_a_law || value.get(a) == value.get(b);", "return of_a_law || value.get(a) == value.get(b);"),
     ),
 ]

@@ -10,7 +10,7 @@
 #include "bus/in_process_bus.h"
 #include "position_ctrl/law/reference_return.h"
 #include "tests/stack_fixture.h"
-#include "tuning/tuned_values.h"
+#include "tune/live/tuned_values.h"
 
 namespace hydro::position_ctrl {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "bus/in_process_bus.h"
 #include "tests/stack_fixture.h"
-#include "tuning/tuned_values.h"
+#include "tune/live/tuned_values.h"
 
 namespace hydro::pressure_ctrl {
 namespace {

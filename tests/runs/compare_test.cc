@@ -9,7 +9,7 @@
 #include <random>
 
 #include "runs/message_fields.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

@@ -12,7 +12,7 @@
 #include "runs/run_table.h"
 #include "runs/sampling.h"
 #include "runs/senders.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

@@ -1,12 +1,12 @@
 #include <random>
 
 #include "base/big_endian.h"
-#include "log/log_format.h"
-#include "log/repair.h"
 #include "runs/compare.h"
+#include "runs/log/log_format.h"
+#include "runs/log/repair.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

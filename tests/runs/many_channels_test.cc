@@ -5,17 +5,17 @@
 #include <functional>
 
 #include "bus/channels.h"
-#include "exports/export_runs.h"
-#include "exports/selection.h"
 #include "hydro/process_status_t.hpp"
 #include "hydro/state_t.hpp"
 #include "runs/channel_suffix.h"
+#include "runs/exports/export_runs.h"
+#include "runs/exports/selection.h"
 #include "runs/info.h"
 #include "runs/limb_info.h"
 #include "runs/run_log.h"
 #include "scope/signals/log_run.h"
-#include "tests/log/log_fixture.h"
 #include "tests/runs/count_comparisons.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

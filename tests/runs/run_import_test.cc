@@ -9,7 +9,7 @@
 #include "runs/run_config.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

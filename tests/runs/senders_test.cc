@@ -5,7 +5,7 @@
 
 #include "runs/info.h"
 #include "runs/run_table.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

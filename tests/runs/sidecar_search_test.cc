@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "runs/measured_run.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

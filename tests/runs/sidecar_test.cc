@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "runs/signal_unit.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

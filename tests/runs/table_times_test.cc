@@ -9,7 +9,7 @@
 #include "base/number_text.h"
 #include "runs/counters.h"
 #include "runs/measured_run.h"
-#include "tests/log/log_fixture.h"
+#include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {
 namespace {

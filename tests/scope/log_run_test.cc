@@ -10,7 +10,7 @@
 #include <hydro/state_t.hpp>
 
 #include "base/input_error.h"
-#include "log/log_writer.h"
+#include "runs/log/log_writer.h"
 #include "tests/scope/recorded_run.h"
 
 namespace hydro::scope {

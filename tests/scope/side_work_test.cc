@@ -10,9 +10,9 @@
 #include <future>
 
 #include "base/interruption.h"
-#include "log/log_reader.h"
-#include "log/log_writer.h"
-#include "tables/table.h"
+#include "base/tables/table.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/log_writer.h"
 
 namespace hydro::scope {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "design/loop_check.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
+#include "tune/design/loop_check.h"
 
 namespace hydro::sim {
 namespace {

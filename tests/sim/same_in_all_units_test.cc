@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "design/loop_check.h"
 #include "settings/model_file.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 #include "tests/model_in_units.h"
+#include "tune/design/loop_check.h"
 
 namespace hydro::sim {
 namespace {

@@ -17,7 +17,7 @@
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
-#include "tests/limb/limb_fixture.h"
+#include "tests/sim/limb/limb_fixture.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::sim {

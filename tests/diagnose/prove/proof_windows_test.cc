@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/range.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/run_data.h"
-#include "maths/range.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

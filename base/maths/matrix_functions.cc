@@ -1,0 +1,28 @@
+#include "base/maths/matrix_functions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace hydro::maths {
+
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& A) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(A, /*computeEigenvectors=*/false).eigenvalues();
+}
+
+Eigensystem Eigenvectors(const Eigen::MatrixXd& A) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::MatrixXd Exponential(const Eigen::MatrixXd& A) { return A.exp(); }
+
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
+
+Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b) {
+  Eigen::MatrixXcd resolvent = -A.cast<std::complex<double>>();
+  resolvent.diagonal().array() += s;
+  return resolvent.partialPivLu().solve(b.cast<std::complex<double>>());
+}
+
+}  // namespace hydro::maths

@@ -1,0 +1,83 @@
+#include "base/maths/spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace hydro::maths {
+namespace {
+
+// The indices of `x`, ordered by value; equal values in their order.
+std::vector<size_t> OrderOf(const std::vector<double>& x) {
+  std::vector<size_t> order(x.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return x[a] < x[b]; });
+  return order;
+}
+
+// Ranks from 0, less their mean.
+std::vector<double> CentredRanks(const std::vector<double>& x) {
+  const std::vector<size_t> order = OrderOf(x);
+  std::vector<double> ranks(x.size());
+  for (size_t begin = 0; begin < order.size();) {
+    size_t end = begin + 1;
+    while (end < order.size() && x[order[end]] == x[order[begin]]) ++end;
+    const double rank = (static_cast<double>(begin + end) - static_cast<double>(order.size())) / 2;
+    for (; begin < end; ++begin) ranks[order[begin]] = rank;
+  }
+  return ranks;
+}
+
+double SquaresAbout(const std::vector<double>& y, double mean) {
+  return std::accumulate(y.begin(), y.end(), 0.0,
+                         [=](double sum, double value) { return sum + (value - mean) * (value - mean); });
+}
+
+}  // namespace
+
+double Quantile(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<size_t>(place);
+  const double part = place - static_cast<double>(below);
+  if (part == 0) return sorted[below];
+  return sorted[below] == sorted[below + 1] ? sorted[below]
+                                            : (1 - part) * sorted[below] + part * sorted[below + 1];
+}
+
+Estimate Share(int hits, int count) {
+  constexpr double kNormal95 = 1.959963984540054;
+  const double n = count;
+  const double share = hits / n;
+  const double weight = 1 + kNormal95 * kNormal95 / n;
+  const double centre = (share + kNormal95 * kNormal95 / (2 * n)) / weight;
+  const double half =
+      kNormal95 / weight * std::sqrt(share * (1 - share) / n + kNormal95 * kNormal95 / (4 * n * n));
+  return {share, std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::vector<double> first = CentredRanks(x);
+  const std::vector<double> second = CentredRanks(y);
+  const double size = std::sqrt(SquaresAbout(first, 0) * SquaresAbout(second, 0));
+  return size == 0 ? 0 : std::inner_product(first.begin(), first.end(), second.begin(), 0.0) / size;
+}
+
+double MainEffect(const std::vector<double>& x, const std::vector<double>& y, int bins) {
+  const auto count = static_cast<double>(y.size());
+  const double total = SquaresAbout(y, std::accumulate(y.begin(), y.end(), 0.0) / count);
+  if (total == 0) return 0;
+  const std::vector<size_t> order = OrderOf(x);
+  double within = 0;
+  for (size_t bin = 0; bin < static_cast<size_t>(bins); ++bin) {
+    const size_t begin = bin * order.size() / static_cast<size_t>(bins);
+    const size_t end = (bin + 1) * order.size() / static_cast<size_t>(bins);
+    std::vector<double> part;
+    for (size_t i = begin; i < end; ++i) part.push_back(y[order[i]]);
+    within += SquaresAbout(part, std::accumulate(part.begin(), part.end(), 0.0) /
+                                     std::max(1.0, static_cast<double>(part.size())));
+  }
+  return 1 - within / total * (count - 1) / (count - bins);
+}
+
+}  // namespace hydro::maths

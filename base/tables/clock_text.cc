@@ -1,0 +1,111 @@
+#include "base/tables/clock_text.h"
+
+#include <chrono>
+#include <cstddef>
+
+#include "base/tables/csv_cells.h"
+
+namespace hydro::tables {
+namespace {
+
+constexpr int64_t kDay = 86400;
+constexpr int64_t kBillion = 1'000'000'000;
+
+// Takes that many digits from the text; false when there are not as many.
+bool TakeDigits(std::string_view* text, size_t count, int* number) {
+  if (text->size() < count) return false;
+  *number = 0;
+  for (const char c : text->substr(0, count)) {
+    if (c < '0' || c > '9') return false;
+    *number = *number * 10 + (c - '0');
+  }
+  text->remove_prefix(count);
+  return true;
+}
+
+bool TakeOneOf(std::string_view* text, std::string_view allowed) {
+  if (text->empty() || allowed.find(text->front()) == std::string_view::npos) return false;
+  text->remove_prefix(1);
+  return true;
+}
+
+bool TakeDate(std::string_view* text, int64_t* seconds) {
+  int year = 0, month = 0, day = 0;
+  std::string_view rest = *text;
+  const bool year_first = TakeDigits(&rest, 4, &year) && !rest.empty() && (rest[0] == '-' || rest[0] == '/');
+  if (year_first) {
+    const char sign[] = {rest[0], 0};
+    if (!TakeOneOf(&rest, sign) || !TakeDigits(&rest, 2, &month) || !TakeOneOf(&rest, sign) ||
+        !TakeDigits(&rest, 2, &day)) {
+      return false;
+    }
+  } else {
+    rest = *text;
+    if (!TakeDigits(&rest, 2, &day) || !TakeOneOf(&rest, ".") || !TakeDigits(&rest, 2, &month) ||
+        !TakeOneOf(&rest, ".") || !TakeDigits(&rest, 4, &year)) {
+      return false;
+    }
+  }
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return false;
+  *seconds = kDay * std::chrono::sys_days(date).time_since_epoch().count();
+  *text = rest;
+  return true;
+}
+
+// "10:30:25" with or without a fraction of up to nine digits; what follows those is dropped.
+bool TakeTime(std::string_view* text, ClockTime* clock) {
+  int hour = 0, minute = 0, second = 0;
+  if (!TakeDigits(text, 2, &hour) || !TakeOneOf(text, ":") || !TakeDigits(text, 2, &minute) ||
+      !TakeOneOf(text, ":") || !TakeDigits(text, 2, &second) || hour > 23 || minute > 59 || second > 60) {
+    return false;
+  }
+  clock->seconds += hour * 3600 + minute * 60 + second;
+  if (!TakeOneOf(text, ".,")) return true;
+  int64_t unit = kBillion;
+  size_t digits = 0;
+  for (int digit = 0; TakeDigits(text, 1, &digit); ++digits) {
+    unit /= 10;
+    clock->nanoseconds += static_cast<int32_t>(digit * unit);
+  }
+  return digits > 0;
+}
+
+// "Z", "+01:00", "+0100", "+01"; nothing is no zone.
+bool TakeZone(std::string_view* text, ClockTime* clock) {
+  if (text->empty()) return true;
+  clock->zone = true;
+  if (TakeOneOf(text, "Zz")) return text->empty();
+  const bool east = text->front() == '+';
+  int hours = 0, minutes = 0;
+  if (!TakeOneOf(text, "+-") || !TakeDigits(text, 2, &hours)) return false;
+  if (!text->empty() && (TakeOneOf(text, ":"), !TakeDigits(text, 2, &minutes))) return false;
+  clock->seconds -= (east ? 1 : -1) * (hours * 3600 + minutes * 60);
+  return text->empty();
+}
+
+}  // namespace
+
+std::optional<ClockTime> ParseClock(std::string_view text) {
+  text = Trimmed(text);
+  ClockTime clock;
+  clock.date = TakeDate(&text, &clock.seconds);
+  if (clock.date && text.empty()) return clock;
+  if (clock.date && !TakeOneOf(&text, "T ")) return std::nullopt;
+  clock.time = TakeTime(&text, &clock);
+  if (!clock.time) return std::nullopt;
+  if (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  if (!TakeZone(&text, &clock)) return std::nullopt;
+  return clock;
+}
+
+double SecondsBetween(const ClockTime& a, const ClockTime& b) {
+  const int64_t seconds = a.seconds - b.seconds;
+  constexpr int64_t kLongest = 9'000'000'000;  // s: 64 bits of ns hold 292 years
+  if (seconds > kLongest || seconds < -kLongest) return static_cast<double>(seconds);
+  return static_cast<double>(seconds * kBillion + a.nanoseconds - b.nanoseconds) / 1e9;
+}
+
+}  // namespace hydro::tables

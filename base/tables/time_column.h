@@ -1,0 +1,44 @@
+// The cells of a table's time, whatever they are: numbers, whole numbers beyond what a double holds, dates, times of day.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/tables/clock_text.h"
+
+namespace hydro::tables {
+
+// What such a column turned out to hold.
+enum class TimeKind {
+  kNumbers,
+  kWholeNumbers,  // counted from the first: 19 digits of ns do not fit into a double
+  kClock,         // dates and times, in s from the first
+  kLocalClock,    // the same without a zone: whoever sets the clocks an hour on changes them
+  kTimeOfDay,     // in s of its day
+};
+
+class TimeColumn {
+ public:
+  // A cell, with its value where it is a number, and with the cell of the column of dates, if there is one. The first
+  // that is not empty tells what the column holds. Empty when the cell is nothing of that kind.
+  std::optional<double> Take(std::string_view cell, std::optional<double> number,
+                             std::optional<std::string_view> date);
+
+  TimeKind kind() const { return kind_.value_or(TimeKind::kNumbers); }
+  const std::string& first() const { return first_; }  // as it stands in the table
+  // What the next cell may be.
+  std::string Allowed() const;
+
+ private:
+  std::optional<double> TakeClock(std::string_view cell, std::optional<std::string_view> date);
+
+  std::optional<TimeKind> kind_;
+  std::string first_;
+  int64_t first_whole_ = 0;
+  ClockTime first_clock_;
+};
+
+}  // namespace hydro::tables

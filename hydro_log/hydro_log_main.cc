@@ -1,4 +1,0 @@
-// hydro-log VERB: everything that can be done with logs.
-#include "hydro_log/hydro_log.h"
-
-int main(int argc, char** argv) { return hydro::hydro_log::RunHydroLog(argc, argv); }

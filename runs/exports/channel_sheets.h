@@ -1,0 +1,17 @@
+// The messages of chosen channels as sheets.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runs/exports/sheet.h"
+
+namespace hydro::exports {
+
+// Reads logs that continue one another. A sheet for each of the channels (without suffix), a row for each message, in the order
+// of the log; messages that cannot be decoded are left out, as ReadRunLog() leaves them out. Throws log::LogError where a log is
+// damaged.
+std::vector<Sheet> ReadChannels(const std::vector<std::string>& files, const std::string& suffix,
+                                const std::vector<std::string>& channels);
+
+}  // namespace hydro::exports

@@ -1,0 +1,96 @@
+// Reads LCM event logs (log_format.h), ours and lcm-logger's, strictly: anything that is not an event is an
+// error.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "base/input_error.h"
+#include "base/mapped_file.h"
+#include "bus/bus.h"
+#include "runs/log/log_verdict.h"
+
+namespace hydro::log {
+
+// A log that is damaged, torn or not a log. what() names the file, the byte, the event, what was found and
+// what is allowed.
+class LogError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+// One message of a log. Channel and data are valid as long as the reader that returned it.
+struct LogEvent {
+  int64_t index = 0;   // place among the log's messages, counted from 0
+  int64_t offset = 0;  // byte of the file at which it begins
+  int64_t number = 0;  // as the writer numbered it
+  int64_t utime = 0;   // us since 1970-01-01 UTC, or simulated time, when it was received
+  std::string_view channel;
+  const uint8_t* data = nullptr;
+  int size = 0;
+};
+
+// Decodes an event with or without a seal (bus/seal_trailer.h; lcm-logger records seals). False when it is
+// not a complete message of that type.
+template <class Message>
+bool DecodeAs(const LogEvent& event, Message& message) {
+  try {
+    return bus::DecodeInto(&message, event.data, event.size);
+  } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
+    return false;
+  }
+}
+
+// Reads the event at `offset`, which must lie before the end. Returns an empty string, or what is wrong:
+// "found ...; allowed ...". Leaves `event.index` alone.
+std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event);
+
+// True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
+bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
+
+// True when what stands at `offset` may be an event that the end of the file cuts off.
+bool LogEventIsTornAt(const MappedFile& file, int64_t offset);
+
+// The offset of the first byte after an event.
+int64_t EndOf(const LogEvent& event);
+
+// What to do where a log is damaged.
+enum class OnDamage {
+  kThrow,  // LogError: for callers that need the whole log
+  kStop,   // as at the end: for callers that say so, by the verdict
+};
+
+class LogReader {
+ public:
+  // Opens a log and goes through it once for its verdict. Throws InputError when it cannot be read. An empty
+  // file is a log without events.
+  explicit LogReader(const std::string& file, OnDamage on_damage = OnDamage::kThrow);
+
+  // Reads the next message; false at the end, which in an incomplete log is that of its last whole event.
+  // Check events (log_check.h) are no messages. An event must be followed by the end or by another event, so
+  // one with a damaged length is not returned, and neither is one with a wrong checksum. Throws LogError at
+  // the first place where this fails.
+  bool Next(LogEvent& event);
+
+  // Rewinds to the first event.
+  void Rewind() {
+    offset_ = 0;
+    index_ = 0;
+  }
+
+  const LogVerdict& verdict() const { return verdict_; }
+  const std::string& file() const { return name_; }
+  int64_t size() const { return static_cast<int64_t>(file_.size()); }  // bytes
+
+ private:
+  std::string name_;
+  MappedFile file_;
+  OnDamage on_damage_;
+  LogVerdict verdict_;
+  int64_t offset_ = 0;
+  int64_t index_ = 0;
+};
+
+}  // namespace hydro::log

@@ -1,0 +1,221 @@
+#include "runs/log/repair.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "base/read_files.h"
+#include "runs/log/log_reader.h"
+#include "runs/log/log_writer.h"
+#include "runs/log/message_kinds.h"
+#include "runs/log/vouched_events.h"
+
+namespace hydro::log {
+namespace {
+
+// Moves incomplete messages, on channels where others are complete, from `kept` to `lost`.
+void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
+  std::map<std::string_view, const MessageKind*> decodable;
+  std::vector<size_t> undecodable;
+  LogEvent event;
+  for (size_t k = 0; k < kept.size(); ++k) {
+    ParseLogEvent(file, kept[k].begin, event);
+    const MessageKind* kind = KindOfChannel(event.channel);
+    if (kind == nullptr) continue;
+    if (kind->decodes(event)) {
+      decodable.emplace(event.channel, kind);
+    } else {
+      undecodable.push_back(k);
+    }
+  }
+  for (auto k = undecodable.rbegin(); k != undecodable.rend(); ++k) {
+    const KeptEvent place = kept[*k];
+    ParseLogEvent(file, place.begin, event);
+    const auto kind = decodable.find(event.channel);
+    if (kind == decodable.end()) continue;  // none is whole: another version's, not damaged
+    lost.push_back(
+        {place.begin, place.end,
+         "an event on " + std::string(event.channel) + " that is not a whole " + kind->second->type});
+    kept[*k].end = kept[*k].begin;
+  }
+  std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
+}
+
+// Moves messages that no checksum covers, and whose sender none that one covers has on that channel, from `kept` to `lost`: a
+// flipped bit in a session is one more sender.
+void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
+  std::map<std::string, std::set<int64_t>, std::less<>> senders;  // by channel
+  LogEvent event;
+  const auto session = [&](const KeptEvent& place) -> std::optional<int64_t> {
+    ParseLogEvent(file, place.begin, event);
+    const MessageKind* kind = KindOfChannel(event.channel);
+    return kind == nullptr ? std::nullopt : kind->session(event);
+  };
+  for (const KeptEvent& place : kept) {
+    if (!place.vouched) continue;
+    if (const auto sender = session(place)) senders[std::string(event.channel)].insert(*sender);
+  }
+  std::erase_if(kept, [&](const KeptEvent& place) {
+    if (place.vouched) return false;
+    const auto sender = session(place);
+    const auto known = senders.find(event.channel);
+    if (!sender || known == senders.end() || known->second.contains(*sender)) return false;
+    lost.push_back(
+        {place.begin, place.end,
+         "an event on " + std::string(event.channel) + " of a sender that no event with a checksum has"});
+    return true;
+  });
+}
+
+// What a mended log says of itself.
+std::string NoteOf(const RepairResult& result, const std::string& file) {
+  if (!result.mended()) return {};
+  int64_t bytes = 0;
+  for (const LostBytes& lost : result.lost) bytes += lost.end - lost.begin;
+  std::string note = "repaired from " + std::filesystem::path(file).filename().string() + ", which was " +
+                     NameOf(result.verdict.completeness);
+  if (result.lost_messages > 0)
+    note += ", " + std::to_string(result.lost_messages) +
+            (result.lost_messages == 1 ? " message lost" : " messages lost");
+  if (bytes > 0) {
+    note += ", " + std::to_string(bytes) + " bytes at " + std::to_string(result.lost.size()) +
+            (result.lost.size() == 1 ? " place" : " places") + " left out";
+  }
+  if (result.unvouched > 0) {
+    note += ", " + std::to_string(result.unvouched) + " of those kept covered by no checksum";
+  }
+  return note;
+}
+
+// Why the mended log ends where it does.
+std::string EndingOf(const LogVerdict& verdict) {
+  if (verdict.completeness == Completeness::kWithoutChecksums) return "the original had no checksums";
+  return verdict.found_end ? verdict.ending : "the original had no mark of the end";
+}
+
+void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, const RepairResult& result,
+               const std::string& file, const std::string& out) {
+  std::string note = result.verdict.note;
+  if (const std::string added = NoteOf(result, file); !added.empty())
+    note += (note.empty() ? "" : "; ") + added;
+  const bool in_place = out == file;  // RepairInPlace() keeps the original
+  if (in_place) ForgetRead(file);
+  LogWriter writer(out, Opening::kTemporary, note, 0, in_place ? Existing::kReplaced : Existing::kKept);
+  LogEvent event;
+  for (const KeptEvent& place : kept) {
+    ParseLogEvent(contents, place.begin, event);
+    writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
+  }
+  for (const std::string& remark : result.verdict.remarks) writer.Remark(remark);
+  writer.Finish(EndingOf(result.verdict));
+}
+
+}  // namespace
+
+bool RepairResult::mended() const {
+  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
+         verdict.completeness == Completeness::kIncomplete;
+}
+
+RepairResult RepairLog(const std::string& file, const std::string& out) {
+  const MappedFile contents(file);
+  const int64_t size = static_cast<int64_t>(contents.size());
+  RepairResult result;
+  result.verdict = ExamineLog(contents);
+  const std::vector<KeptEvent> sound = FindSoundEvents(contents, result.lost);
+  VouchedEvents vouched = KeepVouched(contents, sound, result.lost);
+  std::vector<KeptEvent>& kept = vouched.messages;
+  DropUndecodable(contents, kept, result.lost);
+  DropStrangers(contents, kept, result.lost);
+  std::sort(result.lost.begin(), result.lost.end(),
+            [](const LostBytes& a, const LostBytes& b) { return a.begin < b.begin; });
+  if (kept.empty() && vouched.check_events == 0 && size > 0) {
+    throw InputError(file + ": found no event in " + std::to_string(size) +
+                     " bytes; an LCM event log is needed");
+  }
+  // A log of no messages would look like a run in which nothing was sent. A whole one of none has nothing to mend.
+  const bool whole = result.lost.empty() && vouched.lost_messages == 0 &&
+                     result.verdict.completeness == Completeness::kComplete;
+  if (kept.empty() && !whole) {
+    throw InputError(file + ": found no message that can be kept in " + std::to_string(size) +
+                     " bytes, allowed a log with one or more");
+  }
+  result.kept_events = static_cast<int64_t>(kept.size());
+  for (const KeptEvent& place : kept) result.kept_bytes += place.end - place.begin;
+  result.check_bytes = vouched.check_bytes;
+  result.lost_messages = vouched.lost_messages;
+  if (vouched.unvouched > 0) {
+    result.unvouched =
+        std::count_if(kept.begin(), kept.end(), [](const KeptEvent& place) { return !place.vouched; });
+  }
+  result.verdict.found_end = vouched.found_end;  // the verdict looks no further than the first damage
+  result.verdict.ending = vouched.ending;
+  if (!out.empty()) WriteKept(contents, kept, result, file, out);
+  return result;
+}
+
+namespace {
+
+// A second name for a log, which is returned, rather than a new one: whatever happens now, a log exists under the first.
+std::string KeepAsDamaged(const std::string& file) {
+  for (int i = 0;; ++i) {
+    const std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
+    if (link(file.c_str(), damaged.c_str()) == 0) return damaged;
+    if (errno == EEXIST) continue;
+    throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +
+                     "; a folder that can be written to, or -o, is needed");
+  }
+}
+
+}  // namespace
+
+RepairResult RepairInPlace(const std::string& file) {
+  if (IsBeingWritten(file)) {
+    throw InputError(file +
+                     ": found it being written by another process; a log that is finished, or -o, is needed");
+  }
+  RepairResult result = RepairLog(file, "");
+  if (!result.mended()) return result;
+  result.damaged = KeepAsDamaged(file);
+  try {
+    RepairLog(file, file);
+  } catch (...) {
+    unlink(result.damaged.c_str());
+    throw;
+  }
+  return result;
+}
+
+std::string Describe(const RepairResult& result, const std::string& file) {
+  std::string text = file + ": kept " + std::to_string(result.kept_events) + " messages, " +
+                     std::to_string(result.kept_bytes) + " bytes\n";
+  if (!result.damaged.empty()) text += file + ": as it was found it is now " + result.damaged + "\n";
+  if (const std::string caution = Caution(result.verdict); !caution.empty())
+    text += file + ": was " + caution + "\n";
+  if (result.lost_messages > 0) {
+    text += file + ": lost " + std::to_string(result.lost_messages) +
+            (result.lost_messages == 1 ? " message" : " messages") + ", as its check events tell\n";
+  }
+  if (result.unvouched > 0) {
+    text += file + ": no checksum covers " + std::to_string(result.unvouched) + " of the messages kept\n";
+  }
+  constexpr size_t kMostLines = 20;
+  for (const LostBytes& lost : result.lost) {
+    if (&lost - result.lost.data() >= static_cast<std::ptrdiff_t>(kMostLines)) {
+      text += file + ": and " + std::to_string(result.lost.size() - kMostLines) + " more places\n";
+      break;
+    }
+    text += file + ": lost bytes " + std::to_string(lost.begin) + " to " + std::to_string(lost.end - 1) +
+            " (" + std::to_string(lost.end - lost.begin) + "): " + lost.reason + "\n";
+  }
+  return text;
+}
+
+}  // namespace hydro::log

@@ -1,0 +1,25 @@
+// How well the loops of a run kept time: for programs, a terminal and a browser.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runs/timing/timing_record.h"
+
+namespace hydro::timing {
+
+// JSON with times in microseconds; docs/performance.md lists the keys. `source` names the origin, e.g. a log.
+std::string TimingJson(const std::vector<TimedProcess>& processes, const std::string& source);
+
+// A table for a terminal, of several lines.
+std::string TimingText(const std::vector<TimedProcess>& processes);
+
+// What to do when a plant has slept through that many of its ticks; empty where these are few. `config`: the
+// configuration's name.
+std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string& config);
+
+// A self-contained HTML page: the table, and plots of each process.
+std::string TimingPage(const std::vector<TimedProcess>& processes, const std::string& source);
+
+}  // namespace hydro::timing

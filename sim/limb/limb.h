@@ -1,0 +1,75 @@
+// The joints of a limb, tick by tick: all take each step together, so that a fault of one reaches the others within the same tick.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <hydro/run_description_t.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings/limb_config.h"
+#include "sim/limb/joint.h"
+#include "sim/limb/tick_clock.h"
+
+namespace hydro::limb {
+
+struct LimbOptions {
+  std::vector<std::string> joints;  // those of the configuration that are run here; empty: all
+  std::string program = "hydro-limb";
+  const bus::Clock* clock = nullptr;     // null: lockstep on simulated clocks
+  std::function<bool()> heartbeat = {};  // as PlantApp's
+  int64_t session = 0;                   // of all joints, on simulated clocks
+};
+
+// What a log needs to describe the limb as a whole. Its sender adds who and when it is.
+run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program);
+
+class Limb {
+ public:
+  // Throws InputError when a configuration and its model contradict each other.
+  Limb(const settings::LimbConfig& config, const LimbOptions& options);
+
+  std::vector<std::unique_ptr<Joint>>& joints() { return joints_; }
+  size_t joint_count() const { return joints_.size(); }
+
+  // Lockstep: the whole state of a tick, and on to the next. False: the run is over. Begin() comes first.
+  bool Begin();
+  bool StepLockstep();
+
+  // Real time: as many ticks later as have elapsed. False: the run is over.
+  bool StepRealtime(const plant::WakeUp& wake_up);
+
+  // While one of them is not empty, all joints are at zero volts: a joint in another process has a fault, or is no longer heard.
+  void HoldForOthers(std::string fault, std::string silence) {
+    elsewhere_ = std::move(fault);
+    silence_ = std::move(silence);
+  }
+
+  // Ends all joints: zero volts for each before anything else. `after_each` (may be empty) is called when one has said so. Returns the exit
+  // code: 0 when every joint's run ended well.
+  int End(const std::function<void()>& after_each);
+
+  int64_t tick() const { return tick_; }
+  // Why the first joint that failed did so: "knee: plant: ..."; empty when none has.
+  std::string failure() const;
+
+ private:
+  void CheckAll();
+  void DriveAll();
+  void NoteEnds();
+  Joint* FirstFault(const Joint* besides) const;
+
+  settings::OnJointFault on_joint_fault_;
+  int64_t last_tick_;
+  std::optional<TickClock> clock_;  // real time; before the joints, which have it
+  std::vector<std::unique_ptr<Joint>> joints_;
+  int64_t tick_ = 0;
+  bool over_ = false;
+  size_t polled_ = 0;
+  std::string elsewhere_;
+  std::string silence_;
+};
+
+}  // namespace hydro::limb

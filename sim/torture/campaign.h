@@ -1,0 +1,46 @@
+// Many runs, each from a seed of its own, on several processors.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/torture/invariants/coverage.h"
+#include "sim/torture/invariants/observer.h"
+#include "sim/torture/schedule/schedule.h"
+
+namespace hydro::torture {
+
+struct CampaignOptions {
+  uint64_t first_seed = 1;
+  double seconds = 60;               // of wall time
+  int64_t most_runs = 0;             // 0: as many as there is time for
+  int jobs = 1;                      // processes that run at a time
+  std::string config;                // a stack of one's own; empty: the shipped one
+  std::string out;                   // folder for the schedules that fail
+  bool first_only = false;           // the first run that fails ends the campaign
+  std::vector<std::string> without;  // kinds of faults that are not injected
+};
+
+// A schedule that fails, shrunk. Runs that fail alike count once.
+struct Finding {
+  uint64_t seed = 0;
+  double after_s = 0;  // wall time since the campaign began
+  Violation violation;
+  Schedule schedule;
+  std::string file;  // its script; empty if it could not be shrunk
+};
+
+struct CampaignResult {
+  Coverage coverage;
+  std::vector<Finding> findings;
+  int64_t failed_runs = 0;
+  double wall_s = 0;
+  double cpu_s = 0;  // of all processors
+};
+
+// Runs the seeds from the first on. Also a run that crashes this program, or does not end, becomes a finding.
+// Throws InputError when the folder cannot be written.
+CampaignResult RunCampaign(const CampaignOptions& options);
+
+}  // namespace hydro::torture

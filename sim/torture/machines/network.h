@@ -1,0 +1,81 @@
+// The simulated network between the processes: it delivers encoded messages late, and, where a fault says so,
+// never, twice, out of order or changed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/random.h"
+#include "sim/torture/machines/packet.h"
+
+namespace hydro::torture {
+
+inline constexpr int kMostProcesses = 64;  // alive at a time
+inline constexpr int kEveryone = -1;
+
+// A fault of the network while it lasts. Probabilities are per packet and receiver.
+struct LinkFault {
+  int sender = kEveryone;      // a role's number; kEveryone: all
+  int receiver = kEveryone;    // the same
+  bool spares_itself = false;  // what a process sends to itself arrives
+  double loss = 0;
+  double repeat = 0;
+  double change = 0;     // of a bit
+  double overtake = 0;   // to be held back, so that later ones come first
+  int64_t delay_ns = 0;  // added to every packet; for `repeat` and `overtake` the longest delay
+  Random random{0};
+};
+
+class Network {
+ public:
+  // An arrival that is due at a time: at one receiver, or at everyone.
+  using Schedule = std::function<void(TrueTime time, PacketPtr packet, int receiver)>;
+  // The processes that a packet may be for, with their roles: calls `visit(number, role)` for each.
+  struct Receiver {
+    int number = -1;
+    int role = -1;
+  };
+
+  Network(uint64_t seed, const TrueTime* now, Schedule schedule)
+      : now_(now), schedule_(std::move(schedule)), latency_(seed, 1) {}
+
+  PacketPtr NewPacket() { return pool_.New(); }
+
+  // The number of a channel, the same for every process.
+  int ChannelNumber(const std::string& name);
+  const std::string& ChannelName(int channel) const { return names_[static_cast<size_t>(channel)]; }
+  int channels() const { return static_cast<int>(names_.size()); }
+
+  // Sends to all of `receivers`. `role`: of the sender, -1 for a forged packet.
+  void Send(const PacketPtr& packet, int role, const std::vector<Receiver>& receivers);
+
+  // Begins a fault; the number is for EndFault().
+  int BeginFault(LinkFault fault);
+  void EndFault(int number);
+
+  int64_t lost() const { return lost_; }
+
+ private:
+  TrueTime Latency();
+  void SendOne(PacketPtr packet, int role, const Receiver& receiver, TrueTime arrival);
+
+  const TrueTime* now_;
+  Schedule schedule_;
+  Random latency_;
+  PacketPool pool_;
+  std::unordered_map<std::string, int> numbers_;
+  std::vector<std::string> names_;
+  std::vector<std::pair<int, LinkFault>> faults_;  // active ones
+  int next_fault_ = 0;
+  std::array<TrueTime, kMostProcesses> newest_{};  // by sender: when its last packet arrives at all
+  // While there are faults: the same by sender and receiver.
+  std::array<std::array<TrueTime, kMostProcesses>, kMostProcesses> newest_of_{};
+  int64_t lost_ = 0;
+};
+
+}  // namespace hydro::torture

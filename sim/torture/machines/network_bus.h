@@ -1,0 +1,109 @@
+// The bus of one simulated process: encodes what it sends and decodes what arrives, as UdpmBus does.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/hosted_process.h"
+#include "bus/seal/authenticator.h"
+#include "sim/torture/machines/packet.h"
+
+namespace hydro::torture {
+
+// Thrown out of HandleUntil() of a process that has been killed: unwinds its fiber.
+class ProcessKilled {};
+
+// The network as a bus sees it.
+class NetworkPort {
+ public:
+  virtual ~NetworkPort() = default;
+  virtual int ChannelNumber(const std::string& name) = 0;
+  virtual const std::string& ChannelName(int channel) const = 0;
+  virtual PacketPtr NewPacket() = 0;
+  virtual void Send(PacketPtr packet, int sender) = 0;
+  // A packet is passed to the handlers of process `receiver` now.
+  virtual void Handled(const Packet& packet, int receiver) = 0;
+};
+
+// How a bus lets other processes run.
+class Waiter {
+ public:
+  virtual ~Waiter() = default;
+  // Returns when a packet has arrived, at the deadline (false), or at a signal (false). Throws
+  // ProcessKilled.
+  virtual bool WaitUntil(bus::Bus::TimePoint deadline) = 0;
+};
+
+class NetworkBus : public bus::Bus {
+ public:
+  NetworkBus(int number, NetworkPort& port, Waiter& waiter, const bus::Clock& clock,
+             const bus::HostedProcess& process)
+      : number_(number), port_(port), waiter_(waiter), clock_(clock) {
+    process_ = &process;
+  }
+
+  // From now on it seals what it sends and refuses what is not genuine. Call it before anything is sent.
+  void UseKey(std::unique_ptr<bus::Authenticator> authenticator);
+
+  void SubscribeAll(std::function<void(const bus::RawMessage&)> handler) override;
+  void PublishRaw(const std::string& channel, const void* data, int size) override;
+  int HandleUntil(TimePoint deadline) override;
+
+  bool Hears(int channel) const {
+    return !taps_.empty() || channel == introductions_ ||
+           (static_cast<size_t>(channel) < typed_.size() && !typed_[static_cast<size_t>(channel)].empty());
+  }
+  // Puts an arrived packet in the receive buffer; one that is full loses it, as the kernel's does.
+  void Arrive(PacketPtr packet);
+  bool has_waiting() const { return !inbox_.empty(); }
+  int64_t overflowed() const { return overflowed_; }
+  // From now on nothing that it publishes leaves the process.
+  void Disconnect() { connected_ = false; }
+
+ protected:
+  void PublishTyped(const std::string& channel, const bus::MessageType& type, const void* message) override;
+  void SubscribeTyped(const std::string& channel, const bus::MessageType& type,
+                      std::function<void(const void*)> handler) override;
+  std::shared_ptr<bus::Outlet> MakeOutlet(const std::string& channel, const bus::MessageType& type) override;
+
+ private:
+  class ChannelOutlet;
+  struct Subscription {
+    const bus::MessageType* type;
+    std::shared_ptr<void> message;  // decoded into, reused for each message
+    std::function<void(const void*)> call;
+  };
+
+  int Number(const std::string& channel);
+  void SendTyped(int channel, const bus::MessageType& type, const void* message);
+  void Deliver(const Packet& packet);
+  // How much of a packet handlers may see; nothing: it is refused, or not for them.
+  std::optional<int> Authenticate(const Packet& packet);
+  void Introduce(introduction_t introduction);
+
+  const int number_;
+  NetworkPort& port_;
+  Waiter& waiter_;
+  const bus::Clock& clock_;
+  std::unique_ptr<bus::Authenticator> authenticator_;  // null: without a key
+  int introductions_ = -1;                             // number of their channel
+  bool introduced_ = false;
+  bool connected_ = true;
+  bool handling_ = false;
+  std::unordered_map<std::string, int> numbers_;
+  std::vector<std::deque<Subscription>>
+      typed_;  // by channel; a handler may subscribe: existing ones stay in place
+  std::deque<std::function<void(const bus::RawMessage&)>> taps_;
+  std::deque<PacketPtr> inbox_;
+  size_t inbox_bytes_ = 0;
+  int64_t overflowed_ = 0;
+};
+
+}  // namespace hydro::torture

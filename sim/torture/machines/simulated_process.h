@@ -1,0 +1,132 @@
+// A process of the stack in the simulation: its real application on a fiber, with a bus and a machine.
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bus/hosted_process.h"
+#include "sim/torture/machines/fiber.h"
+#include "sim/torture/machines/machine.h"
+#include "sim/torture/machines/network_bus.h"
+
+namespace hydro::torture {
+
+inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
+
+// The processes of a stack; also the numbers by which faults name their targets.
+enum class Role : int8_t {
+  kPlant,
+  kPressure,
+  kPosition,
+  kLogger,
+  kOperator,
+  kLauncher,
+  // Of the other joint of a limb:
+  kKneePlant,
+  kKneePressure,
+  kKneePosition,
+  kCount
+};
+
+inline bool IsOfKnee(Role role) { return role >= Role::kKneePlant && role < Role::kCount; }
+
+// Whose machine a role runs on: the launcher starts the plant where it runs itself; the knee has one for its own.
+inline Role HomeOf(Role role) {
+  if (IsOfKnee(role)) return Role::kKneePlant;
+  return role == Role::kLauncher ? Role::kPlant : role;
+}
+
+class SimulatedProcess : public Waiter {
+ public:
+  // What a process does; returns its exit code.
+  using Body = std::function<int(bus::Bus&, bus::Clock&)>;
+
+  SimulatedProcess(int number, Role role, Machine& machine, const TrueTime* now, bus::HostedProcess identity,
+                   NetworkPort& port, Body body);
+  ~SimulatedProcess() override;
+
+  int number() const { return number_; }
+  Role role() const { return role_; }
+  Machine& machine() const { return machine_; }
+  const bus::HostedProcess& identity() const { return identity_; }
+  NetworkBus& bus() { return bus_; }
+
+  // When it wants to run next.
+  TrueTime wake() const { return wake_; }
+  // Runs it until it waits again or ends.
+  void Resume();
+
+  // A packet that it subscribes to has arrived.
+  void Arrive(PacketPtr packet);
+  // It does not run before `until`, whatever happens.
+  void FreezeUntil(TrueTime until);
+  // It runs so much later than it could, each time, from now on.
+  void SetSlowness(int64_t ns);
+  // Its machine's clock runs differently from now on.
+  void ClockChanged();
+  // A signal that it cannot catch: it ends without another message.
+  void Kill(int signal = SIGKILL);
+  // SIGTERM and the like.
+  void Signal(int signal);
+  // A wait of it returns.
+  void Interrupt();
+  // The signal that it has been sent, once; 0: none.
+  int TakeSignal() { return std::exchange(identity_.stop_signal, 0); }
+  // A heartbeat of its launcher; whether one has come since the last call.
+  void Beat() { beat_ = true; }
+  bool TakeBeat() { return std::exchange(beat_, false); }
+
+  bool ended() const { return fiber_.done(); }
+  // It has run: until then it catches no signals.
+  bool begun() const { return begun_; }
+  TrueTime frozen_until() const { return frozen_until_; }
+  bool killed() const { return killed_by_ != 0; }
+  int killed_by() const { return killed_by_; }  // the signal; 0: it was not
+  int exit_code() const { return exit_code_; }
+  const std::string& failure() const { return failure_; }  // of an exception that left the application
+  // Whether it runs with another configuration than the rest of the stack.
+  void set_misconfigured(bool misconfigured) { misconfigured_ = misconfigured; }
+  bool misconfigured() const { return misconfigured_; }
+
+  // Waiter:
+  bool WaitUntil(bus::Bus::TimePoint deadline) override { return Await(deadline, true); }
+  // The same, but packets only gather.
+  void SleepUntil(bus::Bus::TimePoint deadline) { Await(deadline, false); }
+
+ private:
+  void RunBody();
+  bool Await(bus::Bus::TimePoint deadline, bool packets);
+  void UpdateWake();
+
+  const int number_;
+  const Role role_;
+  Machine& machine_;
+  const TrueTime* now_;
+  bus::HostedProcess identity_;
+  NetworkBus bus_;
+  Body body_;
+  TrueTime deadline_;                   // of its wait
+  bus::Bus::TimePoint local_deadline_;  // the same on its own clock
+  TrueTime ready_ = kNever;
+  TrueTime frozen_until_ = 0;
+  int64_t slowness_ns_ = 0;
+  TrueTime wake_;
+  bool misconfigured_ = false;
+  bool begun_ = false;
+  bool beat_ = false;
+  int killed_by_ = 0;
+  bool interrupted_ = false;  // by a signal that no wait has returned for yet
+  int exit_code_ = -1;
+  std::string failure_;
+  TrueTime idle_since_ = -1;
+  int idle_turns_ = 0;  // waits at that time that were over at once
+  Fiber fiber_;
+};
+
+}  // namespace hydro::torture

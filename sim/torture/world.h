@@ -1,0 +1,215 @@
+// A stack and everything around it, simulated: processes on machines, the network between them, and the
+// faults of a schedule. One thread, one order of events: the same schedule gives the same run, bit by bit.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "settings/stack_config.h"
+#include "sim/torture/faulty_rig.h"
+#include "sim/torture/invariants/launch_invariants.h"
+#include "sim/torture/invariants/log_record.h"
+#include "sim/torture/invariants/observer.h"
+#include "sim/torture/machines/disk.h"
+#include "sim/torture/machines/network.h"
+#include "sim/torture/machines/simulated_process.h"
+#include "sim/torture/machines/trace.h"
+#include "sim/torture/message_tail.h"
+#include "sim/torture/run_outcome.h"
+#include "sim/torture/schedule/schedule.h"
+
+namespace hydro::torture {
+
+// What this program has allocated.
+size_t AllocatedBytes();
+
+class World : public NetworkPort {
+ public:
+  // `stacks` must outlive it.
+  World(const Schedule& schedule, const Stacks& stacks);
+  ~World() override;
+
+  // From now on what happens is also told to `tail`, which must outlive the run.
+  void SetTail(MessageTail* tail) { tail_ = tail; }
+
+  // The whole run: start, faults, return to control, end. Stops at the first violation.
+  RunOutcome Run();
+
+  // For the injector: times are true times.
+  TrueTime now() const { return now_; }
+  const settings::StackConfig& config() const { return config_; }
+  Network& network() { return network_; }
+  Observer& observer() { return observer_; }
+  std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
+  BoardFaults& board() { return board_; }
+  bool has_driver() const { return schedule_.driver; }
+  bool has_knee() const { return schedule_.limb; }
+  // How many injected faults stop the launcher now.
+  int& launcher_hangs() { return launcher_hangs_; }
+  Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(HomeOf(role))]; }
+  SimulatedProcess& process(int number) { return *by_number_[static_cast<size_t>(number)]; }
+  // The living process of a role; null: none.
+  SimulatedProcess* Find(Role role);
+  // Without a launcher somebody starts it again at that time.
+  void Kill(Role role, TrueTime restart_at);
+  // Its children are sent SIGTERM by the kernel.
+  void KillLauncher();
+  void InterruptLauncher();
+  void HangLauncher(TrueTime until);
+  // From now on a role starts with that configuration; null: with the right one again.
+  void StartWith(Role role, const settings::StackConfig* other) {
+    starts_with_[static_cast<size_t>(role)] = other;
+  }
+  const Stacks& stacks() const { return stacks_; }
+  bool has_launcher() const { return schedule_.launcher; }
+  // For a launcher: starts the process of a role; sends a process a signal; says a line.
+  SimulatedProcess& StartChild(Role role);
+  void SendSignal(const SimulatedProcess& process, int signal);
+  void Say(int process, const std::string& text);
+  // The clocks of a role's machine have changed.
+  void ClockChanged(Role role);
+  // Everything of a machine stands still until `until`, and its clocks count the time as suspended.
+  void Suspend(Role role, TrueTime until);
+  // A message that no process has sent, to everyone. Origin::kProcess: one that the operator may send.
+  template <class Message>
+  void Forge(const Message& message, Origin origin = Origin::kForged) {
+    ForgeBytes(channels_.Of<Message>(), bus::TypeOf<Message>(), &message, origin);
+  }
+  void ForgeAgain(const Packet& packet);
+  // The newest motor command that was sent before a time; null: none is remembered.
+  const Packet* RecordedCommand(TrueTime before) const;
+  // An operator's process asks the plant to go on, or everybody to end.
+  void SendRearm();
+  void SendStop();
+  // Somebody who has the stack's key sends motor commands of his own.
+  void SendInsider(double voltage, double seconds, int64_t first_sequence);
+  void SendSet(int which);
+  // The planner ends, and is started again then. Where none runs, nothing happens.
+  void SilencePlanner(TrueTime until);
+  // The newest pressure command, and the newest plan; null: there was none.
+  const Packet* newest_reference() const { return newest_reference_.get(); }
+  const Packet* newest_plan() const { return newest_plan_.get(); }
+  Disk& disk() { return disk_; }
+  bool has_logger() const { return schedule_.logger; }
+  // The path of a new log, of the process `number`.
+  std::string NewLog(int number);
+  // Something befalls the log that is being written.
+  void NoteLogFault(bool LogRecord::*what);
+  // A bit of the newest log was changed.
+  void NoteLie();
+  // Somebody deletes the newest log, whose logger goes on writing into what is no longer there.
+  void DeleteLog();
+  Coverage& coverage() { return outcome_.coverage; }
+
+  // NetworkPort:
+  int ChannelNumber(const std::string& name) override { return network_.ChannelNumber(name); }
+  const std::string& ChannelName(int channel) const override { return network_.ChannelName(channel); }
+  PacketPtr NewPacket() override { return network_.NewPacket(); }
+  void Send(PacketPtr packet, int sender) override;
+  void Handled(const Packet& packet, int receiver) override;
+
+ private:
+  enum class Happening : uint8_t {
+    kArrival,
+    kBegin,
+    kContinue,
+    kEnd,
+    kStart,
+    kAwake,
+    kPhase,
+    kSignal,
+    kLaunchDue,
+    kPlanner
+  };
+  static constexpr int kSignals = 64;  // a kSignal's number: that of the process, times this, and the signal
+  struct Event {
+    TrueTime time;
+    uint64_t order;
+    Happening what;
+    int number;  // receiver, injection, role
+    PacketPtr packet;
+  };
+
+  void Push(TrueTime time, Happening what, int number, PacketPtr packet = nullptr);
+  static bool Later(const Event& a, const Event& b);
+  void Step();
+  void Tell(const Packet& packet, int process, const char* what);
+  std::string NameOf(int process) const;
+  void TellInjection(int number, const char* what);
+  void Happen(const Event& event);
+  void Arrive(const PacketPtr& packet, int receiver);
+  void Start(Role role);
+  SimulatedProcess& Begin(Role role, SimulatedProcess::Body body, bool misconfigured);
+  SimulatedProcess& BeginRole(Role role);
+  void StartAt(Role role, TrueTime time);
+  void Awake(Role role);
+  void StartPlanner();
+  void NoteConfigurations();
+  void Signal(SimulatedProcess& process, int signal);
+  void Destroy(SimulatedProcess& process, int signal);
+  void Reap(SimulatedProcess& process);
+  void NoteDue();
+  void CheckLaunchIsOver(int launcher);
+  void CheckLog(const SimulatedProcess& logger);
+  void EnterPhase(int phase);
+  bool StillStopping();
+  void CheckReturned();
+  void CheckEnded();
+  void ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
+                  Origin origin);
+
+  const Schedule schedule_;
+  const settings::StackConfig& config_;
+  const Stacks& stacks_;
+  const bus::Channels channels_;
+  TrueTime now_ = 0;
+  RunOutcome outcome_;
+  Trace trace_;
+  Network network_;
+  Observer observer_;
+  Random random_;
+  std::vector<std::unique_ptr<Machine>> machines_;  // by role
+  std::vector<std::unique_ptr<SimulatedProcess>> processes_;
+  std::vector<SimulatedProcess*> by_number_;
+  std::vector<SimulatedProcess*> alive_;
+  std::vector<Network::Receiver> receivers_;
+  // By role:
+  std::array<const settings::StackConfig*, static_cast<size_t>(Role::kCount)> starts_with_{};
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> start_at_{};  // when it is started next
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> awake_at_{};  // when its machine wakes up
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> asleep_since_{};
+  std::vector<SensorFault> sensor_faults_;
+  BoardFaults board_;
+  SimulatedProcess* planner_ = nullptr;
+  PacketPtr newest_reference_, newest_plan_;
+  int reference_channel_ = -1, plan_channel_ = -1;
+  std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
+  std::vector<Event> events_;                               // a heap
+  int launcher_hangs_ = 0;
+  int due_launcher_ = -1;  // the newest for which it is known when it must end
+  TrueTime due_at_ = 0;    // when that is looked at
+  MessageTail* tail_ = nullptr;
+  LaunchInvariants launches_;
+  Random start_random_;  // how long a launcher's children take to begin
+  Disk disk_;
+  Random disk_random_;
+  std::map<int, LogRecord> logs_;  // by number of the process that writes it
+  uint64_t order_ = 0;
+  std::deque<PacketPtr> recorded_;  // the newest motor commands
+  int command_channel_ = -1;
+  const size_t allocated_ = AllocatedBytes();  // at the start
+  bool ending_ = false;
+  std::set<const SimulatedProcess*> stops_;  // operators who wait for the stack to end
+  const SimulatedProcess* last_stop_ = nullptr;
+  TrueTime stopped_at_ = 0;  // when one of them had done so
+  bool over_ = false;
+};
+
+}  // namespace hydro::torture

@@ -1,0 +1,373 @@
+// What is said before a re-arm, held against what the simulated arm then does: the real plant and loops on a
+// simulated clock.
+#include "tune/live/rearm_forecast.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <hydro/arm_plan_t.hpp>
+#include <hydro/arm_reference_t.hpp>
+#include <hydro/fault_t.hpp>
+#include <hydro/rearm_t.hpp>
+#include <hydro/tuning_request_t.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bus/in_process_bus.h"
+#include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
+#include "settings/stack_config.h"
+
+namespace hydro::tuning {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr double kRate = 1000;     // Hz, of config/demo.toml
+constexpr int64_t kTrips = 350;    // ticks: the arm is on its way to its first step
+constexpr int64_t kIsWell = 700;   // the fault has ended, and is latched
+constexpr int64_t kRearms = 1200;  // and is ended
+
+class RearmForecastTest : public ::testing::Test {
+ protected:
+  // A run in which a loop reports a fault in mid-motion, and the plant is re-armed later; `forecast_` is of
+  // that tick.
+  void Run(std::vector<std::string> changes, double duration_s = 13.5) {
+    changes.insert(changes.end(), {"time.mode=lockstep", "limits.rearm=explicit", "noise.arm_angle_rad=0"});
+    settings::StackConfig config = settings::LoadStackConfig(HYDRO_TEST_CONFIG, changes);
+    config.last_tick = std::llround(duration_s * kRate);
+    bus::SimulatedClock clock;
+    bus::InProcessBus bus(&clock);
+    bus_ = &bus;
+    Listen();
+    plant::SimulatedRig rig(config);
+    plant::PlantApp plant(bus, clock, config, rig);
+    pressure_ctrl::PressureApp pressure(bus, clock, config);
+    position_ctrl::PositionApp position(bus, clock, config);
+    bus.Subscribe<state_t>("HYDRO_STATE", [&](const state_t&) {
+      pressure.Poll();
+      position.Poll();
+    });
+    plant.Run();
+    while (bus.HandleUntil(clock.Now()) > 0) {
+    }
+    ASSERT_EQ(accepted_, 1);
+  }
+
+  void Listen() {
+    bus_->Subscribe<state_t>("HYDRO_STATE", [this](const state_t& state) { OnState(state); });
+    bus_->Subscribe<run_description_t>("HYDRO_RUN",
+                                       [this](const run_description_t& run) { heard_.run = run; });
+    bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS", [this](const tuned_settings_t& settings) {
+      if (settings.stage == tuned_settings_t::IN_FORCE) heard_.in_force = settings;
+    });
+    bus_->Subscribe<arm_plan_t>("HYDRO_ARM_PLAN", [this](const arm_plan_t& plan) { heard_.plan = plan; });
+    bus_->Subscribe<arm_reference_t>("HYDRO_ARM_REFERENCE",
+                                     [this](const arm_reference_t& r) { references_[r.tick] = r.value; });
+    bus_->Subscribe<rearm_t>(
+        "HYDRO_REARM", [this](const rearm_t& answer) { accepted_ += answer.kind == rearm_t::ACCEPTED; });
+  }
+
+  void OnState(const state_t& state) {
+    angles_.push_back(state.arm_angle);
+    pressures_.push_back(state.p2 - state.p1);
+    if (state.tick == kTrips || state.tick == kIsWell) SayFault(state.tick == kTrips);
+    if (const auto due = at_.find(state.tick); due != at_.end()) due->second(state);
+    if (state.tick != kRearms) return;
+    heard_.state = state;
+    forecast_ = ForecastRearm(heard_);
+    rearm_t request;
+    request.tick = state.tick;
+    request.session = 77;
+    request.addressee = state.session;
+    request.kind = rearm_t::REQUEST;
+    bus_->Publish("HYDRO_REARM", request);
+  }
+
+  void SayFault(bool active) {
+    fault_t fault;
+    fault.session = 55;
+    fault.source = "pressure_ctrl";
+    fault.code = "nonfinite_state";
+    fault.active = active;
+    bus_->Publish("HYDRO_FAULT", fault);
+  }
+
+  // The published reference at a time after the re-arm.
+  double ReferenceAfter(double seconds) const {
+    return std::prev(references_.upper_bound(kRearms + std::llround(seconds * kRate)))->second;
+  }
+  double ArmAfter(double seconds) const { return angles_.at(kRearms + std::llround(seconds * kRate)); }
+
+  // The fastest that the reference changes between two samples on its way back, unless it jumps there.
+  double FastestReference() const {
+    double fastest = 0;
+    for (auto next = references_.upper_bound(kRearms + 5), last = next++; next != references_.end();
+         last = next++) {
+      if (next->first > kRearms + std::llround(forecast_.return_s * kRate)) break;
+      const double rate =
+          std::fabs(next->second - last->second) * kRate / static_cast<double>(next->first - last->first);
+      if (rate < 20 * forecast_.top_rate) fastest = std::max(fastest, rate);
+    }
+    return fastest;
+  }
+
+  // Everything that the forecast says of the reference came true.
+  void ExpectTrue() const {
+    ASSERT_TRUE(forecast_.known) << forecast_.text;
+    // It is sampled every 5 ms, and acts from the next tick on.
+    const double slack = 0.01 * std::max(0.01, forecast_.top_rate);
+    EXPECT_NEAR(ReferenceAfter(forecast_.return_s + 0.006), forecast_.target, slack);
+    EXPECT_NEAR(FastestReference(), forecast_.top_rate, 0.02 * forecast_.top_rate);
+    double lowest = INFINITY, highest = -INFINITY;
+    for (const auto& [tick, value] : references_) {
+      const double after = static_cast<double>(tick - kRearms) / kRate - forecast_.return_s;
+      if (after < 0.006 || after > kForecast_s) continue;
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    }
+    EXPECT_NEAR(lowest, forecast_.lowest, slack);
+    EXPECT_NEAR(highest, forecast_.highest, slack);
+    EXPECT_NEAR(ReferenceAfter(forecast_.return_s + kForecast_s), forecast_.last, slack);
+    for (const ReferenceStep& step : forecast_.steps)
+      EXPECT_NEAR(ReferenceAfter(step.after_s + 0.006) - ReferenceAfter(step.after_s - 0.006), step.by,
+                  0.012 * forecast_.top_rate + slack);
+  }
+
+  bus::InProcessBus* bus_ = nullptr;
+  std::map<int64_t, std::function<void(const state_t&)>> at_;
+  HeardOfStack heard_;
+  RearmForecast forecast_;
+  int accepted_ = 0;
+  std::vector<double> angles_, pressures_;  // by tick
+  std::map<int64_t, double> references_;
+};
+
+// Tests a step that was half done when the fault came: the arm goes to where the step leads, not to where the
+// published reference stands while it follows the arm.
+TEST_F(RearmForecastTest, AStepInMidMotion) {
+  Run({"reference.steps=[[0.2, 0.3]]"});
+  ExpectTrue();
+  EXPECT_EQ(forecast_.target, 0.3);
+  EXPECT_EQ(forecast_.return_s, 0.5);
+  EXPECT_LT(forecast_.present, 0.2);
+  EXPECT_NEAR(forecast_.present, ReferenceAfter(-0.01), 2e-3) << "what the page used to tell from";
+  EXPECT_FALSE(forecast_.jumps);
+  const double way = forecast_.target - forecast_.present;
+  EXPECT_NEAR(forecast_.top_rate, way / 0.5, 1e-9);
+  EXPECT_NEAR(ArmAfter(3) - ArmAfter(0), way, 0.02 * way) << "the arm goes that way";
+  EXPECT_GT(ArmAfter(0.5) - ArmAfter(0), 0.5 * way) << "about as fast";
+  EXPECT_THAT(forecast_.text, StartsWith("the arm is at "));
+  EXPECT_THAT(forecast_.text, HasSubstr("; its reference comes back to 0.3 rad: the reference moves by +"));
+  EXPECT_THAT(forecast_.text, HasSubstr(" in 0.5 s, at up to "));
+}
+
+// Tests that the other direction, another time and a later step are told.
+TEST_F(RearmForecastTest, BackwardsAndALaterStep) {
+  Run({"reference.steps=[[0.2, 0.3], [0.9, -0.3], [6, 0.1]]", "limits.return_s=1.5"});
+  ExpectTrue();
+  EXPECT_EQ(forecast_.target, -0.3);
+  EXPECT_EQ(forecast_.highest, 0.1);
+  EXPECT_NEAR(ArmAfter(4.5), -0.3, 0.01);
+  EXPECT_THAT(forecast_.text, HasSubstr("the reference moves by -"));
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it goes from -0.3 rad to 0.1 rad;"));
+}
+
+// Tests that a way down is told as one, from its beginning to its end.
+TEST_F(RearmForecastTest, DownAfterwards) {
+  Run({"reference.steps=[[0.2, 0.3], [4, 0.2], [6, -0.1]]"});
+  ExpectTrue();
+  EXPECT_TRUE(forecast_.one_way);
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it goes from 0.3 rad to -0.1 rad;"));
+}
+
+// Tests that a pulse between two samples of the forecast is seen, and that it is no way.
+TEST_F(RearmForecastTest, APulseAfterwards) {
+  Run({"reference.steps=[[0.2, 0.3], [4.002, 0.4], [4.012, 0.2], [4.02, 0.3]]"});
+  ExpectTrue();
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between 0.2 rad and 0.4 rad;"));
+}
+
+// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast promises
+// the reference alone, which comes true, and names the limit.
+TEST_F(RearmForecastTest, ALimitThatBinds) {
+  Run({"reference.steps=[[0.2, 0.3]]", "limits.arm_torque=1"});
+  ExpectTrue();
+  const double way = forecast_.target - forecast_.present;
+  EXPECT_LT(std::fabs(ArmAfter(3) - ArmAfter(0)), 0.5 * std::fabs(way)) << "the arm does not go that way";
+  EXPECT_THAT(forecast_.text, Not(HasSubstr("the arm will")));
+  EXPECT_THAT(forecast_.text,
+              HasSubstr("; the arm follows as far as its load and limits.arm_torque 1 in-lbf let it"));
+}
+
+// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast says.
+TEST_F(RearmForecastTest, ALimitThatStopsAgain) {
+  Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0.02", "limits.motor_speed=20"});
+  ASSERT_TRUE(forecast_.known);
+  EXPECT_GT(std::fabs(ArmAfter(3) - forecast_.target), 0.02) << "the arm does not get there";
+  EXPECT_THAT(forecast_.text,
+              HasSubstr("; zero volts again beyond limits.pressure 2000 psi, limits.motor_speed 20 rad/s"));
+}
+
+// Tests references that move all the time, and one that jumps on the way back.
+TEST_F(RearmForecastTest, ReferencesThatMove) {
+  Run(
+      {"reference={signal = \"arm_angle\", kind = \"sine\", amplitude = 0.2, frequency_hz = 0.3, offset = "
+       "0.05}"});
+  ExpectTrue();
+  EXPECT_NEAR(forecast_.highest, 0.25, 1e-3);
+  EXPECT_FALSE(forecast_.one_way);
+  EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between -0.15 rad and 0.25 rad;"));
+}
+
+TEST_F(RearmForecastTest, AJumpOnTheWay) {
+  Run({"reference.steps=[[0.2, 0.3], [1.5, -0.1]]"});
+  ExpectTrue();
+  EXPECT_TRUE(forecast_.jumps);
+  EXPECT_EQ(forecast_.target, -0.1);
+  ASSERT_EQ(forecast_.steps.size(), 1u);
+  EXPECT_NEAR(forecast_.steps[0].after_s, 0.3, 1e-3);
+  EXPECT_NEAR(forecast_.steps[0].by, -0.6 * 0.4, 1e-3)
+      << "six tenths of the way from the arm to the reference";
+  EXPECT_THAT(forecast_.text, HasSubstr(" rad/s, and jumps by -0.24 rad after 0.3 s"));
+}
+
+// Tests steps at the very ends of the way back, and several on it.
+TEST_F(RearmForecastTest, JumpsOnTheWay) {
+  Run({"reference.steps=[[0.2, 0.3], [1.3, 0.1], [1.5, 0.2], [1.7, -0.1]]"});
+  ExpectTrue();
+  EXPECT_EQ(forecast_.steps.size(), 3u);
+  EXPECT_THAT(forecast_.text, HasSubstr(" after 0.1 s and 2 more times"));
+  EXPECT_EQ(forecast_.target, -0.1);
+}
+
+// Tests that nothing is called slow that is not.
+TEST_F(RearmForecastTest, AtOnce) {
+  Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0"});
+  ASSERT_TRUE(forecast_.known);
+  EXPECT_NEAR(ReferenceAfter(0.006), 0.3, 1e-12);
+  EXPECT_EQ(forecast_.target, 0.3);
+  EXPECT_TRUE(forecast_.jumps);
+  EXPECT_THAT(forecast_.text, HasSubstr(" rad at once"));
+}
+
+// Tests that a reference that was changed while the stack runs counts, from the tick at which it began.
+TEST_F(RearmForecastTest, AReferenceSetMeanwhile) {
+  at_[800] = [this](const state_t& state) {
+    tuning_request_t request;
+    request.tick = state.tick;
+    request.session = 78;
+    request.request = 1;
+    request.addressee = state.session;
+    request.kind = tuning_request_t::SET;
+    request.changes = "reference.steps=[[0.1, -0.05], [3, 0.2]]";
+    bus_->Publish("HYDRO_TUNING_REQUEST", request);
+  };
+  Run({"reference.steps=[[0.2, 0.3]]"});
+  ASSERT_EQ(heard_.in_force->version, 1);
+  ExpectTrue();
+  EXPECT_EQ(forecast_.target, -0.05);
+  EXPECT_EQ(forecast_.highest, 0.2);
+}
+
+// Tests a planner: the reference comes back to where its newest plan ends, or, where it has fallen silent in
+// the middle of that, to where it was followed last.
+TEST_F(RearmForecastTest, APlan) {
+  for (const bool silent : {false, true}) {
+    at_[100] = [&, this](const state_t& state) {
+      arm_plan_t plan{};
+      plan.tick = state.tick;
+      plan.session = 5;
+      plan.count = 2;
+      plan.time = {0, 0.6};
+      plan.arm_angle = {0, 0.15};
+      plan.arm_speed = {0, 0};
+      plan.torque = {0, 0};
+      bus_->Publish("HYDRO_ARM_PLAN", plan);
+    };
+    heard_ = {};
+    accepted_ = 0;
+    angles_.clear();
+    references_.clear();
+    Run({std::string("reference={signal = \"arm_angle\", kind = \"planner\", timeout_s = ") +
+         (silent ? "0.2" : "30.0") + "}"},
+        3);
+    ASSERT_TRUE(forecast_.known) << forecast_.text;
+    if (silent) {
+      EXPECT_GT(forecast_.target, 0.04);
+      EXPECT_LT(forecast_.target, 0.11);
+    } else {
+      EXPECT_EQ(forecast_.target, 0.15);
+    }
+    EXPECT_NEAR(ReferenceAfter(0.51), forecast_.target, silent ? 2e-3 : 1e-9);
+    EXPECT_NEAR(ArmAfter(1.5), forecast_.target, 5e-3);
+    EXPECT_THAT(forecast_.text, HasSubstr(" rad (by the newest plan)"));
+  }
+}
+
+// Tests a reference that is no angle: what is known of it is said, and that the arm's way does not follow.
+TEST_F(RearmForecastTest, APressure) {
+  Run({"reference={signal = \"pressure\", kind = \"steps\", steps = [[0.2, 60.0]]}", "noise.p1_psi=0",
+       "noise.p2_psi=0"},
+      3);
+  ASSERT_TRUE(forecast_.known) << forecast_.text;
+  EXPECT_EQ(forecast_.quantity, "pressure");
+  EXPECT_EQ(forecast_.target, 60);
+  EXPECT_NEAR(forecast_.present, pressures_.at(kRearms), 1e-9);
+  EXPECT_NEAR(ReferenceAfter(0.51), 60, 1e-9);
+  EXPECT_THAT(forecast_.text, HasSubstr("how far the arm moves does not follow"));
+}
+
+// Tests that what cannot be known is said instead of a number.
+TEST(RearmForecast, Unknown) {
+  const settings::StackConfig config = settings::LoadStackConfig(HYDRO_TEST_CONFIG);
+  HeardOfStack heard;
+  EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("no state is heard"));
+  heard.state.emplace();
+  heard.state->command_tick = -1;
+  EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("has not described itself"));
+  heard.run.emplace();
+  heard.run->rate_hz = kRate;
+  heard.run->config_text = config.text;
+  heard.run->config_file = "demo.toml";
+  heard.run->model_text = config.model.text;
+  heard.run->model_file = "table1.toml";
+  EXPECT_TRUE(ForecastRearm(heard).known);
+  heard.state->arm_angle = NAN;
+  EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("the arm is not measured"));
+  heard.state->arm_angle = 0.1;
+  heard.state->command_tick = 4;
+  EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("nothing holds the voltage at zero"));
+  heard.state->command_tick = -1;
+  HeardOfStack own = heard;
+  own.run->config_text += "\n[[process]]\ncommand = [\"./pid.py\"]\nrole = \"position_ctrl\"\n";
+  const std::string ours = "[[process]]\nprogram = \"hydro-position-ctrl\"\n";
+  if (const size_t at = own.run->config_text.find(ours); at != std::string::npos)
+    own.run->config_text.erase(at, ours.size());
+  EXPECT_THAT(ForecastRearm(own).text, HasSubstr("a program of your own, ./pid.py"));
+  own.run->config_text = "[nonsense";
+  EXPECT_FALSE(ForecastRearm(own).known);
+}
+
+// Tests that the figures are in the units of the model.
+TEST(RearmForecast, Units) {
+  const settings::StackConfig config =
+      settings::LoadStackConfig(HYDRO_SI_CONFIG, {"reference.signal=pressure"});
+  HeardOfStack heard;
+  heard.state.emplace();
+  heard.state->command_tick = -1;
+  heard.run.emplace();
+  heard.run->config_text = config.text;
+  heard.run->model_text = config.model.text;
+  EXPECT_EQ(ForecastRearm(heard).unit, "Pa");
+}
+
+}  // namespace
+}  // namespace hydro::tuning

@@ -1,0 +1,52 @@
+#include "tune/design/fastest_motion.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/maths/matrix_functions.h"
+#include "base/number_text.h"
+#include "tune/design/operating_cases.h"
+
+namespace hydro::design {
+namespace {
+
+// An oscillation takes some ten steps of a microsecond or so: with these a tick of 1 ms takes about as long
+// as it lasts.
+constexpr double kMostInATick = 100;
+
+}  // namespace
+
+double FastestMotion(const settings::StackConfig& config) {
+  double fastest = 0;
+  for (const OperatingCase& point : OperatingCases(config)) {
+    const Eigen::MatrixXd A =
+        Eigen::Map<const Eigen::MatrixXd>(point.model.A.data(), point.model.states, point.model.states);
+    if (!A.allFinite()) continue;
+    for (const std::complex<double>& value : maths::Eigenvalues(A))
+      fastest = std::max(fastest, std::fabs(value.imag()));
+  }
+  return fastest;
+}
+
+std::string FastMotionRemark(const settings::StackConfig& config) {
+  double fastest = 0;
+  try {
+    fastest = FastestMotion(config);
+  } catch (const model::ModelError&) {
+    return "";  // said, with its time, by whoever simulates it
+  }
+  const double in_a_tick = fastest / (2 * std::numbers::pi * config.plant.rate_hz);
+  if (!(in_a_tick > kMostInATick)) return "";
+  return fmt::format(
+      "{}: its fastest motion, {} rad/s, has {} oscillations in a tick of {} s, which may take very long to "
+      "simulate: are J_a, J, "
+      "V_ms and beta, and what its effects say, meant so, and in the units of the model?",
+      config.model.resolved_file, ShortNumber(fastest, 3), ShortNumber(in_a_tick, 3),
+      ShortestNumber(1 / config.plant.rate_hz));
+}
+
+}  // namespace hydro::design

@@ -1,0 +1,272 @@
+#include "tune/live/rearm_forecast.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "model/sides.h"
+#include "tune/live/change_check.h"
+
+namespace hydro::tuning {
+namespace {
+
+using settings::ReferenceSignal;
+
+constexpr int kSamples = 400;  // of the way back, and of the time after it
+constexpr size_t kMostBreaks = 100'000;
+
+// What a reference refers to, in words and in the units of the model.
+struct Referred {
+  const char* quantity;
+  const char* words;
+  std::string unit;
+  double present;
+};
+
+Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
+  const UnitSystem& units = config.model.description.units;
+  const double pressure =
+      model::LoadPressure(model::DifferencesOf(config.model.description).areas, state.p1, state.p2);
+  switch (config.reference.signal) {
+    case ReferenceSignal::kArmAngle:
+      return {"arm_angle", "the arm", units.UnitFor("rad", 1), state.arm_angle};
+    case ReferenceSignal::kPressure:
+      return {"pressure", "the pressure p2 - p1", units.UnitFor("psi"), pressure};
+    case ReferenceSignal::kTorque:
+      return {"torque", "the torque on the arm", units.UnitFor("in-lbf", -1),
+              pressure * config.model.description.parameters.k_2};
+    case ReferenceSignal::kVoltage:
+      return {"voltage", "the voltage", "V", 0};
+  }
+  return {};
+}
+
+// Where a plan leads at a time (position_ctrl/plan_follower.cc: cubics between its points).
+double PlannedAt(const arm_plan_t& plan, double time) {
+  const auto behind = std::upper_bound(plan.time.begin(), plan.time.end(), time);
+  if (behind == plan.time.begin()) return plan.arm_angle.front();
+  if (behind == plan.time.end()) return plan.arm_angle.back();
+  const auto i = static_cast<size_t>(behind - plan.time.begin()) - 1;
+  const double h = plan.time[i + 1] - plan.time[i], s = (time - plan.time[i]) / h;
+  const double a0 = plan.arm_angle[i], a1 = plan.arm_angle[i + 1];
+  const double v0 = plan.arm_speed[i] * h, v1 = plan.arm_speed[i + 1] * h;
+  return a0 + s * (v0 + s * (3 * (a1 - a0) - 2 * v0 - v1 + s * (2 * (a0 - a1) + v0 + v1)));
+}
+
+// The reference over plant time, as the position loop would have it without a hold.
+class Wanted {
+ public:
+  Wanted(const settings::StackConfig& config, const HeardOfStack& heard)
+      : from_(heard.in_force && heard.run->rate_hz > 0
+                  ? static_cast<double>(heard.in_force->reference_from) / heard.run->rate_hz
+                  : 0) {
+    const settings::TrajectorySpec& spec = config.reference.trajectory;
+    if (spec.kind != settings::TrajectorySpec::Kind::kPlanner) {
+      trajectory_ = settings::MakeTrajectory(spec);
+    } else {
+      initial_ = spec.initial;
+      if (heard.plan && !heard.plan->time.empty()) plan_ = &*heard.plan;
+      // A plan that nothing follows is followed no further.
+      if (plan_ != nullptr && plan_->tick >= 0 && heard.run->rate_hz > 0)
+        holds_from_ = static_cast<double>(plan_->tick) / heard.run->rate_hz + spec.delay_s + spec.timeout_s;
+    }
+  }
+
+  double At(double time) const {
+    if (trajectory_) return trajectory_->Value(time - from_);
+    return plan_ == nullptr ? initial_ : PlannedAt(*plan_, std::min(time, holds_from_));
+  }
+
+  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it says
+  // false. There the reference may jump.
+  template <class Take>
+  void BreaksBetween(double begin, double end, Take take) const {
+    if (!trajectory_) return;
+    for (double t = trajectory_->NextBreak(begin - from_); t <= end - from_; t = trajectory_->NextBreak(t)) {
+      if (!take(t + from_, trajectory_->Value(std::nextafter(t, -INFINITY)), trajectory_->Value(t))) return;
+    }
+  }
+
+ private:
+  double from_;  // s, when the reference begins
+  std::unique_ptr<trajectory::Trajectory> trajectory_;
+  double initial_ = 0;  // of a planner's, before its first plan
+  const arm_plan_t* plan_ = nullptr;
+  double holds_from_ = INFINITY;  // s
+};
+
+bool Differ(double a, double b) { return std::fabs(a - b) > 1e-9 * (std::fabs(a) + std::fabs(b)); }
+
+bool JumpsBetween(const Wanted& wanted, double begin, double end) {
+  bool jumps = false;
+  wanted.BreaksBetween(begin, end, [&](double, double before, double after) {
+    jumps = Differ(before, after);
+    return !jumps;
+  });
+  return jumps;
+}
+
+// The way back: a straight line from where it is to where it is wanted
+// (position_ctrl/law/reference_return.h).
+void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
+  const double end = now + forecast->return_s;
+  forecast->target = wanted.At(end);
+  if (forecast->return_s == 0) {
+    forecast->jumps = forecast->target != forecast->present;
+    return;
+  }
+  wanted.BreaksBetween(now, end, [&](double t, double before, double after) {
+    if (Differ(before, after))
+      forecast->steps.push_back({t - now, (t - now) / forecast->return_s * (after - before)});
+    return forecast->steps.size() < kMostSteps;
+  });
+  forecast->jumps = !forecast->steps.empty();
+  const double step = forecast->return_s / kSamples;
+  for (int i = 0; i < kSamples; ++i) {
+    const double t0 = now + i * step, t1 = t0 + step;
+    if (JumpsBetween(wanted, t0, t1)) continue;
+    const auto at = [&](double t, double share) {
+      return forecast->present + share * (wanted.At(t) - forecast->present);
+    };
+    const double from = at(t0, static_cast<double>(i) / kSamples), to = at(t1, (i + 1.0) / kSamples);
+    forecast->top_rate = std::max(forecast->top_rate, std::fabs(to - from) / step);
+  }
+}
+
+// What the reference does after that.
+void FollowTheReference(const Wanted& wanted, double begin, RearmForecast* forecast) {
+  forecast->lowest = forecast->highest = forecast->last = forecast->target;
+  bool rises = false, falls = false;
+  const auto take = [&](double value) {
+    forecast->lowest = std::min(forecast->lowest, value);
+    forecast->highest = std::max(forecast->highest, value);
+    if (Differ(value, forecast->last)) (value > forecast->last ? rises : falls) = true;
+    forecast->last = value;
+  };
+  const double step = kForecast_s / kSamples;
+  size_t breaks =
+      0;  // pulses are shorter than the samples, but not each of a table's million points is asked for
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = begin + i * step;
+    take(wanted.At(t));
+    wanted.BreaksBetween(t, t + step, [&](double, double before, double after) {
+      take(before);
+      take(after);
+      return ++breaks < kMostBreaks;
+    });
+  }
+  take(wanted.At(begin + kForecast_s));
+  forecast->one_way = !(rises && falls);
+}
+
+std::string ReturnText(const RearmForecast& f) {
+  const double way = f.target - f.present;
+  std::string text =
+      fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit);
+  if (f.return_s == 0) return text + " at once";
+  text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
+  if (f.steps.empty()) return text;
+  const ReferenceStep& first = f.steps.front();
+  text += fmt::format(", and jumps by {}{} {} after {} s", first.by > 0 ? "+" : "", ShortNumber(first.by),
+                      f.unit, ShortNumber(first.after_s));
+  const size_t more = f.steps.size() - 1;
+  if (more == 0) return text;
+  return text + fmt::format(" and {}{} more time{}", f.steps.size() < kMostSteps ? "" : "at least ", more,
+                            more == 1 ? "" : "s");
+}
+
+// What stands between the reference and the arm.
+std::string LimitsText(const settings::StackConfig& config) {
+  const UnitSystem& units = config.model.description.units;
+  const settings::LimitsSection& limits = config.limits;
+  const auto listed = [](std::string* list, const char* name, double limit, const std::string& unit) {
+    if (!std::isfinite(limit)) return;
+    *list += fmt::format("{}{} {} {}", list->empty() ? "" : ", ", name, ShortNumber(limit), unit);
+  };
+  std::string held_back, ends;
+  listed(&held_back, "limits.arm_torque", limits.arm_torque_in_lbf, units.UnitFor("in-lbf", -1));
+  listed(&ends, "limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
+  listed(&ends, "limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
+  listed(&ends, "limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
+  std::string text = "the arm follows as far as its load";
+  text += held_back.empty() ? " lets it" : " and " + held_back + " let it";
+  if (!ends.empty()) text += "; zero volts again beyond " + ends;
+  return text;
+}
+
+std::string TextOf(const RearmForecast& f, const Referred& referred, const settings::StackConfig& config) {
+  const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
+  const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
+  std::string text =
+      fmt::format("{} is at {}; its reference comes back to {}{}: {}", referred.words, number(f.present),
+                  number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
+  const double spread = f.highest - f.lowest,
+               least = 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest));
+  if (spread > least) {
+    text += fmt::format("; in the {} s after that it {} {} {} {}", ShortNumber(kForecast_s),
+                        f.one_way ? "goes from" : "is between", number(f.one_way ? f.target : f.lowest),
+                        f.one_way ? "to" : "and", number(f.one_way ? f.last : f.highest));
+  }
+  return text + "; " +
+         (f.quantity == "arm_angle" ? LimitsText(config) : "how far the arm moves does not follow from that");
+}
+
+RearmForecast Unknown(const std::string& why) {
+  RearmForecast forecast;
+  forecast.text = "where the machine will move to is not known: " + why;
+  return forecast;
+}
+
+// The name of a position loop of the user's own; empty: it is ours.
+std::string OwnPositionLoop(const settings::StackConfig& config) {
+  for (const settings::ProcessSection& process : config.processes) {
+    if (!process.command.empty() && process.role == "position_ctrl") return process.command.front();
+  }
+  return "";
+}
+
+}  // namespace
+
+settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force) {
+  settings::StackConfig configured =
+      settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
+  if (in_force.changes.empty()) return configured;
+  return settings::Changed(configured, ParseChanges(in_force.changes), settings::FormerNames::kAsMeant);
+}
+
+RearmForecast ForecastRearm(const HeardOfStack& heard) {
+  if (!heard.state) return Unknown("no state is heard");
+  if (heard.state->command_tick >= 0) {
+    RearmForecast forecast;
+    forecast.held = false;
+    forecast.text = "nothing holds the voltage at zero: re-arming changes nothing";
+    return forecast;
+  }
+  if (!heard.run) return Unknown("the stack has not described itself yet");
+  try {
+    const settings::StackConfig config =
+        ConfigInForce(*heard.run, heard.in_force.value_or(tuned_settings_t{}));
+    if (const std::string own = OwnPositionLoop(config); !own.empty())
+      return Unknown("the position loop is a program of your own, " + own);
+    const Referred referred = ReferredTo(config, *heard.state);
+    if (!std::isfinite(referred.present)) return Unknown(std::string(referred.words) + " is not measured");
+    RearmForecast forecast;
+    forecast.known = true;
+    forecast.quantity = referred.quantity;
+    forecast.unit = referred.unit;
+    forecast.present = referred.present;
+    forecast.return_s = config.limits.return_s;
+    const Wanted wanted(config, heard);
+    FollowTheReturn(wanted, heard.state->time, &forecast);
+    FollowTheReference(wanted, heard.state->time + forecast.return_s, &forecast);
+    forecast.text = TextOf(forecast, referred, config);
+    return forecast;
+  } catch (const InputError& error) {
+    return Unknown(error.what());
+  }
+}
+
+}  // namespace hydro::tuning

@@ -1,0 +1,50 @@
+// The search for gains. The same inputs give the same result, whatever the number of threads.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tune/design/loop_check.h"
+#include "tune/search/step_judge.h"
+
+namespace hydro::tune {
+
+// What every proposal keeps, in every case that the loops are checked in.
+inline constexpr double kLeastGainMargin = 2;
+inline constexpr double kLeastPhaseMargin = 30;  // degrees
+
+// Gains that were tried.
+struct Tried {
+  Gains gains;
+  design::LoopCheck check;
+  StepVerdict steps;
+};
+
+struct SearchResult {
+  Tried best;
+  std::vector<Tried> tried;  // all that keep the margins
+  bool found = false;        // some do
+};
+
+// Progress from 0 to 1.
+using Progress = std::function<void(double)>;
+
+// Gains of the pressure loop alone: the configuration's where they keep the margins with both feed-forwards, else the fastest
+// slower ones that do. Throws std::runtime_error when there are none.
+Gains ChoosePressureLoop(const settings::StackConfig& config);
+
+// Gains of the position loop around `pressure`: those that meet a goal of bandwidth or settling time with the widest margins; without
+// one the fastest; where no gains meet the goals, those that come nearest. `braking`: with a braking curve before eq. (17).
+SearchResult SearchGains(const StepJudge& judge, const Goals& goals, const Gains& pressure, bool braking,
+                         int jobs, const Progress& progress);
+
+// The gains as they are, whatever their margins.
+Tried TryGains(const StepJudge& judge, const Gains& gains);
+
+bool KeepsMargins(const design::LoopCheck& check);
+
+// By how much gains miss the goals, relatively; 0: they meet them all.
+double Misses(const Goals& goals, const Tried& tried);
+
+}  // namespace hydro::tune
