@@ -14,8 +14,6 @@
 namespace hydro::position_ctrl {
 namespace {
 
-using namespace std::chrono_literals;
-
 int8_t SignalCode(settings::ReferenceSignal signal) {
   switch (signal) {
     case settings::ReferenceSignal::kArmAngle:
@@ -33,12 +31,10 @@ int8_t SignalCode(settings::ReferenceSignal signal) {
 }  // namespace
 
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl", config.agreed),
-      lockstep_(config.time.mode == settings::TimeMode::kLockstep),
-      reference_publisher_(bus.Advertise<arm_reference_t>(participant_.channels().Of<arm_reference_t>())),
-      command_publisher_(bus.Advertise<pressure_command_t>(participant_.channels().Of<pressure_command_t>())),
-      interval_(config.position_interval_ticks),
-      stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
+    : ControlLoop(bus, clock, config, "position_ctrl", config.position_interval_ticks),
+      reference_publisher_(bus.Advertise<arm_reference_t>(participant().channels().Of<arm_reference_t>())),
+      command_publisher_(
+          bus.Advertise<pressure_command_t>(participant().channels().Of<pressure_command_t>())),
       signal_(config.reference.signal),
       reference_text_(settings::ReferenceText(config)),
       torque_per_pressure_(config.model.description.parameters.k_2),
@@ -52,91 +48,47 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       values_(tuning::ValuesOf(config)),
       law_(values_.position),
       curve_(design::BrakingCurveFor(config)),
-      tuning_(participant_, config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      tuning_(participant(), config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
-      return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
-      state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
-      last_state_time_(clock.Now()) {
-  bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
-                         [this](const state_t& state) { OnState(state); });
-  bus.Subscribe<arm_plan_t>(participant_.channels().Of<arm_plan_t>(),
+      return_(std::llround(config.limits.return_s * config.plant.rate_hz)) {
+  bus.Subscribe<arm_plan_t>(participant().channels().Of<arm_plan_t>(),
                             [this](const arm_plan_t& plan) { OnPlan(plan); });
-  bus.Subscribe<fault_t>(participant_.channels().Of<fault_t>(), [this](const fault_t& fault) {
-    pressure_faults_.Observe(fault, participant_.clock().Now());
+  bus.Subscribe<fault_t>(participant().channels().Of<fault_t>(), [this](const fault_t& fault) {
+    pressure_faults_.Observe(fault, participant().clock().Now());
   });
-  bus.Subscribe<active_faults_t>(participant_.channels().Of<active_faults_t>(),
+  bus.Subscribe<active_faults_t>(participant().channels().Of<active_faults_t>(),
                                  [this](const active_faults_t& active) {
-                                   pressure_faults_.Observe(active, participant_.clock().Now());
+                                   pressure_faults_.Observe(active, participant().clock().Now());
                                  });
-  bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
+  bus.Subscribe<process_status_t>(participant().channels().Of<process_status_t>(),
                                   [this](const process_status_t& status) {
                                     if (status.role == "pressure_ctrl")
                                       pressure_faults_.ForgetOthersOfRole(status.role, status.session);
                                   });
   reference_in_force_ = reference_text_;
   Follow(config.reference.trajectory);
-  participant_.Announce(process_status_t::READY);
+  participant().Announce(process_status_t::READY);
 }
 
-void PositionApp::OnState(const state_t& state) {
-  if (participant_.Refuses(state.session)) return;
-  const auto now = participant_.clock().Now();
-  switch (state_monitor_.Observe(state.session, state.sequence, now)) {
-    case bus::SequenceMonitor::Verdict::kSecondSender:
-      return;  // the pressure loop raises the fault and goes to zero volts
-    case bus::SequenceMonitor::Verdict::kRestarted:
-      BeginAgain();
-      break;
-    case bus::SequenceMonitor::Verdict::kDuplicate:
-      if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
-      // Later states that were not samples have overtaken it in the network: it is still the newest sample.
-      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() &&
-          interval_.Contains(state.tick)) {
-        Sample(state, now);
-      }
-      return;
-    case bus::SequenceMonitor::Verdict::kAccept:
-      break;
-  }
-  last_state_time_ = now;
-  participant_.Follow(state.session);
-  if (tuning_.Awaits(state.tick)) return;
-  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (state.tick <= last_sample_tick_) BeginAgain();  // a log is played again
-  ObserveHold(state);
-  participant_.set_tick(state.tick);
-  if (interval_.Contains(state.tick)) Sample(state, now);
-}
-
-void PositionApp::BeginAgain() {
-  last_sample_tick_ = -1;
+void PositionApp::BeginAnew() {
   return_.Reset();
   if (planner_) planner_->Reset();
 }
 
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
-inline void PositionApp::ObserveHold(const state_t& state) {
+void PositionApp::Observe(const state_t& state) {
   // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
-  const bool joins = last_sample_tick_ < 0 && state.tick > tuning::kJoiningSamples * interval_.of();
-  if (!lockstep_ && joins && !participant_.clock().simulated()) return_.Join();
-  const bool safe = !lockstep_ && pressure_faults_.any(participant_.clock().Now());
+  const bool joins = answered() < 0 && state.tick > tuning::kJoiningSamples * interval().of();
+  if (!lockstep() && joins && !participant().clock().simulated()) return_.Join();
+  const bool safe = !lockstep() && pressure_faults_.any(participant().clock().Now());
   return_.Observe(state.tick, state.command_tick >= 0 && !safe, Present(state));
 }
 
-void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
-  Answer(state);
-  // Simulated time stands still meanwhile.
-  if (!participant_.simulated()) {
-    participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
-  }
-}
-
-void PositionApp::Answer(const state_t& state) {
+bool PositionApp::Answer(const state_t& state, bus::Clock::TimePoint /*arrival*/) {
   TakeSettingsAt(state.tick);
-  if (last_sample_tick_ < 0) law_.Reset();
-  const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_.of();
-  participant_.statistics().AddMissedDeadlines(intervals - 1);
-  last_sample_tick_ = state.tick;
+  if (answered() < 0) law_.Reset();
+  const int64_t intervals = CountIntervals(state.tick);
+  set_answered(state.tick);
 
   const PlannedPoint planned = planner_ ? planner_->At(state.tick) : PlannedPoint{};
   if (planner_) NotePlanner(state.tick);
@@ -155,12 +107,12 @@ void PositionApp::Answer(const state_t& state) {
       if (std::isfinite(state.arm_angle)) {
         pressure_ref =
             AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
-        if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
+        if (participant().any_fault()) participant().Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
         law_.Reset();
         transfer_.Forget();
-        participant_.Raise(
+        participant().Raise(
             "nonfinite_arm_angle",
             fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
             state.arm_angle, NAN, false);
@@ -179,8 +131,9 @@ void PositionApp::Answer(const state_t& state) {
   pressure_command_.pressure_ref = QuantiseDac(pressure_ref, section_.dac_bits, section_.dac_range_psi);
 
   arm_reference_.sequence = pressure_command_.sequence = sequence_++;
-  arm_reference_.session = pressure_command_.session = participant_.session();
+  arm_reference_.session = pressure_command_.session = participant().session();
   Send();
+  return true;
 }
 
 // What the reference refers to, as it is now.
@@ -199,50 +152,37 @@ inline double PositionApp::Present(const state_t& state) const {
 }
 
 void PositionApp::Send() {
-  arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
+  arm_reference_.utime = pressure_command_.utime = participant().clock().Utime();
   // The pressure command goes last: in lockstep the plant waits for it, so that a log has both before the
   // next state.
   reference_publisher_.Send(arm_reference_);
   command_publisher_.Send(pressure_command_);
 }
 
-void PositionApp::Poll() {
-  participant_.statistics().set_lost_messages(state_monitor_.lost());
-  const auto now = participant_.clock().Now();
-  participant_.Poll(now);
+void PositionApp::PollOthers(bus::Clock::TimePoint now) {
   tuning_.Poll(now);
-  if (plans_refused_ > 0) {
-    refused_plans_.Update(
-        plans_refused_, now,
-        [&](int64_t count) {
-          return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_);
-        },
-        participant_);
-  }
-  if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
-  const auto silence = now - last_state_time_;
-  if (silence > stall_time_) {
-    participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                         bus::ToSeconds(silence), participant_.tick()),
-                             1);
-  }
+  if (plans_refused_ == 0) return;
+  refused_plans_.Update(
+      plans_refused_, now,
+      [&](int64_t count) {
+        return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_);
+      },
+      participant());
 }
 
-bool PositionApp::finished() const { return participant_.stop().has_value(); }
-
 int PositionApp::Finish() {
-  if (!participant_.stop() && participant_.tick() >= 0) {
+  if (!participant().stop() && participant().tick() >= 0) {
     // The run goes on without this loop, whose last pressure must not stay in force until it is stale.
-    pressure_command_.utime = participant_.clock().Utime();
-    pressure_command_.tick = participant_.tick();
-    pressure_command_.session = participant_.session();
+    pressure_command_.utime = participant().clock().Utime();
+    pressure_command_.tick = participant().tick();
+    pressure_command_.session = participant().session();
     pressure_command_.sequence = sequence_++;
     pressure_command_.open_loop = true;
     pressure_command_.voltage = 0;
     pressure_command_.pressure_ref = 0;
     command_publisher_.Send(pressure_command_);
   }
-  return participant_.Leave();
+  return participant().Leave();
 }
 
 }  // namespace hydro::position_ctrl

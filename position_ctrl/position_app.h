@@ -18,9 +18,8 @@
 #include "position_ctrl/law/position_law.h"
 #include "position_ctrl/law/reference_return.h"
 #include "position_ctrl/plan_follower.h"
-#include "process/app.h"
+#include "process/control_loop.h"
 #include "process/fault_codes.h"
-#include "process/participant.h"
 #include "process/remote_faults.h"
 #include "settings/stack_config.h"
 #include "tune/live/bumpless_transfer.h"
@@ -29,25 +28,22 @@
 
 namespace hydro::position_ctrl {
 
-class PositionApp : public process::App {
+class PositionApp : public process::ControlLoop {
  public:
   PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config);
 
-  void Poll() override;
-  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
-  bool finished() const override;
   int Finish() override;
-  int64_t session() const { return participant_.session(); }  // its identity on the bus
 
  private:
-  void OnState(const state_t& state);
-  void BeginAgain();
+  void BeginAnew() override;
+  bool MustWait(const state_t& state) override { return tuning_.Awaits(state.tick); }
+  void Observe(const state_t& state) override;
+  bool Answer(const state_t& state, bus::Clock::TimePoint arrival) override;
+  void AnswerAgain() override { Send(); }
+  void PollOthers(bus::Clock::TimePoint now) override;
   void OnPlan(const arm_plan_t& plan);
   void NotePlanner(int64_t tick);
   void Follow(const settings::TrajectorySpec& reference);
-  void Sample(const state_t& state, bus::Clock::TimePoint arrival);
-  void Answer(const state_t& state);
-  void ObserveHold(const state_t& state);
   double Present(const state_t& state) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
@@ -55,12 +51,8 @@ class PositionApp : public process::App {
   double AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals);
   void Send();
 
-  process::Participant participant_;
-  const bool lockstep_;
   bus::Publisher<arm_reference_t> reference_publisher_;
   bus::Publisher<pressure_command_t> command_publisher_;
-  Multiples interval_;  // ticks between two samples
-  const bus::Clock::Duration stall_time_;
   const settings::ReferenceSignal signal_;
   const std::string reference_text_;  // as configured
   std::unique_ptr<trajectory::Trajectory> reference_;
@@ -94,12 +86,9 @@ class PositionApp : public process::App {
     return role == "pressure_ctrl" && !process::IsWarning(code);
   }};
 
-  bus::SequenceMonitor state_monitor_;
   arm_reference_t arm_reference_;        // the newest sample's
   pressure_command_t pressure_command_;  // the newest sample's
-  int64_t last_sample_tick_ = -1;
   int64_t sequence_ = 0;
-  bus::Clock::TimePoint last_state_time_;
 };
 
 }  // namespace hydro::position_ctrl

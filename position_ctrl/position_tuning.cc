@@ -45,8 +45,8 @@ double PositionApp::PlannersReach() const {
 }
 
 void PositionApp::OnPlan(const arm_plan_t& plan) {
-  if (!planner_ || participant_.tick() < 0) return;
-  std::string why = planner_->Take(plan, participant_.tick());
+  if (!planner_ || participant().tick() < 0) return;
+  std::string why = planner_->Take(plan, participant().tick());
   if (why.empty()) return;
   ++plans_refused_;
   plan_refused_ = std::move(why);
@@ -55,10 +55,10 @@ void PositionApp::OnPlan(const arm_plan_t& plan) {
 void PositionApp::NotePlanner(int64_t tick) {
   const bool silent = planner_->silent(tick);
   if (!silent) {
-    if (participant_.any_fault()) participant_.Clear("silent_planner");
-  } else if (!participant_.active("silent_planner")) {
+    if (participant().any_fault()) participant().Clear("silent_planner");
+  } else if (!participant().active("silent_planner")) {
     const double limit = planner_->limits().timeout_s;
-    participant_.Raise(
+    participant().Raise(
         "silent_planner",
         fmt::format("tick {}: no plan for more than {} s (reference.timeout_s): the reference holds", tick,
                     limit),

@@ -10,8 +10,6 @@
 namespace hydro::pressure_ctrl {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
 // psi: with room for rounding and half a D/A step.
@@ -23,11 +21,9 @@ double LargestPressureReference(const tuning::TunedValues& values, double half_d
 
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                          OwnPressureLaw own)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
+    : ControlLoop(bus, clock, config, "pressure_ctrl", config.pressure_interval_ticks),
       own_(std::move(own)),
-      lockstep_(config.time.mode == settings::TimeMode::kLockstep),
-      publisher_(bus.Advertise<motor_command_t>(participant_.channels().Of<motor_command_t>())),
-      interval_(config.pressure_interval_ticks),
+      publisher_(bus.Advertise<motor_command_t>(participant().channels().Of<motor_command_t>())),
       position_interval_(config.position_interval_ticks),
       delay_(config.plant.command_delay_ticks),
       stale_ticks_(settings::OldestPressureCommandTicks(config)),
@@ -38,26 +34,19 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
                          ? std::ldexp(config.position.dac_range_psi, -config.position.dac_bits)
                          : 0),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
-      // The plant itself waits stall_timeout_s for a late participant and then names it; only a longer
-      // silence is the plant's own.
-      stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       values_(tuning::ValuesOf(config)),
       pressure_limit_(LargestPressureReference(values_, half_dac_step_)),
       limit_before_(pressure_limit_),
-      tuning_(participant_, config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      tuning_(participant(), config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
-      state_monitor_(stale_time_),
-      command_monitor_(stale_time_),
-      last_state_time_(clock.Now()) {
-  bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
-                         [this](const state_t& state) { OnState(state); });
+      command_monitor_(stale_time_) {
   bus.Subscribe<pressure_command_t>(
-      participant_.channels().Of<pressure_command_t>(),
+      participant().channels().Of<pressure_command_t>(),
       [this](const pressure_command_t& command) { OnPressureCommand(command); });
-  participant_.OnRefusal([this](int64_t session, const std::string&) {
+  participant().OnRefusal([this](int64_t session, const std::string&) {
     if (command_monitor_.session() == session) ForgetPressureCommands();
   });
-  participant_.Announce(process_status_t::READY);
+  participant().Announce(process_status_t::READY);
 }
 
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
@@ -71,66 +60,39 @@ void PressureApp::ForgetPressureCommands() {
   pressure_command_.reset();
 }
 
-void PressureApp::Restart() {
+void PressureApp::BeginAnew() {
   ForgetPressureCommands();
   future_command_.reset();
   pending_state_.reset();
-  answered_ = false;
-}
-
-void PressureApp::OnState(const state_t& state) {
-  if (participant_.Refuses(state.session)) return;
-  const auto now = participant_.clock().Now();
-  switch (state_monitor_.Observe(state.session, state.sequence, now)) {
-    case bus::SequenceMonitor::Verdict::kSecondSender:
-      return;  // InputsAreSafe() raises the fault
-    case bus::SequenceMonitor::Verdict::kRestarted:
-      Restart();
-      break;
-    case bus::SequenceMonitor::Verdict::kDuplicate:
-      // The plant asks again because the answer may have been lost.
-      if (answered_ && command_.tick == state.tick) {
-        publisher_.Send(command_);
-      }
-      return;
-    case bus::SequenceMonitor::Verdict::kAccept:
-      break;
-  }
-  last_state_time_ = now;
-  participant_.Follow(state.session);
-  if (tuning_.Awaits(state.tick)) return;
-  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (answered_ && state.tick <= command_.tick) Restart();  // a log is played again
-  if (participant_.tick() < 0) DropFutureCommands(state.tick);
-  participant_.set_tick(state.tick);
-  if (!interval_.Contains(state.tick)) return;
-  if (AwaitsPressureCommand(state.tick)) {
-    pending_state_ = state;
-    return;
-  }
-  Answer(state, now);
-  // Simulated time stands still meanwhile.
-  if (!participant_.simulated()) {
-    participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
-  }
 }
 
 // Before the first state nobody can tell which ticks lie far in the future. One such command at the head of the queue would hold up
 // all others for good.
-void PressureApp::DropFutureCommands(int64_t tick) {
-  waiting_commands_.erase_if(
-      [&](const pressure_command_t& command) { return command.tick > SaturatingSum(tick, stale_ticks_); });
+void PressureApp::Observe(const state_t& state) {
+  if (participant().tick() >= 0) return;
+  waiting_commands_.erase_if([&](const pressure_command_t& command) {
+    return command.tick > SaturatingSum(state.tick, stale_ticks_);
+  });
+}
+
+bool PressureApp::Answer(const state_t& state, bus::Clock::TimePoint arrival) {
+  if (AwaitsPressureCommand(state.tick)) {
+    pending_state_ = state;
+    return false;
+  }
+  Compute(state, arrival);
+  return true;
 }
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
-  if (participant_.Refuses(command.session)) return;
+  if (participant().Refuses(command.session)) return;
   // Before the run there is no state that it could answer; of what comes before the first one reaches here, little is kept.
-  if (command.tick < 0 || (participant_.tick() < 0 && waiting_commands_.size() >= kMostBeforeTheRun)) return;
-  const auto now = participant_.clock().Now();
+  if (command.tick < 0 || (participant().tick() < 0 && waiting_commands_.size() >= kMostBeforeTheRun)) return;
+  const auto now = participant().clock().Now();
   // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
   // that follow it in the queue, and counted as the newest it would make them old.
   const bool future =
-      participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_);
+      participant().tick() >= 0 && command.tick > SaturatingSum(participant().tick(), stale_ticks_);
   if (future && !command_monitor_.FollowsAnother(command.session, now)) {
     future_command_ = command.tick;
     return;
@@ -145,7 +107,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;
     pending_state_.reset();
-    Answer(state, now);
+    Compute(state, now);
   }
 }
 
@@ -153,7 +115,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
 // depend on when it does.
 inline bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
   const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
-  if (!lockstep_ || newest_allowed < 0) return false;
+  if (!lockstep() || newest_allowed < 0) return false;
   const int64_t due = position_interval_.UpTo(newest_allowed);
   const int64_t known = !waiting_commands_.empty() ? waiting_commands_.back().tick
                         : pressure_command_        ? pressure_command_->tick
@@ -193,14 +155,14 @@ double PressureApp::LargestReference() const {
 // The gains have changed: the voltage shall not jump.
 void PressureApp::BeginTransfer(const PressureLawInput& input, int64_t tick) {
   const double left = transfer_.Offset(tick);
-  if (answered_ && acted_by_law_) {
+  if (answered() >= 0 && acted_by_law_) {
     transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
                     UnlimitedPressureLaw(values_.pressure, input), tick);
   }
   law_before_.reset();
 }
 
-inline void PressureApp::Answer(const state_t& state, bus::Clock::TimePoint now) {
+inline void PressureApp::Compute(const state_t& state, bus::Clock::TimePoint now) {
   TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t& command = ZeroVolts(state.tick, motor_command_t::SAFE);
@@ -259,7 +221,7 @@ inline void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command
   command->status = motor_command_t::LAW;
   command->voltage = output.voltage;
   command->saturated = output.saturated;
-  if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
+  if (participant().any_fault()) participant().Clear("nonfinite_motor_command");
 }
 
 // What the log shows is the device's own answer to this state: the one that it has put out.
@@ -275,55 +237,41 @@ void PressureApp::FollowOnDevice(const state_t& state, motor_command_t* command)
 
 // The inputs are finite, but a product of gains and reference overflows.
 void PressureApp::RaiseNonfinite(const motor_command_t& command, double voltage) {
-  participant_.Raise("nonfinite_motor_command",
-                     fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",
-                                 command.tick, own_ ? "the loop's own law" : "eq. (16)", voltage,
-                                 command.pressure_ref, units_.UnitFor("psi")),
-                     voltage, NAN, false);
+  participant().Raise("nonfinite_motor_command",
+                      fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",
+                                  command.tick, own_ ? "the loop's own law" : "eq. (16)", voltage,
+                                  command.pressure_ref, units_.UnitFor("psi")),
+                      voltage, NAN, false);
 }
 
 void PressureApp::Send() {
-  command_.utime = participant_.clock().Utime();
-  command_.session = participant_.session();
+  command_.utime = participant().clock().Utime();
+  command_.session = participant().session();
   command_.sequence = sequence_++;
   if (device_ != nullptr && !follows_) device_->Release();
   publisher_.Send(command_);
-  answered_ = true;
+  set_answered(command_.tick);
   acted_by_law_ = command_.status == motor_command_t::LAW;
 }
 
-void PressureApp::Poll() {
-  participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
-  const auto now = participant_.clock().Now();
-  participant_.Poll(now);
-  tuning_.Poll(now);
-  if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
-  const auto silence = now - last_state_time_;
-  if (lockstep_) {
-    if (silence > stall_time_ && !stalled_) {
-      stalled_ = true;
-      participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                           bus::ToSeconds(silence), participant_.tick()),
-                               1);
-    }
-  } else if (silence > stale_time_ && !participant_.active("stale_state")) {
-    ZeroVolts(participant_.tick(), motor_command_t::SAFE);
-    follows_ = false;
-    Send();  // zero volts first, explanation second
-    participant_.Raise("stale_state",
-                       fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                                   1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
-                       bus::ToSeconds(silence), values_.limits.stale_input_s, false);
-  }
+int64_t PressureApp::lost() const { return SaturatingSum(ControlLoop::lost(), command_monitor_.lost()); }
+
+void PressureApp::OnSilence(bus::Clock::Duration silence) {
+  if (silence <= stale_time_ || participant().active("stale_state")) return;
+  ZeroVolts(participant().tick(), motor_command_t::SAFE);
+  follows_ = false;
+  Send();  // zero volts first, explanation second
+  participant().Raise("stale_state",
+                      fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
+                                  1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
+                      bus::ToSeconds(silence), values_.limits.stale_input_s, false);
 }
 
-bool PressureApp::finished() const { return participant_.stop().has_value(); }
-
 int PressureApp::Finish() {
-  ZeroVolts(participant_.tick(), motor_command_t::STOPPED);
+  ZeroVolts(participant().tick(), motor_command_t::STOPPED);
   follows_ = false;
   Send();
-  return participant_.Leave();
+  return participant().Leave();
 }
 
 }  // namespace hydro::pressure_ctrl

@@ -17,8 +17,7 @@
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "pressure_ctrl/law/pressure_law.h"
-#include "process/app.h"
-#include "process/participant.h"
+#include "process/control_loop.h"
 #include "settings/stack_config.h"
 #include "tune/live/bumpless_transfer.h"
 #include "tune/live/tuned_values.h"
@@ -49,7 +48,7 @@ class DeviceLoop {
   virtual void Release() = 0;
 };
 
-class PressureApp : public process::App {
+class PressureApp : public process::ControlLoop {
  public:
   // With `own` that law is in the place of eq. (16): all else, the limit on its voltage too, is the same, and hydro-set, which knows
   // no gains of it, is told so.
@@ -58,17 +57,19 @@ class PressureApp : public process::App {
   // `loop` must outlive it.
   PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, DeviceLoop& loop);
 
-  void Poll() override;
-  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
-  bool finished() const override;
   int Finish() override;
-  int64_t session() const { return participant_.session(); }  // its identity on the bus
 
  private:
-  void OnState(const state_t& state);
-  void DropFutureCommands(int64_t tick);
+  void BeginAnew() override;
+  bool MustWait(const state_t& state) override { return tuning_.Awaits(state.tick); }
+  void Observe(const state_t& state) override;
+  bool Answer(const state_t& state, bus::Clock::TimePoint arrival) override;
+  void AnswerAgain() override { publisher_.Send(command_); }
+  void PollOthers(bus::Clock::TimePoint now) override { tuning_.Poll(now); }
+  void OnSilence(bus::Clock::Duration silence) override;
+  int64_t lost() const override;
   void OnPressureCommand(const pressure_command_t& command);
-  void Answer(const state_t& state, bus::Clock::TimePoint now);
+  void Compute(const state_t& state, bus::Clock::TimePoint now);
   void ApplyOpenLoop(motor_command_t* command) const;
   void ApplyLaw(const state_t& state, motor_command_t* command);
   void FollowOnDevice(const state_t& state, motor_command_t* command);
@@ -93,15 +94,11 @@ class PressureApp : public process::App {
   motor_command_t& ZeroVolts(int64_t tick, int8_t status);
   void Send();
   void ForgetPressureCommands();
-  void Restart();
 
-  process::Participant participant_;
   const OwnPressureLaw own_;  // may be empty
   DeviceLoop* device_ = nullptr;
   bool follows_ = false;  // the command that is being made is the device's answer
-  const bool lockstep_;
   bus::Publisher<motor_command_t> publisher_;
-  Multiples interval_;           // ticks between two commands of this loop
   Multiples position_interval_;  // ticks between two pressure commands
   const int64_t delay_;          // ticks from a command's tick to the tick at which it acts
   const int64_t stale_ticks_;    // a pressure command older than this is stale
@@ -110,7 +107,6 @@ class PressureApp : public process::App {
   const UnitSystem units_;       // of the model, for texts
   const double half_dac_step_;   // psi
   const bus::Clock::Duration stale_time_;
-  const bus::Clock::Duration stall_time_;
   tuning::TunedValues values_;  // in force
   double pressure_limit_;       // psi, largest |pressure reference| of commands from limit_from_ on
   double limit_before_;         // of those before
@@ -119,18 +115,14 @@ class PressureApp : public process::App {
   tuning::BumplessTransfer transfer_;
   std::optional<PressureLawSettings> law_before_;  // a change begins with the next use of the law
 
-  bus::SequenceMonitor state_monitor_;
   bus::SequenceMonitor command_monitor_;
   RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, in order of their ticks
   std::optional<pressure_command_t> pressure_command_;  // in force
   std::optional<int64_t> future_command_;               // tick of a refused one, until a plausible one comes
   std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
   motor_command_t command_{};             // the last one, or the one that is being made
-  bool answered_ = false;                 // one was sent
-  bool acted_by_law_ = false;             // and came from the law
+  bool acted_by_law_ = false;             // it came from the law
   int64_t sequence_ = 0;
-  bus::Clock::TimePoint last_state_time_;
-  bool stalled_ = false;  // lockstep: the plant is silent
 };
 
 }  // namespace hydro::pressure_ctrl

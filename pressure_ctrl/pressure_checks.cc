@@ -24,9 +24,9 @@ constexpr double kLimitEndsBelow = 0.95;  // the noise of usable sensors is far 
 template <class Describe>
 bool PressureApp::Check(bool good, const char* code, double value, double limit, Describe&& describe) {
   if (!good) {
-    participant_.Raise(code, describe(), value, limit, false);
-  } else if (participant_.any_fault()) {
-    participant_.Clear(code);
+    participant().Raise(code, describe(), value, limit, false);
+  } else if (participant().any_fault()) {
+    participant().Clear(code);
   }
   return good;
 }
@@ -38,11 +38,11 @@ template <class Describe>
 bool PressureApp::CheckLimit(const char* code, double value, double limit, Describe&& describe) {
   const bool good = !(value > limit);
   if (values_.limits.rearm == settings::Rearm::kExplicit) {
-    const bool near = value > kLimitEndsBelow * limit && participant_.active(code);
+    const bool near = value > kLimitEndsBelow * limit && participant().active(code);
     return Check(good && !near, code, value, limit, describe);
   }
-  if (!good && participant_.Raise(code, describe(), value, limit, true)) {
-    participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
+  if (!good && participant().Raise(code, describe(), value, limit, true)) {
+    participant().RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
   }
   return good;
 }
@@ -50,7 +50,7 @@ bool PressureApp::CheckLimit(const char* code, double value, double limit, Descr
 // The conditions of CheckInputs(), all at once: nearly always they hold, and there is nothing to raise or clear.
 bool PressureApp::AllIsWell(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) const {
   const settings::LimitsSection& limits = values_.limits;
-  if (participant_.any_fault() || !pressure_command_ || ticks_stale != 0 || future_command_) return false;
+  if (participant().any_fault() || !pressure_command_ || ticks_stale != 0 || future_command_) return false;
   if (!Finite(state, values_.pressure.arm_speed_ratio != 0)) return false;
   const bool within = state.p1 <= limits.pressure_psi && state.p2 <= limits.pressure_psi &&
                       std::fabs(state.motor_speed) <= limits.motor_speed_rad_s &&
@@ -58,12 +58,12 @@ bool PressureApp::AllIsWell(const state_t& state, int64_t ticks_stale, bus::Cloc
   const bool sound = std::fabs(pressure_command_->pressure_ref) <= LargestReference() &&
                      std::isfinite(pressure_command_->pressure_ref) &&
                      std::isfinite(pressure_command_->voltage);
-  return within && sound && !state_monitor_.SecondSenderAlive(now) &&
+  return within && sound && !state_monitor().SecondSenderAlive(now) &&
          !command_monitor_.SecondSenderAlive(now);
 }
 
 bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) {
-  if (participant_.latched()) return false;
+  if (participant().latched()) return false;
   bool safe = Check(Finite(state, values_.pressure.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, [&] {
     return fmt::format("tick {}: p1 {}, p2 {}, motor speed {}, arm speed {}; all must be finite", state.tick,
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
@@ -88,12 +88,12 @@ bool PressureApp::CheckInputs(const state_t& state, int64_t ticks_stale, bus::Cl
         fmt::arg("unit", units_.UnitFor("rad", 1)));
   });
   safe &= PressureCommandIsSafe(state, ticks_stale, now);
-  safe &= Check(!state_monitor_.SecondSenderAlive(now), process::kSecondSender<state_t>, 2, 1, [&] {
+  safe &= Check(!state_monitor().SecondSenderAlive(now), process::kSecondSender<state_t>, 2, 1, [&] {
     return fmt::format("two processes send states: {} and {}; allowed is one",
-                       participant_.NameOf(state_monitor_.session()),
-                       participant_.NameOf(state_monitor_.second_session()));
+                       participant().NameOf(state_monitor().session()),
+                       participant().NameOf(state_monitor().second_session()));
   });
-  if (safe && participant_.any_fault()) participant_.Clear("stale_state");
+  if (safe && participant().any_fault()) participant().Clear("stale_state");
   return safe;
 }
 
@@ -134,8 +134,8 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
   safe &=
       Check(!command_monitor_.SecondSenderAlive(now), process::kSecondSender<pressure_command_t>, 2, 1, [&] {
         return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
-                           participant_.NameOf(command_monitor_.session()),
-                           participant_.NameOf(command_monitor_.second_session()));
+                           participant().NameOf(command_monitor_.session()),
+                           participant().NameOf(command_monitor_.second_session()));
       });
   return safe;
 }

@@ -31,89 +31,52 @@ settings::CommonOptions OptionsOfEnvironment() {
 
 OwnPositionLoop::OwnPositionLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                                  PositionAnswer answer, ArmReference reference)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), kRole, config.agreed),
+    : ControlLoop(bus, clock, config, kRole, config.position_interval_ticks),
       answer_(std::move(answer)),
-      reference_(std::move(reference)),
-      interval_(config.position_interval_ticks),
-      monitor_(bus::FromSeconds(config.limits.stale_input_s)) {
-  bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
-                         [this](const state_t& state) { OnState(state); });
-  participant_.Announce(process_status_t::READY);
+      reference_(std::move(reference)) {
+  participant().Announce(process_status_t::READY);
 }
 
-void OwnPositionLoop::OnState(const state_t& state) {
-  if (participant_.Refuses(state.session)) return;
-  switch (monitor_.Observe(state.session, state.sequence, participant_.clock().Now())) {
-    case bus::SequenceMonitor::Verdict::kSecondSender:
-      return;
-    case bus::SequenceMonitor::Verdict::kRestarted:
-      answered_ = -1;
-      break;
-    case bus::SequenceMonitor::Verdict::kDuplicate:
-      if (state.tick == answered_) Send();  // the plant asks again: the answer may have been lost
-      // Later states that ask for no answer have overtaken it in the network. One beyond all that was seen is
-      // none of these.
-      if (state.tick > answered_ && state.tick < participant_.tick() && state.tick % interval_ == 0)
-        Answer(state);
-      return;
-    case bus::SequenceMonitor::Verdict::kAccept:
-      break;
-  }
-  participant_.Follow(state.session);
-  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (state.tick <= answered_) answered_ = -1;  // a log is played again
-  participant_.set_tick(state.tick);
-  if (state.tick % interval_ == 0) Answer(state);
-}
-
-void OwnPositionLoop::Answer(const state_t& state) {
-  const auto arrival = participant_.clock().Now();
-  if (answered_ >= 0) {
-    participant_.statistics().AddMissedDeadlines((state.tick - answered_) / interval_ - 1);
-  }
-  answered_ = state.tick;
+bool OwnPositionLoop::Answer(const state_t& state, bus::Clock::TimePoint /*arrival*/) {
+  CountIntervals(state.tick);
+  set_answered(state.tick);
   command_ = {};
   command_.tick = state.tick;
-  command_.session = participant_.session();
+  command_.session = participant().session();
   command_.sequence = sequence_++;
-  command_.utime = participant_.clock().Utime();
+  command_.utime = participant().clock().Utime();
   answer_(state, &command_);
   if (reference_) SendReference(state);
   Send();
-  participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
+  return true;
 }
 
 void OwnPositionLoop::SendReference(const state_t& state) {
   arm_reference_t reference{};
   reference.utime = command_.utime;
   reference.tick = state.tick;
-  reference.session = participant_.session();
+  reference.session = participant().session();
   reference.sequence = command_.sequence;
   reference.signal = arm_reference_t::ARM_ANGLE;
   reference.value = reference_(state);
-  participant_.bus().Publish(participant_.channels().Of<arm_reference_t>(), reference);
+  participant().bus().Publish(participant().channels().Of<arm_reference_t>(), reference);
 }
 
 void OwnPositionLoop::Send() {
-  participant_.bus().Publish(participant_.channels().Of<pressure_command_t>(), command_);
-}
-
-void OwnPositionLoop::Poll() {
-  participant_.statistics().set_lost_messages(monitor_.lost());
-  participant_.Poll();
+  participant().bus().Publish(participant().channels().Of<pressure_command_t>(), command_);
 }
 
 int OwnPositionLoop::Finish() {
-  if (!participant_.stop() && answered_ >= 0) {
+  if (!participant().stop() && answered() >= 0) {
     command_ = {};
-    command_.utime = participant_.clock().Utime();
-    command_.tick = participant_.tick();
-    command_.session = participant_.session();
+    command_.utime = participant().clock().Utime();
+    command_.tick = participant().tick();
+    command_.session = participant().session();
     command_.sequence = sequence_++;
     command_.open_loop = true;
     Send();
   }
-  return participant_.Leave();
+  return participant().Leave();
 }
 
 int RunOwnLoop(const std::string& role, const ProcessBody& body) {

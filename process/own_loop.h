@@ -12,9 +12,7 @@
 #include <hydro/state_t.hpp>
 #include <string>
 
-#include "bus/sequence_monitor.h"
-#include "process/app.h"
-#include "process/participant.h"
+#include "process/control_loop.h"
 #include "process/process_main.h"
 #include "settings/stack_config.h"
 
@@ -29,32 +27,25 @@ using ArmReference = std::function<double(const state_t& state)>;
 
 // The loop's life on the bus: the handshake, the answers, each again when its state comes again, the end; statistics and faults
 // as all processes have them.
-class OwnPositionLoop : public App {
+class OwnPositionLoop : public ControlLoop {
  public:
   OwnPositionLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                   PositionAnswer answer, ArmReference reference = {});
 
-  void Poll() override;
-  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
-  bool finished() const override { return participant_.stop().has_value(); }
   // Unless the run is over, it first asks for zero volts: what it asked for last must not stay in force.
   int Finish() override;
 
-  Participant& participant() { return participant_; }
+  using ControlLoop::participant;
 
  private:
-  void OnState(const state_t& state);
-  void Answer(const state_t& state);
+  bool Answer(const state_t& state, bus::Clock::TimePoint arrival) override;
+  void AnswerAgain() override { Send(); }
   void SendReference(const state_t& state);
   void Send();
 
-  Participant participant_;
   const PositionAnswer answer_;
   const ArmReference reference_;  // may be empty
-  const int64_t interval_;        // ticks
-  bus::SequenceMonitor monitor_;
   pressure_command_t command_{};  // the last
-  int64_t answered_ = -1;         // its tick
   int64_t sequence_ = 0;
 };
 
