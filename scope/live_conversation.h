@@ -1,4 +1,4 @@
-// The conversation with a page: hydro.scope.v1 (docs/scope_protocol.md).
+// The conversation with a page: hydro.scope.v1 (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <chrono>

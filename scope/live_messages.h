@@ -1,4 +1,4 @@
-// What the server tells a page, as JSON (docs/scope_protocol.md).
+// What the server tells a page, as JSON (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a page asks over its web socket, read and checked (docs/scope_protocol.md).
+// What a page asks over its web socket, read and checked (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <cstdint>

@@ -127,7 +127,7 @@ void ScopeSite::Answer(Request request, std::function<void(Response)> reply) {
       return reply(response.body.empty() ? ErrorResponse(404, "there is no such job") : response);
     }
     reply(ErrorResponse(404, "found " + request.method + " " + Printable(request.path.substr(0, 100)) +
-                                 "; docs/scope_protocol.md lists what there is"));
+                                 "; docs/developers/scope_protocol.md lists what there is"));
   } catch (const std::exception& error) {
     reply(ErrorResponse(400, Printable(error.what())));
   }

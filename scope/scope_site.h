@@ -1,4 +1,4 @@
-// What hydro-scope serves: the page, its web sockets, and files in and out (docs/scope_protocol.md).
+// What hydro-scope serves: the page, its web sockets, and files in and out (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <functional>

@@ -9,7 +9,7 @@
 
 namespace hydro::timing {
 
-// JSON with times in microseconds; docs/performance.md lists the keys. `source` names the origin, e.g. a log.
+// JSON with times in microseconds; docs/developers/performance.md lists the keys. `source` names the origin, e.g. a log.
 std::string TimingJson(const std::vector<TimedProcess>& processes, const std::string& source);
 
 // A table for a terminal, of several lines.

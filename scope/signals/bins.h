@@ -40,7 +40,7 @@ void FillBins(const Signal& signal, const BinGrid& grid, double* min, double* ma
 
 enum BinFlags : uint32_t { kLastIncomplete = 1, kAnswerToGet = 2, kTriggerCapture = 4 };
 
-// The binary message of the bins of several signals (docs/scope_protocol.md).
+// The binary message of the bins of several signals (docs/developers/scope_protocol.md).
 std::string EncodeBins(uint32_t id, uint32_t run, uint32_t flags, const BinGrid& grid,
                        const std::vector<Signal>& signals);
 

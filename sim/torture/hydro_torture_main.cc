@@ -6,7 +6,7 @@
 int main(int argc, char** argv) {
   hydro::settings::CommandLine line("hydro-torture",
                                     "The whole stack in simulation, under faults drawn from a seed.");
-  line.AddExamples({"hydro-torture --runs 100 --seed 1"}, "docs/torture.md");
+  line.AddExamples({"hydro-torture --runs 100 --seed 1"}, "docs/developers/torture.md");
   hydro::torture::TortureOptions options;
   hydro::torture::AddOptions(&line, &options);
   if (const auto code = line.Parse(argc, argv)) return *code;

@@ -12,7 +12,7 @@ import outcome
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = os.environ.get("HYDRO_BIN", str(ROOT / "build/bin"))
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SCRIPTS = {"hydro-spy": ROOT / "packaging/java/hydro-spy"}  # programs that are not compiled
 # A command: at the line's beginning, behind a prompt or after what joins commands.
 COMMAND = re.compile(r"(?:^|[;&|(]|\bdo|[\w-]*\$)\s*(?:\S*/)?(hydro-[a-z-]+)(?=\s|$)(.*)")

@@ -221,7 +221,7 @@ class PageLinesTest(stack.TestCase):
             self.bash(before, 0, "")
         if running is not None:
             self.launch("config/demo.toml", "--set", "time.duration_s=0", *running).wait_for("processes ready")
-        page = (ROOT / name if name == "README.md" else ROOT / "docs" / name).read_text(encoding="utf-8")
+        page = (ROOT / name if name == "README.md" else next((ROOT / "docs").rglob(name))).read_text(encoding="utf-8")
         used, ran = set(), 0
         for line in lines_of(page):
             beginnings = [one for one in table if (line + "\n").startswith(one)]
@@ -238,7 +238,7 @@ class PageLinesTest(stack.TestCase):
 
     # Tests that every page with command lines has its table here, or a test of its own.
     def test_all_pages(self):
-        pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+        pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
         with_lines = {page.name for page in pages if page.parent == ROOT or page.name != "README.md" if lines_of(page.read_text(encoding="utf-8"))}
         self.assertEqual(with_lines, set(PAGES) | set(OWN_TESTS))
         for test in OWN_TESTS.values():

@@ -1,4 +1,4 @@
-"""Reads the schedules of hydro-torture (docs/torture.md)."""
+"""Reads the schedules of hydro-torture (docs/developers/torture.md)."""
 
 import collections
 import glob

@@ -10,7 +10,7 @@ import unittest
 from floors_test import load_rooms_script
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "docs").glob("*.md"))]
+PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "docs").rglob("*.md"))]
 # What a page may name although it is not in the repository: what is built, written by a program or made by the reader.
 MADE = re.compile(r"(build|out)/.*|config/mine\.toml")
 # A path in a code span: folders of the repository's root, then names; braces and stars as in a shell.
@@ -66,7 +66,7 @@ def missing_anchors(page, text):
 
 class DocumentsTest(unittest.TestCase):
     def test_rooms_are_current(self):
-        """Tests that README.md and docs/architecture.md show the rooms of cmake/rooms.txt."""
+        """Tests that README.md and docs/developers/architecture.md show the rooms of cmake/rooms.txt."""
         pages = load_rooms_script().outdated(ROOT)
         self.assertEqual(sorted(pages), [], "not current; this mends it: scripts/rooms --write")
 
@@ -94,9 +94,9 @@ class DocumentsTest(unittest.TestCase):
 
     def test_index(self):
         """Tests that docs/README.md lists each page of docs/ once, with a line that says what it is for, and README.md leads there."""
-        listed = re.findall(r"^\| \[(\w+\.md)\]\((\w+\.md)\) \| (.{10,}) \|$", (ROOT / "docs/README.md").read_text(), re.MULTILINE)
+        listed = re.findall(r"^\| \[([\w/]+\.md)\]\(([\w/]+\.md)\) \| (.{10,}) \|$", (ROOT / "docs/README.md").read_text(), re.MULTILINE)
         self.assertEqual([(name, target) for name, target, _ in listed if name != target], [])
-        pages = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
+        pages = {path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")} - {"README.md"}
         self.assertEqual(sorted(name for name, _, _ in listed), sorted(pages))
         self.assertIn("](docs/README.md)", (ROOT / "README.md").read_text())
 
@@ -110,7 +110,7 @@ class DocumentsTest(unittest.TestCase):
                 if "node_modules" in path.parts or path.suffix not in SOURCES or not path.is_file():
                     continue
                 for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
-                    for page in re.findall(r"\bdocs/\w+\.md\b", line):
+                    for page in re.findall(r"\bdocs/[\w/]+\.md\b", line):
                         count += 1
                         if not (ROOT / page).exists():
                             found.append(f"{path.relative_to(ROOT)}:{number}: {page} does not exist")
@@ -122,19 +122,19 @@ class DocumentsTest(unittest.TestCase):
         rooms = load_rooms_script()
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name in ("cmake", "docs", "base"):
-                (root / name).mkdir()
+            for name in ("cmake", "docs/developers", "base"):
+                (root / name).mkdir(parents=True)
             (root / "base/text.h").touch()
             (root / "cmake/rooms.txt").write_text("# head\nbase  text\n")
             (root / "README.md").write_text("a\n<!-- rooms -->\n<!-- /rooms -->\nb\n")
-            (root / "docs/architecture.md").write_text("<!-- rooms -->\n<!-- /rooms -->\n")
+            (root / "docs/developers/architecture.md").write_text("<!-- rooms -->\n<!-- /rooms -->\n")
             for name, text in rooms.outdated(root).items():
                 (root / name).write_text(text)
             self.assertEqual(rooms.outdated(root), {})
             self.assertEqual((root / "README.md").read_text(),
                              "a\n<!-- rooms -->\n| floors, from the top | |\n|---|---|\n| `base/` | text |\n<!-- /rooms -->\nb\n")
             (root / "cmake/rooms.txt").write_text("base  text\n\nmodel  equations\n")
-            self.assertEqual(sorted(rooms.outdated(root)), ["README.md", "docs/architecture.md"])
+            self.assertEqual(sorted(rooms.outdated(root)), ["README.md", "docs/developers/architecture.md"])
             (root / "README.md").write_text("no markers\n")
             self.assertRaisesRegex(ValueError, "README.md: found no <!-- rooms -->", rooms.outdated, root)
             text = "`base/text.h`\n`base/old.h` and `other/x.h`\n`base/{text,gone}.h` `./base/*.h`"

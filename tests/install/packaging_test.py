@@ -171,8 +171,8 @@ class PackagingTest(unittest.TestCase):
 
     def test_installed_pages_are_of_an_installation(self):
         """Tests that their commands are those that a shell finds, and that nothing of the markers or of a checkout's first steps is left."""
-        pages = {page.name if page.parent.name == "docs" else f"/{page.name}": page.read_text()
-                 for page in (self.prefix / "share/doc/hydro").rglob("*.md") if page.parent.name in ("docs", "hydro")}
+        pages = {page.name if page.parent.name in ("docs", "developers") else f"/{page.name}": page.read_text()
+                 for page in (self.prefix / "share/doc/hydro").rglob("*.md") if page.parent.name in ("docs", "developers", "hydro")}
         for name, text in pages.items():
             for word in ("build/bin/", "scripts/plot-run", "<!-- sources", "<!-- /sources", "<!-- installed"):
                 self.assertNotIn(word, text, name)

@@ -124,7 +124,7 @@ class WebSocket:
 
 
 def decode_bins(data):
-    """A binary message of kind 1 (docs/scope_protocol.md)."""
+    """A binary message of kind 1 (docs/developers/scope_protocol.md)."""
     kind, number, run, flags, t0, width, bins, channels = struct.unpack_from("<IIIIddII", data)
     values = struct.unpack_from(f"<{2 * bins * channels}d", data, 40)
     assert kind == 1 and len(data) == 40 + 16 * bins * channels

@@ -1,4 +1,4 @@
-// Binary frames of the server (kind 1: bins), little endian; see docs/scope_protocol.md.
+// Binary frames of the server (kind 1: bins), little endian; see docs/developers/scope_protocol.md.
 
 export const kIncomplete = 1;
 export const kAnswer = 2;

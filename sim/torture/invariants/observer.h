@@ -23,7 +23,7 @@ namespace hydro::torture {
 
 // An invariant that does not hold.
 struct Violation {
-  std::string invariant;  // docs/torture.md has each
+  std::string invariant;  // docs/developers/torture.md has each
   std::string text;       // one line: what was found, what is allowed
   TrueTime at = 0;
 };
