@@ -18,7 +18,7 @@ constexpr size_t kMostSubscriptions = 64;
 constexpr size_t kMostReplies = 16;
 constexpr char kMessageData = 1;  // the opcode
 
-std::string Text(const json& object) { return JsonText(object); }
+std::string Reply(const json& object) { return JsonText(object); }
 
 template <class T>
 void Put(std::string& bytes, T value) {
@@ -48,19 +48,19 @@ FoxgloveConversation::FoxgloveConversation(RunTable* runs) : runs_(*runs) {
                         {"schemaEncoding", "ros2msg"},
                         {"schema", topic.SchemaIn(units)}});
   }
-  replies_.push_back(Text({{"op", "serverInfo"},
-                           {"name", "hydro-scope " + settings::ProgramVersion()},
-                           {"capabilities", json::array()},
-                           {"supportedEncodings", json::array()},
-                           {"metadata", json::object()},
-                           {"sessionId", live ? std::to_string(runs_.live()->session) : "log"}}));
-  replies_.push_back(Text({{"op", "advertise"}, {"channels", channels}}));
+  replies_.push_back(Reply({{"op", "serverInfo"},
+                            {"name", "hydro-scope " + settings::ProgramVersion()},
+                            {"capabilities", json::array()},
+                            {"supportedEncodings", json::array()},
+                            {"metadata", json::object()},
+                            {"sessionId", live ? std::to_string(runs_.live()->session) : "log"}}));
+  replies_.push_back(Reply({{"op", "advertise"}, {"channels", channels}}));
 }
 
 void FoxgloveConversation::Complain(const std::string& text) {
   ++wrong_;
   if (replies_.size() < kMostReplies)
-    replies_.push_back(Text({{"op", "status"}, {"level", 2}, {"message", text}}));
+    replies_.push_back(Reply({{"op", "status"}, {"level", 2}, {"message", text}}));
 }
 
 void FoxgloveConversation::Hear(std::string_view message, bool binary) {

@@ -9,26 +9,26 @@
 namespace hydro::scope {
 namespace {
 
-using json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-std::string Text(const json& object) { return JsonText(object); }
+std::string Text(const OrderedJson& object) { return JsonText(object); }
 
 const char* KindName(Run::Kind kind) {
   return kind == Run::Kind::kLive ? "live" : (kind == Run::Kind::kPast ? "past" : "log");
 }
 
-json Described(const ChannelInfo& channel) {
-  json object{{"id", channel.id},
-              {"label", channel.label},
-              {"group", channel.group},
-              {"unit", channel.unit},
-              {"step", channel.step}};
+OrderedJson Described(const ChannelInfo& channel) {
+  OrderedJson object{{"id", channel.id},
+                     {"label", channel.label},
+                     {"group", channel.group},
+                     {"unit", channel.unit},
+                     {"step", channel.step}};
   if (!channel.si_unit.empty()) object["si"] = {{"unit", channel.si_unit}, {"factor", channel.si_factor}};
   return object;
 }
 
-json Limits(const Run& run) {
-  json limits = json::object();
+OrderedJson Limits(const Run& run) {
+  OrderedJson limits = OrderedJson::object();
   if (run.config == nullptr) return limits;
   const auto& parameters = run.config->model.description.parameters;
   const double voltage = parameters.T_pmax / parameters.k_1;
@@ -41,8 +41,8 @@ json Limits(const Run& run) {
   return limits;
 }
 
-json Noise(const Run& run) {
-  json noise = json::object();
+OrderedJson Noise(const Run& run) {
+  OrderedJson noise = OrderedJson::object();
   if (run.config == nullptr) return noise;
   const settings::NoiseSection& n = run.config->noise;
   noise = {{"p1", n.p1_psi},
@@ -60,26 +60,26 @@ std::string Units(const UnitSystem& units) {
          ", rad";
 }
 
-json Described(const Run& run) {
-  json channels = json::array();
+OrderedJson Described(const Run& run) {
+  OrderedJson channels = OrderedJson::array();
   for (const ChannelInfo& channel : run.Channels()) channels.push_back(Described(channel));
-  json object{{"run", run.id},
-              {"name", run.name},
-              {"kind", KindName(run.kind)},
-              {"first", run.first_time()},
-              {"last", run.last_time()},
-              {"rate_hz", run.rate_hz},
-              {"session", std::to_string(run.session)},
-              {"channels", channels},
-              {"limits", Limits(run)},
-              {"noise", Noise(run)}};
+  OrderedJson object{{"run", run.id},
+                     {"name", run.name},
+                     {"kind", KindName(run.kind)},
+                     {"first", run.first_time()},
+                     {"last", run.last_time()},
+                     {"rate_hz", run.rate_hz},
+                     {"session", std::to_string(run.session)},
+                     {"channels", channels},
+                     {"limits", Limits(run)},
+                     {"noise", Noise(run)}};
   if (run.config != nullptr) object["units"] = Units(run.config->model.description.units);
   if (!run.config_problem.empty()) object["problem"] = run.config_problem;
   return object;
 }
 
-json Described(const std::vector<const Run*>& runs) {
-  json list = json::array();
+OrderedJson Described(const std::vector<const Run*>& runs) {
+  OrderedJson list = OrderedJson::array();
   for (const Run* run : runs) list.push_back(Described(*run));
   return list;
 }
@@ -88,9 +88,9 @@ json Described(const std::vector<const Run*>& runs) {
 
 std::string RunJson(const Run& run) { return Text(Described(run)); }
 
-std::string NumbersJson(const std::vector<double>& numbers) { return Text(json(numbers)); }
+std::string NumbersJson(const std::vector<double>& numbers) { return Text(OrderedJson(numbers)); }
 
-std::string TextJson(const std::string& text) { return Text(json(text)); }
+std::string TextJson(const std::string& text) { return Text(OrderedJson(text)); }
 
 std::string HelloMessage(const std::vector<const Run*>& runs, bool control) {
   return Text({{"op", "hello"},
@@ -115,7 +115,7 @@ std::string EventMessage(const Run& run, const Event& event) {
 }
 
 std::string ProcessesMessage(const Run& run) {
-  json list = json::array();
+  OrderedJson list = OrderedJson::array();
   for (const auto& [name, report] : run.processes) {
     list.push_back({{"role", report.role},
                     {"host", report.host},
@@ -138,7 +138,7 @@ std::string ClockMessage(const Run& run, double silent_s) {
                {"first", run.first_time()},
                {"last", run.last_time()},
                {"running", running},
-               {"silent_s", silent_s < 0 ? json(nullptr) : json(silent_s)}});
+               {"silent_s", silent_s < 0 ? OrderedJson(nullptr) : OrderedJson(silent_s)}});
 }
 
 std::string DroppedMessage(uint64_t bins, uint64_t frames) {
@@ -150,8 +150,8 @@ std::string TriggerMessage(uint32_t id, double t, const std::string& state) {
 }
 
 std::string ReplyMessage(uint32_t id, bool ok, const std::string& text, const std::string& data) {
-  json object{{"op", "reply"}, {"id", id}, {"ok", ok}, {"text", text}};
-  if (!data.empty()) object["data"] = json::parse(data, nullptr, false);
+  OrderedJson object{{"op", "reply"}, {"id", id}, {"ok", ok}, {"text", text}};
+  if (!data.empty()) object["data"] = OrderedJson::parse(data, nullptr, false);
   return Text(object);
 }
 

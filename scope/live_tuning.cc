@@ -15,9 +15,9 @@
 namespace hydro::scope {
 namespace {
 
-using json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-json ValueOf(const std::string& toml) {
+OrderedJson ValueOf(const std::string& toml) {
   if (const auto number = ParseNumber(toml)) return *number;
   return toml;
 }
@@ -59,12 +59,13 @@ void LiveTuning::Undo(Done done) {
 void LiveTuning::Poll() {
   client_.Poll();
   if (const auto answer = client_.TakeAnswer(); answer && waiting_) {
-    json data;
+    OrderedJson data;
     if (answer->accepted) {
       const double rate_hz = client_.run()->rate_hz;
-      data = {{"tick", answer->acts_at},
-              {"t", rate_hz > 0 ? json(static_cast<double>(answer->acts_at) / rate_hz) : json()},
-              {"version", answer->version}};
+      data = {
+          {"tick", answer->acts_at},
+          {"t", rate_hz > 0 ? OrderedJson(static_cast<double>(answer->acts_at) / rate_hz) : OrderedJson()},
+          {"version", answer->version}};
     }
     std::exchange(waiting_, nullptr)(
         {answer->accepted != 0, PrintableLines(answer->text), data.is_null() ? "" : JsonText(data)});
@@ -79,7 +80,7 @@ void LiveTuning::Poll() {
 
 void LiveTuning::Describe() {
   const tuned_settings_t& in_force = *client_.in_force();
-  json entries = json::array();
+  OrderedJson entries = OrderedJson::array();
   try {
     const auto values = tuning::ValuesInForce(*client_.run(), in_force, NumberText);
     const settings::StackConfig config = tuning::ConfigInForce(*client_.run(), in_force);
@@ -97,13 +98,13 @@ void LiveTuning::Describe() {
     // A stack of another version: nothing to show, and the plant refuses what this one asks.
   }
   const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
-  message_ = JsonText(json({{"op", "tuning"},
-                            {"run", run_},
-                            {"control", control_},
-                            {"version", in_force.version},
-                            {"acts_at", in_force.acts_at},
-                            {"text", text},
-                            {"entries", entries}}));
+  message_ = JsonText(OrderedJson({{"op", "tuning"},
+                                   {"run", run_},
+                                   {"control", control_},
+                                   {"version", in_force.version},
+                                   {"acts_at", in_force.acts_at},
+                                   {"text", text},
+                                   {"entries", entries}}));
 }
 
 }  // namespace hydro::scope

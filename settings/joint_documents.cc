@@ -24,20 +24,20 @@ constexpr std::array kShared{"bus", "time", "plant", "logger", "scope", "limb", 
 // LCM's channel names end at 63 bytes; the longest of ours is HYDRO_TUNING_REQUEST.
 constexpr size_t kLongestName = 24;
 
-bool IsPlain(const std::string& name) {
+bool IsJointName(const std::string& name) {
   return !name.empty() && name.size() <= kLongestName &&
          std::all_of(name.begin(), name.end(),
                      [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-'); });
 }
 
 std::string NameOf(const TomlNode& joint) {
-  constexpr char kAllowed[] = "a name of up to 24 letters, digits, underscores and hyphens";
+  constexpr char kJointNames[] = "a name of up to 24 letters, digits, underscores and hyphens";
   if (!joint.is(TomlNode::Kind::kTable))
     throw KeyError(joint.place, "joint", joint.Shown(), "sections [[joint]]");
   const TomlNode* name = joint.Find("name");
-  if (name == nullptr) throw KeyError(joint.place, "joint.name", "nothing", kAllowed);
-  if (!name->is(TomlNode::Kind::kString) || !IsPlain(name->text)) {
-    throw KeyError(name->place, "joint.name", name->Shown(), kAllowed);
+  if (name == nullptr) throw KeyError(joint.place, "joint.name", "nothing", kJointNames);
+  if (!name->is(TomlNode::Kind::kString) || !IsJointName(name->text)) {
+    throw KeyError(name->place, "joint.name", name->Shown(), kJointNames);
   }
   return name->text;
 }

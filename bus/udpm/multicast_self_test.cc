@@ -47,7 +47,7 @@ class Socket {
 }
 
 template <class Value>
-void SetOption(int fd, int level, int option, const Value& value) {
+void SetProbeOption(int fd, int level, int option, const Value& value) {
   setsockopt(fd, level, option, &value, sizeof value);
 }
 
@@ -67,14 +67,14 @@ void Connect(const Socket& sender, const UdpmUrl& url, const sockaddr_in& group)
   if (connect(sender.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "no route to the group", kCure);
   }
-  SetOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl));
-  SetOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1));
+  SetProbeOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl));
+  SetProbeOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1));
 }
 
 // Joins the group. Returns the size of the receive buffer that the kernel grants.
 int Listen(const Socket& receiver, const UdpmUrl& url, const sockaddr_in& group) {
-  SetOption(receiver.fd(), SOL_SOCKET, SO_REUSEADDR, 1);
-  if (url.recv_buf_size > 0) SetOption(receiver.fd(), SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
+  SetProbeOption(receiver.fd(), SOL_SOCKET, SO_REUSEADDR, 1);
+  if (url.recv_buf_size > 0) SetProbeOption(receiver.fd(), SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   int receive_buffer = 0;
   socklen_t length = sizeof receive_buffer;
   getsockopt(receiver.fd(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, &length);

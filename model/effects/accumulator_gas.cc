@@ -22,7 +22,7 @@ struct LoadedByGas {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kAccumulatorGasAdded = AddToCatalogue(
     {.info = {.id = "accumulator.gas",
               .summary = "the accumulator's gas is compressed by what is returned to it",
               .equation = "(p3 + p_atm) V_gas^exponent stays, with V_gas = volume at precharge",

@@ -14,7 +14,7 @@ struct LoadedBySpring {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kAccumulatorStiffnessAdded = AddToCatalogue(
     {.info =
          {.id = "accumulator.stiffness",
           .summary = "the accumulator's pressure rises with what is returned to it",

@@ -61,7 +61,7 @@ class SealFriction : public EffectOf<SealFriction> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kActuatorSealFrictionAdded =
     AddToCatalogue({.info = {.id = "actuator.seal_friction",
                              .summary = "friction of the actuator's seals and the arm's bearing",
                              .equation = "arm torque - coulomb sgn(alpha') - viscous alpha'",

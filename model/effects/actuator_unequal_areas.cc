@@ -29,7 +29,7 @@ class UnequalAreas : public EffectOf<UnequalAreas> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kActuatorUnequalAreasAdded =
     AddToCatalogue({.info = {.id = "actuator.unequal_areas",
                              .summary = "the actuator's two sides have unequal areas",
                              .equation = "c_1 = c (1 - difference), c_2 = c (1 + difference); arm torque "

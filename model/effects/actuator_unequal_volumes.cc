@@ -17,7 +17,7 @@ class UnequalVolumes : public EffectOf<UnequalVolumes> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kActuatorUnequalVolumesAdded = AddToCatalogue(
     {.info = {.id = "actuator.unequal_volumes",
               .summary = "the two sides have unequal volumes at mid-stroke",
               .equation = "V_ms becomes V_ms (1 - difference) on side 1, V_ms (1 + difference) on side 2",

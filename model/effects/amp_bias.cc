@@ -15,7 +15,7 @@ class Bias : public EffectOf<Bias> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kAmpBiasAdded =
     AddToCatalogue({.info = {.id = "amp.bias",
                              .summary = "a constant torque of the amplifier or the load",
                              .equation = "T + bias",

@@ -57,7 +57,7 @@ class Delay : public EffectOf<Delay> {
   size_t first_ = 0;
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kAmpDelayAdded =
     AddToCatalogue({.info = {.id = "amp.delay",
                              .summary = "the motor torque follows the voltage with a delay",
                              .equation = "T(t) = k_1 v(t - delay)",

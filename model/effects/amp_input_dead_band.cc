@@ -18,7 +18,7 @@ class DeadBand : public EffectOf<DeadBand> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kAmpInputDeadBandAdded =
     AddToCatalogue({.info = {.id = "amp.input_dead_band",
                              .summary = "the amplifier ignores small commands",
                              .equation = "v becomes v -/+ width, 0 within +/- width",

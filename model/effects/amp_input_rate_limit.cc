@@ -68,7 +68,7 @@ class RateLimit : public EffectOf<RateLimit> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kAmpInputRateLimitAdded =
     AddToCatalogue({.info = {.id = "amp.input_rate_limit",
                              .summary = "the amplifier follows its command no faster than a rate",
                              .equation = "u' = rate sgn(v - u), T = k_1 u",

@@ -42,7 +42,7 @@ class Lag : public EffectOf<Lag> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kAmpLagAdded =
     AddToCatalogue({.info = {.id = "amp.lag",
                              .summary = "the motor torque follows the voltage with a time constant",
                              .equation = "tau dT/dt + T = k_1 v",

@@ -47,7 +47,7 @@ class Flexure : public EffectOf<Flexure> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kArmFlexureAdded =
     AddToCatalogue({.info = {.id = "arm.flexure",
                              .summary = "the arm gives between actuator and load",
                              .equation = "a spring and damper between actuator and arm",

@@ -190,7 +190,7 @@ CatalogueEntry Entry(const std::string& balance, const std::string& summary, con
       }};
 }
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kClosureAdded =
     AddToCatalogue(Entry<Balance::kPumpTorque>("pump_torque",
                                                "a torque on the pump that no known effect explains",
                                                "torque on the pump + curve", "in-lbf")) &&

@@ -38,7 +38,7 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kFluidEntrainedAirAdded = AddToCatalogue(
     {.info =
          {.id = "fluid.entrained_air",
           .summary = "air bubbles make the fluid soft at low pressure",

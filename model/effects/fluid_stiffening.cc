@@ -15,7 +15,7 @@ class Stiffening : public EffectOf<Stiffening> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kFluidStiffeningAdded = AddToCatalogue(
     {.info = {.id = "fluid.stiffening",
               .summary = "the bulk modulus grows with pressure",
               .equation = "beta + slope p",

@@ -21,7 +21,7 @@ class Warming : public EffectOf<Warming> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kFluidWarmingAdded = AddToCatalogue(
     {.info =
          {.id = "fluid.warming",
           .summary = "viscous friction and leakage drift as the oil warms",

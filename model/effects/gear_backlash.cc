@@ -83,7 +83,7 @@ class Backlash : public EffectOf<Backlash> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kGearBacklashAdded = AddToCatalogue(
     {.info = {.id = "gear.backlash",
               .summary = "play between the motor's shaft and its load",
               .equation = "a gap, then a spring and damper, between the motor and a load of its own inertia",

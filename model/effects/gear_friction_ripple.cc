@@ -19,7 +19,7 @@ class FrictionRipple : public EffectOf<FrictionRipple> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kGearFrictionRippleAdded =
     AddToCatalogue({.info = {.id = "gear.friction_ripple",
                              .summary = "friction varies over a turn",
                              .equation = "T_s becomes T_s (1 + amplitude sin(periods theta + phase))",

@@ -14,7 +14,7 @@ struct LoadSide {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kGearLoadFrictionAdded = AddToCatalogue(
     {.info = {.id = "gear.load_friction",
               .summary = "friction grows with the torque of the load",
               .equation = "+ load abs(D dp + other loads) sgn(theta')",

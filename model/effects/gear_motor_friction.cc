@@ -14,7 +14,7 @@ struct MotorSide {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kGearMotorFrictionAdded =
     AddToCatalogue({.info = {.id = "gear.motor_friction",
                              .summary = "friction grows with the motor's torque",
                              .equation = "+ motor abs(T_p) sgn(theta')",

@@ -90,7 +90,7 @@ class Wave : public EffectOf<Wave> {
   };
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kLineWaveAdded = AddToCatalogue(
     {.info = {.id = "line.wave",
               .summary = "pressure waves in the lines between pump and actuator",
               .equation = "a line with inertia between the pump's and the actuator's volume on each side; "

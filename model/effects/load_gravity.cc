@@ -22,7 +22,7 @@ struct ShaftWeight {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kLoadGravityAdded = AddToCatalogue(
     {.info = {.id = "load.gravity",
               .summary = "a weight hangs on the motor's shaft",
               .equation = "T -= torque sin(theta + phase)",

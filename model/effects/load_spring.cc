@@ -18,7 +18,7 @@ struct ShaftSpring {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kLoadSpringAdded = AddToCatalogue(
     {.info = {.id = "load.spring",
               .summary = "a spring turns the motor's shaft back",
               .equation = "T -= stiffness (theta - rest)",

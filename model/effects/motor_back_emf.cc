@@ -59,7 +59,7 @@ class BackEmf : public EffectOf<BackEmf> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kMotorBackEmfAdded =
     AddToCatalogue({.info = {.id = "motor.back_emf",
                              .summary = "the motor is driven by a voltage, not by a current",
                              .equation = "tau dT/dt + T = k_1 (v - k_e theta')",

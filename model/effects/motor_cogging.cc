@@ -23,7 +23,7 @@ struct Cogging {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kMotorCoggingAdded =
     AddToCatalogue({.info = {.id = "motor.cogging",
                              .summary = "the motor's magnets pull towards fixed angles",
                              .equation = "T -= amplitude sin(periods theta + phase)",

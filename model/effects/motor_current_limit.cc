@@ -14,7 +14,7 @@ struct FallsFromCorner {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kMotorCurrentLimitAdded = AddToCatalogue(
     {.info = {.id = "motor.current_limit",
               .summary = "the amplifier's current limit falls above a speed",
               .equation = "abs(T) <= T_max (1 - (abs(theta') - corner_speed)/speed_range) while driving",

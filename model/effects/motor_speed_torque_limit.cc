@@ -14,7 +14,7 @@ struct FallsFromRest {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kMotorSpeedTorqueLimitAdded =
     AddToCatalogue({.info = {.id = "motor.speed_torque_limit",
                              .summary = "the motor's largest torque falls with speed",
                              .equation = "abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving",

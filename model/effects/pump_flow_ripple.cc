@@ -17,7 +17,7 @@ class FlowRipple : public EffectOf<FlowRipple> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kPumpFlowRippleAdded = AddToCatalogue(
     {.info = {.id = "pump.flow_ripple",
               .summary = "the pump's displacement varies over a revolution",
               .equation = "D (1 + amplitude cos(periods theta)) in flow and torque",

@@ -16,7 +16,7 @@ class FrictionAsymmetry : public EffectOf<FrictionAsymmetry> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kPumpFrictionAsymmetryAdded =
     AddToCatalogue({.info = {.id = "pump.friction_asymmetry",
                              .summary = "friction of the pump differs between the directions",
                              .equation = "T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0",

@@ -15,7 +15,7 @@ class PressureFriction : public EffectOf<PressureFriction> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kPumpPressureFrictionAdded = AddToCatalogue(
     {.info = {.id = "pump.pressure_friction",
               .summary = "friction of the pump grows with the pressures",
               .equation = "+ f (p1 + p2) sgn(theta')",

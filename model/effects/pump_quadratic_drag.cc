@@ -15,7 +15,7 @@ class QuadraticDrag : public EffectOf<QuadraticDrag> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kPumpQuadraticDragAdded =
     AddToCatalogue({.info = {.id = "pump.quadratic_drag",
                              .summary = "drag of the pump grows with the square of its speed",
                              .equation = "+ k theta' abs(theta')",

@@ -23,7 +23,7 @@ class Stribeck : public EffectOf<Stribeck> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kPumpStribeckAdded =
     AddToCatalogue({.info = {.id = "pump.stribeck",
                              .summary = "static friction above kinetic",
                              .equation = "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), "

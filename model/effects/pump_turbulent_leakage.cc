@@ -25,7 +25,7 @@ class TurbulentLeakage : public EffectOf<TurbulentLeakage> {
   static constexpr double kLaminarPart = 2e-4;  // of T_pmax/D
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kPumpTurbulentLeakageAdded = AddToCatalogue(
     {.info = {.id = "pump.turbulent_leakage",
               .summary = "leakage across the pump's ports as through an orifice",
               .equation = "cross-port flow + k sgn(dp) sqrt(abs(dp))",

@@ -32,7 +32,7 @@ class UnequalDisplacements : public EffectOf<UnequalDisplacements> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kPumpUnequalDisplacementsAdded = AddToCatalogue(
     {.info = {.id = "pump.unequal_displacements",
               .summary = "the pump's two ports displace unequal volumes",
               .equation = "D_1 = D (1 - difference), D_2 = D (1 + difference) in flow and torque; the "

@@ -16,7 +16,7 @@ class PressureDrift : public EffectOf<PressureDrift> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kSensorPressureDriftAdded =
     AddToCatalogue({.info = {.id = "sensor.pressure_drift",
                              .summary = "the pressure transducers drift",
                              .equation = "measured p1, p2 shifted by rate t",

@@ -15,7 +15,7 @@ class PressureGain : public EffectOf<PressureGain> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kSensorPressureGainAdded =
     AddToCatalogue({.info = {.id = "sensor.pressure_gain",
                              .summary = "the pressure transducers' scale is off",
                              .equation = "measured pressures scaled by 1 + gain",

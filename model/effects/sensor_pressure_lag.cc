@@ -32,7 +32,7 @@ class PressureLag : public EffectOf<PressureLag> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kSensorPressureLagAdded =
     AddToCatalogue({.info = {.id = "sensor.pressure_lag",
                              .summary = "the pressure transducers read with a lag",
                              .equation = "measured pressure follows with a time constant",

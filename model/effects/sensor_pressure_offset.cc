@@ -15,7 +15,7 @@ class PressureOffset : public EffectOf<PressureOffset> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kSensorPressureOffsetAdded =
     AddToCatalogue({.info = {.id = "sensor.pressure_offset",
                              .summary = "the pressure transducers read too much or too little",
                              .equation = "measured p1, p2 shifted",

@@ -20,7 +20,7 @@ class Sign : public EffectOf<Sign> {
   Signal signal_;
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kSensorSignAdded =
     AddToCatalogue({.info = {.id = "sensor.sign",
                              .summary = "one channel has the wrong sign",
                              .equation = "one channel is inverted",

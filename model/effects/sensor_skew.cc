@@ -29,7 +29,7 @@ class Skew : public EffectOf<Skew> {
   double delay_;
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kSensorSkewAdded = AddToCatalogue(
     {.info = {.id = "sensor.skew",
               .summary = "one channel is recorded late",
               .equation = "one channel is late by delay",

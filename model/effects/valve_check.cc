@@ -44,7 +44,7 @@ class Check : public EffectOf<Check> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kValveCheckAdded = AddToCatalogue(
     {.info = {.id = "valve.check",
               .summary = "one-way valves that need a pressure to open and resist the flow",
               .equation =

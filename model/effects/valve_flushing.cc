@@ -19,7 +19,7 @@ struct Flushing {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kValveFlushingAdded =
     AddToCatalogue({.info = {.id = "valve.flushing",
                              .summary = "a shuttle opens the side of the lower pressure to the accumulator",
                              .equation = "the side of the lower pressure loses conductance opening (p - p3), "

@@ -27,7 +27,7 @@ struct Pilot {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kValvePilotAdded = AddToCatalogue(
     {.info = {.id = "valve.pilot",
               .summary = "pilot-operated check valves from the accumulator to each side",
               .equation = "the valve of a side opens with (p3 - p + ratio max(p_other - p3, 0) - "

@@ -42,7 +42,7 @@ class Relief : public EffectOf<Relief> {
   }
 };
 
-[[maybe_unused]] const bool kAdded =
+[[maybe_unused]] const bool kValveReliefAdded =
     AddToCatalogue({.info = {.id = "valve.relief",
                              .summary = "relief valves from each side to the accumulator",
                              .equation = "flow conductance (p - set) out of a side above set",

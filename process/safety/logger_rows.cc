@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kLoggerRows{
     SafetyRow{
         .id = "logger_dies",
         .fault = "logger dies or hangs",
@@ -79,6 +79,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> LoggerRows() { return kRows; }
+std::span<const SafetyRow> LoggerRows() { return kLoggerRows; }
 
 }  // namespace hydro::process

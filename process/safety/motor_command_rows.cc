@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kMotorCommandRows{
     SafetyRow{
         .id = "forged_command",
         .fault = "a command without the seal of the stack's key (`bus.key_file`)",
@@ -135,6 +135,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> MotorCommandRows() { return kRows; }
+std::span<const SafetyRow> MotorCommandRows() { return kMotorCommandRows; }
 
 }  // namespace hydro::process

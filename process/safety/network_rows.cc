@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kNetworkRows{
     SafetyRow{
         .id = "sequence_gaps",
         .fault = "sequence gaps",
@@ -97,6 +97,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> NetworkRows() { return kRows; }
+std::span<const SafetyRow> NetworkRows() { return kNetworkRows; }
 
 }  // namespace hydro::process

@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kPressureCommandRows{
     SafetyRow{
         .id = "pressure_command_nonfinite",
         .fault = "pressure command not finite",
@@ -84,6 +84,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> PressureCommandRows() { return kRows; }
+std::span<const SafetyRow> PressureCommandRows() { return kPressureCommandRows; }
 
 }  // namespace hydro::process

@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kProcessRows{
     SafetyRow{
         .id = "pressure_loop_dies",
         .fault = "pressure loop dies",
@@ -171,6 +171,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> ProcessRows() { return kRows; }
+std::span<const SafetyRow> ProcessRows() { return kProcessRows; }
 
 }  // namespace hydro::process

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kNoDevice = "a simulated board is driven, no device of one's own and no front end";
 
-constexpr std::array kRows{
+constexpr std::array kRigRows{
     SafetyRow{
         .id = "reading_not_finite",
         .fault = "a sensor's reading is not finite",
@@ -233,6 +233,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> RigRows() { return kRows; }
+std::span<const SafetyRow> RigRows() { return kRigRows; }
 
 }  // namespace hydro::process

@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kRunRows{
     SafetyRow{
         .id = "stop",
         .fault = "`HYDRO_STOP` to this run or to everybody (`addressee` 0), from any program or from "
@@ -172,6 +172,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> RunRows() { return kRows; }
+std::span<const SafetyRow> RunRows() { return kRunRows; }
 
 }  // namespace hydro::process

@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::array kRows{
+constexpr std::array kTuningRows{
     SafetyRow{
         .id = "tuning_refused",
         .fault = "values that would make a loop unstable, or of which that cannot be judged, that loosen a "
@@ -76,6 +76,6 @@ constexpr std::array kRows{
 
 }  // namespace
 
-std::span<const SafetyRow> TuningRows() { return kRows; }
+std::span<const SafetyRow> TuningRows() { return kTuningRows; }
 
 }  // namespace hydro::process

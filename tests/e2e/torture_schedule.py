@@ -6,7 +6,7 @@ import os
 
 import fault_sequence
 
-SHIPPED = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "torture", "real")
+SHIPPED = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "sim", "torture", "real")
 FOLDER = os.environ.get("HYDRO_SCHEDULES", SHIPPED)
 
 Injection = collections.namedtuple("Injection", "at kind target duration amount seed")

@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Map = Eigen::Map<const Eigen::MatrixXd>;
-using Row = Eigen::Map<const Eigen::RowVectorXd>;
+using RowMap = Eigen::Map<const Eigen::RowVectorXd>;
 using Column = Eigen::Map<const Eigen::VectorXd>;
 
 constexpr int kMotorSpeedOutput = 1;
@@ -81,7 +81,7 @@ Complex LinearPressureLoop::PerVolt(const std::vector<double>& output, double fr
   const Complex s = timing_.interval > 0 ? std::polar(1.0, w * timing_.interval) : Complex(0, w);
   const Eigen::VectorXcd x =
       maths::Resolvent(Map(A_.data(), states_, states_), s, Column(B_.data(), states_));
-  return (Row(output.data(), states_).cast<Complex>() * x)(0);
+  return (RowMap(output.data(), states_).cast<Complex>() * x)(0);
 }
 
 Complex LinearPressureLoop::PressurePerVolt(double frequency_hz) const { return PerVolt(dp_, frequency_hz); }
@@ -97,13 +97,13 @@ Complex LinearPressureLoop::ClosedGain(const pressure_ctrl::PressureGains& gains
 
 std::vector<Complex> LinearPressureLoop::ClosedPoles(const pressure_ctrl::PressureGains& gains,
                                                      bool visible_only) const {
-  const Row dp(dp_.data(), states_);
-  const Row speed(speed_.data(), states_);
+  const RowMap dp(dp_.data(), states_);
+  const RowMap speed(speed_.data(), states_);
   const Eigen::MatrixXd A =
       Map(A_.data(), states_, states_) - gains.k_p * Column(B_.data(), states_) * (dp + gains.k_v * speed);
   const maths::Eigensystem motions = maths::Eigenvectors(A);
   // How much of a motion's parts remains in their sum.
-  const auto shows = [](const Row& output, const Eigen::VectorXcd& motion) {
+  const auto shows = [](const RowMap& output, const Eigen::VectorXcd& motion) {
     const Eigen::VectorXcd parts = output.transpose().cast<Complex>().cwiseProduct(motion);
     return std::abs(parts.sum()) > 1e-6 * parts.cwiseAbs().sum() &&
            parts.cwiseAbs().sum() > 1e-9 * motion.norm();

@@ -12,11 +12,11 @@ namespace {
 
 // dp, dp', alpha, alpha', and the held dp_ref.
 constexpr int kStates = 4;
-constexpr int kAngle = 2;
+constexpr int kAngleState = 2;
 using Held = Eigen::Matrix<double, kStates + 1, kStates + 1>;
 
 // The transition over `interval` with dp_ref held.
-Held Transition(const DesignModel& m, double interval) {
+Held TransitionOver(const DesignModel& m, double interval) {
   Held rates = Held::Zero();
   const double squared = m.natural_frequency * m.natural_frequency;
   rates(0, 1) = 1;
@@ -30,13 +30,13 @@ Held Transition(const DesignModel& m, double interval) {
 
 // The closed loop from one sample to the next: the states and the previous sample's angle.
 Held SampledLoop(const DesignModel& m, double gain, double interval) {
-  const Held held = Transition(m, interval);
+  const Held held = TransitionOver(m, interval);
   Held loop = Held::Zero();
   loop.topLeftCorner<kStates, kStates>() = held.topLeftCorner<kStates, kStates>();
   const Eigen::Matrix<double, kStates, 1> input = held.topRightCorner<kStates, 1>();
-  loop.block<kStates, 1>(0, kAngle) -= input * (gain * m.zero + gain / interval);
+  loop.block<kStates, 1>(0, kAngleState) -= input * (gain * m.zero + gain / interval);
   loop.block<kStates, 1>(0, kStates) += input * (gain / interval);
-  loop(kStates, kAngle) = 1;
+  loop(kStates, kAngleState) = 1;
   return loop;
 }
 
@@ -98,20 +98,20 @@ Response ContinuousStep(const DesignModel& m, double gain, DerivativeForm form, 
 Response SampledStep(const DesignModel& m, double gain, double interval, DerivativeForm form, double step,
                      double duration, int points) {
   const double spacing = interval / points;
-  const Held transition = Transition(m, spacing);
+  const Held transition = TransitionOver(m, spacing);
   Eigen::Matrix<double, kStates + 1, 1> state = Eigen::Matrix<double, kStates + 1, 1>::Zero();
   const bool on_error = form == DerivativeForm::kError;
   double previous = 0;  // at rest before the step, with the reference at 0
   Response response;
   const auto samples = static_cast<int>(std::lround(duration / interval));
   for (int k = 0; k <= samples; ++k) {
-    const double error = state(kAngle) - step;
-    const double differentiated = on_error ? error : state(kAngle);
+    const double error = state(kAngleState) - step;
+    const double differentiated = on_error ? error : state(kAngleState);
     state(kStates) = -gain * m.zero * error - gain / interval * (differentiated - previous);
     previous = differentiated;
     for (int i = 0; i < (k < samples ? points : 1); ++i) {
       response.time.push_back(k * interval + i * spacing);
-      response.angle.push_back(state(kAngle));
+      response.angle.push_back(state(kAngleState));
       state = transition * state;
     }
   }

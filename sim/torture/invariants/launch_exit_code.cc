@@ -13,11 +13,11 @@ namespace {
 constexpr TrueTime kControlLasts =
     1'000'000'000;  // ns: after the last obeyed command the stack counts as one that works
 
+}  // namespace
+
 std::string NameOf(const SimulatedProcess& process) {
   return std::string(TargetName(static_cast<int>(process.role())));
 }
-
-}  // namespace
 
 void LaunchInvariants::OnEnd(const SimulatedProcess& process) {
   if (!launch_) return;

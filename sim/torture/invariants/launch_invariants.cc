@@ -26,10 +26,6 @@ constexpr TrueTime kLoggerGrace = 10 * kSecond;
 // Its questions before the start, its last words, and what its clock may run slow.
 constexpr TrueTime kRest = kSecond;
 
-std::string NameOf(const SimulatedProcess& process) {
-  return std::string(TargetName(static_cast<int>(process.role())));
-}
-
 TrueTime GraceOf(const SimulatedProcess& child) {
   return child.role() == Role::kLogger ? kLoggerGrace : kGrace;
 }

@@ -14,6 +14,9 @@
 
 namespace hydro::torture {
 
+// Its role, as texts say it.
+std::string NameOf(const SimulatedProcess& process);
+
 class LaunchInvariants {
  public:
   LaunchInvariants(const settings::StackConfig& config, Network& network, const TrueTime* now,

@@ -15,7 +15,7 @@ import tempfile
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "..", "e2e"))
+sys.path.insert(0, os.path.join(HERE, "..", "..", "e2e"))
 import event_log  # noqa: E402
 import outcome  # noqa: E402
 
@@ -336,7 +336,7 @@ class ForeignReadersTest(unittest.TestCase):
         self.assertIn("table.csv", files)
         self.assertIn("HYDRO_FAULT.csv", files)
         for name, column in (("table", "p2_psi"), ("HYDRO_STATE", "p2_psi"), ("HYDRO_MOTOR_COMMAND", "voltage_V")):
-            read = pandas.read_csv(self.path(f"base/tables/{name}.csv"), float_precision="round_trip")
+            read = pandas.read_csv(self.path(f"tables/{name}.csv"), float_precision="round_trip")
             expected = self.table if name == "table" else self.channel(name)
             self.assert_same(list(read[column]), expected[column if name == "table" else column.rsplit("_", 1)[0]], name)
         self.export(self.log, self.sim, "--channel", "HYDRO_STATE", "--channel", "table", "-o", self.path("both/"))

@@ -8,7 +8,7 @@ import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
-const page = process.env.HYDRO_SCOPE_PAGE ?? path.join(here, '../../scope/page');
+const page = process.env.HYDRO_SCOPE_PAGE ?? path.join(here, '../../../scope/page');
 const require = createRequire(path.join(page, 'package.json'));
 const { McapIndexedReader, McapStreamReader } = require('@mcap/core');
 const { parse } = require('@foxglove/rosmsg');

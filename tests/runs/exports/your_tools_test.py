@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "e2e"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "e2e"))
 import outcome  # noqa: E402
 
 PAGE = pathlib.Path(__file__).resolve().parents[3] / "docs/your_tools.md"
