@@ -157,9 +157,10 @@ TEST_F(HydroLogTest, RepairOfJoinedLogs) {
   EXPECT_EQ(log::ReadBytes(Path("torn.damaged-2")), b);
   EXPECT_EQ(take_apart("alone", b), Path("alone") + ": nothing to repair\n");
   runs::RunMessages both = log::SampleRun(9);
-  for (const state_t& state : log::SampleRun(9).Of<state_t>()) {
+  runs::RunMessages other = both;
+  for (state_t& state : other.Of<state_t>()) {
+    state.session = 77;
     both.Of<state_t>().push_back(state);
-    both.Of<state_t>().back().session = 77;
   }
   log::WriteRun(Path("two"), both);
   EXPECT_THAT(HydroLog({"repair", Path("two")}).out,
