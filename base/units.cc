@@ -58,7 +58,7 @@ constexpr struct {
   std::string_view from;
   std::string_view to;
 } kShownIn[] = {
-    {"in", "mm"},
+    {"in", "m"},
     {"in/s", "m/s"},
     {"in^2", "cm^2"},
     {"in^3", "cm^3"},

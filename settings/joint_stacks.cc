@@ -7,10 +7,15 @@
 namespace hydro::settings {
 namespace {
 
-std::string ErrorOf(const JointDocument& document, const std::string& file) {
+StackConfig Checked(const JointDocument& document, const std::string& file) {
+  if (document.given) CheckUnitsOfOtherModel(*document.given, document.root, file);
   TomlNode root = document.root;
+  return StackOf(&root, file);
+}
+
+std::string ErrorOf(const JointDocument& document, const std::string& file) {
   try {
-    StackOf(&root, file);
+    Checked(document, file);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -33,9 +38,8 @@ std::string PlaceIn(const TomlNode& node, const std::string& message) {
 
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
                             const std::string& file) {
-  TomlNode own = documents[index].root;
   try {
-    return StackOf(&own, file);
+    return Checked(documents[index], file);
   } catch (const InputError& error) {
     const std::string message = error.what();
     std::string place = PlaceIn(root.Find("joint")->items[index], message);

@@ -146,14 +146,32 @@ class RepairVerb {
     if (!out_.empty()) CheckKeeps(out_, {log_});
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (!result.mended()) {
-      std::printf("%s: nothing to repair\n", log_.c_str());
+      std::printf("%s: nothing to repair\n", Printable(log_).c_str());
     } else {
-      std::fputs(log::Describe(result, log_).c_str(), stdout);
+      std::fputs(PrintableLines(log::Describe(result, log_)).c_str(), stdout);
     }
+    const std::string joined = log::DescribeJoined(result, result.damaged.empty() ? log_ : result.damaged);
+    std::fputs(PrintableLines(joined.empty() ? WhyNotOneRun() : joined).c_str(), stdout);
     return 0;
   }
 
  private:
+  // A log may be as it was written and yet be refused by the other verbs.
+  std::string WhyNotOneRun() const {
+    std::optional<runs::LimbLog> log;
+    try {
+      log = runs::ReadLimbLog(out_.empty() ? log_ : out_, {}, runs::Undecodable::kLeftOut);
+    } catch (const InputError&) {
+      return "";  // of no stack, or of several: nothing is said of their runs
+    }
+    try {
+      runs::RequireOneRun(*log);
+    } catch (const InputError& error) {
+      return std::string(error.what()) + "\n";
+    }
+    return "";
+  }
+
   std::string log_, out_;
 };
 
