@@ -81,7 +81,7 @@ class OwnDriverCase(stack.TestCase):
         with open(os.path.join(EXAMPLES, example, example + ".toml"), encoding="utf-8") as file:
             text = file.read()
         built = {f"build/{example}": os.path.join(TOOLS, example), "build/simulated_device": os.path.join(TOOLS, example + "_device"),
-                 "../../../config": stack.CONFIG, "5005": str(self.port), "build/can.sock": "can.sock"}
+                 "../../../config": stack.CONFIG, "5005": str(self.port), "build/can.sock": "can.sock", "build/board": "board"}
         for old, new in (*built.items(), *changes):
             self.assertIn(old, text) if (old, new) in changes else None
             text = text.replace(old, new)
@@ -103,7 +103,7 @@ class OwnDriverTest(OwnDriverCase):
     # Tests that hydro-launch runs each example with its simulated device: the arm reaches its target through scales, inputs and
     # outputs of the example, and it is the driver's run in the log.
     def test_arm_reaches_its_target(self):
-        for example in ("udp_box", "cia402"):
+        for example in ("udp_box", "cia402", "serial_board"):
             with self.subTest(example):
                 log_file = self.path(example + ".lcmlog")
                 launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
@@ -122,7 +122,7 @@ class OwnDriverTest(OwnDriverCase):
 
     # Tests that each of them, and hydro-driver on the simulated board, keeps what docs/safety.md promises.
     def test_promises(self):
-        for example in ("udp_box", "cia402"):
+        for example in ("udp_box", "cia402", "serial_board"):
             with self.subTest(example):
                 table = self.check(self.config(example)).stdout
                 self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
