@@ -18,9 +18,10 @@ using hydro::plant::DeviceError;
 using hydro::plant::DeviceInput;
 using std::chrono::milliseconds;
 
-constexpr double kCodesPerVolt = 204.8;  // of the output that A3 measures
-constexpr int kZeroCode = 2048;
-constexpr milliseconds kPatience{5};  // an answer that takes longer is lost
+constexpr double kCodesPerVolt = 3276.8;  // of the output, which A3 measures
+constexpr int kZeroCode = 32768;
+constexpr double kHighestOutput = 2047 / 204.8;  // V, the last code of 12 bits
+constexpr milliseconds kPatience{5};             // an answer that takes longer is lost
 constexpr milliseconds kAskAgain{100};
 constexpr int kReadBackTries = 20;
 
@@ -96,9 +97,9 @@ SerialBoard::~SerialBoard() { close(port_); }
 hydro::plant::DeviceDescription SerialBoard::Describe() const {
   hydro::plant::DeviceDescription board{.name = name_, .files = {port_}};
   for (const char* name : {"A0", "A1", "A2"})
-    board.inputs.push_back({.name = name, .unit = "codes", .low = 0, .high = 4095});
+    board.inputs.push_back({.name = name, .unit = "codes", .low = 0, .high = 65535});
   board.inputs.push_back({.name = "encoder", .kind = DeviceInput::Kind::kCount, .highest_count = 0xffffffff});
-  board.output = {.low = -10, .high = 4095 / kCodesPerVolt - 10, .tolerance = 0.03};
+  board.output = {.low = -10, .high = kHighestOutput, .tolerance = 0.03};
   return board;
 }
 

@@ -28,7 +28,7 @@ inline Command CommandFor(double volts) noexcept {
 }
 
 struct Answer {
-  std::array<int, 4> inputs{};  // of the converters, 0 to 4095
+  std::array<int, 4> inputs{};  // of the converters, 0 to 65535
   int32_t count = 0;            // of the encoder
 };
 
@@ -41,7 +41,7 @@ inline std::optional<Answer> AnswerIn(std::string_view line) {
   const char* const end = at + line.size();
   for (int& input : answer.inputs) {
     const auto [next, error] = std::from_chars(at, end, input);
-    if (error != std::errc() || next == end || *next != ',' || input < 0 || input > 4095) return std::nullopt;
+    if (error != std::errc() || next == end || *next != ',' || input < 0 || input > 65535) return std::nullopt;
     at = next + 1;
   }
   const auto [next, error] = std::from_chars(at, end, answer.count);

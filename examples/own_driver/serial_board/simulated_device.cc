@@ -20,8 +20,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using hydro::plant::DeviceTrouble;
 
-constexpr double kVoltsPerOutput = 2;  // the amplifier's, V of eq. (1) per V
-constexpr double kCodesPerVolt = 819;  // of the inputs, 0 to 5 V
+constexpr double kVoltsPerOutput = 2;    // the amplifier's, V of eq. (1) per V
+constexpr double kCodesPerVolt = 13107;  // of the inputs, 0 to 5 V
 
 // What the pins are connected to.
 struct Pins {
@@ -33,7 +33,7 @@ struct Pins {
   Clock::time_point answered{};
 } pins;
 
-int Code(double volts) { return std::clamp(static_cast<int>(std::lround(kCodesPerVolt * volts)), 0, 4095); }
+int Code(double volts) { return std::clamp(static_cast<int>(std::lround(kCodesPerVolt * volts)), 0, 65535); }
 
 // ---- as much of Arduino's library as the sketch calls ----
 using std::isfinite;
@@ -53,10 +53,10 @@ void analogWrite(int pin, int code) {
 
 int analogRead(int pin) {
   const DeviceTrouble trouble = pins.machine->trouble();
-  if (pin == A0) return trouble == DeviceTrouble::kNoNumbers ? 4095 : Code(0.5 + pins.measured.p1 / 500);
+  if (pin == A0) return trouble == DeviceTrouble::kNoNumbers ? 65535 : Code(0.5 + pins.measured.p1 / 500);
   if (pin == A1) return Code(0.5 + pins.measured.p2 / 500);
   if (pin == A2) return Code(2.5 + 5 * pins.measured.arm_angle);
-  return std::clamp(pins.output + (trouble == DeviceTrouble::kLies ? 600 : 0), 0, 4095);
+  return std::clamp(16 * pins.output + (trouble == DeviceTrouble::kLies ? 9600 : 0), 0, 65535);
 }
 
 struct Encoder {

@@ -1,9 +1,10 @@
 // What runs on the microcontroller: a small sketch as laboratories have it, with lines of text and no frames. For
-// boards whose converters have 12 bits, and an amplifier stage that makes -10 to 10 V of the converter's range.
+// boards whose inputs have 16 bits and whose output has 12 (Teensy 3), and an amplifier stage that makes -10 to 10 V of
+// the output's range.
 // It was never tried on a board; simulated_device.cc compiles it, so the same lines run in the tests.
 //
 //   "V1.234\n"                       in: volts for the amplifier; a V begins a command anew
-//   "2048,1843,2011,2301,-1234\n"    out, the answer: inputs A0 to A3 and the encoder's count
+//   "30000,29500,32187,36800,-1234\n"   out, the answer: inputs A0 to A3 and the encoder's count
 #ifdef ARDUINO
 #include <Encoder.h>
 #endif
@@ -51,7 +52,7 @@ void take(char c) {
 
 void setup() {
   Serial.begin(2000000);  // boards with USB of their own ignore the rate
-  analogReadResolution(12);
+  analogReadResolution(16);
   analogWriteResolution(12);
   drive(0);
 }

@@ -35,12 +35,12 @@ TEST(SerialBoardLinesTest, Commands) {
 
 // Tests that only a whole answer within the converters' range says anything.
 TEST(SerialBoardLinesTest, Answers) {
-  const auto answer = AnswerIn("2048,0,4095,7,-123456\r");
+  const auto answer = AnswerIn("2048,0,65535,7,-123456\r");
   ASSERT_TRUE(answer);
-  EXPECT_THAT(answer->inputs, ::testing::ElementsAre(2048, 0, 4095, 7));
+  EXPECT_THAT(answer->inputs, ::testing::ElementsAre(2048, 0, 65535, 7));
   EXPECT_EQ(answer->count, -123456);
   for (const char* line : {"", "\r", ",,,,", "2048,0,4095,7", "2048,0,4095,7,", "2048,0,4095,7,1,",
-                           "48,0,4096,7,1", "1,2,-3,4,5", "1,2,3,4,2147483648", "1,2,3,4,5 ", "1,2,3,4,5x",
+                           "48,0,65536,7,1", "1,2,-3,4,5", "1,2,3,4,2147483648", "1,2,3,4,5 ", "1,2,3,4,5x",
                            "1;2,3,4,5", "1,2,3,4,nan", " 1,2,3,4,5", "1,2,3,4,5\r\r"})
     EXPECT_FALSE(AnswerIn(line)) << line;
 }
@@ -64,7 +64,7 @@ class SerialBoardTest : public ::testing::Test {
     std::string todo;
     const int port = OpenPort(terminal_.path(), *RateOf(2000000), &todo);
     if (port < 0) throw std::runtime_error(todo);
-    Say("2048,2048,2048,2048,0\r\n");
+    Say("9000,9000,9000,32768,0\r\n");
     auto board = std::make_unique<SerialBoard>(port, "board", clock_, drives, milliseconds(10000));
     EXPECT_EQ(Heard(9), "V000.000\n");
     return board;
@@ -88,7 +88,7 @@ TEST_F(SerialBoardTest, Reads) {
   board->Drive(1.5);
   EXPECT_EQ(Heard(9), "V001.500\n");
   const auto asked = clock_.Now();
-  Say("100,200,300,2355,-5\r\n");
+  Say("100,200,300,37683,-5\r\n");
   const DeviceReadings readings = Read(*board);
   EXPECT_EQ(readings.inputs[0].value, 100);
   EXPECT_EQ(readings.inputs[2].value, 300);
@@ -117,7 +117,7 @@ TEST_F(SerialBoardTest, NeverMoreThanOneQuestion) {
   std::this_thread::sleep_for(milliseconds(6));
   board->Drive(3);
   EXPECT_EQ(Heard(9), "V003.000\n");
-  Say("2048,2048,2048,2048,0\r\n");
+  Say("9000,9000,9000,32768,0\r\n");
   board->Drive(4);
   EXPECT_EQ(Heard(9), "V004.000\n");
 }
