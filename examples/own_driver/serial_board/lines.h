@@ -41,7 +41,8 @@ inline std::optional<Answer> AnswerIn(std::string_view line) {
   const char* const end = at + line.size();
   for (int& input : answer.inputs) {
     const auto [next, error] = std::from_chars(at, end, input);
-    if (error != std::errc() || next == end || *next != ',' || input < 0 || input > 65535) return std::nullopt;
+    if (error != std::errc() || next == end || *next != ',' || input < 0 || input > 65535)
+      return std::nullopt;
     at = next + 1;
   }
   const auto [next, error] = std::from_chars(at, end, answer.count);
