@@ -74,7 +74,7 @@ void ReadShafts(SectionReader& document, const UnitSystem& units, RunPlan* plan)
     RunPlan::ShaftFrom one{.from = kFromTheBeginning};
     if (node != nullptr && !node->is(Kind::kString))
       throw document.Error("shaft", node->Shown(), kShaftsAllowed);
-    document.Choice("shaft", kShafts, &one.shaft);
+    if (!document.Choice("shaft", kShafts, &one.shaft)) one.shaft = model::Shaft::kClamped;  // Finish says so
     ReadAngle(document, units, one.shaft, &one.arm_angle);
     plan->shafts.push_back(one);
     return;

@@ -38,7 +38,8 @@ double ReadUnit(settings::SectionReader& section, const std::string& key, const 
   if (factor.has_value()) return *factor;
   std::string allowed = QuotedList(UnitsLike(ours));
   const std::string meant = UnitMeant(unit, ours);
-  if (key == "voltage" && ours == "V") allowed += ", or no unit for a command that is not a voltage";
+  if (key == "voltage" && ours == "V")
+    allowed += ", or no unit for a command that is not a voltage; a current may have the key current";
   throw section.Error("unit",
                       Quoted(unit) +
                           (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit") +

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Runs hydro-diagnose, with its default settings, on machines that others built and measured, and writes what it says as a page.
 
-    machines.py DATA [--diagnose PROGRAM] [--out FOLDER] [--machine FOLDER]... [--jobs N] [--page FILE]
+    machines.py DATA [--diagnose PROGRAM] [--out FOLDER] [--machine FOLDER]... [--jobs N] [--page FILE] [--kept]
 
 DATA has a folder for each machine (machines.toml: their names, files and sources). A machine whose folder is not there is left out, and
-the page says so. Reports are kept in --out; --page without a file name prints the page.
+the page says so. Reports are kept in --out. Without --page the page is printed. --kept makes the page of reports that are in --out already, and runs what is not.
 """
 
 import argparse
@@ -45,7 +45,11 @@ def copy_inputs(machine, data, folder):
 
 
 def diagnose(machine, options, out):
-    """The report, its seconds of processor time, or the line with which the program ended."""
+    """The report, its seconds of processor time (None: a kept report), or the line with which the program ended."""
+    kept = os.path.join(out, "report.json")
+    if options.kept and os.path.exists(kept):
+        with open(kept, encoding="utf-8") as file:
+            return json.load(file), None, ""
     with tempfile.TemporaryDirectory() as folder:
         model = copy_inputs(machine, options.data, folder)
         command = [options.diagnose, *machine["runs"], "--model", model, "--out", os.path.abspath(out), "--force",
@@ -132,15 +136,20 @@ def gap_table(report):
     return lines
 
 
-def signal_line(report):
-    """What is left of each signal over 0.4 s, in its own unit."""
+def left_of(signals):
+    parts = [f"{name} {number(one['held_out']['before'])} to {number(one['held_out']['after'])} {one['unit']}"
+             for name, one in signals.items()]
+    return "; ".join(parts) + "."
+
+
+def signal_lines(report):
+    """What is left of each signal, as given and with what was found, in its own unit."""
+    lines = []
     for horizon in report["gap"]["horizons"]:
-        if abs(horizon["seconds"] - 0.4) > 1e-9:
-            continue
-        parts = [f"{name} {number(one['held_out']['before'])} to {number(one['held_out']['after'])} {one['unit']}"
-                 for name, one in horizon["signals"].items()]
-        return "Over 0.4 s, root mean square: " + "; ".join(parts) + "."
-    return ""
+        if abs(horizon["seconds"] - 0.4) < 1e-9:
+            lines.append("Root mean square, as given to what was found: over 0.4 s " + left_of(horizon["signals"]))
+    lines.append("Over whole held-out runs, each from one start: " + left_of(report["gap"]["signals"]))
+    return lines
 
 
 def about(machine):
@@ -158,7 +167,8 @@ def section(machine, report, seconds, failure):
     lines = about(machine)
     if report is None:
         return lines + ["", f"hydro-diagnose ended without a report: `{failure}`"]
-    lines += ["", f"**{report['verdict']}** ({seconds:.0f} s of processor time): {report['sentence']}", ""]
+    took = "" if seconds is None else f", {seconds:.0f} s of processor time"
+    lines += ["", f"**{report['verdict']}** (hydro {report['version']}{took}): {report['sentence']}", ""]
     lines += ["| the recordings show | the gap finder |", "|---|---|"]
     missed = []
     for shows in machine["shows"]:
@@ -166,7 +176,7 @@ def section(machine, report, seconds, failure):
         if said is None or "wrong" in said:
             missed.append(shows["what"])
         lines.append(f"| {shows['what']} | {said or '**not said**'} |")
-    lines += ["", *gap_table(report), "", signal_line(report), ""]
+    lines += ["", *gap_table(report), "", *signal_lines(report), ""]
     extra = beyond(machine, report)
     if extra:
         lines.append("Named, though nothing known of the machine shows it: " + ", ".join(extra) + ".")
@@ -188,6 +198,15 @@ examples/machines/machines.py DATA --page docs/machines.md       # DATA has a fo
 """
 
 
+def head_lines():
+    """Its paragraphs as one line each."""
+    blocks = HEAD.strip().split("\n\n")
+    lines = []
+    for block in blocks:
+        lines += [*(block.splitlines() if block[0] == "`" else [block.replace("\n", " ")]), ""]
+    return lines[:-1]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", metavar="DATA")
@@ -197,6 +216,7 @@ def main():
     parser.add_argument("--machine", action="append", default=[])
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--page")
+    parser.add_argument("--kept", action="store_true")
     options = parser.parse_args()
     options.diagnose = os.path.abspath(options.diagnose)
     machines = read_machines()
@@ -207,7 +227,7 @@ def main():
     for path, what in ((options.data, "a folder of measurements"), (options.diagnose, "the program hydro-diagnose")):
         if not os.path.exists(path):
             sys.exit(f"machines.py: {path}: found no such file, allowed {what}")
-    lines = HEAD.splitlines()
+    lines = head_lines()
     for machine in machines:
         if options.machine and machine["folder"] not in options.machine:
             continue

@@ -53,8 +53,9 @@ TEST(MeasuredRatios, OfMotorAndArm) {
   EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 / turn, 100 / turn)}),
               ElementsAre(HasSubstr("per revolution?")));
   EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(-100, -100)}), ElementsAre(HasSubstr("the other way")));
-  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(108, 92)}),
-              ElementsAre(AllOf(HasSubstr("108 upwards and 92"), HasSubstr("unequal areas"))));
+  EXPECT_THAT(
+      RatioRemarks(Cylinder(), {Moved(108, 92)}),
+      ElementsAre(AllOf(HasSubstr("c/D = 108"), HasSubstr(" upwards and 92"), HasSubstr("unequal areas"))));
 }
 
 // Tests that what holds still, or was not measured, says nothing.
@@ -68,7 +69,7 @@ TEST(MeasuredRatios, NeedMotion) {
   // Without pressures the speeds still do.
   run = Moved(120, 120);
   run.p1 = {};
-  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), ElementsAre(HasSubstr("(1.2 times")));
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), ElementsAre(HasSubstr("(1.21 times")));
 }
 
 // Tests a load cell: its share, the friction, and a cell that is the wrong way round.
@@ -95,7 +96,7 @@ TEST(MeasuredRatios, OfAWinding) {
     run.motor_voltage.values.push_back(0.32 * run.voltage.values[k] + 0.086 * speed);
   }
   EXPECT_THAT(RatioRemarks(Cylinder(), {run}),
-              ElementsAre(AllOf(HasSubstr("R = 0.32"), HasSubstr("k_e = 0.08"))));
+              ElementsAre(AllOf(HasSubstr("R = 0.3"), HasSubstr("k_e = 0.08"))));
 }
 
 }  // namespace
