@@ -203,7 +203,7 @@ def head_lines():
     blocks = HEAD.strip().split("\n\n")
     lines = []
     for block in blocks:
-        lines += [*(block.splitlines() if block[0] == "`" else [block.replace("\n", " ")]), ""]
+        lines += [*(block.splitlines() if block.startswith("```") else [block.replace("\n", " ")]), ""]
     return lines[:-1]
 
 
@@ -239,7 +239,7 @@ def main():
         lines += section(machine, *diagnose(machine, options, out))
         print(f"{machine['folder']}: {time.monotonic() - begin:.0f} s", file=sys.stderr)
     page = "\n".join("\n".join(textwrap.wrap(line, 140, break_long_words=False, break_on_hyphens=False))
-                     if line and line[0] not in "|`#-" else line for line in lines) + "\n"
+                     if line and not line.startswith(("|", "```", "#", "-")) else line for line in lines) + "\n"
     if options.page is None:
         sys.stdout.write(page)
         return
