@@ -78,7 +78,9 @@ class RunChecklist {
   void AddSignal(const runs::SignalName& name) {
     const MeasuredSignal& signal = run_.*name.signal;
     if (!signal.measured()) {
-      if (name.signal != &MeasuredRun::pressure_ref) Add(State::kAbsent, name.ours, "not recorded");
+      // What few machines have is not missed.
+      if (name.signal != &MeasuredRun::pressure_ref && name.exported != nullptr)
+        Add(State::kAbsent, name.ours, "not recorded");
       return;
     }
     Range range = RangeOf(signal.values);
@@ -87,9 +89,10 @@ class RunChecklist {
       range = {range.low * shown->factor, range.high * shown->factor};
       unit = shown->to;
     }
-    if (name.signal == &MeasuredRun::voltage) unit = "V (the command that k_1 takes)";
+    if (name.signal == &MeasuredRun::voltage)
+      unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
     const bool moves = range.high > range.low;
-    Add(moves ? State::kGood : State::kLook, name.ours,
+    Add(moves ? State::kGood : State::kLook, runs::KeyIn(run_, name),
         Text(range, unit, MissingIn(signal.values)) + (moves ? "" : ": it never changes"));
   }
 

@@ -87,13 +87,20 @@ class ModeMachine {
   }
   void NewLoad() { started_ = false; }
 
+  // What acts from outside until the next call.
+  void Surround(const Surroundings& around) {
+    if (around == data().around) return;
+    equations_.Surround(around);
+    surrounded_ = true;
+  }
+
   // As Actuator::Advance.
   void Advance(double voltage, double until) {
     if (!std::isfinite(voltage)) throw ModelError("the voltage is not finite" + Where(equations_, *now_));
     if (!(until >= now_->time) || std::isinf(until)) {
       throw ModelError("cannot advance to t = " + std::to_string(until) + " s" + Where(equations_, *now_));
     }
-    if (voltage != voltage_ || !started_) Command(voltage);
+    if (voltage != voltage_ || !started_ || surrounded_) Command(voltage);
     while (now_->time < until) {
       double stop = std::min(until, known_stop_);
       if (remembers()) stop = std::min(stop, now_->time + kLongestStepToRead);
@@ -148,6 +155,7 @@ class ModeMachine {
 
   void Command(double voltage) {
     fresh_ = true;
+    surrounded_ = false;
     if constexpr (kForm == Form::kGeneral) {
       if (voltage != voltage_ || !commanded_) {
         equations_.Command(now_->time, voltage);
@@ -383,8 +391,9 @@ class ModeMachine {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
-  bool commanded_ = false;  // the equations know a voltage
-  bool fresh_ = true;       // mode or voltage is new
+  bool commanded_ = false;   // the equations know a voltage
+  bool fresh_ = true;        // mode or voltage is new
+  bool surrounded_ = false;  // what acts from outside is new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
   int events_ = 0;  // since events_since_, s

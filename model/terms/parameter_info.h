@@ -138,6 +138,8 @@ struct EffectInfo {
   // Runs that all have the bypass open and no pressure recorded, as of a bare motor, cannot show it: it would stand there for what is the
   // motor's.
   bool needs_oil = false;
+  // Runs without a recorded temperature say nothing of it.
+  bool needs_temperature = false;
   // The gap finder looks for it only where it is asked for by name: most machines do not have it, or runs tell it from what it is
   // confused with only on a machine that is known to have it.
   bool on_request = false;
