@@ -15,6 +15,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/text_file.h"
 #include "diagnose/evidence/checklist.h"
 #include "diagnose/recording/run_data.h"
@@ -78,7 +79,7 @@ std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, c
   for (const std::string& file : files) {
     runs.push_back(runs::ReadMeasuredRun(file, units));
     const std::string& caution = runs.back().caution;
-    if (!caution.empty()) std::fprintf(stderr, "hydro-diagnose: warning: %s\n", Printable(caution).c_str());
+    if (!caution.empty()) Remark("hydro-diagnose: warning: " + caution);
   }
   return runs;
 }
