@@ -46,29 +46,10 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   return config;
 }
 
-// The paper's where there is no such file, of which its reader tells.
-UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
-  const TomlNode* model = root.Find("model");
-  const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
-  if (name == nullptr || !name->is(TomlNode::Kind::kString) || name->text.empty()) return {};
-  const std::string path = PathBeside(file, name->text);
-  return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
-}
-
-// "in, lbf, psi", for people.
+// "in, lbf, psi", for people; of a linear arm also the arm's.
 std::string Named(const UnitSystem& units) {
-  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi");
-}
-
-// --set model.file gives a configuration another model. Its numbers stay those of the one that it names itself.
-void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
-  const UnitSystem was = UnitsOfModelIn(before, file), is = UnitsOfModelIn(root, file);
-  if (was == is) return;
-  const std::string number = FirstNumberThatChanges(root, was, is);
-  if (number.empty()) return;
-  throw KeyError(root, "model.file",
-                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
-                 "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
+  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi") +
+         (units.linear_arm ? " and an arm in " + units.UnitFor("rad", 1) : "");
 }
 
 // What the model file is relative to is what people get wrong.
@@ -89,6 +70,28 @@ void CheckHasNoJoints(const StackConfig& config) {
 }
 
 }  // namespace
+
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
+  const TomlNode* model = root.Find("model");
+  const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
+  if (name == nullptr || !name->is(TomlNode::Kind::kString) || name->text.empty()) return {};
+  const std::string path = PathBeside(file, name->text);
+  return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
+}
+
+void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
+  CheckNumbersKeepTheirUnits(root, root, UnitsOfModelIn(before, file), UnitsOfModelIn(root, file));
+}
+
+void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
+                                const UnitSystem& is) {
+  if (was == is) return;
+  const std::string number = FirstNumberThatChanges(numbers, was, is);
+  if (number.empty()) return;
+  throw KeyError(root, "model.file",
+                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
+                 "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
+}
 
 TomlNode ReadConfigDocument(const std::string& file) {
   const std::string text = ReadTextFile(file);
