@@ -15,6 +15,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/text_file.h"
 #include "diagnose/evidence/checklist.h"
 #include "diagnose/recording/run_data.h"
@@ -86,7 +87,7 @@ ReadFiles ReadRuns(const std::vector<std::string>& files, const UnitSystem& unit
       read.files.push_back(file);
     }
     const std::string& caution = read.runs.back().caution;
-    if (!caution.empty()) std::fprintf(stderr, "hydro-diagnose: warning: %s\n", Printable(caution).c_str());
+    if (!caution.empty()) Remark("hydro-diagnose: warning: " + caution);
   }
   return read;
 }

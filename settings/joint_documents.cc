@@ -187,15 +187,4 @@ std::vector<JointDocument> SplitJoints(const TomlNode& root, const std::vector<s
   return documents;
 }
 
-std::vector<JointDocument> SplitJoints(const TomlNode& before, const TomlNode& root,
-                                       const std::vector<std::string>& overrides) {
-  std::vector<JointDocument> documents = SplitJoints(root, overrides);
-  if (overrides.empty() || !HasJoints(before)) return documents;
-  const std::vector<JointDocument> given = SplitJoints(before, {});
-  for (size_t i = 0; i < std::min(given.size(), documents.size()); ++i) {
-    if (given[i].name == documents[i].name) documents[i].given = given[i].root;
-  }
-  return documents;
-}
-
 }  // namespace hydro::settings

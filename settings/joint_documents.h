@@ -13,8 +13,6 @@ namespace hydro::settings {
 struct JointDocument {
   std::string name;
   TomlNode root;  // the whole configuration of a stack with this joint alone
-  std::optional<TomlNode> given =
-      {};  // the same without what the command line changes, where it changes anything
 };
 
 // Whether the document describes several joints: it has a [[joint]] section.
@@ -34,9 +32,5 @@ std::optional<std::string> TakeJointChoice(std::vector<std::string>* overrides);
 // "joint.NAME." for that one. noise.seed counts up from joint to joint, so that their noise differs, unless a joint states its own.
 // Throws InputError.
 std::vector<JointDocument> SplitJoints(const TomlNode& root, const std::vector<std::string>& overrides);
-
-// The same with what is given: `before` is `root` without the overrides.
-std::vector<JointDocument> SplitJoints(const TomlNode& before, const TomlNode& root,
-                                       const std::vector<std::string>& overrides);
 
 }  // namespace hydro::settings

@@ -187,7 +187,8 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   }
   std::optional<StackConfig> chosen;
   std::vector<Sibling> siblings;
-  const std::vector<JointDocument> documents = SplitJoints(before, root, overrides);
+  const std::vector<JointDocument> documents = SplitJoints(root, overrides);
+  CheckUnitsOfJoints(before, root, documents, root.place);
   for (size_t i = 0; i < documents.size(); ++i) {
     if (documents[i].name == *joint) {
       chosen = StackOfDocument(root, documents, i, root.place);
@@ -227,7 +228,8 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   const TomlNode before = root;
   ApplyOverrides(others, &root);
   if (!HasJoints(root)) throw InputError(file + ": found no [[joint]] section, allowed one or more");
-  const std::vector<JointDocument> documents = SplitJoints(before, root, others);
+  const std::vector<JointDocument> documents = SplitJoints(root, others);
+  CheckUnitsOfJoints(before, root, documents, file);
   LimbConfig limb;
   for (size_t i = 0; i < documents.size(); ++i) {
     limb.joints.push_back({documents[i].name, StackOfDocument(root, documents, i, file)});

@@ -70,24 +70,10 @@ std::string ModelFileOf(const TomlNode& root, const std::string& file) {
   return path;
 }
 
-// The paper's where no model is named.
-UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
-  const std::string path = ModelFileOf(root, file);
-  return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
-}
-
-// Those of the model that another takes the place of; none where that cannot be read, because nothing asks for it.
-std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
-  try {
-    return UnitsOfModelIn(root, file);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
-// "in, lbf, psi", for people.
+// "in, lbf, psi", for people; of a linear arm also the arm's.
 std::string Named(const UnitSystem& units) {
-  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi");
+  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi") +
+         (units.linear_arm ? " and an arm in " + units.UnitFor("rad", 1) : "");
 }
 
 // A stack has one joint.
@@ -118,6 +104,20 @@ TomlNode ReadConfigDocument(const std::string& file) {
   return root;
 }
 
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
+  const std::string path = ModelFileOf(root, file);
+  return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
+}
+
+// Those of the model that another takes the place of; none where that cannot be read, because nothing asks for it.
+static std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
+  try {
+    return UnitsOfModelIn(root, file);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 // Its numbers stay those of the model that it names itself.
 void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
   if (ModelNameIn(root) == ModelNameIn(before)) return;
@@ -125,11 +125,16 @@ void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const 
   if (path.empty()) return;
   const std::optional<UnitSystem> was = UnitsOfReplacedModel(before, file);
   const UnitSystem is = LoadModelFile(path).units;  // a file that is no model has no units
-  if (!was || *was == is) return;
-  const std::string number = FirstNumberThatChanges(root, *was, is);
+  if (was) CheckNumbersKeepTheirUnits(root, root, *was, is);
+}
+
+void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
+                                const UnitSystem& is) {
+  if (was == is) return;
+  const std::string number = FirstNumberThatChanges(numbers, was, is);
   if (number.empty()) return;
   throw KeyError(root, "model.file",
-                 "a model in " + Named(is) + ", and numbers for one in " + Named(*was) + " (" + number + ")",
+                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
                  "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
 }
 

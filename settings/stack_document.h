@@ -20,6 +20,13 @@ StackConfig StackOf(TomlNode* root, const std::string& file);
 // mean another value; or where the model cannot be read.
 void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file);
 
+// The same for the numbers of a part of `root`, which are meant in the units `was`, with a model in `is`.
+void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
+                                const UnitSystem& is);
+
+// The units of the model that the configuration names; the paper's where it names none. Throws InputError where there is no such file.
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file);
+
 // The stack of one joint of the limb that `root` describes; none chosen is an error too. Throws InputError.
 StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
                          const std::optional<std::string>& joint);

@@ -9,6 +9,7 @@
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -314,11 +315,7 @@ void CheckUsable(const runs::MeasuredRun& run) {
 
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckUsable(run);
-  if (const double interval = MedianInterval(run.time); interval > kSlowestSamples) {
-    Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
-           "at most " + ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +
-               TimeUnitHint(interval));
-  }
+  runs::RequireFastSamples(run);
   RunData data;
   data.name = run.name;
   data.stimulus = StimulusOf(run);

@@ -6,6 +6,7 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/compare.h"
@@ -72,15 +73,13 @@ class ImportVerb {
     tables::Table table = tables::ReadTableWithoutUnits(table_);
     tables::TakeStructOf("time_s", &table);
     if (!table.layout.empty()) {
-      std::fprintf(stderr, "hydro-log: %s: read with %s\n", table_.c_str(), table.layout.c_str());
+      Remark("hydro-log: " + table_ + ": read with " + table.layout);
     }
     runs::ImportRun(table, settings::ProgramVersion(), out_);
     if (!table.left_out.empty()) {
       const tables::LeftOut& first = table.left_out.front();
-      std::fprintf(
-          stderr,
-          "hydro-log: warning: %s: left out what is no signal of the run, %zu in all; the first: %s: %s\n",
-          table_.c_str(), table.left_out.size(), Printable(first.name).c_str(), Printable(first.why).c_str());
+      Remark("hydro-log: warning: " + table_ + ": left out what is no signal of the run, " +
+             std::to_string(table.left_out.size()) + " in all; the first: " + first.name + ": " + first.why);
     }
     return 0;
   }
