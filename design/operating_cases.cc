@@ -75,6 +75,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
     mode.valve_2 = 1;
     state[model::kP2] = p.p_3;
   }
+  equations.SwitchEffects(state, &mode);  // the arm slips too: no gain moves one that sticks
   OperatingCase result;
   result.model = model::Linearise(equations, 0, 0, mode, state);
   result.scales = equations.scales();
