@@ -48,6 +48,12 @@ TEST(LoopCheck, OfAnArmThatSlips) {
   model.effects.push_back({"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 0}}, {}});
   const LoopCheck without = CheckLoops(Retuned({})), check = CheckLoops(Retuned({}, model));
   ASSERT_TRUE(check.position);
+  EXPECT_EQ(check.cases.size(), 27U) << "low and high pressures, and an arm that sticks";
+  for (const CheckedCase& one : check.cases) {
+    const bool sticks = one.name.ends_with(", arm sticks");
+    EXPECT_NE(sticks, one.position.has_value()) << one.name;
+    EXPECT_TRUE(one.pressure.stable) << one.name;
+  }
   EXPECT_NEAR(check.position->worst.gain, without.position->worst.gain, 0.01 * without.position->worst.gain);
   const LoopCheck fast = CheckLoops(Retuned({"position.c1=60000", "position.c2=5400"}, model));
   EXPECT_THAT(Describe(fast), HasSubstr("position loop: UNSTABLE"));
