@@ -96,8 +96,8 @@ class Rig {
 
   // Puts out zero volts by any means left. May be called at any time, any number of times.
   virtual OutputLeft Zero() noexcept = 0;
-  // What a Zero() that has to wait for its device's answer calls meanwhile, once: the others shall hear why no states come
-  // before they miss them.
+  // What a Zero() that has to wait for its device's answer calls meanwhile, once: the others shall hear why
+  // no states come before they miss them.
   void set_when_late(std::function<void()> tell) { when_late_ = std::move(tell); }
 
  protected:

@@ -98,7 +98,8 @@ class Searcher {
                judge_.config().model.description.parameters.k_2 * loop.damping_ratio;
     gains.c1 = slope * gains.c2;
     design::LoopCheck check = CheckOf(gains);
-    // A loop that is stable between two gains alone, because it has a drift to catch, may need more than that.
+    // A loop that is stable between two gains alone, because it has a drift to catch, may need more than
+    // that.
     for (int i = 0; i < kDoublings && check.position && check.position->worst.gain == 0; ++i) {
       gains.c2 *= 2;
       gains.c1 *= 2;

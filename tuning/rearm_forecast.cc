@@ -136,7 +136,8 @@ void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) 
   }
 }
 
-// The lowest and the highest point of the way back, where they are beyond its ends by more than a hundredth of it.
+// The lowest and the highest point of the way back, where they are beyond its ends by more than a hundredth
+// of it.
 void FindTurns(const Wanted& wanted, double now, RearmForecast* forecast) {
   constexpr double kMaterial = 0.01;
   ReferenceTurn lowest = {0, forecast->present}, highest = lowest;
@@ -210,7 +211,8 @@ std::string ReturnText(const RearmForecast& f) {
                             more == 1 ? "" : "s");
 }
 
-// An arm that moves goes on for a while: said where that is not the way of its reference, or a material part of it.
+// An arm that moves goes on for a while: said where that is not the way of its reference, or a material part
+// of it.
 std::string MovesText(const RearmForecast& f) {
   constexpr double kMaterial = 0.1;
   const double way = f.target - f.present;

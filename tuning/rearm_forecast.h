@@ -39,7 +39,8 @@ struct RearmForecast {
   double return_s = 0;   // in which plant time; 0: at once
   double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
   bool jumps = false;    // the reference jumps on that way
-  // Where that way leaves the range between its ends: it may begin in the other direction, or lead beyond its end.
+  // Where that way leaves the range between its ends: it may begin in the other direction, or lead beyond its
+  // end.
   std::vector<ReferenceTurn> turns;
   double speed =
       0;  // per second, at which the arm moves now; NaN: not measured, or no arm's angle is followed
@@ -61,8 +62,8 @@ struct HeardOfStack {
   std::optional<tuned_settings_t> in_force;  // none: as configured
   std::optional<arm_plan_t> plan;            // of a planner
   std::optional<state_t> state;
-  // The plant has said that a fault of its own holds the voltage. A state says so too; but where a device does not do as it is told, the
-  // state says what the device does.
+  // The plant has said that a fault of its own holds the voltage. A state says so too; but where a device
+  // does not do as it is told, the state says what the device does.
   bool holds = false;
 };
 

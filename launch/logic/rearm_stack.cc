@@ -68,7 +68,8 @@ class Asked {
   bool heard() const { return !plants_.empty(); }
   size_t plants() const { return plants_.size(); }
   bool answered() const { return answer_.has_value(); }
-  // All that a forecast is made of. A plant that holds the voltage says so once a second, and one that does not says nothing.
+  // All that a forecast is made of. A plant that holds the voltage says so once a second, and one that does
+  // not says nothing.
   bool described() const {
     const bool held = answer_ || heard_.holds || (heard_.state && heard_.state->command_tick < 0);
     return held && heard_.run && heard_.in_force;

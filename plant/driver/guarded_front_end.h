@@ -11,9 +11,10 @@
 
 namespace hydro::plant {
 
-// Connects. From then on each way out of this process in which it can still act asks the device for zero volts first (zero_output.h). After
-// any other way out its guardian asks (zero_guardian.h), which shares the open link; and should that be of no use either, the device hears
-// nothing and does so by itself (driver.watchdog_s).
+// Connects. From then on each way out of this process in which it can still act asks the device for zero
+// volts first (zero_output.h). After any other way out its guardian asks (zero_guardian.h), which shares the
+// open link; and should that be of no use either, the device hears nothing and does so by itself
+// (driver.watchdog_s).
 class GuardedFrontEnd : public FrontEndRig {
  public:
   // Throws InputError like FrontEndRig::Connect().

@@ -97,8 +97,8 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::string Describe() const;  // "serial:/dev/ttyACM0 (posix, firmware 1.0.0, 5000 ticks/s)"
 
  protected:
-  // Called before and after each turn: the link's descriptor, -1 while it is cut. Between two calls it is not closed and opened
-  // again.
+  // Called before and after each turn: the link's descriptor, -1 while it is cut. Between two calls it is not
+  // closed and opened again.
   virtual void OnLink(int /*descriptor*/) {}
 
  private:

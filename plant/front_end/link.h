@@ -37,9 +37,9 @@ class Link {
   int descriptor() const { return descriptor_; }  // to wait on; -1: closed
   const LinkTrouble& trouble() const { return trouble_; }
 
-  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other, whole: what
-  // `into` has no room for comes with the next call. A call takes a bounded number of them, so that no flood of empty
-  // ones holds it. A link whose other end has gone is closed.
+  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other,
+  // whole: what `into` has no room for comes with the next call. A call takes a bounded number of them, so
+  // that no flood of empty ones holds it. A link whose other end has gone is closed.
   size_t Read(std::span<uint8_t> into);
 
   // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
@@ -53,8 +53,8 @@ class Link {
   // For signal handlers: the frame as one system call, whatever waits.
   void WriteAtOnce(std::span<const uint8_t> frame) const noexcept;
 
-  // Until what this machine has to send on a port has left, a tenth of a second at most: its last close drops the rest.
-  // For signal handlers, too.
+  // Until what this machine has to send on a port has left, a tenth of a second at most: its last close drops
+  // the rest. For signal handlers, too.
   void AwaitGone() const noexcept;
 
   // Frames that Write() had to leave out because the link was too slow for them.

@@ -17,13 +17,15 @@ void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
 }
 
-// A device may put out less than it was told, where its range ends, and says so; never more, and never the other sign.
+// A device may put out less than it was told, where its range ends, and says so; never more, and never the
+// other sign.
 bool IsLess(const hydro_sample& sample, double told) {
   const auto voltage = static_cast<double>(sample.voltage);
   return sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
 }
 
-// What eq. (16) gives for the readings of a sample, and by how much rounding on another processor may change it.
+// What eq. (16) gives for the readings of a sample, and by how much rounding on another processor may change
+// it.
 struct Computed {
   double voltage;
   double rounding;
@@ -102,8 +104,8 @@ void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& ra
   if (faults->size() == before) LookAtReadBack(sample, now, faults);
 }
 
-// By a command so old that this is the fault, unless all of late told it zero volts; or by its own loop, if it was told of
-// late to act by it.
+// By a command so old that this is the fault, unless all of late told it zero volts; or by its own loop, if
+// it was told of late to act by it.
 bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
   const bool law = sample.source == HYDRO_SOURCE_LAW;
   if (law && !own_loop_) return false;
@@ -111,8 +113,8 @@ bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
                      [&](const Told& told) { return law ? told.by_law.has_value() : told.voltage != 0; });
 }
 
-// Holds for an arm that stands still as for one that moves: the sample has all that the law was computed from. What a change of
-// gains adds is the device's own word, and only believed while one passes.
+// Holds for an arm that stands still as for one that moves: the sample has all that the law was computed
+// from. What a change of gains adds is the device's own word, and only believed while one passes.
 void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
                             bus::Clock::TimePoint now, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);

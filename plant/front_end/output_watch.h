@@ -16,8 +16,8 @@ namespace hydro::plant {
 
 class OutputWatch {
  public:
-  // `patience`: how long the output may take to follow (limits.stale_input_s). `transfer`: within what time a change of
-  // gains passes on the device (limits.transfer_s).
+  // `patience`: how long the output may take to follow (limits.stale_input_s). `transfer`: within what time a
+  // change of gains passes on the device (limits.transfer_s).
   OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience,
               bus::Clock::Duration transfer);
 
@@ -29,9 +29,9 @@ class OutputWatch {
   void OnTold(uint32_t sequence, float pressure_ref, const hydro_gains& gains, bus::Clock::TimePoint now);
 
   // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
-  // told, of a loop on the device what eq. (16) gives for the readings of that very sample; or not zero though the device
-  // is not armed or no command of late can have made it so; or while the output reads back, twice in a row, a
-  // voltage that was not put out within the patience. `range`: what the device can put out.
+  // told, of a loop on the device what eq. (16) gives for the readings of that very sample; or not zero
+  // though the device is not armed or no command of late can have made it so; or while the output reads back,
+  // twice in a row, a voltage that was not put out within the patience. `range`: what the device can put out.
   void Look(const hydro_sample& sample, const hydro_voltage_range& range, bus::Clock::TimePoint now,
             std::vector<RigFault>* faults);
 

@@ -108,7 +108,8 @@ TEST(LoopMargins, DriftMayBeIgnored) {
   const LoopMargins m = MarginsOf(poles, kPeriod, Drift::kIgnored);
   EXPECT_TRUE(m.stable);
   EXPECT_NEAR(m.gain, 4, 0.1);
-  // A swing that grows within hundreds of the loop's own times is one too; a faster one, or a faster growth, is not.
+  // A swing that grows within hundreds of the loop's own times is one too; a faster one, or a faster growth,
+  // is not.
   const auto swinging = [](double radius, double angle) {
     return [=](double factor) {
       std::vector<Complex> all = DelayedIntegrator(factor * 0.25);

@@ -138,8 +138,8 @@ TEST_F(PlantRigTest, ARefusedZeroIsAFailure) {
               ::testing::HasSubstr("the output has not taken zero volts at the end, and reads back 1.25 V"));
 }
 
-// Tests that where the device has to be waited for at the end, the others are told of the end before, with its reason: they need not
-// wonder why no states come. What comes of it is this process's own failure.
+// Tests that where the device has to be waited for at the end, the others are told of the end before, with
+// its reason: they need not wonder why no states come. What comes of it is this process's own failure.
 TEST_F(PlantRigTest, TheEndIsSaidBeforeALateZero) {
   std::vector<stop_t> stops;
   bus_.Subscribe<stop_t>("HYDRO_STOP", [&](const stop_t& stop) { stops.push_back(stop); });

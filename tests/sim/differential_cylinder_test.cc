@@ -16,9 +16,10 @@ namespace {
 
 const std::string kConfig = std::string(HYDRO_SOURCE_DIR) + "/config/differential_cylinder.toml";
 
-// Tests that the cylinder goes out, in and out again under its load to within half a millimetre, without running into a limit, that
-// its loops are said to be stable with the margins that hydro-tune keeps, and that it does not hammer where the arm slips: gains
-// that only the friction of the seals stops from swinging change the sign of the voltage tens of times in a step.
+// Tests that the cylinder goes out, in and out again under its load to within half a millimetre, without
+// running into a limit, that its loops are said to be stable with the margins that hydro-tune keeps, and that
+// it does not hammer where the arm slips: gains that only the friction of the seals stops from swinging
+// change the sign of the voltage tens of times in a step.
 TEST(DifferentialCylinder, ReachesItsTargets) {
   const settings::StackConfig config = settings::LoadStackConfig(kConfig);
   const design::LoopCheck check = design::CheckLoops(config);

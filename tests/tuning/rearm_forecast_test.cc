@@ -257,8 +257,8 @@ TEST_F(RearmForecastTest, JumpsOnTheWay) {
   EXPECT_EQ(forecast_.target, -0.1);
 }
 
-// Tests a way back that leads the other way before it leads where it ends, and one that leads beyond that: the net move alone would tell
-// neither.
+// Tests a way back that leads the other way before it leads where it ends, and one that leads beyond that:
+// the net move alone would tell neither.
 TEST_F(RearmForecastTest, TheOtherWayFirst) {
   Run({"reference.steps=[[0.2, 0.3], [1.21, -0.3], [1.6, 0.3]]"});
   ExpectTrue();
@@ -278,7 +278,8 @@ TEST_F(RearmForecastTest, BeyondItsEnd) {
   EXPECT_GT(forecast_.turns[0].at, std::max(forecast_.present, forecast_.target));
 }
 
-// Tests an arm that moves when it is asked: the direction in which it goes on is told where it is not that of the reference.
+// Tests an arm that moves when it is asked: the direction in which it goes on is told where it is not that of
+// the reference.
 TEST(RearmForecast, AnArmThatMoves) {
   const settings::StackConfig config =
       settings::LoadStackConfig(HYDRO_TEST_CONFIG, {"reference.steps=[[0.1, 0.3]]"});

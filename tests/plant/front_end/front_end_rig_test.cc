@@ -234,8 +234,8 @@ TEST(FrontEndRigTest, OutputByNoCommand) {
   }
 }
 
-// Tests that a device which says that it is armed though nobody has asked it to arm is at fault, with zero volts too, and is asked to
-// disarm; and that one which was asked and told zero volts is not.
+// Tests that a device which says that it is armed though nobody has asked it to arm is at fault, with zero
+// volts too, and is asked to disarm; and that one which was asked and told zero volts is not.
 TEST(FrontEndRigTest, ArmedUnasked) {
   DeviceBench bench;
   ASSERT_TRUE(bench.Connect());

@@ -105,9 +105,9 @@ TEST_F(LoopOnDeviceTest, ReferenceLimit) {
   EXPECT_GT(limit, 90);
 }
 
-// Tests that a device whose voltage is not that of eq. (16) for its own readings is at fault in the very sample, with an arm that
-// stands still (all readings are constant here) as with one that moves: by its gain, its sign, a reference or a change of gains
-// of its own invention.
+// Tests that a device whose voltage is not that of eq. (16) for its own readings is at fault in the very
+// sample, with an arm that stands still (all readings are constant here) as with one that moves: by its gain,
+// its sign, a reference or a change of gains of its own invention.
 TEST_F(LoopOnDeviceTest, ALawThatLies) {
   using Lie = std::function<void(hydro_sample&)>;
   const std::vector<std::pair<Lie, std::string>> lies = {
@@ -140,8 +140,8 @@ TEST_F(LoopOnDeviceTest, ALawThatLies) {
   }
 }
 
-// Tests that a device that goes on by its law where it is told zero volts is at fault, and that what it puts out is then no
-// motor command's.
+// Tests that a device that goes on by its law where it is told zero volts is at fault, and that what it puts
+// out is then no motor command's.
 TEST_F(LoopOnDeviceTest, ALawThatDoesNotEnd) {
   for (int i = 0; i < 20; ++i) Follow(100, Law(0.02));
   const hydro_sample last = bench.device.sample;
