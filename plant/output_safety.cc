@@ -206,7 +206,8 @@ void OutputSafety::OnRearm(const rearm_t& request) {
     participant_.Release(code);
     codes += (codes.empty() ? "" : ", ") + std::string(code);
   }
-  Answer(request, rearm_t::ACCEPTED, codes.empty() ? "no fault is latched" : "ended " + codes);
+  if (ended.empty()) return Answer(request, rearm_t::NOTHING_LATCHED, "no fault is latched");
+  Answer(request, rearm_t::ACCEPTED, "ended " + codes);
 }
 
 void OutputSafety::Answer(const rearm_t& request, int8_t kind, const std::string& text) {

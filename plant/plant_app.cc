@@ -138,6 +138,7 @@ bool PlantApp::Begin() {
 }
 
 int PlantApp::End() {
+  rig_.set_when_late([this] { RequestStop(); });
   const OutputLeft left = rig_.Zero();
   const std::string failure = left.accepted ? "" : NotAtZero(left);
   if (!failure.empty()) {
@@ -150,9 +151,14 @@ int PlantApp::End() {
 }
 
 void PlantApp::OnRigError(const RigError& error) {
+  const auto explain = [&] {
+    participant_.Raise(error.code(), error.what(), NAN, NAN, true);
+    participant_.RequestStop(error.what(), 1);
+  };
+  rig_.set_when_late(explain);
   rig_.Zero();  // zero volts first, explanation second
-  participant_.Raise(error.code(), error.what(), NAN, NAN, true);
-  participant_.RequestStop(error.what(), 1);
+  rig_.set_when_late({});
+  explain();
 }
 
 // Ends the run for every process and gives the reason, unless somebody has done so already.

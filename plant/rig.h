@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/actuator.h"
@@ -94,6 +96,12 @@ class Rig {
 
   // Puts out zero volts by any means left. May be called at any time, any number of times.
   virtual OutputLeft Zero() noexcept = 0;
+  // What a Zero() that has to wait for its device's answer calls meanwhile, once: the others shall hear why
+  // no states come before they miss them.
+  void set_when_late(std::function<void()> tell) { when_late_ = std::move(tell); }
+
+ protected:
+  std::function<void()> when_late_;
 };
 
 }  // namespace hydro::plant

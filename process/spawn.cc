@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -134,7 +135,7 @@ class Descriptors {
     std::array<int, 2> fds{};
     prepared->nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (prepared->nothing < 0 || pipe2(fds.data(), O_CLOEXEC) != 0) {
-      throw StartError(std::string("cannot prepare a child: ") + strerror(errno));
+      throw StartError("cannot prepare a child: " + ReasonOf(errno));
     }
     prepared->report_read = fds[0];
     prepared->report_write = fds[1];
@@ -167,13 +168,28 @@ Spawned Spawn(const SpawnRequest& request) {
   Spawned spawned;
   const pid_t parent = getpid();
   spawned.pid = fork();
-  if (spawned.pid < 0) throw StartError(request.argv[0] + ": cannot be started: " + strerror(errno));
+  if (spawned.pid < 0) throw StartError(request.argv[0] + ": cannot be started: " + ReasonOf(errno));
   if (spawned.pid == 0) BecomeProgram(request, prepared, parent);
 
   setpgid(spawned.pid, spawned.pid);  // also here, so that it is done whichever process runs first
   descriptors.CloseWrite();
   spawned.warnings = Troubles(prepared.report_read, spawned.pid, request);
   return spawned;
+}
+
+std::string ReasonOf(int error) {
+  std::string text = strerror(error);
+  const auto limited = [&](int resource, const char* of_what, const char* option) {
+    rlimit limit{};
+    if (getrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+      return;
+    text += ": " + std::to_string(limit.rlim_cur) + of_what + " are allowed, allow more with `ulimit " +
+            option + "`";
+  };
+  if (error == EMFILE) limited(RLIMIT_NOFILE, "", "-n");
+  if (error == EAGAIN) limited(RLIMIT_NPROC, " processes of this user", "-u");
+  if (error == ENOMEM) limited(RLIMIT_AS, " bytes of memory", "-v");
+  return text;
 }
 
 }  // namespace hydro::process

@@ -28,4 +28,8 @@ struct Spawned {
 // that it prints on its way out does not kill it. Throws StartError.
 Spawned Spawn(const SpawnRequest& request);
 
+// Why there is no process, pipe or file, of such a call's errno: "Too many open files: 12 are allowed, allow
+// more with `ulimit -n`".
+std::string ReasonOf(int error);
+
 }  // namespace hydro::process

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "base/input_error.h"
 #include "base/remarks.h"
@@ -67,6 +68,14 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
         "%s: out of memory: it needs more than this process may have; a larger limit (ulimit -v) or a "
         "smaller input is needed\n",
         program.c_str());
+    return 1;
+  } catch (const std::system_error& error) {
+    // What a thread that could not be started says.
+    const bool resource = error.code() == std::errc::resource_unavailable_try_again;
+    std::fprintf(stderr, "%s: %s%s\n", program.c_str(), Printable(error.what()).c_str(),
+                 resource ? ": a process or thread that it needs was refused; larger limits (ulimit -v, "
+                            "ulimit -u) are needed"
+                          : "");
     return 1;
   } catch (const std::exception& error) {
     SayRemarks();

@@ -8,6 +8,7 @@
 #include "diagnose/recording/sample_interval.h"
 #include "runs/measured_signals.h"
 #include "runs/signal_unit.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -182,7 +183,7 @@ class MistakeList {
   bool IsPlausibleTime(double factor) const {
     const double seconds = run_.time.back() - run_.time.front();
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
-    return factor > 1 || factor * seconds > kShortestRun || interval > kSlowestSamples;
+    return factor > 1 || factor * seconds > kShortestRun || interval > runs::kSlowestSamples;
   }
   // Whether a machine can have read what the signals would be. Where they are as impossible already, anything may mend them.
   bool IsPlausible(const std::vector<SignalOfRun>& signals, const std::string& ours, double factor) const {

@@ -60,9 +60,10 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
 // "stopped: 3 processes have ended"
 std::string Stopped(size_t count);
 
-// Asks the plant (or driver) to end its latched faults; of a limb that of every joint at the same time, if all are heard.
-// Exit code 0 when each did or had none; 1 when one refused, or when of one none is heard or more than one.
-// The text ends with what the machine does by it.
+// Asks the plant (or driver) to end its latched faults; of a limb that of every joint at the same time, if
+// all are heard. Exit code 0 when one did at least and each other one did or had none; 1 when one refused,
+// when none had a latched fault, or when of one none is heard or more than one. The text ends with what the
+// machine does by it.
 OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing = {}, const Asker& asker = kHydroLaunch);
 

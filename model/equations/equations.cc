@@ -243,6 +243,16 @@ void Equations::Start(double pressure, double* state, Mode* mode) const {
   }
 }
 
+void Equations::SwitchEffects(const double* state, Mode* mode) const {
+  double rate[kMaxStates];
+  Terms<double> x;
+  Evaluate(0, 0, *mode, state, rate, &x);
+  for (const auto& effect : data_.effects) {
+    x.own = data_.own.data() + effect->first_parameter();
+    effect->StartMode(x, mode);
+  }
+}
+
 void Equations::Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
                       double* margin) const {
   EvaluatePoint<Form::kGeneral>(data_, time, voltage, mode, state, rate, margin);

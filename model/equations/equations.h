@@ -85,6 +85,10 @@ class Equations {
   // State with both pressures at `pressure`, and its mode: all at rest, valves closed.
   void Start(double pressure, double* state, Mode* mode) const;
 
+  // Sets the effects' switches of `mode` to where they are in this state: an arm that moves does not stick.
+  // Without a voltage.
+  void SwitchEffects(const double* state, Mode* mode) const;
+
   // d state/dt. `margin` (may be null) receives switches() numbers. Each is positive while its switch may
   // stay as it is and falls through 0 when it must change:
   //   pump slips: speed in its direction; pump sticks: friction limit less net torque

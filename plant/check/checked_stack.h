@@ -46,6 +46,7 @@ class CheckedStack {
   pid_t guardian() const;                       // its child hydro-zero; 0: none
   bool Ended();
   const process::ProcessEnd& end() const { return *end_; }
+  std::string LastLine() const;  // that it has printed; empty where it is shown
 
   int64_t states() const { return states_; }
   const state_t& state() const { return state_; }
@@ -70,6 +71,7 @@ class CheckedStack {
   std::optional<double> voltage_;
   int64_t sequence_ = 0;
   pid_t started_ = -1, driver_pid_ = -1;
+  int said_ = -1;  // a file in memory: what it prints where that is not shown
   std::optional<process::ProcessEnd> end_;
   int64_t states_ = 0;
   state_t state_{};

@@ -38,9 +38,11 @@ bool DriverTrial::IsZero(double voltage) { return std::fabs(voltage) < kZero_V; 
 void DriverTrial::AwaitReady() {
   if (stack_->Await([this] { return stack_->ready() || stack_->Ended(); }, kReady_s) && !stack_->Ended())
     return;
-  throw std::runtime_error(stack_->Ended()
-                               ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
-                               : "the driver has not said that it is ready");
+  const std::string said = stack_->LastLine();
+  throw std::runtime_error((stack_->Ended()
+                                ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
+                                : "the driver has not said that it is ready") +
+                           (said.empty() ? "" : "; it said: " + said));
 }
 
 void DriverTrial::Drive() {

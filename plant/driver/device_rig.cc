@@ -96,12 +96,7 @@ OutputLeft DeviceRig::Zero() noexcept {
 double DeviceRig::Drive(double voltage) {
   if (!std::isfinite(voltage)) voltage = 0;
   voltage = std::clamp(voltage, min_voltage_, max_voltage_);
-  if (!guardian_->Watches()) {
-    throw RigError(
-        "guardian_gone",
-        "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
-        "stands still; allowed is a run with one: find out what ended it, and start again");
-  }
+  guardian_->Require();
   const double output = Terminal(voltage);
   watch_.OnDriven(output, clock_.Now());
   device_->Drive(output);

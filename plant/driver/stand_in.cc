@@ -32,7 +32,9 @@ StandIn::StandIn(const settings::StackConfig& config) {
       process::FindOwnProgram(command.front(), folder, config.file + ": driver.simulated_device");
   request.folder = folder;
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw DeviceError("driver.simulated_device: cannot make a pipe for it");
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw DeviceError("driver.simulated_device: cannot make a pipe for it: " + process::ReasonOf(errno));
+  }
   request.out = ends[1];
   try {
     pid_ = process::Spawn(request).pid;

@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "plant/driver/zero_output.h"
+#include "plant/rig.h"
+#include "process/spawn.h"
 
 namespace hydro::plant {
 namespace {
@@ -56,8 +57,7 @@ void CloseAllBut(const std::vector<int>& files) {
 ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double zero) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
-    throw std::runtime_error(std::string("cannot create the output guardian's pipe: ") +
-                             std::strerror(errno));
+    throw std::runtime_error("cannot create the output guardian's pipe: " + process::ReasonOf(errno));
   }
   std::vector<int> kept = files;  // the child allocates nothing
   kept.push_back(ends[0]);
@@ -67,7 +67,7 @@ ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double
     const int error = errno;
     close(ends[0]);
     close(ends[1]);
-    throw std::runtime_error(std::string("cannot start the output guardian: ") + std::strerror(error));
+    throw std::runtime_error("cannot start the output guardian: " + process::ReasonOf(error));
   }
   if (pid_ == 0) {
     close(ends[1]);
@@ -89,6 +89,14 @@ bool ZeroGuardian::Watches() {
   // Its number may soon be another process's. A guardian that stands still is left for Dismiss().
   if (changed < 0 || !WIFSTOPPED(status)) pid_ = -1;
   return false;
+}
+
+void ZeroGuardian::Require() {
+  if (Watches()) return;
+  throw RigError(
+      "guardian_gone",
+      "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
+      "stands still; allowed is a run with one: find out what ended it, and start again");
 }
 
 void ZeroGuardian::Dismiss() {

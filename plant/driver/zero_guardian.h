@@ -25,6 +25,9 @@ class ZeroGuardian {
   // in each tick.
   bool Watches();
 
+  // Throws RigError "guardian_gone" from then on.
+  void Require();
+
   // Ends the guardian: the output is at zero and the device is about to be closed.
   void Dismiss();
 

@@ -82,7 +82,7 @@ void Connection::Receive(TimePoint now) {
     for (size_t at = 0; at < got; ++at) {
       if (hydro_receive(&receiver_, chunk[at], &frame)) Take(frame, now);
     }
-    if (got + Link::kLargestDatagram <= chunk.size()) return;
+    if (got < chunk.size()) return;
   }
 }
 
@@ -208,7 +208,7 @@ uint32_t Connection::CommandVoltage(int64_t host_tick, float voltage) {
   return sent_;
 }
 
-void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {
+uint32_t Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {
   hydro_frame frame{};
   frame.kind = HYDRO_PRESSURE;
   frame.body.command.fingerprint = fingerprint_;
@@ -216,6 +216,13 @@ void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hy
   frame.body.command.pressure_ref = pressure_ref;
   frame.body.command.gains = gains;
   Send(&frame);
+  return sent_;
+}
+
+void Connection::AskForZero(TimePoint now) {
+  if (now < next_zero_) return;
+  next_zero_ = now + kRequestPeriod;
+  Send(HYDRO_ZERO);
 }
 
 void Connection::KeepAlive(TimePoint now) {

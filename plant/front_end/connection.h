@@ -61,10 +61,11 @@ class Connection {
   // Asks the device to arm, unless it was asked a moment ago. It does so only where it has tripped `trips`
   // times.
   void AskToArm(TimePoint now, uint32_t trips);
-  // Commands for the computer's tick. The device's samples name that of a voltage by the sequence that is
-  // returned.
+  // Commands for the computer's tick. The device's samples name them by the sequence that is returned.
   uint32_t CommandVoltage(int64_t host_tick, float voltage);
-  void CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
+  uint32_t CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
+  // Asks the device to disarm, unless it was asked a moment ago.
+  void AskForZero(TimePoint now);
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);
   // Zero volts, until re-armed. Async-signal-safe.
@@ -97,6 +98,7 @@ class Connection {
   TimePoint next_open_{};
   TimePoint next_request_{};  // of HELLO, SETTINGS
   TimePoint next_arm_{};
+  TimePoint next_zero_{};
   uint32_t sent_ = 0;  // sequence of the newest frame sent
   hydro_receiver receiver_{};
   int64_t damaged_before_ = 0;  // by receivers before

@@ -49,7 +49,7 @@ FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& 
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       ticks_per_s_(config.plant.rate_hz),
       voltage_limit_(config.driver->voltage.limit_V),
-      output_(*config.driver, stale_time_) {
+      output_(*config.driver, stale_time_, bus::FromSeconds(config.limits.transfer_s)) {
   CheckSpeed();
 }
 
@@ -86,7 +86,9 @@ void FrontEndRig::CheckSpeed() const {
 
 bool FrontEndRig::Poll() {
   now_ = clock_.Now();
+  OnLink(connection_.link().descriptor());
   connection_.Poll(now_);
+  OnLink(connection_.link().descriptor());
   return connection_.is_up();
 }
 
@@ -127,6 +129,7 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   read_ = connection_.sample();
   FindSensorFaults(read_);
   FindDeviceFaults(read_);
+  FindUnaskedArming(read_);
   FindOldCommands(read_);
   trips_ = read_.trips;
   return Measured();
@@ -241,7 +244,7 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
 
 void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
-    output_.Look(sample, connection_.settings().sample_interval_ticks, now_, &faults_);
+    output_.Look(sample, Range(), connection_.settings().sample_interval_ticks, now_, &faults_);
   } else {
     Add("output_differs",
         fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,
@@ -257,6 +260,21 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
             "the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
             DescribeDeviceFaults(static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U)))));
   }
+}
+
+// Armed, it may drive at any moment. The answer to a request may be late, and is then a fault of its own.
+void FrontEndRig::FindUnaskedArming(const hydro_sample& sample) {
+  if (sample.state != HYDRO_ARMED) {
+    if (asked_to_arm_at_ && now_ - *asked_to_arm_at_ > 2 * stale_time_) asked_to_arm_at_.reset();
+    return;
+  }
+  if (asked_to_arm_at_) return;
+  Add("device_fault",
+      fmt::format("the front end says that it is armed with {:.4g} V and was not asked to arm; allowed is "
+                  "one that arms "
+                  "when it is asked: cut the amplifier's supply",
+                  sample.voltage),
+      sample.voltage, 0);
 }
 
 // Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that
@@ -282,7 +300,7 @@ void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
 
 double FrontEndRig::Drive(double voltage) {
   // The motor command of a loop on the device is its answer to the very state that was read.
-  acting_command_tick_ = read_.source == HYDRO_SOURCE_LAW ? tick_ : output_.CommandTick(read_);
+  acting_command_tick_ = output_.ActsByLaw(read_) ? tick_ : output_.CommandTick(read_);
   if (!connection_.is_up()) {
     arming_since_.reset();
     return read_.voltage;
@@ -293,9 +311,11 @@ double FrontEndRig::Drive(double voltage) {
     if (!arming_since_) arming_since_ = now_;
     // As it was read: a trip that has come since is a fault first, and whether to go on is not decided here.
     connection_.AskToArm(now_, read_.trips);
+    asked_to_arm_at_ = now_;
   } else {
     arming_since_.reset();
   }
+  if (armed && !asked_to_arm_at_) connection_.AskForZero(now_);
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
@@ -310,6 +330,13 @@ double FrontEndRig::Drive(double voltage) {
   return read_.voltage;
 }
 
+hydro_voltage_range FrontEndRig::Range() const {
+  hydro_board_facts facts{};
+  facts.output_min_V = connection_.identity().output_min_V;
+  facts.output_max_V = connection_.identity().output_max_V;
+  return hydro_reachable_voltages(&connection_.settings(), &facts);
+}
+
 void FrontEndRig::SendVoltage(double voltage) {
   const auto told = static_cast<float>(voltage);
   const uint32_t sequence = connection_.CommandVoltage(tick_, told);
@@ -317,7 +344,8 @@ void FrontEndRig::SendVoltage(double voltage) {
 }
 
 void FrontEndRig::SendFollowed() {
-  connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  const uint32_t sequence = connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  output_.OnTold(sequence, followed_->pressure_ref, followed_->gains, now_);
   followed_->sent = true;
 }
 
@@ -348,6 +376,7 @@ OutputLeft FrontEndRig::Zero() noexcept {
         connection_.Zero();
         next = clock_.Now() + kZeroRepeat;
       }
+      if (when_late_ && clock_.Now() - asked > stale_time_ / 2) std::exchange(when_late_, {})();
       if (!clock_.simulated()) bus::SleepUntil(clock_.Now() + kTurn);
       const bool up = Poll();
       const hydro_sample& sample = connection_.sample();

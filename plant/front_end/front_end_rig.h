@@ -87,8 +87,19 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   // The same request, once, and nothing awaited. Async-signal-safe.
   void ZeroAtOnce() const noexcept { connection_.Zero(); }
 
+  // The same, and returns when the frame has left this machine. Async-signal-safe.
+  void ZeroAndDrain() const noexcept {
+    connection_.Zero();
+    connection_.link().AwaitGone();
+  }
+
   const Connection& connection() const { return connection_; }
   std::string Describe() const;  // "serial:/dev/ttyACM0 (posix, firmware 1.0.0, 5000 ticks/s)"
+
+ protected:
+  // Called before and after each turn: the link's descriptor, -1 while it is cut. Between two calls it is not
+  // closed and opened again.
+  virtual void OnLink(int /*descriptor*/) {}
 
  private:
   struct Followed {
@@ -100,6 +111,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void CheckSpeed() const;
   bool MayDrive() const { return command_tick_ >= 0 && faults_.empty(); }
   bool Armed() const { return connection_.is_up() && read_.state == HYDRO_ARMED; }
+  hydro_voltage_range Range() const;
   void SendVoltage(double voltage);
   void SendFollowed();
   model::Measurement Measured();
@@ -107,6 +119,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void TakeTurn();
   void FindSensorFaults(const hydro_sample& sample);
   void FindDeviceFaults(const hydro_sample& sample);
+  void FindUnaskedArming(const hydro_sample& sample);
   void FindOldCommands(const hydro_sample& sample);
   void Add(std::string code, std::string text, double value = NAN, double limit = NAN);
 
@@ -130,8 +143,9 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<Followed> followed_;
   std::optional<int64_t> driving_since_;  // tick of the first command since the device was armed last
   std::optional<bus::Clock::TimePoint> arming_since_;
-  std::optional<uint32_t> trips_;  // of the device, at the last reading
-  int64_t resets_ = 0;             // at the last reading
+  std::optional<bus::Clock::TimePoint> asked_to_arm_at_;  // of late; while it is armed, when that was
+  std::optional<uint32_t> trips_;                         // of the device, at the last reading
+  int64_t resets_ = 0;                                    // at the last reading
   DeviceCount motor_count_, arm_count_;
 };
 

@@ -82,7 +82,7 @@ class SerialLink : public Link {
     return result;
   }
 
-  size_t BytesOnTheirWay(int port) const override {
+  size_t BytesOnTheirWay(int port) const noexcept override {
     int bytes = 0;
     return ioctl(port, TIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
   }
@@ -192,7 +192,7 @@ class UnixLink : public Link {
   }
 
   // What the device has not read yet, with what the kernel adds to it: nothing, or more than a frame.
-  size_t BytesOnTheirWay(int opened) const override {
+  size_t BytesOnTheirWay(int opened) const noexcept override {
     int bytes = 0;
     return ioctl(opened, SIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
   }

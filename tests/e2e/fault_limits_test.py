@@ -237,6 +237,15 @@ class RearmTest(fault_case.FaultCase):
         self.finish()
         self.assertRegex(self.rearm(1).stderr, "no plant or driver is heard")
 
+    # The same with limits.rearm = "explicit", for people and for programs.
+    def test_no_latched_fault(self):
+        self.start_explicit()
+        self.wait_for_voltage()
+        self.assertRegex(self.rearm(1).stderr, "refused by the plant: no fault is latched")
+        told = json.loads(self.run_program("hydro-launch", *self.run_.arguments, "--rearm", "--json", expect=1).stdout)
+        self.assertEqual((told["rearmed"], told["forecasts"]), (False, []))
+        self.finish()
+
     # Tests that a run that ends at zero volts, never re-armed, has failed.
     def test_ends_latched(self):
         self.start_explicit("--set", "limits.pressure=115", duration=1.2,

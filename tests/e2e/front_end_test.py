@@ -1,10 +1,12 @@
 """hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
 
 import json
+import os
 import re
 import signal
 import socket
 import struct
+import time
 
 import event_log
 import front_end
@@ -159,9 +161,39 @@ class LastLineTest(FrontEndCase):
         run["driver"].send(signal.SIGTERM)
         self.assertEqual(run["driver"].wait(), 0)
 
-    # Tests the end by a signal that nothing can catch.
+    def guardian(self, run):
+        with open(f"/proc/{run['driver'].pid}/task/{run['driver'].pid}/children", encoding="ascii") as children:
+            for child in children.read().split():
+                with open(f"/proc/{child}/comm", encoding="ascii") as name:
+                    if name.read() == "hydro-zero\n":
+                        return int(child)
+        self.fail("the driver has no guardian")
+
+    def zero_by_the_guardian(self, link):
+        front = front_end.FrontEnd(self, link)
+        run = self.run_by_hand(front.url, "driver.watchdog_s=0.9", "limits.stale_input_s=1.0")
+        front.wait_until_driven()
+        begun = time.monotonic()
+        run["driver"].kill()
+        front.wait_until_zero()
+        self.assertLess(time.monotonic() - begun, 0.6)  # with room for a busy machine
+
+    # Tests the end by a signal that nothing can catch: the guardian asks for zero volts, long before the device's watchdog would give them.
     def test_killed(self):
+        self.zero_by_the_guardian("udp")
+
+    def test_killed_on_a_terminal(self):
+        self.zero_by_the_guardian("pty")
+
+    def test_killed_on_a_socket(self):
+        self.zero_by_the_guardian("unix")
+
+    # Tests that nobody is needed for zero volts.
+    def test_killed_with_its_guardian(self):
         run = self.driven()
+        guardian = self.guardian(run)
+        run["driver"].send(signal.SIGSTOP)  # else it would ask for zero volts when its guardian has gone
+        os.kill(guardian, signal.SIGKILL)
         run["driver"].kill()
         self.front.wait_until_zero()
         front_end.wait(lambda: not self.armed(), "a sample that says so")
@@ -170,6 +202,14 @@ class LastLineTest(FrontEndCase):
         late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
         self.assertEqual(after["voltage"], 0)
         self.assertLess(age, round(self.watchdog * self.front.rate) + late)
+
+    # Tests that a driver without its guardian does not go on.
+    def test_guardian_gone(self):
+        run = self.driven()
+        os.kill(self.guardian(run), signal.SIGKILL)
+        self.assertEqual(run["driver"].wait(), 1)
+        self.assertIn("the guardian (hydro-zero)", run["driver"].stderr)
+        self.front.wait_until_zero()
 
     # Tests that an ordered end leaves the device disarmed, at once.
     def test_ordered_end(self):

@@ -3,6 +3,7 @@
 import fcntl
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -282,6 +283,25 @@ class OwnDriverInputTest(OwnDriverCase):
             process = self.check(*arguments, expect=2)
             self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
             self.assertIn(says, process.stderr)
+
+    # Tests limits of files, memory and processes: what is said names the limit, or has what the driver itself said of it.
+    def test_limits(self):
+        config = self.config()
+        limits = [(resource.RLIMIT_NOFILE, count) for count in (5, 6, 8, 9, 10, 11, 12)]
+        limits += [(resource.RLIMIT_AS, size << 20) for size in (36, 48)]
+        limits += [(resource.RLIMIT_NPROC, 1)] if os.geteuid() else []
+        met = set()
+        for which, limit in limits:
+            with self.subTest(which=which, limit=limit):
+                done = subprocess.run([stack.program("hydro-driver-check"), config, "--only", "start"], capture_output=True, text=True, timeout=60,
+                                      check=False, preexec_fn=lambda which=which, limit=limit: resource.setrlimit(which, (limit, limit)))
+                said = done.stderr + done.stdout
+                if done.returncode == 0 or "error while loading shared libraries" in said:
+                    continue
+                met.add(which)
+                self.assertIn(done.returncode, (1, 2))
+                self.assertRegex(said, "`?ulimit -[nuv]")
+        self.assertIn(resource.RLIMIT_NOFILE, met)
 
     # Tests that what a simulated device says is neither kept nor waited for without an end, by the check and by the driver.
     def test_device_that_talks(self):

@@ -8,6 +8,7 @@ import signal
 import subprocess
 
 import event_log
+import front_end_wire
 import outcome
 import stack
 
@@ -17,6 +18,14 @@ class ProcessStartCase(stack.TestCase):
         """Runs a program after `prepare` in its process; returns what subprocess.run does. A program that does not end fails here."""
         return subprocess.run([stack.program(argv[0]), *argv[1:]], cwd=self.folder, preexec_fn=prepare, timeout=stack.PATIENCE * 4,
                               check=False, stdin=subprocess.DEVNULL, text=True, errors="replace", **options)
+
+    def start_prepared(self, prepare, *argv):
+        """The same, for one that goes on until the end of the test."""
+        process = subprocess.Popen([stack.program(argv[0]), *argv[1:]], cwd=self.folder, preexec_fn=prepare, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
 
     def record(self):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "2", "-o", self.path("run.lcmlog"))
@@ -66,6 +75,21 @@ class ClosedStreamsTest(ProcessStartCase):
                          "hydro-tune", "hydro-limb"):
                 with self.subTest(name, closed=closed):
                     self.assertEqual(self.run_closed(closed, name, "missing.toml").returncode, 2)
+
+    # Tests that a front end which is a process puts frames and nothing else onto its link, whichever streams are closed.
+    def test_front_end(self):
+        for closed in ((1,), (2,), (0, 1), (1, 2), (0, 1, 2)):
+            with self.subTest(closed=closed):
+                path = self.path("".join(map(str, closed)) + ".socket")
+                board = self.start_prepared(lambda numbers=closed: [os.close(number) for number in numbers], "hydro-front-end", f"unix:{path}")
+                self.wait_until(lambda found=path: os.path.exists(found), "a front end that listens")
+                link = {int(name): os.readlink(f"/proc/{board.pid}/fd/{name}") for name in os.listdir(f"/proc/{board.pid}/fd")}
+                self.assertEqual([number for number, target in link.items() if target.startswith("socket:") and number < 3], [], link)
+                port = front_end_wire.Stream(path)
+                self.addCleanup(port.close)
+                computer = front_end_wire.Computer(port)
+                computer.connect(front_end_wire.settings(watchdog=200, sensors=[front_end_wire.sensor(1, 0), front_end_wire.sensor(1, 1)]))
+                self.assertEqual(computer.sample()["p1"], 1)
 
 
 class FullDiskTest(ProcessStartCase):

@@ -136,6 +136,16 @@ class TuneTest(stack.TestCase):
         time, _ = self.assert_runs_as_claimed(done, path)
         self.assertLess(time, 1.1 * shortest_settling(model_parameters()))
 
+    # Tests an arm whose seals may hold it, and a loop that is stable above a least gain only: gains are found, with margins, and those that
+    # the shipped configuration has keep them too.
+    def test_an_arm_that_sticks_and_slips(self):
+        done = self.tune("--samples", 0, "--goal", "step=15 mm", "--fixed-gains", config=stack.config("differential_cylinder.toml"))
+        rows = re.findall(r"(?m)^ +(pressure|position) +([\d.]+) +[\d.]+ +([\d.]+)", done.stdout)
+        self.assertEqual([name for name, _, _ in rows], ["pressure", "position"] * 2, done.stdout)
+        for name, gain, phase in rows:
+            self.assertGreaterEqual(float(gain), 2, name)
+            self.assertGreaterEqual(float(phase), 30, name)
+
     # Tests that progress goes to stderr and everything else to stdout.
     def test_progress(self):
         done = self.tune(*QUICK, "--fixed-gains")

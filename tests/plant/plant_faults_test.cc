@@ -478,6 +478,7 @@ TEST_F(PlantFaultsTest, Rearm) {
   EXPECT_EQ(answers_[3].kind, rearm_t::ACCEPTED);
   EXPECT_EQ(answers_[3].text, "ended excessive_motor_command");
   EXPECT_EQ(answers_[3].addressee, 5);
+  EXPECT_EQ(answers_[4].kind, rearm_t::NOTHING_LATCHED);
   EXPECT_EQ(answers_[4].text, "no fault is latched");
   ExpectVoltage(12, 6001, 0);
   ExpectVoltage(6003, 7000, 1.5);

@@ -89,7 +89,7 @@ void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLaw
     checked.pressure =
         MarginsOf([&](double factor) { return alone.Poles(factor, 0); }, alone.period(), Drift::kIgnored);
     Add(checked.pressure, point.name, &check->pressure);
-    if (!closes_position || !moves_arm) continue;
+    if (!closes_position || !moves_arm || point.arm_sticks) continue;
     const LinearStack both(model, timing, pressure, &position);
     checked.position = PositionMargins(both, position);
     Add(*checked.position, point.name, &check->position);

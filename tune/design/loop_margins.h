@@ -32,9 +32,9 @@ struct LoopMargins {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-// Whether a pole on the positive real axis, a motion that grows without oscillating, makes a loop unstable. Ignored, the
-// response far below the highest frequency with a gain of 1 does not count either: it belongs to whoever stops that
-// motion.
+// Whether a pole on the positive real axis, a motion that grows without oscillating, makes a loop unstable.
+// Ignored, what swings and grows far below the highest frequency with a gain of 1, and the response there,
+// does not count either: it belongs to whoever stops that motion.
 enum class Drift { kCounts, kIgnored };
 
 // What a reference goes through before it enters where the output is fed back, over z: c1/(c1 + c2 (1 - 1/z)/T) for a derivative

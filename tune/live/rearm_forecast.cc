@@ -136,6 +136,34 @@ void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) 
   }
 }
 
+// The lowest and the highest point of the way back, where they are beyond its ends by more than a hundredth
+// of it.
+void FindTurns(const Wanted& wanted, double now, RearmForecast* forecast) {
+  constexpr double kMaterial = 0.01;
+  ReferenceTurn lowest = {0, forecast->present}, highest = lowest;
+  const auto take = [&](double after, double wanted_then) {
+    const double value = forecast->present + after / forecast->return_s * (wanted_then - forecast->present);
+    if (value < lowest.at) lowest = {after, value};
+    if (value > highest.at) highest = {after, value};
+  };
+  for (int i = 0; i <= kSamples; ++i) {
+    const double after = forecast->return_s * i / kSamples;
+    take(after, wanted.At(now + after));
+  }
+  size_t breaks = 0;
+  wanted.BreaksBetween(now, now + forecast->return_s, [&](double t, double before, double after) {
+    take(t - now, before);
+    take(t - now, after);
+    return ++breaks < kMostBreaks;
+  });
+  const double least = kMaterial * (highest.at - lowest.at);
+  const auto [low, high] = std::minmax(forecast->present, forecast->target);
+  if (low - lowest.at > least) forecast->turns.push_back(lowest);
+  if (highest.at - high > least) forecast->turns.push_back(highest);
+  std::sort(forecast->turns.begin(), forecast->turns.end(),
+            [](const auto& a, const auto& b) { return a.after_s < b.after_s; });
+}
+
 // What the reference does after that.
 void FollowTheReference(const Wanted& wanted, double begin, RearmForecast* forecast) {
   forecast->lowest = forecast->highest = forecast->last = forecast->target;
@@ -168,6 +196,11 @@ std::string ReturnText(const RearmForecast& f) {
       fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit);
   if (f.return_s == 0) return text + " at once";
   text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
+  for (const ReferenceTurn& turn : f.turns) {
+    const bool beyond = (turn.at - f.target) * way > 0;
+    text += fmt::format(", by way of {} {} ({}) after {} s", ShortNumber(turn.at), f.unit,
+                        beyond ? "beyond that" : "the other direction", ShortNumber(turn.after_s));
+  }
   if (f.steps.empty()) return text;
   const ReferenceStep& first = f.steps.front();
   text += fmt::format(", and jumps by {}{} {} after {} s", first.by > 0 ? "+" : "", ShortNumber(first.by),
@@ -176,6 +209,20 @@ std::string ReturnText(const RearmForecast& f) {
   if (more == 0) return text;
   return text + fmt::format(" and {}{} more time{}", f.steps.size() < kMostSteps ? "" : "at least ", more,
                             more == 1 ? "" : "s");
+}
+
+// An arm that moves goes on for a while: said where that is not the way of its reference, or a material part
+// of it.
+std::string MovesText(const RearmForecast& f) {
+  constexpr double kMaterial = 0.1;
+  const double way = f.target - f.present;
+  const bool against = f.speed * (f.turns.empty() ? way : f.turns.front().at - f.present) <= 0;
+  const double least =
+      kMaterial * (f.return_s > 0 ? std::max(f.top_rate, std::fabs(way) / f.return_s) : std::fabs(way));
+  if (!std::isfinite(f.speed) || !against || std::fabs(f.speed) <= least) return "";
+  return fmt::format(
+      " and moves at {}{} {}/s, {}", f.speed > 0 ? "+" : "", ShortNumber(f.speed), f.unit,
+      way == 0 ? "in which it goes on at first" : "the other way, in which it goes on at first");
 }
 
 // What stands between the reference and the arm.
@@ -201,8 +248,8 @@ std::string TextOf(const RearmForecast& f, const Referred& referred, const setti
   const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
   const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
   std::string text =
-      fmt::format("{} is at {}; its reference comes back to {}{}: {}", referred.words, number(f.present),
-                  number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
+      fmt::format("{} is at {}{}; its reference comes back to {}{}: {}", referred.words, number(f.present),
+                  MovesText(f), number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
   const double spread = f.highest - f.lowest,
                least = 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest));
   if (spread > least) {
@@ -239,7 +286,8 @@ settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_se
 
 RearmForecast ForecastRearm(const HeardOfStack& heard) {
   if (!heard.state) return Unknown("no state is heard");
-  if (heard.state->command_tick >= 0) {
+  const bool says_it_acts = heard.state->command_tick >= 0;
+  if (says_it_acts && !heard.holds) {
     RearmForecast forecast;
     forecast.held = false;
     forecast.text = "nothing holds the voltage at zero: re-arming changes nothing";
@@ -259,10 +307,19 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
     forecast.unit = referred.unit;
     forecast.present = referred.present;
     forecast.return_s = config.limits.return_s;
+    forecast.speed = forecast.quantity == "arm_angle" ? heard.state->arm_speed : NAN;
     const Wanted wanted(config, heard);
     FollowTheReturn(wanted, heard.state->time, &forecast);
+    if (forecast.return_s > 0) FindTurns(wanted, heard.state->time, &forecast);
     FollowTheReference(wanted, heard.state->time + forecast.return_s, &forecast);
     forecast.text = TextOf(forecast, referred, config);
+    if (says_it_acts) {
+      forecast.text += fmt::format(
+          "; but the device says that it acts by a command, with {} V, though a fault holds the voltage at "
+          "zero: find out why "
+          "first",
+          ShortNumber(heard.state->voltage));
+    }
     return forecast;
   } catch (const InputError& error) {
     return Unknown(error.what());

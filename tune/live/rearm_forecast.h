@@ -23,6 +23,12 @@ struct ReferenceStep {
   double by = 0;       // less than the step that is configured: on its way, the reference follows it in part
 };
 
+// Where the reference turns round on its way back.
+struct ReferenceTurn {
+  double after_s = 0;  // the re-arm
+  double at = 0;
+};
+
 struct RearmForecast {
   bool held = true;      // the voltage is held at zero: otherwise a re-arm changes nothing
   bool known = false;    // otherwise only `text`, which says why not
@@ -33,6 +39,11 @@ struct RearmForecast {
   double return_s = 0;   // in which plant time; 0: at once
   double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
   bool jumps = false;    // the reference jumps on that way
+  // Where that way leaves the range between its ends: it may begin in the other direction, or lead beyond its
+  // end.
+  std::vector<ReferenceTurn> turns;
+  double speed =
+      0;  // per second, at which the arm moves now; NaN: not measured, or no arm's angle is followed
   std::vector<ReferenceStep> steps;  // where it does, if return_s is not 0; the first kMostSteps of them
   // What the reference does in the kForecast_s after that.
   double lowest = 0;
@@ -51,6 +62,9 @@ struct HeardOfStack {
   std::optional<tuned_settings_t> in_force;  // none: as configured
   std::optional<arm_plan_t> plan;            // of a planner
   std::optional<state_t> state;
+  // The plant has said that a fault of its own holds the voltage. A state says so too; but where a device
+  // does not do as it is told, the state says what the device does.
+  bool holds = false;
 };
 
 // If it is re-armed now.

@@ -16,6 +16,7 @@ namespace hydro::tune {
 namespace {
 
 constexpr int kSlopes = 14;
+constexpr int kDoublings = 10;
 constexpr std::array<double, 8> kGainShares = {1, 0.8, 0.63, 0.5, 0.4, 0.3, 0.22, 0.15};
 constexpr std::array<double, 7> kDecelerationShares = {0.7, 0.8, 0.88, 0.95, 1.02, 1.1, 1.17};
 
@@ -96,16 +97,28 @@ class Searcher {
     gains.c2 = 0.1 * loop.natural_frequency * drive_.inertia /
                judge_.config().model.description.parameters.k_2 * loop.damping_ratio;
     gains.c1 = slope * gains.c2;
-    for (int i = 0; i < 4;
-         ++i) {  // the margin is a factor on both, so that one step is exact where it is stable
-      const design::LoopCheck check = design::CheckLoops(With(judge_.config(), gains));
+    design::LoopCheck check = CheckOf(gains);
+    // A loop that is stable between two gains alone, because it has a drift to catch, may need more than
+    // that.
+    for (int i = 0; i < kDoublings && check.position && check.position->worst.gain == 0; ++i) {
+      gains.c2 *= 2;
+      gains.c1 *= 2;
+      check = CheckOf(gains);
+    }
+    // The margin is a factor on both, so that one step is exact where it is stable.
+    for (int i = 0; i < 4; ++i) {
       const double factor = check.position ? check.position->worst.gain / kLeastGainMargin : 0;
       if (!(factor > 0) || std::isinf(factor)) return 0;
       gains.c2 *= factor;
       gains.c1 *= factor;
       if (std::fabs(factor - 1) < 0.01) break;
+      check = CheckOf(gains);
     }
     return gains.c2;
+  }
+
+  design::LoopCheck CheckOf(const Gains& gains) const {
+    return design::CheckLoops(With(judge_.config(), gains));
   }
 
   void TryAll(const std::vector<Gains>& all, double from, double to) {

@@ -3,12 +3,14 @@
 #include "firmware/board.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "firmware/boards/converter_link.h"
 #include "firmware/boards/posix/link.h"
@@ -100,7 +102,18 @@ static int read_options(int argc, char** argv, const char** link, const char** c
   return 0;
 }
 
+/* Where descriptors 0 to 2 were closed, a link would get one of their numbers, and what is printed would be sent to the
+ * computer. Each is opened for the opposite of its use, so that using it still fails. */
+static bool open_standard_descriptors(void) {
+  for (int standard = 0; standard <= 2; ++standard) {
+    if (fcntl(standard, F_GETFD) >= 0) continue;
+    if (open("/dev/null", standard == 0 ? O_WRONLY : O_RDONLY) != standard) return false;
+  }
+  return true;
+}
+
 int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
+  if (!open_standard_descriptors()) return 1;
   const char *link = NULL, *converter_link = NULL;
   const int code = read_options(argc, argv, &link, &converter_link);
   if (code != 0) return code;

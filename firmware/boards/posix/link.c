@@ -12,6 +12,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+enum { MOST_EMPTY = 64 };
+
 static bool fails(const char* name, const char* url, const char* what) {
   fprintf(stderr, "hydro-front-end: %s: found %s: %s (%s)\n", name, url, what, strerror(errno));
   return false;
@@ -110,17 +112,23 @@ bool link_open(struct link* link, const char* name, const char* url) {
   return fails(name, url, "allowed are pty, pty:PATH, unix:PATH, udp:PORT and udp:ADDRESS:PORT");
 }
 
+/* Empty datagrams hide none that wait behind them, and no flood of them holds a tick. */
+static size_t receive_datagram(struct link* link, uint8_t* bytes, size_t capacity) {
+  for (size_t tries = 0; tries < MOST_EMPTY; ++tries) {
+    socklen_t size = sizeof link->asker;
+    const ssize_t count = recvfrom(link->fd, bytes, capacity, 0, (struct sockaddr*)&link->asker, &size);
+    if (count != 0) return count > 0 ? (size_t)count : 0;
+  }
+  return 0;
+}
+
 size_t link_receive(struct link* link, uint8_t* bytes, size_t capacity) {
   if (link->kind == LINK_NONE) return 0;
   if (link->kind == LINK_UNIX && link->fd < 0) {
     link->fd = accept4(link->listening, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (link->fd < 0) return 0;
   }
-  if (link->kind == LINK_UDP) {
-    socklen_t size = sizeof link->asker;
-    const ssize_t count = recvfrom(link->fd, bytes, capacity, 0, (struct sockaddr*)&link->asker, &size);
-    return count > 0 ? (size_t)count : 0;
-  }
+  if (link->kind == LINK_UDP) return receive_datagram(link, bytes, capacity);
   const ssize_t count = read(link->fd, bytes, capacity);
   const bool ended = count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
   if (link->kind == LINK_UNIX && ended) {

@@ -152,6 +152,15 @@ TEST_F(LimbTest, TwoFaultsAreRearmedOneAfterTheOther) {
     });
   }
   on_tick_ = [&](int64_t tick) {
+    if (tick == 600 || tick == 620) {  // the second joint's own, while the first one's holds it
+      fault_t fault{};
+      fault.session = 55;
+      fault.source = "pressure_ctrl";
+      fault.code = "nonfinite_state";
+      fault.active = tick == 600;
+      Joint& joint = *limb_->joints()[1];
+      joint.bus().Publish(bus::Channels("_" + joint.name()).Of<fault_t>(), fault);
+    }
     if (tick != 800 && tick != 801) return;
     Joint& joint = *limb_->joints()[static_cast<size_t>(tick - 800)];
     rearm_t request;
