@@ -6,7 +6,7 @@
 
 namespace hydro::diagnose {
 
-// s between samples: slower recorders do not show the motion of such a machine.
+// s between samples. Slower recorders do not show the motion of such a machine.
 inline constexpr double kSlowestSamples = 0.25;
 
 // The median time between successive samples, s; 1 when there are fewer than two.
@@ -14,8 +14,8 @@ double MedianInterval(const std::vector<double>& time);
 // The same over several recordings together.
 double MedianInterval(const std::vector<const std::vector<double>*>& times);
 
-// What a time column whose samples are that many s apart may be in, for a person: " (is the column in us? unit =
-// \"us\")"; empty where no unit makes them those of such a machine.
+// Suggests to a person which unit a time column may have if its samples are `interval` seconds apart: " (is
+// the column in us? unit = \"us\")". Empty where no unit gives an interval that suits such a machine.
 std::string TimeUnitHint(double interval);
 
 }  // namespace hydro::diagnose
