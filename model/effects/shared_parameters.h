@@ -1,11 +1,11 @@
-// Parameters that several effects have, described once.
+// Parameters that several effects have, each described once.
 #pragma once
 
 #include "model/effects/effect.h"
 
 namespace hydro::model {
 
-// tau: a first-order lag.
+// tau, of a first-order lag.
 inline ParameterInfo TimeConstant(double example) {
   return {.name = "tau",
           .unit = "s",
@@ -17,7 +17,7 @@ inline ParameterInfo TimeConstant(double example) {
           .example = example};
 }
 
-// periods: of a ripple over the motor's revolution.
+// periods, of a ripple over the motor's revolution.
 inline ParameterInfo PeriodsPerRevolution(double example) {
   return {.name = "periods",
           .unit = "1/rev",
