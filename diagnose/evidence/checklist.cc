@@ -22,8 +22,7 @@ using runs::MeasuredSignal;
 
 // Of the log evidence: ten to one.
 const double kClearSign = std::log(10.0);
-constexpr double kFarOff =
-    6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
+constexpr double kFarOff = 6;  // standard deviations of the noise, beyond the lowest of thousands of samples
 
 using maths::Range;
 using maths::RangeOf;
@@ -103,12 +102,13 @@ class RunChecklist {
       factor = shown->factor;
       unit = shown->to;
     }
-    // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
+    // Except for their noise, the one-way valves keep both sides above the charge pressure. Gauges of a
+    // charge of 5 bar read a fifth less than that.
     const double low = std::min(low1, low2);
     const double noise = kFarOff * std::max(EstimateNoise(run_.p1.values), EstimateNoise(run_.p2.values));
     const bool near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise;
     const bool same = std::max(low1, low2) < 1.5 * low + noise;
-    // Pressures of 4 to 20 bar that fit the model are pressures.
+    // Values of 4 to 20 bar that fit the model are pressures.
     const bool currents = !(near && same) && LooksLikeCurrents();
     Add(near && same ? State::kGood : State::kLook, "charge pressure",
         "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
@@ -120,7 +120,7 @@ class RunChecklist {
                       : ": is one side under load all the time, or its sensor's scale another?"));
   }
 
-  // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
+  // Looks at the columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
   bool LooksLikeCurrents() const {
     for (const MeasuredSignal* signal : {&run_.p1, &run_.p2}) {
       const Range range = RangeOf(signal->values);
@@ -149,7 +149,7 @@ class RunChecklist {
 
   using IsMistake = std::function<bool(const RecordingMistake&)>;
 
-  // How much better the balances close with a mistake undone; nothing where it is not possible.
+  // How much better the balances close with a mistake undone; nothing where the mistake is not possible.
   std::optional<double> GainOf(const IsMistake& is_mistake) const {
     const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
     const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
@@ -157,7 +157,8 @@ class RunChecklist {
     return mistakes_.Try({*mistake}).gain;
   }
 
-  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
+  // `turned` is the text for balances that close far better with these mistakes undone. If they close far
+  // worse, the sign is good.
   void AddSign(const std::string& item, const IsMistake& is_mistake, const std::string& good,
                const std::string& turned) {
     const std::optional<double> gain = GainOf(is_mistake);

@@ -12,7 +12,8 @@ namespace {
 
 using Run = runs::MeasuredRun;
 
-// Units in which newcomers record, as a sidecar names them; those of another quantity than a signal's are passed over.
+// Units in which newcomers record, as a sidecar names them. Units of another quantity than a signal's are
+// skipped.
 constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s",
                                   "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
                                   "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
@@ -28,7 +29,7 @@ std::string NamesOf(const std::vector<SignalOfRun>& signals) {
   return Enumerated(names) + (names.size() > 1 ? " are" : " is");
 }
 
-// The signals of these that the run has.
+// Those of the given signals that the run has.
 std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>& signals) {
   std::vector<SignalOfRun> measured;
   for (const SignalOfRun signal : signals) {
@@ -45,7 +46,7 @@ std::string UnitOf(const Run& run, SignalOfRun signal) {
   return "";
 }
 
-// The unit that a column is said to be in: ours where nothing is said; "" where its scale is no unit's.
+// The stated unit of a column: the model's where nothing is stated; "" where its scale belongs to no unit.
 template <size_t n>
 std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours,
                        const char* const (&units)[n]) {
@@ -57,7 +58,8 @@ std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours
   return "";
 }
 
-// What brings a column that is in `unit`, but is said to be in `stated`, to ours; empty where both are the same.
+// The factor from a column in `unit` that is stated to be in `stated` to the model's unit; empty where both
+// are the same.
 std::optional<double> FactorBetween(const std::string& unit, const std::string& ours,
                                     const std::string& stated) {
   const std::optional<double> factor = runs::UnitFactor(unit, ours);
@@ -67,7 +69,8 @@ std::optional<double> FactorBetween(const std::string& unit, const std::string& 
   return *factor / said;
 }
 
-// If these are counts that have the top bit of an integer of some size, which is a sign if they were signed: that size. Else 0.
+// If the values are counts of an integer of some size with the top bit set, which would be the sign bit of a
+// signed integer, returns that size; otherwise 0.
 int BitsOfUnsigned(const runs::MeasuredSignal& signal) {
   constexpr double kWhole = 1e-6;
   double largest = 0;
@@ -108,7 +111,7 @@ class MistakeList {
       if (!factor.has_value()) continue;
       RecordingMistake mistake;
       mistake.what = NamesOf(measured) + " in " + unit + NotIn(stated, ours);
-      // A reference is in the unit of the pressures; no simulation depends on it.
+      // A reference has the pressures' unit. No simulation depends on it.
       for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, *factor);
       mistake.unit = unit;
       list_.push_back(std::move(mistake));
