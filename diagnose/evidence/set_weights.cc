@@ -91,7 +91,8 @@ double ScoreOfNothing(const std::vector<ScoredSet>& finalists) {
 }
 
 // The mean over draws of the finalists' shares exp(Z_k), with
-//   Z_k = [S_k - ln pi_k + sum over runs (W_r - 1) l_kr - price (S_max - S_0) max(0, changes - 1)] / T + ln pi_k.
+//   Z_k = [S_k - ln pi_k + sum over runs (W_r - 1) l_kr - price (S_max - S_0) max(0, changes - 1)] / T
+//         + ln pi_k.
 // The odds pi are part of S and are not tempered. W_r is exponential with mean 1.
 VectorXd DrawnShares(const SetScores& scores, const std::vector<ScoredSet>& finalists, uint64_t seed) {
   const auto count = static_cast<Index>(finalists.size());

@@ -6,7 +6,7 @@ namespace hydro::model {
 
 namespace {
 
-// What is known of a parameter before its rig is measured.
+// Relative uncertainty of a parameter before its rig is measured.
 constexpr double kGeometry = 0.01;
 constexpr double kDataSheet = 0.05;
 constexpr double kFriction = 0.3;  // friction, leakage, damping
