@@ -16,7 +16,7 @@ namespace {
 constexpr double kTopQuantile = 0.995;
 // The quantile that counts as the largest pressure.
 constexpr double kTopPressureQuantile = 0.998;
-// Of the balance's main term. An effect of this size is not unusual, and one ten times as small or as large
+// The usual size of an effect, as a fraction of the balance's main term. One ten times as small or as large
 // costs little.
 constexpr double kUsualPart = 0.15;
 // A whole effect is next to nothing if it would take this many times its size to make the usual part.
@@ -161,7 +161,7 @@ namespace {
 
 // Adds the effect of flow columns on the torque balance through pressures that were not measured.
 void FollowPressures(ColumnMaker* maker, int jobs) {
-  // Of the squared column: the size of rounding errors where an effect does not act.
+  // Rounding errors where an effect does not act, as a fraction of the squared column.
   constexpr double kNothing = 1e-18;
   const size_t runs = maker->runs->size(), count = maker->table.columns.size();
   std::vector<std::vector<bool>> direct(runs, std::vector<bool>(count, false));

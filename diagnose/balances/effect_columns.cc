@@ -19,7 +19,8 @@ constexpr double kReadingTime = 3e-3;
 constexpr double kMovedBy = 0.5;
 // The step over which derivatives by such parameters are taken.
 constexpr double kMovedStep = 0.05;
-// Of a balance's size: an amount that causes a change this small is as good as a derivative.
+// As a fraction of a balance's size: a difference with an amount that causes such a small change is as good
+// as a derivative.
 constexpr double kSmallChange = 1e-4;
 
 model::ModelDescription With(const model::ModelDescription& given, const model::EffectDescription& effect) {

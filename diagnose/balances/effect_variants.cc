@@ -18,7 +18,7 @@ using model::Role;
 // Neighbours differ by less than such balances can distinguish.
 constexpr double kShortestTime = 5e-4, kTimeRatio = 1.4142135623730951;
 constexpr int kTimes = 13;
-// Of a sample: a shorter time does not show.
+// As a fraction of a sample: a shorter time does not show.
 constexpr double kLeastTime = 0.2;
 // Neighbours on a grid of one shape differ by no more than this factor, so that one of them approximates a
 // term between them to a few per cent.

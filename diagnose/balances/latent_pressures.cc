@@ -13,7 +13,7 @@ using model::KnownMotion;
 
 // s: the start is the median over this time.
 constexpr double kStartTime = 0.02;
-// Of the range of pressures: the step of finite differences.
+// The step of finite differences, as a fraction of the range of pressures.
 constexpr double kSlopeStep = 1e-4;
 
 constexpr double KnownMotion::*kPressureOf[] = {&KnownMotion::p1, &KnownMotion::p2};

@@ -20,7 +20,7 @@ namespace {
 constexpr double kArmPart = 0.5;
 // Levels are constants, so a few test functions in each tile suffice.
 constexpr double kLevelTiles = 2;
-// Of the largest pressure: the pressure of a held side is not completely still.
+// Motion of a held side's pressure, which is not completely still, as a fraction of the largest pressure.
 constexpr double kLevelNoise = 5e-4;
 // s, error of the timing between samples of different signals; for a slow recorder, a tenth of a sample.
 constexpr double kClock = 2e-4, kClockPart = 0.1;

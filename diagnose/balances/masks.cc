@@ -115,7 +115,7 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
 
 // Stretches, from and to (not included), in which the pump hardly turns, and not just because it reverses.
 std::vector<std::pair<size_t, size_t>> Rests(const RunMotion& run) {
-  // Of the largest speed.
+  // As a fraction of the largest speed.
   constexpr double kRest = 0.05;
   double largest = 0;
   for (const model::KnownMotion& at : run.at) largest = std::max(largest, std::abs(at.motor_speed));

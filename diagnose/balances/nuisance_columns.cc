@@ -22,10 +22,10 @@ constexpr double kOffCentre = 0.03;
 // Friction differs by this part between runs, and over a turn.
 constexpr double kFrictionByRun = 0.02;
 constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump given without friction
-// Of the largest pressure: the zeros of transducers drift by a thousandth of their range, and the charge
-// pressure changes with the temperature.
+// As a fraction of the largest pressure: the zeros of transducers drift by a thousandth of their range, and
+// the charge pressure changes with the temperature.
 constexpr double kPressureByRun = 1e-3;
-// Of the arm's torque: the load may differ by run.
+// As a fraction of the arm's torque: the load may differ by run.
 constexpr double kLoadByRun = 0.03;
 
 std::string OfRun(const std::string& name, size_t run) { return name + "[" + std::to_string(run) + "]"; }

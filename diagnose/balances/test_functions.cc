@@ -16,7 +16,7 @@ constexpr double kShortestPiece = 0.04;
 // s, rise time of a test function at the end of a piece: slower than the spread from the smoothing of
 // signals.
 constexpr double kRise = 0.008;
-// Of a tile: the overlap of neighbours.
+// The overlap of neighbours, as a fraction of a tile.
 constexpr double kOverlap = 0.45;
 // s: smoothing and derivatives spread a masked sample this far.
 constexpr double kSpread = 0.004;

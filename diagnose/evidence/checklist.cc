@@ -20,7 +20,7 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
-// Of the log evidence: ten to one.
+// A clear gain of the log evidence: ten to one.
 const double kClearSign = std::log(10.0);
 constexpr double kFarOff = 6;  // standard deviations of the noise, beyond the lowest of thousands of samples
 

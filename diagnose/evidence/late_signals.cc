@@ -35,7 +35,7 @@ constexpr double kHighest[] = {0.25, 0.5, 1, 2};
 constexpr double kTile = 2;
 // s: rows up to 2 Hz need no more samples.
 constexpr double kStep = 5e-3;
-// Of the given values: a factor of two or more means that nothing relies on them.
+// Relative to the given values: with a deviation of a factor of two or more, nothing relies on them.
 constexpr double kAsGoodAsFree = 1;
 constexpr int kMostSteps = 8;  // of Gauss-Newton, on rows up to one frequency
 

@@ -35,7 +35,7 @@ constexpr double kAboveNoise = 1;
 constexpr uint64_t kSeed = 5;
 // Relative: how wrong a sensor's gain may be without being a mistake.
 constexpr double kGain = 0.05;
-// Of a pressure's range: in this lowest part a one-way valve may be open, and no flow balances.
+// The lowest part of a pressure's range, in which a one-way valve may be open and no flow balances.
 constexpr double kLow = 0.05;
 
 double Relative(const model::ModelDescription& model, double model::Parameters::*member) {

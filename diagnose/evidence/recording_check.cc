@@ -15,7 +15,7 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
-// Of the log evidence, in addition to the odds: ten to one, after a thousand to one.
+// A clear gain of the log evidence, in addition to the odds: ten to one, after a thousand to one.
 const double kClear = std::log(10.0);
 // Two sets closer to each other than this explain a run alike.
 constexpr double kAlikeMistakes = 2;

@@ -32,7 +32,7 @@ constexpr double kIdealisedHeld = 0.0003;
 // and lags found 0.02 to 0.03 samples longer.
 constexpr double kInstant = 0.02;
 
-// Of the residuals' variance: smaller correlations are due to chance.
+// As a fraction of the residuals' variance: smaller correlations are due to chance.
 constexpr double kUncorrelated = 0.02;
 
 // How many successive residuals of a signal count as one: the integrated autocorrelation, summed until it

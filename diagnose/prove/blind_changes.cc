@@ -13,8 +13,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Of what an effect has to gain: with a smaller gain, refining the other values does not make up for the
-// rest.
+// As a fraction of what an effect has to gain: with a smaller gain, refining the other values does not make
+// up for the rest.
 constexpr double kWorthRefining = 0.5;
 // From the catalogue's starts, which differ by factors of 2 to 6.
 constexpr int kStepsOfARace = 2;

@@ -16,7 +16,7 @@ namespace {
 // If a round reduces the sum of squares by less than this part, another round is not worthwhile.
 constexpr double kWorthARound = 0.02;
 constexpr double kStepTolerance = 1e-3;
-// Of the median window's rms: a window's remainder counts up to this factor.
+// Relative to the median window's rms: a window's remainder counts up to this factor.
 constexpr double kMostOfTheMedian = 3;
 
 // What the model leaves of each channel in the median window; at least the noise.

@@ -21,7 +21,7 @@ constexpr size_t kFewSamples = 10000;
 // The number of changes that are fitted. Where the score test expects the same from two changes, a fit
 // decides.
 constexpr size_t kMostFittedChanges = 6;
-// Of the squared gap above the noise: a change has to take most of it.
+// The part of the squared gap above the noise that a change has to take: most of it.
 constexpr double kMost = 0.5;
 
 // What all runs together say about the free numbers.

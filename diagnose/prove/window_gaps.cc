@@ -33,7 +33,7 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the gap. Beyond this factor a window has diverged, and how far is chance.
+// A gap that changes by more than this factor belongs to a window that has diverged, and how far is chance.
 constexpr double kMostOfAWindow = 4;
 // Squared, in noise units: a prediction that is off by a billion has left the range of the equations, and its
 // distance means nothing.

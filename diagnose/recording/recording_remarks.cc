@@ -59,7 +59,7 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   }
 }
 
-// Of the motor's total path: less than this in the other direction is an overshoot.
+// As a fraction of the motor's total path: less than this in the other direction is an overshoot.
 constexpr double kOtherWay = 0.01;
 
 // How far the motor turned each way, and whether it turned at all, from its angle where no speed was

@@ -19,7 +19,7 @@ namespace {
 constexpr double kNoiseAndAsMuchAgain = 2;
 // In noise units, over whole runs, which have many residuals: the noise is known to about 10 %.
 constexpr double kWholeRunsAtTheNoise = 1.15;
-// Of the squared gap above the noise, for exact sensors.
+// As a fraction of the squared gap above the noise, for exact sensors.
 constexpr double kNearlyNothing = 0.01;
 
 // The horizon with a gap that is nearest to 0.4 s, by their ratio; null where no horizon has one.

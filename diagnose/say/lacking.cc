@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque", "flow_1",  "flow_2",
                                                                   "arm_torque",  "level_1", "level_2"};
 constexpr uint64_t kDrawSeed = 11;
-// Of the direction, -1 to 1: three standard deviations of the speed's noise.
+// A certain direction, on a scale of -1 to 1: three standard deviations of the speed's noise.
 constexpr double kSure = 0.997;
 // s: as smooth as the motion that a balance sees.
 constexpr double kMaskRise = 0.008;

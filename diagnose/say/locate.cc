@@ -13,7 +13,7 @@ namespace {
 constexpr BalanceKind kPlaces[] = {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2,
                                    BalanceKind::kArm};
 
-// Of the disagreement: a smaller share is not worth a line.
+// As a fraction of the disagreement: a smaller share is not worth a line.
 constexpr double kSmallestShare = 0.02;
 
 using AllSeen = std::array<Seen, std::size(kPlaces)>;

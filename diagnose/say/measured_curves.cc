@@ -123,8 +123,8 @@ MeasuredCurve CurveOf(BinnedCurve curve, const std::string& element, BalanceKind
           std::move(curve.found)};
 }
 
-// Of the square of what the points' `found` adds: the part that is no function of the variable, and its size
-// relative to the noise.
+// The part of the square of the points' `found` that is no function of the variable, and the size of that
+// square relative to the noise.
 struct OverVariable {
   double left = 1, energy = 0;
 };

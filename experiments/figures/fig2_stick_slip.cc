@@ -132,7 +132,7 @@ struct StickSlipStudy {
   double threshold_ratio = 0;
   std::vector<Scanned> at_rest;
 
-  // In closed form.
+  // The results in closed form.
   double creep_dp = 0;        // psi
   double leak_rate = 0;       // 1/s
   double slip_dp = 0;         // psi

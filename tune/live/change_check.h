@@ -27,7 +27,7 @@ struct Situation {
   bool held = false;       // the voltage is held at zero until a re-arm: limits may be loosened
   bool simulated = false;  // the rig is simulated: its noise may be changed
   bool undo =
-      false;  // somebody asks for what was in force before, whose loops the stack has already run with
+      false;  // an undo: asks for values that were in force before, with which the stack has already run
 };
 
 // A change that is ready to be proposed to the controllers, or the reason why it is refused.
