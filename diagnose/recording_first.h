@@ -22,6 +22,7 @@ struct CheckedRecordings {
   std::vector<std::string> damage;   // dropouts, spikes, cuts: one line each
   std::vector<std::string> repeats;  // slow sensors that repeat their values: one line each
   std::string load;                  // LoadRemark()
+  std::vector<std::string> ratios;   // RatioRemarks()
   std::string unjudged;              // runs that the given model does not predict at all; empty: none
   // The mistakes make a search useless, because it would explain them by physics.
   bool mend_first = false;

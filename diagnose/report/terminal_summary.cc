@@ -77,7 +77,9 @@ std::string LikelyLine(const Diagnosis& diagnosis) {
 
 std::string IntervalText(const Estimated& estimated) {
   if (!std::isfinite(estimated.low) && !std::isfinite(estimated.high)) return "no interval";
-  return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high);
+  const bool plain = estimated.unit.empty() || estimated.unit == "1";
+  return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high) +
+         (plain ? "" : " " + estimated.unit);
 }
 
 // Comments by the key of their line: "parameters.b", "effects.pump.stribeck.speed"; for the effect itself, by

@@ -80,11 +80,13 @@ struct ParameterInfo {
   // The base parameter to which this parameter is added as the same term. The gap finder frees one of the
   // two: the base parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
-  // A size at which the effect shows on the paper's rig (Table 1). Tests run every effect of the catalogue
-  // with it.
+  // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there. Tests
+  // run every effect of the catalogue with it.
   double example = 0;
   List list = List::kNone;
   bool optional = false;  // the list may be absent
+  // Why a value above max is refused, if that is not obvious.
+  const char* beyond_max = "";
 
   bool is_name() const { return list == List::kNone && !names.empty(); }
   bool is_number() const { return list == List::kNone && names.empty(); }
@@ -97,6 +99,11 @@ struct BaseParameter {
   double Parameters::*member;
   double uncertainty;  // relative standard deviation where a model states none
 };
+
+// The parameter whose value is farthest from the usual value of a machine, by a factor of at least a
+// thousand, in the direction that makes a model hard to simulate: "effects.amp.lag.tau = 1e-25 s, where
+// 0.0004 is usual". "" when there is none.
+std::string MostUnusual(const ModelDescription& model);
 
 // How well the model knows a base parameter (an index in BaseParameters()): its relative standard deviation,
 // as stated or by kind.
@@ -140,6 +147,8 @@ struct EffectInfo {
   // Set if the effect cannot be shown by runs that all have the bypass open and no recorded pressure, as runs
   // of a bare motor have. There it would only take the place of the motor's own effects.
   bool needs_oil = false;
+  // Runs without a recorded temperature say nothing about the effect.
+  bool needs_temperature = false;
   // The gap finder looks for the effect only when it is asked for by name. Either most machines do not have
   // it, or runs distinguish it from the effects that it is confused with only on a machine that is known to
   // have it.
