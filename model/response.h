@@ -41,7 +41,7 @@ struct Stimulus {
   double begin = 0;             // s, of the whole run: the effects' t counts from here
   std::vector<double> time;     // s, increasing
   std::vector<double> voltage;  // V, each held from its time to the next
-  // What acts from outside, at each time and in a straight line to the next; empty: nothing, all the time.
+  // The outside influences at each time, interpolated linearly between them; empty: none at any time.
   std::vector<Surroundings> around = {};
 };
 

@@ -162,7 +162,7 @@ void SetPressures(double sigma, RunMotion* run) {
   }
 }
 
-// What acts from outside, smoothed as all signals are.
+// Sets the outside influences, smoothed as all signals are.
 void SetAround(double sigma, RunMotion* run) {
   if (run->around.empty()) return;
   std::vector<double> force;
@@ -305,7 +305,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   RunMotion motion;
   motion.name = run.name;
   motion.options.shaft = run.stimulus.shaft;
-  // What moves an arm whose force is known leaves its balance as it is.
+  // If the force that drives the arm is known, the arm's balance is that of a free arm.
   if (run.stimulus.shaft == model::Shaft::kDriven && run.measured.arm_force.measured())
     motion.options.shaft = model::Shaft::kFree;
   motion.options.bypass = run.stimulus.bypass;

@@ -43,7 +43,7 @@ struct RunMotion {
   size_t stride = 1;               // the balances need only every stride-th instant
   std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
   std::vector<double> voltage;  // held from each instant to the next
-  std::vector<model::Surroundings> around;  // at each instant; empty: nothing was recorded of them
+  std::vector<model::Surroundings> around;  // at each instant; empty: none were recorded
   std::array<GridSignal, kGridChannels> signals;
   bool pressures = false;              // both are known, and the bypass does not connect the two sides
   bool arm_moves = false;              // and its motion was measured

@@ -79,7 +79,7 @@ class RunChecklist {
   void AddSignal(const runs::SignalName& name) {
     const MeasuredSignal& signal = run_.*name.signal;
     if (!signal.measured()) {
-      // What few machines have is not missed.
+      // Signals that few machines record are not reported as missing.
       if (name.signal != &MeasuredRun::pressure_ref && name.exported != nullptr)
         Add(State::kAbsent, name.ours, "not recorded");
       return;

@@ -21,7 +21,7 @@ constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi"
                                   "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
 constexpr const char* kTimeUnits[] = {"ms", "us", "ns", "min", "s"};
 constexpr double kShortestRun = 0.1;  // s
-// How large the largest reading of a run in which something moves can be.
+// Upper limits of the largest reading in a run in which something moves.
 struct Possible {
   const char* unit;
   double least, most;
@@ -32,7 +32,7 @@ constexpr double kSameScale = 1e-4;  // relative: scales are written with few di
 
 bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
 
-// As the run's sidecar calls it.
+// The signal's name in the run's sidecar.
 std::string NameIn(const Run& run, SignalOfRun signal) {
   for (const runs::SignalName& one : runs::kSignals) {
     if (one.signal == signal) return runs::KeyIn(run, one);
@@ -181,15 +181,15 @@ class MistakeList {
   std::vector<RecordingMistake> Take() { return std::move(list_); }
 
  private:
-  // Nobody records a run of a tenth of a second and less, unless what the sidecar says of the times is no run
-  // either.
+  // A factor that makes a run last a tenth of a second or less is not plausible, unless the stated times are
+  // not either because the samples are too far apart.
   bool IsPlausibleTime(double factor) const {
     const double seconds = run_.time.back() - run_.time.front();
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
     return factor > 1 || factor * seconds > kShortestRun || interval > kSlowestSamples;
   }
-  // Whether a machine can have read what the signals would be. Where they are as impossible already, anything
-  // may mend them.
+  // Whether a machine can produce the values that the signals would have. Where the stated values are already
+  // as impossible, any change may correct them.
   bool IsPlausible(const std::vector<SignalOfRun>& signals, const std::string& ours, double factor) const {
     for (const Possible& one : kPossible) {
       const std::optional<double> size = runs::UnitFactor(ours, one.unit);

@@ -160,9 +160,9 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
   return motion;
 }
 
-// The values at the samples, in straight lines where some are missing.
+// The values at the samples, interpolated linearly where some are missing.
 std::vector<double> Bridged(const std::vector<double>& time, std::vector<double> values) {
-  size_t before = values.size();  // the last sample that is there; none yet
+  size_t before = values.size();  // the last sample that is present; none yet
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     for (size_t k = before == values.size() ? 0 : before + 1; k < i; ++k) {
@@ -176,7 +176,7 @@ std::vector<double> Bridged(const std::vector<double>& time, std::vector<double>
   return values;
 }
 
-// What was recorded of what acts from outside; empty: nothing.
+// The recorded outside influences; empty: none were recorded.
 std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
   std::vector<model::Surroundings> around;
   if (!run.arm_force.measured() && !run.temperature.measured()) return around;

@@ -88,7 +88,7 @@ class ModeMachine {
   }
   void NewLoad() { started_ = false; }
 
-  // What acts from outside until the next call.
+  // Sets the outside influences until the next call.
   void Surround(const Surroundings& around) {
     if (around == data().around) return;
     equations_.Surround(around);
@@ -131,7 +131,7 @@ class ModeMachine {
   static constexpr double kMoment = 1e-6;       // s
   static constexpr double kEventWidth = 1e-11;  // s, within which an event is located
   static constexpr int kMostEvents = 10000;     // within kLongestStep of time
-  static constexpr int kMostSteps = 200000;     // the same: twenty times slower than real time
+  static constexpr int kMostSteps = 200000;     // within kLongestStep too: twenty times slower than real time
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   struct Nothing {};

@@ -12,7 +12,7 @@ class ModelError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The model is too fast for its integrator: a stretch of time took more steps than any machine needs.
+// The model is too fast for its integrator: a period of time took more steps than any machine needs.
 class TooManySteps : public ModelError {
  public:
   using ModelError::ModelError;
