@@ -123,7 +123,7 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
     if (info.needs_temperature && !HasTemperature(runs)) continue;
-    // a recorded temperature is a request
+    // A recorded temperature counts as a request.
     const bool on_request = info.on_request && !info.needs_temperature;
     if ((on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;

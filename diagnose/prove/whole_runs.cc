@@ -199,7 +199,7 @@ Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given,
                           : FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect);
   if (whole.best == whole.given || !taken) return near;
   for (const ProvedSet& set : near.sets) {
-    // a set that cannot be simulated over windows cannot be over runs
+    // A set that cannot be simulated over windows cannot be simulated over runs.
     if (!set.tested()) whole.sets.push_back(set);
   }
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));

@@ -22,11 +22,10 @@ constexpr std::ptrdiff_t kFew = 10;
 constexpr double kAboveSteps = 1.5;        // noise over resolution; below it, values repeat naturally
 constexpr double kSpike = 8;               // noise units beyond all neighbours
 constexpr double kSpreadOfNeighbours = 2;  // and this many times the neighbours' spread
-// and this many times the change that 19 of 20 samples do not reach
-constexpr double kChange = 5;
-constexpr size_t kNeighbours = 3;       // neighbours on each side
-constexpr double kGap = 5;              // median sample intervals without a row
-constexpr double kStepOfDamage = 0.05;  // of the command's range: a larger change counts as a step
+constexpr double kChange = 5;              // and this many times the change that 19 of 20 do not reach
+constexpr size_t kNeighbours = 3;          // neighbours on each side
+constexpr double kGap = 5;                 // median sample intervals without a row
+constexpr double kStepOfDamage = 0.05;     // of the command's range: a larger change counts as a step
 
 struct Stretch {
   size_t first, last;  // [first, last)

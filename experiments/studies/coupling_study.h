@@ -38,13 +38,11 @@ std::string Name(const Moving& moving);  // "upper_moves", "forearm_moves", "bot
 
 // One joint of one run. All signals have one value per tick, from the start of the path.
 struct JointRun {
-  std::vector<double> angle_error;  // rad, alpha - reference
-  std::vector<double> torque;       // in-lbf, k_2 dp
-  // in-lbf, k_2 dp less the torque that the reference motion needs at this joint
-  std::vector<double> torque_error;
-  std::vector<double> feedback;  // in-lbf, k_2 times the output of eq. (17)
-  // in-lbf, k_2 dp less the torque that the joint's own model needs for the reference
-  std::vector<double> coupling;
+  std::vector<double> angle_error;   // rad, alpha - reference
+  std::vector<double> torque;        // in-lbf, k_2 dp
+  std::vector<double> torque_error;  // in-lbf, k_2 dp less the torque for the reference motion
+  std::vector<double> feedback;      // in-lbf, k_2 times the output of eq. (17)
+  std::vector<double> coupling;      // in-lbf, k_2 dp less what the joint's own model needs for the reference
 
   double peak_angle_error = 0;
   double peak_torque_error = 0;

@@ -49,7 +49,7 @@ struct UncertainSpread {
   double friction_holds = 0;
   std::vector<Influence> influences;  // largest settling_effect first, without parameters that are 0
   Nearly nearly;
-  // numbers of the machines that settle last; those that never settle come first
+  // Numbers of the machines that settle last. Those that never settle come first.
   std::vector<size_t> slowest;
   std::vector<size_t> most_overshoot;
 };

@@ -90,7 +90,7 @@ class FastStepper {
 
   // The plain forms are smooth on the scale of their steps; effects may not be.
   static constexpr bool kMayBend = kForm == Form::kGeneral;
-  // of the tolerance, for one step, because the steps' errors add up
+  // The share of the tolerance for one step, because the errors of the steps add up.
   static constexpr double kErrorShare = 0.1;
   static constexpr int kStiffAfter = 50;
   static constexpr double kNearlyUnstable = 2.0;  // h |lambda|; the method is stable up to 2.78

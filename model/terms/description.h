@@ -31,8 +31,7 @@ struct ParametersOf {
   T p_3{};     // psi, accumulator pressure
   T k_2{};     // in-lbf/psi, arm torque per pressure difference, eq. (15)
   T J_a{};     // lbf-in-s^2, inertia of the arm, eq. (15)
-  // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); for a linear arm, its weight along its path
-  T mgl{};
+  T mgl{};     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); linear arm: weight along its path
 };
 using Parameters = ParametersOf<double>;
 

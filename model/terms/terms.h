@@ -54,8 +54,7 @@ struct Terms {
   T outer_flow_1, outer_flow_2;  // from each side to the accumulator
   T valve_flow_1, valve_flow_2;  // the same through the valves of effects, at the actuator
   T arm_torque;                  // on the arm, eq. (15)
-  // the same without the arm's own friction: the torque that friction must hold at rest
-  T arm_load;
+  T arm_load;                    // the same without the arm's own friction, which must hold it at rest
 
   // Values that an effect keeps for its own switches:
   T torque_asked;   // of the motor, before motor.speed_torque_limit or motor.current_limit reduces it

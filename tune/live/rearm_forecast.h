@@ -20,7 +20,7 @@ namespace hydro::tuning {
 // A jump of the reference on its way back.
 struct ReferenceStep {
   double after_s = 0;  // after the re-arm
-  // less than the configured step: during the return, the reference follows it only in part
+  // Smaller than the configured step: during the return, the reference follows the step only in part.
   double by = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kPressure = "pressure_ctrl", kPosition = "position_ctrl", kPlant = "plant";
 
 constexpr std::string_view kReach = "within the limits";
-// wider only while the voltage is held at zero
+// A limit may become wider only while the voltage is held at zero.
 constexpr std::string_view kTighter = "> 0, as in force or less";
 constexpr std::string_view kSimulated = ">= 0";  // for a simulated rig only
 
