@@ -56,7 +56,7 @@ void Add(const LoopMargins& margins, const std::string& name, std::optional<Chec
   all.worst = WorstOf(all.worst, margins);
 }
 
-// Where the samples of both loops follow a pattern, no single response describes the loop: only its poles do.
+// If the samples of both loops follow a pattern, no single response describes the loop; only its poles do.
 LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
   if (stack.position_sampled_once()) {
     const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {

@@ -14,8 +14,8 @@ using PolesOf = std::function<std::vector<Complex>(double)>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-8;    // an integrator's pole may come out this far beyond the unit circle
-constexpr double kLeastAngle = 1e-6;  // rad a period: the lowest frequency
-constexpr double kSlow = 0.05;        // of the highest crossover: below it is drift
+constexpr double kLeastAngle = 1e-6;  // rad per period: the lowest frequency
+constexpr double kSlow = 0.05;        // of the highest crossover: a response below it is drift
 constexpr double kLeastGain = 1e-9;   // loop gains below this are rounding errors
 
 bool Drifts(const Complex& pole, double slow) {
@@ -26,13 +26,13 @@ double Radius(const std::vector<Complex>& poles) {
   double radius = 0;
   for (const Complex& pole : poles) {
     const double size = std::abs(pole);
-    if (std::isnan(size)) return std::numeric_limits<double>::infinity();  // what is unknown is not stable
+    if (std::isnan(size)) return std::numeric_limits<double>::infinity();  // an unknown loop is not stable
     radius = std::max(radius, size);
   }
   return radius;
 }
 
-// What decides about stability.
+// The criterion for stability.
 class Stability {
  public:
   // `slow`, rad a period: where drift is ignored, what swings and grows more slowly than that is drift, too.
@@ -51,7 +51,7 @@ class Stability {
   double slow_;
 };
 
-// Takes out what is in both lists: poles that the loop does not move.
+// Removes poles that are in both lists, because the loop does not move them.
 void Cancel(std::vector<Complex>* a, std::vector<Complex>* b) {
   for (size_t i = a->size(); i-- > 0;) {
     const auto twin = std::find_if(b->begin(), b->end(),
@@ -77,7 +77,7 @@ class Sweep {
     return product - 1.0;
   }
 
-  // Where `value` of the response changes its sign, in rad a period.
+  // Where `value` of the response changes its sign, in rad per period.
   std::vector<double> Crossings(double (*value)(const Complex&)) const {
     std::vector<double> crossings;
     for (size_t i = 0; i + 1 < angles_.size(); ++i) {
@@ -94,7 +94,8 @@ class Sweep {
     return crossings;
   }
 
-  // rad a period: the highest at which the closed loop behind `filter` still has a gain of 1/sqrt(2).
+  // rad per period: the highest frequency at which the closed loop behind `filter` still has a gain of
+  // 1/sqrt(2).
   double Bandwidth(const Filter& filter) const {
     const auto passes = [&](double angle) {
       const Complex z = std::polar(1.0, angle);
@@ -120,7 +121,7 @@ class Sweep {
   }
 
  private:
-  // Evenly on a logarithmic scale, and closely around each resonance.
+  // Evenly on a logarithmic scale, and more closely around each resonance.
   void PlaceAngles() {
     constexpr int kSteps = 200;
     angles_.reserve(kSteps + 1 + 22 * closed_.size());
@@ -142,8 +143,8 @@ class Sweep {
   }
 
   std::vector<Complex> closed_, open_;
-  std::vector<double> angles_;  // rad a period
-  std::vector<Complex> loop_;   // the open loop's response there
+  std::vector<double> angles_;  // rad per period
+  std::vector<Complex> loop_;   // the open loop's response at these
 };
 
 struct Candidate {
@@ -151,7 +152,7 @@ struct Candidate {
   double angle = 0;
 };
 
-// The factors at which a pole may lie on the unit circle: where the response is real and negative.
+// The factors at which a pole may lie on the unit circle, where the response is real and negative.
 std::vector<Candidate> CriticalFactors(const Sweep& sweep) {
   std::vector<double> angles = sweep.Crossings([](const Complex& loop) { return loop.imag(); });
   angles.push_back(0);
@@ -169,7 +170,7 @@ std::vector<Candidate> CriticalFactors(const Sweep& sweep) {
   return candidates;
 }
 
-// A stable loop: the nearest factors beyond which it is not.
+// For a stable loop: the nearest factors beyond which it is unstable.
 void GainLimits(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
   const auto fails = [&](double factor) { return !stability.Holds(factor); };
@@ -186,7 +187,7 @@ void GainLimits(const Stability& stability, const std::vector<Candidate>& candid
   }
 }
 
-// An unstable loop: how much less gain is stable.
+// For an unstable loop: the lower gain that is stable.
 void StableGain(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
   margins->gain = 0;

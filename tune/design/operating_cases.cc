@@ -51,7 +51,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   model::ModelDescription description = section.description;
   const model::Parameters& p = description.parameters;
   if (sides != Sides::kBoth) {
-    // A side that its valve holds is held by the ideal one.
+    // The ideal valve holds a side that is held by its valve.
     std::erase_if(description.effects, [](const auto& effect) { return model::ReplacesValves({effect}); });
   }
   const bool free = section.shaft == model::Shaft::kFree;
@@ -86,7 +86,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   result.model = model::Linearise(equations, 0, 0, mode, state);
   result.scales = equations.scales();
   if (running.high_pressure && free) {
-    // What leaks there would make the pressures depend on the arm's angle as they never do in equilibrium.
+    // Leakage there would make the pressures depend on the arm's angle, which they never do in equilibrium.
     const auto column =
         static_cast<size_t>(equations.data().actuator_angle_state) * static_cast<size_t>(result.model.states);
     result.model.A[column + model::kP1] = result.model.A[column + model::kP2] = 0;

@@ -15,10 +15,10 @@ namespace {
 
 using settings::ReferenceSignal;
 
-constexpr int kSamples = 400;  // of the way back, and of the time after it
+constexpr int kSamples = 400;  // of the return, and of the time after it
 constexpr size_t kMostBreaks = 100'000;
 
-// What a reference refers to, in words and in the units of the model.
+// The quantity that a reference refers to, in words and in the model's units.
 struct Referred {
   const char* quantity;
   const char* words;
@@ -44,7 +44,7 @@ Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
   return {};
 }
 
-// Where a plan leads at a time (position_ctrl/plan_follower.cc: cubics between its points).
+// The angle that a plan prescribes at a time (position_ctrl/plan_follower.cc: cubics between its points).
 double PlannedAt(const arm_plan_t& plan, double time) {
   const auto behind = std::upper_bound(plan.time.begin(), plan.time.end(), time);
   if (behind == plan.time.begin()) return plan.arm_angle.front();
@@ -69,7 +69,7 @@ class Wanted {
     } else {
       initial_ = spec.initial;
       if (heard.plan && !heard.plan->time.empty()) plan_ = &*heard.plan;
-      // A plan that nothing follows is followed no further.
+      // If no newer plan arrives in time, the reference holds.
       if (plan_ != nullptr && plan_->tick >= 0 && heard.run->rate_hz > 0)
         holds_from_ = static_cast<double>(plan_->tick) / heard.run->rate_hz + spec.delay_s + spec.timeout_s;
     }
@@ -80,8 +80,8 @@ class Wanted {
     return plan_ == nullptr ? initial_ : PlannedAt(*plan_, std::min(time, holds_from_));
   }
 
-  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it says
-  // false. There the reference may jump.
+  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it
+  // returns false. The reference may jump at a break.
   template <class Take>
   void BreaksBetween(double begin, double end, Take take) const {
     if (!trajectory_) return;
@@ -93,7 +93,7 @@ class Wanted {
  private:
   double from_;  // s, when the reference begins
   std::unique_ptr<trajectory::Trajectory> trajectory_;
-  double initial_ = 0;  // of a planner's, before its first plan
+  double initial_ = 0;  // of a planner's reference, before its first plan
   const arm_plan_t* plan_ = nullptr;
   double holds_from_ = INFINITY;  // s
 };
@@ -109,7 +109,7 @@ bool JumpsBetween(const Wanted& wanted, double begin, double end) {
   return jumps;
 }
 
-// The way back: a straight line from where it is to where it is wanted
+// The return: a straight line from the current reference to the wanted one
 // (position_ctrl/law/reference_return.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
@@ -267,7 +267,7 @@ RearmForecast Unknown(const std::string& why) {
   return forecast;
 }
 
-// The name of a position loop of the user's own; empty: it is ours.
+// The name of a position loop that the user wrote; empty: it is the project's.
 std::string OwnPositionLoop(const settings::StackConfig& config) {
   for (const settings::ProcessSection& process : config.processes) {
     if (!process.command.empty() && process.role == "position_ctrl") return process.command.front();

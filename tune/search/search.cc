@@ -32,11 +32,12 @@ double Cost(const Goals& goals, const Tried& tried) {
   if (misses > 0) return 1e3 * misses + speed;
   const bool fast_enough = goals.bandwidth_hz || goals.settling_s;
   if (!fast_enough) return speed;
-  // What never settles is no proposal, whatever its margins are.
+  // Gains with which the arm never settles are no proposal, whatever their margins are.
   return 1 / tried.check.position->worst.gain + 0.01 * speed + (tried.steps.ratio >= kNeverSettled ? 1 : 0);
 }
 
-// The straight line of eq. (17) that brakes in time from a step, 1/s: full speed half-way, at the largest deceleration.
+// The straight line of eq. (17) that brakes in time from a step, 1/s: full speed half-way, with the largest
+// deceleration.
 double SlopeFor(const design::RigidDrive& drive, double step) {
   return 2 * std::sqrt(drive.torque / drive.inertia / step);
 }
@@ -64,7 +65,7 @@ class Searcher {
   }
 
  private:
-  // Slopes, then for each the gains up to the one that keeps the gain margin, then decelerations.
+  // Loops over slopes; for each over gains up to the one that keeps the gain margin; then over decelerations.
   std::vector<Gains> Grid() const {
     const double slowest = 0.4 * SlopeFor(drive_, judge_.steps().back());
     const double fastest = (braking_ ? 5 : 2) * SlopeFor(drive_, judge_.steps().front());
@@ -89,11 +90,11 @@ class Searcher {
     return grid;
   }
 
-  // c2 with the least gain margin at this c1/c2; 0 when no gain is stable.
+  // The c2 that has the least permitted gain margin at this c1/c2; 0 when no gain is stable.
   double LargestGain(double slope) const {
     const pressure_ctrl::SecondOrder loop = {pressure_.natural_frequency, pressure_.damping_ratio};
     Gains gains = pressure_;
-    // About what Figure 8's model would bear with the pump's inertia on the arm.
+    // About the largest gain that Figure 8's model tolerates with the pump's inertia on the arm.
     gains.c2 = 0.1 * loop.natural_frequency * drive_.inertia /
                judge_.config().model.description.parameters.k_2 * loop.damping_ratio;
     gains.c1 = slope * gains.c2;
@@ -146,7 +147,8 @@ class Searcher {
         [&](const Tried& a, const Tried& b) { return Cost(goals_, a) < Cost(goals_, b); });
   }
 
-  // A pattern search from the best point of the grid: each of slope, gain and deceleration a little up and down.
+  // A pattern search from the best point of the grid: it varies each of slope, gain and deceleration slightly
+  // up and down.
   void Refine() {
     constexpr int kRounds = 14;
     double stride = 0.1;
@@ -183,7 +185,7 @@ class Searcher {
   SearchResult result_;
 };
 
-// Only the pressure loop, whatever the reference is.
+// Checks only the pressure loop, whatever the reference is.
 bool PressureKeepsMargins(settings::StackConfig config, const Gains& gains) {
   config = With(std::move(config), gains);
   config.reference.signal = settings::ReferenceSignal::kPressure;
