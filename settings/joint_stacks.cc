@@ -17,7 +17,8 @@ std::string ErrorOf(const JointDocument& document, const std::string& file) {
   return "";
 }
 
-// The place in `node`, or in what is in it, that the message begins with; empty: it begins with another.
+// The place in `node`, or in a node inside it, with which the message begins; empty: the message begins with
+// some other place.
 std::string PlaceIn(const TomlNode& node, const std::string& message) {
   if (message.starts_with(node.place + ": ")) return node.place;
   for (const TomlMember& member : node.members) {

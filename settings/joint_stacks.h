@@ -1,4 +1,4 @@
-// The stacks of a limb's joints, and whose an error in one of them is.
+// Builds the stacks of a limb's joints, and tells to which joint an error in one of them belongs.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,9 @@
 
 namespace hydro::settings {
 
-// The configuration of the stack in `documents[index]`, of the limb that `root` describes. Throws InputError; it names the joint where what
-// is wrong stands in its own section or is wrong for this joint and not for all.
+// The configuration of the stack in `documents[index]`, of the limb that `root` describes. Throws InputError;
+// it names the joint when the error stands in the joint's own section, or concerns this joint and not all of
+// them.
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
                             const std::string& file);
 

@@ -18,7 +18,7 @@
 namespace hydro::settings {
 namespace {
 
-// Everything except the model file.
+// Reads everything except the model file.
 StackConfig ReadDocument(TomlNode* root, const std::string& file) {
   root->place = file;
   StackConfig config;
@@ -46,7 +46,7 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   return config;
 }
 
-// The paper's where there is no such file, of which its reader tells.
+// Returns the paper's units where there is no such file; the file's reader reports that error.
 UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
   const TomlNode* model = root.Find("model");
   const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
@@ -55,12 +55,13 @@ UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
   return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
 }
 
-// "in, lbf, psi", for people.
+// Lists units for people: "in, lbf, psi".
 std::string Named(const UnitSystem& units) {
   return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi");
 }
 
-// --set model.file gives a configuration another model. Its numbers stay those of the one that it names itself.
+// --set model.file gives a configuration another model. Its numbers remain in the units of the model that the
+// configuration itself names.
 void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
   const UnitSystem was = UnitsOfModelIn(before, file), is = UnitsOfModelIn(root, file);
   if (was == is) return;
@@ -71,14 +72,14 @@ void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const 
                  "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
 }
 
-// What the model file is relative to is what people get wrong.
+// Users often mistake the folder to which the model file's path is relative, so the message names it.
 ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
   if (std::filesystem::exists(model.resolved_file)) return LoadModelWithText(model.resolved_file);
   throw KeyError(root, "model.file", Quoted(model.file) + ", and there is no " + Quoted(model.resolved_file),
                  "a path that counts from the configuration's folder");
 }
 
-// A stack has one joint.
+// Checks that the configuration has no joints: a stack has only one.
 void CheckHasNoJoints(const StackConfig& config) {
   for (const ProcessSection& process : config.processes) {
     if (process.joint.empty() && process.program != "hydro-limb") continue;
@@ -119,7 +120,7 @@ StackConfig StackOf(TomlNode* root, const std::string& file) {
   config.model.description = std::move(model.description);
   CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
-  RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does
+  RememberRead(config.bus.resolved_key_file);  // the code that opens the bus reads it
   return config;
 }
 
