@@ -14,10 +14,10 @@ struct SignalName {
   MeasuredSignal MeasuredRun::*signal;
   const char* ours;      // in a sidecar
   const char* exported;  // in a table of ExportRun(), with the paper's unit
-  // In [noise] of a configuration; null: not a sensor's.
+  // In [noise] of a configuration; null: the signal has no sensor.
   const char* standard_deviation;
   const char* resolution;
-  const char* unit;  // of the paper
+  const char* unit;  // in the paper
   int arm = 0;       // power of the arm's coordinate in it
 };
 

@@ -27,8 +27,8 @@ int64_t LostMessages(const LogInfo& info) {
   return lost;
 }
 
-// How values of the arm are shown: an angle in rad, with `si` in degrees too; a linear arm's position in its
-// model's unit of length, with `si` in mm.
+// How values of the arm are shown: an angle in rad, and with `si` also in degrees; a linear arm's position in
+// its model's unit of length, or with `si` in mm.
 class ArmText {
  public:
   ArmText(const UnitSystem& units, bool si) : units_(units), si_(si), unit_(units.UnitFor("rad", 1)) {
@@ -46,7 +46,7 @@ class ArmText {
   std::string Size(double value) const { return Number(value, 4); }
 
  private:
-  // Of an angle that many decimals; a length may be in um or ft.
+  // Writes an angle with that many decimals. A length may be in um or ft, so it is written in a short form.
   std::string Number(double value, int decimals) const {
     return units_.linear_arm ? ShortNumber(factor_ * value, decimals) + " " + unit_
                              : fmt::format("{:.{}f} {}", value, decimals, unit_);
@@ -58,7 +58,7 @@ class ArmText {
   double factor_ = 1;
 };
 
-// The stop that ended the run early: one that failed it, else one before its duration.
+// The stop that ended the run early: one that failed it, or else one before its full duration.
 const stop_t* EarlyEnd(const LogInfo& info) {
   const stop_t* first = nullptr;
   for (const stop_t& stop : info.stops) {
@@ -135,7 +135,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
   if (!caution.empty()) line("log: {}", caution);
   if (tracking.has_reference) {
     const ArmText arm(tracking.units, si);
-    // In a run that ended at its first tick nothing was followed.
+    // A run that ended at its first tick followed no reference.
     if (info.ticks.states > 1 || EarlyEnd(info) == nullptr) text += TrackingText(tracking, info, si);
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {}", step.time_s,
@@ -177,7 +177,7 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
                            {"failed", end->exit_code != 0}};
   }
   if (tracking.has_reference) {
-    // "_rad", or of a linear arm "_mm"
+    // "_rad", or "_mm" for a linear arm
     const std::string unit = "_" + UnitInName(tracking.units.UnitFor("rad", 1));
     Json steps = Json::array();
     for (const StepResponse& step : tracking.steps) {

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kShortestRest = 0.2;       // s
 constexpr double kEndTime = 0.1;            // s
-constexpr double kSmallestAngle = 0.001;    // rad: a smaller error is none
-constexpr double kSmallestDistance = 1e-4;  // m, of a linear arm
-constexpr double kLeastStep = 10;           // of those, of a step that begins with the run
+constexpr double kSmallestAngle = 0.001;    // rad; a smaller error counts as none
+constexpr double kSmallestDistance = 1e-4;  // m, the same for a linear arm
+constexpr double kLeastStep = 10;           // multiple of those for a step with which the run begins
 constexpr size_t kMostSteps = 100;
 
 struct Samples {
@@ -32,7 +32,7 @@ double SmallestTolerance(const UnitSystem& units) {
   return units.linear_arm ? kSmallestDistance / ParseUnit(units.length)->size : kSmallestAngle;
 }
 
-// Reference (held since its tick) and angle at each state that has both.
+// The reference (held since its tick) and the angle at each state that has both.
 Samples ReadSamples(const RunLog& log) {
   std::vector<const arm_reference_t*> references;
   for (const arm_reference_t& reference : log.messages.Of<arm_reference_t>()) {
@@ -67,9 +67,10 @@ double MeanErrorAtEnd(const Samples& samples) {
   return sum / count;
 }
 
-// Between two changes at least kShortestRest apart it rests; elsewhere it moves: a ramp, a curve, or the way back after a hold.
+// The reference rests between two changes that are at least kShortestRest apart. Elsewhere it moves: a ramp,
+// a curve, or the way back after a hold.
 std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* left_out) {
-  std::vector<size_t> changes{0};  // and both ends
+  std::vector<size_t> changes{0};  // including both ends
   for (size_t i = 1; i < samples.size(); ++i) {
     if (samples.references[i] != samples.references[i - 1]) changes.push_back(i);
   }
@@ -80,7 +81,8 @@ std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* l
   const size_t last = changes.size() - 2;
   const auto is_step = [&](size_t k) { return k > 0 && k <= last && (k == 1 || rests(k - 1)) && rests(k); };
   std::vector<StepResponse> steps;
-  // A reference that never changes, away from where the arm was: a step with which the run began.
+  // A reference that never changes, but differs from the arm's first position, is a step with which the run
+  // began.
   if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep * tolerance &&
       rests(0)) {
     steps.push_back(MeasureStep(samples.times, samples.angles, 0, samples.size(), samples.angles[0],

@@ -20,7 +20,7 @@
 namespace hydro::log {
 namespace {
 
-// Moves incomplete messages, on channels where others are complete, from `kept` to `lost`.
+// Moves incomplete messages from `kept` to `lost` when other messages on the same channel are complete.
 void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
   std::map<std::string_view, const MessageKind*> decodable;
   std::vector<size_t> undecodable;
@@ -39,7 +39,7 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
     const KeptEvent place = kept[*k];
     ParseLogEvent(file, place.begin, event);
     const auto kind = decodable.find(event.channel);
-    if (kind == decodable.end()) continue;  // none is whole: another version's, not damaged
+    if (kind == decodable.end()) continue;  // from another version rather than damaged
     lost.push_back(
         {place.begin, place.end,
          "an event on " + std::string(event.channel) + " that is not a whole " + kind->second->type});
@@ -48,8 +48,8 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
   std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
 }
 
-// Moves messages that no checksum covers, and whose sender none that one covers has on that channel, from `kept` to `lost`: a
-// flipped bit in a session is one more sender.
+// Moves messages that no checksum covers from `kept` to `lost` when no covered message on the same channel
+// has the same sender: a flipped bit in a session looks like one more sender.
 void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
   std::map<std::string, std::set<int64_t>, std::less<>> senders;  // by channel
   LogEvent event;
@@ -74,7 +74,7 @@ void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::ve
   });
 }
 
-// What a mended log says of itself.
+// The note in a mended log about its repair.
 std::string NoteOf(const RepairResult& result, const std::string& file) {
   if (!result.mended()) return {};
   int64_t bytes = 0;
@@ -140,7 +140,8 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
     throw InputError(file + ": found no event in " + std::to_string(size) +
                      " bytes; an LCM event log is needed");
   }
-  // A log of no messages would look like a run in which nothing was sent. A whole one of none has nothing to mend.
+  // A log without messages would look like a run in which nothing was sent. A whole log without messages has
+  // nothing to mend.
   const bool whole = result.lost.empty() && vouched.lost_messages == 0 &&
                      result.verdict.completeness == Completeness::kComplete;
   if (kept.empty() && !whole) {
@@ -163,7 +164,8 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
 
 namespace {
 
-// A second name for a log, which is returned, rather than a new one: whatever happens now, a log exists under the first.
+// Gives a log a second name, which is returned, rather than moving it: whatever happens now, a log exists
+// under the first name.
 std::string KeepAsDamaged(const std::string& file) {
   for (int i = 0;; ++i) {
     const std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
