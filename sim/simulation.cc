@@ -24,7 +24,7 @@ void CheckEnds(const settings::StackConfig& config) {
                    "--duration S)");
 }
 
-// What the limb says of itself; each joint speaks on channels of its own.
+// Sends the limb's own description; each joint speaks on its own channels.
 void DescribeLimb(const settings::LimbConfig& config,
                   const std::function<void(const bus::RawMessage&)>& tap) {
   bus::SimulatedClock clock;
@@ -58,7 +58,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
   settings::StackConfig simulated = lockstep;
   if (machine != nullptr) simulated.model.description = *machine;
   plant::SimulatedRig rig(simulated);
-  // A stack that cannot grow ends a process without a word; of memory that cannot be had it is said.
+  // A process whose stack cannot grow ends without a message, whereas a failed allocation is reported.
   const auto plant =
       std::make_unique<plant::PlantApp>(bus, clock, lockstep, rig, std::vector<std::string>{}, "hydro-sim");
   const auto pressure = std::make_unique<pressure_ctrl::PressureApp>(bus, clock, lockstep);
