@@ -115,7 +115,7 @@ class CompareVerb {
   runs::LimbLog Read(const std::string& file, const std::optional<std::string>& suffix) const {
     runs::StackChoice choice = choice_;
     if (suffix) choice.suffix = suffix;
-    // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
+    // Messages that cannot be read cannot be called "identical bit by bit", so they are refused here.
     runs::LimbLog log = runs::ReadLimbLog(file, choice);
     runs::RequireOneRun(log);
     // Two empty logs are not a run and its repetition.

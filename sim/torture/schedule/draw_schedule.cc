@@ -53,8 +53,7 @@ Injection Draw(Random& random, double latest_s, bool logger) {
   return injection;
 }
 
-// Draws from a stream of its own, so that a seed without a launcher draws the same as before launchers
-// existed.
+// Draws from a stream of its own, so that a seed without a launcher draws the same as if there were none.
 void DrawLauncher(uint64_t seed, Schedule* schedule) {
   Random random(seed, 4);
   schedule->launcher = random.Chance(1.0 / 3);
