@@ -175,7 +175,7 @@ class Setter {
   const std::string url_;
   const SetRequest& request_;
   const SetOutput& output_;
-  std::FILE* const said_;  // receives what was asked for, except a saved file
+  std::FILE* const said_;  // receives what was asked for, never mixed with a saved file
   tuning::TuningClient client_;
 };
 
