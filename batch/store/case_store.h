@@ -5,8 +5,8 @@
 //
 // Each holds its result.json and the files that the study keeps. It is written below staging/ and renamed, so
 // that a kill leaves it whole or absent. A thousand cases share a folder, so that the existing cases can be
-// listed without opening any of them. Any number of processes on any hosts may store cases of one folder at the
-// same time; of two that store the same case, the first one stays.
+// listed without opening any of them. Any number of processes on any hosts may store cases of one folder at
+// the same time; of two that store the same case, the first one stays.
 #pragma once
 
 #include <bitset>

@@ -2,8 +2,8 @@
 // depend on it (case_store.h); it only keeps two processes from doing the same work.
 //
 // The lock is the file lock in the study's folder, which is made in one step and holds its owner's name. Its
-// owner touches it every few seconds. The lock is taken over when its owner has ended on this host, or has been
-// silent for a minute on another.
+// owner touches it every few seconds. The lock is taken over when its owner has ended on this host, or has
+// been silent for a minute on another.
 #pragma once
 
 #include <string>
