@@ -2,8 +2,8 @@
 //
 // - A request must pass the checks of Access. Its header must end within 10 s and 8 KiB. A body or an answer
 //   that makes no progress for 20 s ends the connection. More than 64 connections at a time are turned away.
-// - A web socket's messages have at most 64 KiB. A client that is silent for 30 s is asked whether it is there,
-//   and its connection is closed when it does not answer.
+// - A web socket's messages have at most 64 KiB. A client that is silent for 30 s is asked whether it is
+//   there, and its connection is closed when it does not answer.
 #pragma once
 
 #include <chrono>

@@ -25,7 +25,7 @@ class ProcessStartCase(stack.TestCase):
 
 class ClosedStreamsTest(ProcessStartCase):
     def run_closed(self, closed, *argv):
-        # Python closes its own copies only after this: what is closed here stays so for the program.
+        # Python closes its own copies only after this, so what is closed here stays closed for the program.
         return self.run_prepared(lambda: [os.close(number) for number in closed], *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     # Tests that a launch ends, and that its log holds the run and no text, whichever streams are closed.
@@ -40,8 +40,8 @@ class ClosedStreamsTest(ProcessStartCase):
                     self.assertEqual(len(event_log.Log(log).states), 501)
                     self.run_program("hydro-log", "info", log)
 
-    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and that what it writes into files
-    # is what it writes otherwise.
+    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and
+    # that its files are the same as usual.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-log", "summary", "run.lcmlog"),
@@ -103,7 +103,8 @@ class FileSizeLimitTest(ProcessStartCase):
             with self.subTest(" ".join(argv)):
                 self.check(["out", "arm", "pressure", "fig2"], *argv, limits=(0,))
 
-    # Tests that of a key and of a controller to begin with nothing is left either, and that the machine, not the user, is at fault.
+    # Tests that no part of a key or of a skeleton controller is left either, and that the message blames the
+    # machine and not the user.
     def test_small_files(self):
         with open(stack.config("demo.toml"), encoding="utf-8") as file:
             config = file.read().replace("models/table1.toml", stack.config("models/table1.toml"))
