@@ -50,6 +50,9 @@ class LabelledOutput {
   // blocking descriptor: a pipe that polls as writable has that much room.
   void WriteSome();
 
+  // errno of the first line for stdout that could not be written, but not since its reader has gone; 0: none.
+  int lost() const { return lost_; }
+
   // Writes everything that waits, blocking.
   void Flush();
 
@@ -76,6 +79,7 @@ class LabelledOutput {
   std::size_t label_width_ = 0;
   std::deque<Chunk> queue_;
   std::size_t queued_bytes_ = 0;
+  int lost_ = 0;
 };
 
 }  // namespace hydro::launch

@@ -38,6 +38,9 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
 // duration, or the log does not say.
 std::string EarlyEndText(const LogInfo& info);
 
+// "fault at tick 12: pressure_limit began (plant)"
+std::string FaultText(const fault_t& fault);
+
 // The part of that text on loop timing.
 std::string LoopsText(const LogInfo& info);
 

@@ -97,7 +97,7 @@ void LiveTuning::Describe() {
   } catch (const InputError&) {
     // The stack has another version: there is nothing to show, and its plant refuses this version's requests.
   }
-  const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
+  const std::string text = in_force.version > 0 ? Printable(runs::DescribeInForce(in_force)) : std::string();
   message_ = JsonText(OrderedJson({{"op", "tuning"},
                                    {"run", run_},
                                    {"control", control_},

@@ -37,9 +37,11 @@ class Link {
   int descriptor() const { return descriptor_; }  // to wait on; -1: closed
   const LinkTrouble& trouble() const { return trouble_; }
 
-  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other. A
-  // link whose other end has gone is closed.
+  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other, each
+  // whole: there may be more where less than kLargestDatagram is left of `into`. A link whose other end has
+  // gone is closed.
   size_t Read(std::span<uint8_t> into);
+  static constexpr size_t kLargestDatagram = 1500;  // that Ethernet carries whole
 
   // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
   // new one replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.

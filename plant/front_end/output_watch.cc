@@ -47,10 +47,11 @@ int64_t OutputWatch::CommandTick(const hydro_sample& sample) const {
   return told != nullptr ? told->command_tick : -1;
 }
 
-void OutputWatch::Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
+void OutputWatch::Look(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
+                       std::vector<RigFault>* faults) {
   const size_t before = faults->size();
   LookAtReport(sample, faults);
-  if (faults->size() == before) LookAtReadBack(sample, now, faults);
+  if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
 
 // By its own loop, where it has one; or by a command so old that this is the fault, unless all of late told it zero.
@@ -76,27 +77,36 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
 }
 
 // What it reads back was measured before it put out the voltage of this sample. Anything that it reported of
-// late may be what it holds: the output takes a while to follow, and a loop on the device changes it between
-// two samples.
-void OutputWatch::LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now,
+// late may be what it holds, as the output takes a while to follow. What it held is not known where the sample
+// before was lost, or where a loop on the device has had ticks between the two: a swing of its voltage that no
+// sample shows is short, a wrong output is not.
+void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});
   Forget(&reported_, now - patience_);
+  const bool next = last_tick_ && sample.tick == *last_tick_ + interval;
+  last_tick_ = sample.tick;
   const auto read_back = static_cast<double>(sample.read_back);
-  if (!std::isfinite(read_back)) {
-    differing_ = 0;
-    return;
-  }
   const auto [least, most] =
       std::minmax_element(reported_.begin(), reported_.end(),
                           [](const PutOut& a, const PutOut& b) { return a.voltage < b.voltage; });
   const double nearest = std::clamp(read_back, least->voltage, most->voltage);
-  differing_ = std::fabs(read_back - nearest) > tolerance_ ? std::min(differing_ + 1, kInARow) : 0;
-  if (differing_ < kInARow) return;
+  if (!Differs(read_back, nearest, next && (interval == 1 || sample.source != HYDRO_SOURCE_LAW), now)) return;
   faults->push_back(
       {"output_differs",
        fmt::format("the front end's output reads back {:.4g} V; {:.4g} V was put out", read_back, nearest),
        read_back, nearest});
+}
+
+bool OutputWatch::Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now) {
+  if (!std::isfinite(read_back) || std::fabs(read_back - nearest) <= tolerance_) {
+    differing_ = 0;
+    differs_since_.reset();
+    return false;
+  }
+  if (!differs_since_) differs_since_ = now;
+  if (held_is_known) differing_ = std::min(differing_ + 1, kInARow);
+  return differing_ == kInARow || now - *differs_since_ >= patience_;
 }
 
 }  // namespace hydro::plant

@@ -18,7 +18,9 @@ struct RepairResult {
   int64_t lost_messages = 0;  // messages that were written but are not kept, as far as the check events tell
   int64_t unvouched = 0;      // kept messages for which no checksum vouches
   std::vector<LostBytes> lost;  // in order of the file
-  std::string damaged;          // the name under which RepairInPlace() left the log as it was found
+  std::vector<int64_t>
+      joined_at;        // bytes at which another recording begins, which was joined to the one before
+  std::string damaged;  // the name under which RepairInPlace() left the log as it was found
 
   // Whether there was anything to mend: lost bytes, missing messages, or a missing mark of the end.
   bool mended() const;
@@ -40,6 +42,10 @@ RepairResult RepairLog(const std::string& file, const std::string& out);
 // one has that name. Does not change a whole log, or one without checksums in which nothing is wrong. Throws
 // WriteError and InputError, the latter also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
+
+// One line on the recordings that were joined in a log, and one with the command that takes each out of it; empty: it is one
+// recording. `file` holds the log as it was found.
+std::string DescribeJoined(const RepairResult& result, const std::string& file);
 
 // One line for what was kept, and one line for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
