@@ -18,7 +18,7 @@ struct ChannelInfo {
       0;  // events per second of receive time without the clock's steps; 0: fewer than two, or no time passed
   bool numbered = false;     // its messages have sequence numbers; otherwise the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
-  int64_t missing = 0;       // from the log: numbers missing between each sender's first and last
+  int64_t missing = 0;       // in the log: numbers absent between each sender's first and last
   int64_t repeated = 0;      // messages whose number had already been seen
   int64_t before_first = 0;  // messages that its senders had sent before the log began
 };
@@ -98,7 +98,7 @@ struct LogInfo {
 // Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
 
-// Messages that are missing from the log, on all channels.
+// The number of messages that are missing from the log, over all channels.
 int64_t MissingMessages(const LogInfo& info);
 
 // Several lines for people to read.

@@ -149,7 +149,7 @@ void AppendLoops(const LogInfo& info, std::string& text) {
   }
 }
 
-// Of a sender that knew of no tick, nothing.
+// Empty for a sender that did not know the tick.
 std::string TickText(int64_t tick) { return tick >= 0 ? "tick " + std::to_string(tick) + ": " : ""; }
 
 void AppendEnds(const LogInfo& info, std::string& text) {

@@ -69,12 +69,12 @@ struct MeasuredRun {
   MeasuredSignal arm_speed;
   MeasuredSignal p1;
   MeasuredSignal p2;
-  // What was measured beside them.
-  MeasuredSignal arm_force;    // on the arm, in the direction of its angle, beside its weight: a load cell's
-  MeasuredSignal temperature;  // degC, of the oil
+  // Other quantities that were measured.
+  MeasuredSignal arm_force;       // on the arm, in the direction of its angle, besides its weight (load cell)
+  MeasuredSignal temperature;     // degC, of the oil
   MeasuredSignal motor_voltage;   // V, at the motor's terminals, where the command is a current
   MeasuredSignal bypass_valve;    // open above 0.5
-  bool current_commands = false;  // `voltage` is a current in A, and the motor's torque k_1 times it
+  bool current_commands = false;  // `voltage` is a current in A, and the motor's torque is k_1 times it
 
   size_t samples() const { return time.size(); }
   // The time of the run's first sample, whether or not it was cut off.
@@ -94,21 +94,21 @@ struct RunName {
 // Parses the name. If a file has that whole name, including the #, it is the file.
 RunName ParseRunName(const std::string& text);
 
-// Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h); any other name as a log. Its values
-// are then in `units`, those of a model; without them a table is in the paper's, a log in its own model's.
-// Throws InputError naming file, line or key, what was found and what is allowed, for
+// Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h), any other name as a log. "LOG#NAME"
+// is the joint of that name in the log of a limb. A sidecar may make several runs of a table (run_parts.h).
+// The values are in `units`, those of a model. Without `units`, a table is in the paper's units, and a log in
+// those of its own model. Throws InputError naming file, line or key, what was found and what is allowed, for
 // - a sidecar that is missing, or has unknown keys, a unit that is unknown or another signal's, no shaft, no
 //   column for time or voltage, an angle of a shaft that is not clamped, a driven shaft without arm_angle, or
 //   noise of a signal without a column;
 // - a table with columns that are absent or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, or no command in the first row;
-// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, a limb's telemetry of
-//   some states only, no description of how the shaft
-//   was held, or an arm whose coordinate is not that of `units`.
-// "LOG#NAME" is the joint of that name in the log of a limb. A sidecar may make several runs of a table (run_parts.h).
+// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be
+//   decoded, more than one run, a limb's telemetry of only some states, no description of how the shaft was
+//   held, or an arm whose coordinate is not that of `units`.
 std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& file,
                                           const std::optional<UnitSystem>& units = std::nullopt);
-// The same of a file that is one run; InputError where it is several.
+// The same for a file that is one run. Throws InputError when it is several.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
 // The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run,

@@ -47,7 +47,7 @@ double ReadUnit(settings::SectionReader& section, const std::string& key, const 
                       allowed);
 }
 
-// Where a temperature's unit has its zero, in its own degrees, against degC.
+// The zero of a temperature's unit relative to that of degC, in the unit's own degrees.
 double ZeroOf(const std::string& unit) { return unit == "K" ? -273.15 : unit == "degF" ? -32 : 0; }
 
 bool StatesUnit(const tables::Column& column) {

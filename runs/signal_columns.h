@@ -31,7 +31,8 @@ std::vector<double> SignalValues(const tables::Table& table, const SignalColumn&
 // The times. Throws InputError for a time that is missing or not above the one before, and for a single row.
 std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& source);
 
-// The command, held where a value is missing. Throws InputError for a first row without one. `what`: its key.
+// The command, held where a value is missing. Throws InputError when the first row has no value. `what` is
+// the command's key.
 std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source,
                                   const std::string& what = "voltage");
 

@@ -20,11 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// How many ticks went by from the first state to the last.
+// The number of ticks from the first state to the last.
 int64_t TicksPassed(const LogInfo& info) { return SaturatingDifference(info.ticks.last, info.ticks.first); }
 
-// How values of the arm are shown: an angle in rad, with `si` in degrees too; a linear arm's position in its
-// model's unit of length, with `si` in m.
+// How values of the arm are shown: an angle in rad, and with `si` also in degrees; a linear arm's position in
+// its model's unit of length, or with `si` in m.
 class ArmText {
  public:
   ArmText(const UnitSystem& units, bool si) : units_(units), si_(si), unit_(units.UnitFor("rad", 1)) {
@@ -94,7 +94,7 @@ std::string TrackingText(const Tracking& tracking, const LogInfo& info, bool si)
 std::string EarlyEndText(const LogInfo& info) {
   const stop_t* const end = EarlyEnd(info);
   if (end == nullptr) return {};
-  // hydro-launch, which hears no state, knows no tick.
+  // hydro-launch does not hear states, so it does not know the tick.
   const std::string when = end->tick >= 0          ? fmt::format(" at tick {}", end->tick)
                            : info.ticks.states > 0 ? fmt::format(" after tick {}", info.ticks.last)
                                                    : "";

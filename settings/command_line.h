@@ -79,8 +79,9 @@ class CommandLine {
   // The options and flags that were given, as "--log", in the order of declaration.
   std::vector<std::string> Given() const;
 
-  // Empty when the program should continue; otherwise the code to exit with now: 0 after --help or --version (1 when they
-  // could not be written), 2 for bad usage. One line on stderr explains all but 0.
+  // Returns nothing when the program should continue. Otherwise returns the exit code with which it must end
+  // now: 0 after --help or --version (1 when they could not be written), 2 for bad usage. One line on stderr
+  // explains every code but 0.
   std::optional<int> Parse(int argc, const char* const* argv);
 
  private:

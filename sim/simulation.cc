@@ -38,7 +38,7 @@ void DescribeLimb(const settings::LimbConfig& config,
   bus.HandleUntil(clock.Now());
 }
 
-// All that takes part in a simulation.
+// Everything that takes part in a simulation.
 struct Stack {
   Stack(const settings::StackConfig& config, const std::function<void(const bus::RawMessage&)>& tap,
         const model::ModelDescription* machine)

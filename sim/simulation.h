@@ -38,7 +38,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
 // Throws what Simulate() would throw before its first tick.
 void CheckSimulates(const settings::StackConfig& config, const model::ModelDescription* machine = nullptr);
 
-// As Simulate(), for all joints of a limb, each on channels of its own suffix.
+// Does what Simulate() does for all joints of a limb, each on channels with its own suffix.
 SimulationResult SimulateLimb(const settings::LimbConfig& config,
                               const std::function<void(const bus::RawMessage&)>& tap);
 

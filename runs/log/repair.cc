@@ -75,8 +75,9 @@ void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::ve
   });
 }
 
-// Where logs were joined end to end: a part of a rotated recording goes on with the one before it, another log does not. Without check
-// events the numbers tell, which each recorder counts from 0.
+// The places where logs were joined end to end. A part of a rotated recording continues the part before it,
+// which another log does not. Without check events, the event numbers tell, because each recorder counts from
+// 0.
 std::vector<int64_t> JoinsOf(const MappedFile& file, const std::vector<KeptEvent>& sound) {
   std::vector<int64_t> begins, restarts;
   LogEvent event;
@@ -219,7 +220,7 @@ RepairResult RepairInPlace(const std::string& file) {
 
 namespace {
 
-// A file's name as one word of a command line.
+// Quotes a file's name as one word of a command line.
 std::string ShellWord(const std::string& name) {
   std::string quoted;
   for (const char c : name) quoted += c == '\'' ? "'\\''" : std::string(1, c);

@@ -19,7 +19,7 @@ struct RepairResult {
   int64_t unvouched = 0;      // kept messages for which no checksum vouches
   std::vector<LostBytes> lost;  // in order of the file
   std::vector<int64_t>
-      joined_at;        // bytes at which another recording begins, which was joined to the one before
+      joined_at;        // bytes at which another recording begins that was joined to the one before
   std::string damaged;  // the name under which RepairInPlace() left the log as it was found
 
   // Whether there was anything to mend: lost bytes, missing messages, or a missing mark of the end.
@@ -43,8 +43,8 @@ RepairResult RepairLog(const std::string& file, const std::string& out);
 // WriteError and InputError, the latter also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
 
-// One line on the recordings that were joined in a log, and one with the command that takes each out of it; empty: it is one
-// recording. `file` holds the log as it was found.
+// One line on the recordings that were joined in a log, and one line for each of them with the command that
+// extracts it; empty: the log is one recording. `file` holds the log as it was found.
 std::string DescribeJoined(const RepairResult& result, const std::string& file);
 
 // One line for what was kept, and one line for each place where something was lost.

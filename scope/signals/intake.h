@@ -96,7 +96,7 @@ class Intake {
   std::map<std::string, std::set<std::string>> active_;  // faults by role
   std::map<std::string, std::set<std::string>>
       doubted_;                            // active here, but missing from the role's last list
-  std::optional<tuned_settings_t> tuned_;  // the newest that was decided; empty: none was heard
+  std::optional<tuned_settings_t> tuned_;  // the newest that was decided; empty: none has been heard
   int64_t tuning_request_ = -1;            // the last one that was refused
   ProcessReport flood_;                    // takes the reports of processes beyond those that are kept
   std::string last_stop_;

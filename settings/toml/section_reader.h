@@ -33,14 +33,15 @@ struct NumberRange {
   bool min_allowed = true;
   bool max_allowed = true;
   bool infinity_allowed = false;  // "inf" for "no limit"
-  // The sizes of numbers other than 0. Nearer to 0 a number loses its digits, and what is divided by it overflows.
+  // The allowed sizes of numbers other than 0. Closer to 0, a number loses its digits, and quotients by it
+  // overflow.
   double smallest = std::numeric_limits<double>::min();
   double largest = std::numeric_limits<double>::max();
-  const char* beyond_max = "";  // why a value above max is refused
+  const char* beyond_max = "";  // the reason why a value above max is refused
 
   bool Holds(double value) const;
   std::string Allowed() const;  // "a finite number above 0"
-  // The same, with the sizes where it is they that the number misses.
+  // The same, with the allowed sizes if the size is what is wrong with the number.
   std::string AllowedInsteadOf(double value) const;
 
  private:

@@ -250,7 +250,8 @@ class OwnDriverInputTest(OwnDriverCase):
         self.assertEqual((nobody.returncode, nobody.stderr.count("\n")), (2, 1), nobody.stderr)
         self.assertIn("found no CONFIG", nobody.stderr)
 
-    # Tests the same of a board on a serial port: a rate that does not exist, and ports that are none, missing or somebody else's.
+    # Tests the same for a board on a serial port: a rate that does not exist, and names that are not ports,
+    # are missing or belong to another program.
     def test_serial_board(self):
         taken, end = os.openpty()
         self.addCleanup(os.close, taken)

@@ -73,7 +73,8 @@ class FullDiskTest(ProcessStartCase):
         with open("/dev/full", "w", encoding="utf-8") as full:
             return self.run_prepared(None, *argv, stdout=full, stderr=subprocess.PIPE)
 
-    # Tests that every program ends with 1 and one line when what it has to print cannot be written: --help and --version.
+    # Tests that every program ends with 1 and one line when the output of --help or --version cannot be
+    # written.
     def test_help(self):
         programs = sorted(name for name in os.listdir(stack.BIN) if name.startswith("hydro-") and os.access(stack.program(name), os.X_OK))
         self.assertGreater(len(programs), 0)
@@ -84,7 +85,7 @@ class FullDiskTest(ProcessStartCase):
                     self.assertEqual((done.returncode, done.stderr),
                                      (1, f"{name}: the standard output cannot be written: No space left on device\n"))
 
-    # Tests the same of results, and of a launch, whose stack comes to its end all the same.
+    # Tests the same for results, and for a launch, whose stack still comes to its end.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-sim", stack.config("demo.toml"), "--duration", "2")):
@@ -100,7 +101,7 @@ class FullDiskTest(ProcessStartCase):
 
 
 class OneLineTest(ProcessStartCase):
-    # Tests that a fault that ends the run is said once by the process that has found it.
+    # Tests that a fault that ends the run is reported once, by the process that found it.
     def test_fault(self):
         done = self.run_prepared(None, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time", "lockstep",
                                  "--duration", "0.5", "--set", "limits.pressure=120", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -109,7 +110,8 @@ class OneLineTest(ProcessStartCase):
         self.assertEqual(len(own), 1, done.stderr)
         self.assertRegex(own[0], r"fault pressure_limit: tick \d+: p2 is 1\d\d")
 
-    # Tests that a program says nothing else of an input that it refuses: neither what it left out of a log nor that a model is fast.
+    # Tests that a program says nothing else about an input that it refuses: neither what it left out of a log
+    # nor that a model is fast.
     def test_refusals(self):
         with open(self.path("fast.toml"), "w", encoding="utf-8") as file, \
                 open(stack.config("models/table1.toml"), encoding="utf-8") as given:
@@ -126,7 +128,8 @@ class OneLineTest(ProcessStartCase):
 
 
 class SlowModelTest(ProcessStartCase):
-    # Tests that a model that takes some seven times as long as it moves is stopped by a signal within a tick, alone and in a launch.
+    # Tests that a signal stops a model that runs some seven times slower than real time within a tick, alone
+    # and in a launch.
     def test_stop(self):
         with open(self.path("slow.toml"), "w", encoding="utf-8") as file, open(stack.config("models/table1.toml"), encoding="utf-8") as given:
             text = given.read()

@@ -155,13 +155,13 @@ class RepairVerb {
   }
 
  private:
-  // A log may be as it was written and yet be refused by the other verbs.
+  // A log may be exactly as it was written and still be refused by the other verbs.
   std::string WhyNotOneRun() const {
     std::optional<runs::LimbLog> log;
     try {
       log = runs::ReadLimbLog(out_.empty() ? log_ : out_, {}, runs::Undecodable::kLeftOut);
     } catch (const InputError&) {
-      return "";  // of no stack, or of several: nothing is said of their runs
+      return "";  // a log of no stack, or of several: nothing is said about their runs
     }
     try {
       runs::RequireOneRun(*log);
