@@ -34,7 +34,7 @@ class ProcessStartCase(stack.TestCase):
 
 class ClosedStreamsTest(ProcessStartCase):
     def run_closed(self, closed, *argv):
-        # Python closes its own copies only after this: what is closed here stays so for the program.
+        # Python closes its own copies only after this, so what is closed here stays closed for the program.
         return self.run_prepared(lambda: [os.close(number) for number in closed], *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     # Tests that a launch ends, and that its log holds the run and no text, whichever streams are closed.
@@ -49,8 +49,8 @@ class ClosedStreamsTest(ProcessStartCase):
                     self.assertEqual(len(event_log.Log(log).states), 501)
                     self.run_program("hydro-log", "info", log)
 
-    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and that what it writes into files
-    # is what it writes otherwise.
+    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and
+    # that its files are the same as usual.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-log", "summary", "run.lcmlog"),
@@ -97,7 +97,8 @@ class FullDiskTest(ProcessStartCase):
         with open("/dev/full", "w", encoding="utf-8") as full:
             return self.run_prepared(None, *argv, stdout=full, stderr=subprocess.PIPE)
 
-    # Tests that every program ends with 1 and one line when what it has to print cannot be written: --help and --version.
+    # Tests that every program ends with 1 and one line when the output of --help or --version cannot be
+    # written.
     def test_help(self):
         programs = sorted(name for name in os.listdir(stack.BIN) if name.startswith("hydro-") and os.access(stack.program(name), os.X_OK))
         self.assertGreater(len(programs), 0)
@@ -108,7 +109,7 @@ class FullDiskTest(ProcessStartCase):
                     self.assertEqual((done.returncode, done.stderr),
                                      (1, f"{name}: the standard output cannot be written: No space left on device\n"))
 
-    # Tests the same of results, and of a launch, whose stack comes to its end all the same.
+    # Tests the same for results, and for a launch, whose stack still comes to its end.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-sim", stack.config("demo.toml"), "--duration", "2")):
@@ -124,7 +125,7 @@ class FullDiskTest(ProcessStartCase):
 
 
 class OneLineTest(ProcessStartCase):
-    # Tests that a fault that ends the run is said once by the process that has found it.
+    # Tests that a fault that ends the run is reported once, by the process that found it.
     def test_fault(self):
         done = self.run_prepared(None, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time", "lockstep",
                                  "--duration", "0.5", "--set", "limits.pressure=120", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -133,7 +134,8 @@ class OneLineTest(ProcessStartCase):
         self.assertEqual(len(own), 1, done.stderr)
         self.assertRegex(own[0], r"fault pressure_limit: tick \d+: p2 is 1\d\d")
 
-    # Tests that a program says nothing else of an input that it refuses: neither what it left out of a log nor that a model is fast.
+    # Tests that a program says nothing else about an input that it refuses: neither what it left out of a log
+    # nor that a model is fast.
     def test_refusals(self):
         with open(self.path("fast.toml"), "w", encoding="utf-8") as file, \
                 open(stack.config("models/table1.toml"), encoding="utf-8") as given:
@@ -150,7 +152,8 @@ class OneLineTest(ProcessStartCase):
 
 
 class SlowModelTest(ProcessStartCase):
-    # Tests that a model that takes some seven times as long as it moves is stopped by a signal within a tick, alone and in a launch.
+    # Tests that a signal stops a model that runs some seven times slower than real time within a tick, alone
+    # and in a launch.
     def test_stop(self):
         with open(self.path("slow.toml"), "w", encoding="utf-8") as file, open(stack.config("models/table1.toml"), encoding="utf-8") as given:
             text = given.read()
@@ -205,7 +208,8 @@ class FileSizeLimitTest(ProcessStartCase):
             with self.subTest(" ".join(argv)):
                 self.check(["out", "arm", "pressure", "fig2"], *argv, limits=(0,))
 
-    # Tests that of a key and of a controller to begin with nothing is left either, and that the machine, not the user, is at fault.
+    # Tests that no part of a key or of a skeleton controller is left either, and that the message blames the
+    # machine and not the user.
     def test_small_files(self):
         with open(stack.config("demo.toml"), encoding="utf-8") as file:
             config = file.read().replace("models/table1.toml", stack.config("models/table1.toml"))
