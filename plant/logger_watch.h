@@ -12,11 +12,11 @@
 
 namespace hydro::plant {
 
-// For runs in real time; in lockstep the plant waits for its logger.
+// It serves runs in real time; in lockstep the plant waits for its logger.
 class LoggerWatch {
  public:
   // A logger counts as gone when it has been silent for longer than `limit` or has announced that it leaves.
-  // `channels`: on which loggers may be.
+  // `channels` are those on which loggers may report.
   LoggerWatch(process::Participant& participant, const std::vector<bus::Channels>& channels,
               bus::Clock::Duration limit);
 

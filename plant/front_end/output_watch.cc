@@ -11,7 +11,7 @@ namespace {
 constexpr int kInARow = 2;
 constexpr double kUsualTolerance = 0.1;  // V at the terminal: converters' offsets are below it
 
-// All within the patience, and the one before, which acted until the first of them.
+// Keeps all entries within the patience, and the one before, which acted until the first of them.
 template <class Entries>
 void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
@@ -53,14 +53,15 @@ void OutputWatch::Look(const hydro_sample& sample, bus::Clock::TimePoint now, st
   if (faults->size() == before) LookAtReadBack(sample, now, faults);
 }
 
-// By its own loop, where it has one; or by a command so old that this is the fault, unless all of late told it zero.
+// The device's own loop may do so, where it has one. So may a command so old that its age is the fault,
+// unless all recent commands told zero.
 bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
   if (sample.source == HYDRO_SOURCE_LAW) return own_loop_;
   return std::any_of(told_.begin(), told_.end(), [](const Told& told) { return told.voltage != 0; });
 }
 
-// A device may put out less than it was told, where its range ends, and says so; never more, and never the
-// other sign.
+// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
+// and never the other sign.
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
@@ -75,9 +76,9 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
        voltage, told});
 }
 
-// What it reads back was measured before it put out the voltage of this sample. Anything that it reported of
-// late may be what it holds: the output takes a while to follow, and a loop on the device changes it between
-// two samples.
+// The read-back was measured before the device put out the voltage of this sample. The output may hold
+// anything that the device reported recently: it takes a while to follow, and a loop on the device changes it
+// between two samples.
 void OutputWatch::LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});

@@ -1,4 +1,5 @@
-// What a front end was told to put out, what it says that it does, and what its output reads back.
+// Compares what a front end was told to put out, what it reports that it puts out, and what its output reads
+// back.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +15,22 @@ namespace hydro::plant {
 
 class OutputWatch {
  public:
-  // `patience`: how long the output may take to follow (limits.stale_input_s).
+  // `patience` is how long the output may take to follow (limits.stale_input_s).
   OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience);
 
-  // The frame `sequence` has told it a voltage, which came from the motor command for `command_tick` (-1:
-  // from none).
+  // Records that the frame `sequence` has told the device a voltage, which came from the motor command for
+  // `command_tick` (-1: from none).
   void OnTold(uint32_t sequence, double voltage, int64_t command_tick, bus::Clock::TimePoint now);
 
-  // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
-  // told, or not zero though the device is not armed or no command of late can have made it so, or while the output reads back, twice in a row, a
-  // voltage that was not put out within the patience.
+  // Adds "output_differs" in three cases. First, the voltage that a sample reports is not the one that the
+  // command it names has told. Second, the voltage is not zero although the device is not armed or no recent
+  // command can have caused it. Third, the output reads back, twice in a row, a voltage that was not put out
+  // within the patience.
   void Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
-  double tolerance() const { return tolerance_; }  // V of eq. (1), of what is read back
+  double tolerance() const { return tolerance_; }  // V of eq. (1), for the voltage that is read back
 
-  // Of the voltage that a sample reports as that of a command, the tick of the motor command; -1: it came
+  // The tick of the motor command from which the voltage of a sample came, if a command told it; -1: it came
   // from none.
   int64_t CommandTick(const hydro_sample& sample) const;
 
@@ -48,7 +50,7 @@ class OutputWatch {
   void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
   void LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
-  // Whether the device may put out a voltage that no command of the driver's of late told it.
+  // Whether the device may put out a voltage that no recent command of the driver told it.
   bool MayPutOut(const hydro_sample& sample) const;
 
   const bool own_loop_;  // on the device
