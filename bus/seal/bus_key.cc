@@ -16,7 +16,7 @@
 namespace hydro::bus {
 namespace {
 
-constexpr size_t kLongest = 200;  // bytes of a key file, blanks included
+constexpr size_t kLongest = 200;  // bytes of a key file, including white space
 constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
 
 class File {
@@ -33,7 +33,7 @@ class File {
   int fd_;
 };
 
-// Text that holds a key, wiped on destruction.
+// Text that holds a key and is wiped on destruction.
 class SecretText {
  public:
   SecretText() = default;
