@@ -20,8 +20,8 @@
 namespace hydro::launch {
 namespace {
 
-// Checked before anything is started: a logger that fails later stops its stack, and with it any other stack
-// that runs on this port.
+// This is checked before anything is started: a logger that fails later stops its stack, and with it any
+// other stack that runs on this port.
 void CheckLog(const LaunchPlan& plan, const std::string& file) {
   const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });

@@ -43,7 +43,8 @@ void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
   output_.SetStatus(lines);
 }
 
-// A run that ends before its logger has begun leaves no log, and one on another host leaves it there.
+// A run that ends before its logger has begun leaves no log, and a logger on another host leaves the log
+// there.
 bool TerminalReport::LogWasWritten() const {
   const auto log = IdentityOfRegular(log_file_);
   return log && log != old_log_;
