@@ -25,7 +25,8 @@ LogFiles::LogFiles(const std::string& file, int64_t rotate_bytes, std::string de
   watch_.Watch(file_);
 }
 
-// All of them before the first is begun: a recording must not end in the middle because of yesterday's.
+// Checks all names before the first file is begun: a recording must not end in the middle because of an older
+// file.
 const std::string& LogFiles::Checked(const std::string& file, int64_t rotate_bytes) {
   namespace fs = std::filesystem;
   if (rotate_bytes <= 0) return file;
