@@ -80,9 +80,8 @@ class StackWatch {
   struct Stack {
     std::string joint;  // empty: the stack itself
     bus::Channels channels;
-    bool reports =
-        // Its loops report how they keep time; for joints inside a hydro-limb, the limb's own loop does.
-        true;
+    // Its loops report how they keep time; for joints inside a hydro-limb, the limb's own loop does.
+    bool reports = true;
   };
   // A process that has been heard.
   struct Heard {
