@@ -55,7 +55,7 @@ class LogBus : public Bus {
   struct Handler {
     std::string channel;
     const MessageType* type;
-    std::shared_ptr<void> message;  // what is decoded into
+    std::shared_ptr<void> message;  // receives the decoded message
     std::function<void(const void*)> call;
   };
 

@@ -77,8 +77,8 @@ class SequenceMonitor {
 
   Clock::Duration alive_;
   std::optional<int64_t> session_;  // of the sender being followed; none before the first message
-  Place newest_;                    // of its messages
-  Clock::TimePoint advanced_{};     // when that came
+  Place newest_;                    // its newest message
+  Clock::TimePoint advanced_{};     // arrival of newest_
   std::optional<Place> behind_;     // its last message, if that was older than the newest
   int64_t refused_since_ = 0;       // its messages in sequence whose tick went back, since the newest
   Clock::TimePoint heard_{};        // when it was last heard at all

@@ -65,7 +65,7 @@ class LabelledOutput {
 
   void Add(Stream stream, std::string bytes);
   std::string Formatted(Stream stream, std::string_view label, std::string_view text) const;
-  std::string WithoutStatus() const;  // what erases it
+  std::string WithoutStatus() const;  // the text that erases it
 
   int FdOf(Stream stream) const { return stream == Stream::kOut ? out_fd_ : err_fd_; }
 
@@ -74,7 +74,7 @@ class LabelledOutput {
   bool colour_;
   bool quiet_ = false;
   bool json_ = false;
-  std::vector<std::string> status_;  // drawn
+  std::vector<std::string> status_;  // the status as drawn
   std::size_t label_width_ = 0;
   std::deque<Chunk> queue_;
   std::size_t queued_bytes_ = 0;

@@ -33,7 +33,7 @@ void CheckLog(const LaunchPlan& plan, const std::string& file) {
 
 int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const LaunchRequest& request,
            int out_fd, int err_fd, const LaunchTiming& timing) {
-  std::optional<LaunchLock> lock;  // until all is over
+  std::optional<LaunchLock> lock;  // held until the launch is over
   LabelledOutput output(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd));
   Supervisor supervisor(
       output, GraceFor(timing, plan));  // before the bus, whose threads must not receive its signals

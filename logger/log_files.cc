@@ -32,7 +32,7 @@ const std::string& LogFiles::Checked(const std::string& file, int64_t rotate_byt
   if (rotate_bytes <= 0) return file;
   const fs::path path(file);
   const std::string begin = path.stem().string() + "-", end = path.extension().string();
-  std::error_code failed;  // LogWriter says why
+  std::error_code failed;  // LogWriter reports the reason
   for (const auto& entry :
        fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", failed)) {
     const std::string name = entry.path().filename();

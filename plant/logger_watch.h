@@ -32,8 +32,8 @@ class LoggerWatch {
   process::Participant& participant_;
   const bus::Clock::Duration limit_;
   struct Logger {
-    bus::Clock::TimePoint heard;  // last
-    bool again = false;           // more than once
+    bus::Clock::TimePoint heard;  // when it was last heard
+    bool again = false;           // heard more than once
   };
   std::map<int64_t, Logger> loggers_;  // by session
   std::optional<bus::Clock::TimePoint> polled_;

@@ -130,7 +130,7 @@ class OutputSafety {
   const UnitSystem units_;    // of the model, for texts
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
-  int64_t newest_cause_tick_ = -1;  // when one has begun last
+  int64_t newest_cause_tick_ = -1;  // tick at which the newest cause began
   bool changed_ = false;
   std::array<Finding, static_cast<size_t>(Cause::kCount)> findings_;
 

@@ -178,7 +178,7 @@ class PlantApp {
   const int64_t ticks_ahead_;   // a voltage driven at a tick acts this many ticks later
 
   int64_t tick_ = 0;
-  Multiples pressure_ticks_, position_ticks_;         // at which each loop answers
+  Multiples pressure_ticks_, position_ticks_;         // ticks at which each loop answers
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
   std::vector<std::string> rig_faults_;  // codes of the active faults

@@ -39,7 +39,7 @@ class SimulatedRig : public Rig {
   [[gnu::cold]] RigError Explained(const model::ModelError& error, int64_t tick, bool late) const;
 
   settings::NoiseSection noise_;
-  bool exact_;  // the sensors have none
+  bool exact_;  // neither noise nor rounding
   int64_t seed_;
   double rate_hz_;
   double largest_angle_;

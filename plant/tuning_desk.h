@@ -113,7 +113,7 @@ class TuningDesk {
   tuning::TunedValues values_;  // in force
   Version in_force_;
   std::vector<Version> before_;  // earlier versions, newest last, for UNDO
-  int64_t newest_version_ = 0;   // that was ever proposed
+  int64_t newest_version_ = 0;   // newest version ever proposed
   std::optional<Pending> pending_;
   std::map<std::pair<std::string, int64_t>, Controller>
       controllers_;                             // by role and session; those heard lately

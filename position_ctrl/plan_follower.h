@@ -12,7 +12,7 @@ namespace hydro::position_ctrl {
 
 struct PlanLimits {
   double timeout_s = 0.2;  // s, plant time: a plan older than this is followed no further
-  // s, plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay.
+  // s, plant time: a plan made from tick k acts from k + this on, if it comes in time; so does its replay.
   double delay_s = 0.01;
   double largest_speed = 0;  // largest speed of the reference, per s; infinity: no limit
   double largest_angle = 0;  // |alpha|; the reference never leaves it

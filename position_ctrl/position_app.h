@@ -62,7 +62,7 @@ class PositionApp : public process::ControlLoop {
   double farthest_ = 0;
   process::CountedWarning refused_plans_{"refused_arm_plan"};
   int64_t plans_refused_ = 0;
-  std::string plan_refused_;  // why the newest was
+  std::string plan_refused_;  // why the newest plan was refused
   std::string reference_in_force_;
   double reference_from_ = 0;         // s, plant time at which the reference begins
   const double torque_per_pressure_;  // k_2

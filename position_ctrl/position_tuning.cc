@@ -73,7 +73,7 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
     law_before_ = values_.position;
     curve_before_ = curve_;
   }
-  tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
+  tuning::Read(*settings, torque_per_pressure_, &values_);  // valid, because it was prepared
   law_.Retune(values_.position);
   curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s,
                                    parameters_);

@@ -141,7 +141,7 @@ void PressureApp::TakeSettingsAt(int64_t tick) {
   const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
   if (settings == nullptr) return;
   if (!law_before_) law_before_ = values_.pressure;
-  tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
+  tuning::Read(*settings, k_2_, &values_);  // valid, because it was prepared
   const double limit = LargestPressureReference(values_, half_dac_step_);
   limit_before_ = std::max(LargestReference(), limit);
   limit_from_ = tick;
@@ -218,7 +218,8 @@ PressureLawOutput PressureApp::OwnLaw(const state_t& state, double pressure_ref)
 
 inline void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
   const PressureLawOutput output = Law(state, command->pressure_ref);
-  if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);  // it stays SAFE
+  // The status stays SAFE.
+  if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);
   command->status = motor_command_t::LAW;
   command->voltage = output.voltage;
   command->saturated = output.saturated;

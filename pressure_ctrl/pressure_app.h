@@ -111,7 +111,7 @@ class PressureApp : public process::ControlLoop {
   const bus::Clock::Duration stale_time_;
   tuning::TunedValues values_;  // in force
   double pressure_limit_;       // psi, largest |pressure reference| of commands from limit_from_ on
-  double limit_before_;         // of those before
+  double limit_before_;         // psi, of commands before limit_from_
   int64_t limit_from_ = 0;      // tick
   tuning::TuningFollower tuning_;
   tuning::BumplessTransfer transfer_;

@@ -46,7 +46,7 @@ class OwnPositionLoop : public ControlLoop {
 
   const PositionAnswer answer_;
   const ArmReference reference_;  // may be empty
-  pressure_command_t command_{};  // the last
+  pressure_command_t command_{};  // the last answer
   int64_t sequence_ = 0;
 };
 

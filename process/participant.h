@@ -114,7 +114,7 @@ class Participant {
   const timing::LoopStatistics& statistics() const { return statistics_; }
   bus::Bus& bus() const { return bus_; }
   const bus::Clock& clock() const { return clock_; }
-  bool simulated() const { return simulated_; }  // the clock is
+  bool simulated() const { return simulated_; }  // whether the clock is simulated
   const bus::Channels& channels() const { return channels_; }
 
  private:
@@ -150,7 +150,7 @@ class Participant {
   Agreement agreement_;
   std::optional<bus::Clock::TimePoint> configuration_sent_;
   configuration_t announced_;         // this process's configuration, as it is sent
-  bool configuration_asked_ = false;  // by who is new
+  bool configuration_asked_ = false;  // by a new process
   std::set<int64_t> answered_;        // processes that were present when our configuration was sent
   std::function<void(int64_t, const std::string&)> on_refusal_;
   int64_t tick_ = -1;

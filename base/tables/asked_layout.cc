@@ -20,7 +20,7 @@ constexpr size_t kMostHeaderLines = 10;  // below the names
 // A line that has names of asked columns.
 struct NamesLine {
   char separator = ',';
-  size_t at = 0;               // in Lines
+  size_t at = 0;               // index in Lines
   size_t names = 0;            // cells
   std::vector<size_t> places;  // places of the asked names among its cells
 };

@@ -67,7 +67,7 @@ herr_t AddDataset(hid_t root, const char* name, const H5O_info_t* info, void* to
 
 void CheckMat73Sizes(const std::string& file) {
   const size_t bytes = MappedFile(file).size();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what is wrong is said here
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // this program reports the errors
   const Hdf5Id root(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (root < 0) throw InputError(file + ": found damaged HDF5, allowed is a whole file: save it again");
   NumbersSoFar count;

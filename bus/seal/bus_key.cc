@@ -156,7 +156,7 @@ void MakeBusKeyFile(const std::string& file) {
                 errno == EEXIST ? "remove it first if it is to be replaced"
                                 : "a name in a folder that can be written is needed");
   }
-  errno = ENOSPC;  // of a write that is shorter
+  errno = ENOSPC;  // the reason of a short write
   if (write(made.fd(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.fd()) != 0) {
     const std::string why = std::strerror(errno);
     unlink(file.c_str());

@@ -14,7 +14,7 @@ namespace hydro::launch {
 struct OwnChild {
   std::string role;                      // the role that it fills, e.g. position_ctrl
   std::string name;                      // in messages, e.g. "./pid.py (position_ctrl)"
-  std::string folder;                    // that it runs in
+  std::string folder;                    // working folder
   std::vector<std::string> environment;  // "NAME=value", all of it
   int cpu = -1;                          // as in [[process]]; our programs set their own
   int priority = 0;

@@ -18,7 +18,7 @@ namespace hydro::launch {
 struct Asker {
   std::string role;   // of the program
   std::string stop;   // one line: how a stop was requested
-  std::string rearm;  // and for a re-arm
+  std::string rearm;  // one line: how a re-arm was requested
 };
 extern const Asker kHydroLaunch;
 extern const Asker kScopePage;

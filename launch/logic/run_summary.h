@@ -14,7 +14,7 @@ namespace hydro::launch {
 struct ProcessStatus {
   std::string role;
   double rate_hz = 0;            // of its loop, over its last report
-  double latency_p99_us = 0;     // the same
+  double latency_p99_us = 0;     // of its loop, over its last report
   int64_t missed_deadlines = 0;  // since the run began
   int64_t lost_messages = 0;
   std::string fault;  // code of an active fault; empty: none

@@ -74,7 +74,7 @@ class StackWatch {
   };
 
   static bool Is(const Expected& expected, const process_status_t& status);
-  const process_status_t* StatusOf(const Expected& expected) const;  // null: it has said nothing
+  const process_status_t* StatusOf(const Expected& expected) const;  // null: it has announced nothing
 
   // A stack of which this one consists: its own channels, or those of a joint.
   struct Stack {
@@ -85,7 +85,7 @@ class StackWatch {
   };
   // A process that has been heard.
   struct Heard {
-    size_t stack = 0;  // on whose channels
+    size_t stack = 0;  // index of the stack on whose channels it was heard
     process_status_t status;
   };
   // A process with another role may have the same id on another host, and one process may have several

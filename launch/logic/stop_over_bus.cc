@@ -80,7 +80,7 @@ class Presence {
       Heard(s.session, s.role + " on " + s.host);
     });
     bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
-      if (s.role == process::kLaunchRole) return;  // it only asked
+      if (s.role == process::kLaunchRole) return;  // it only asks who is present
       Heard(s.session, process::ProcessName(s));
       const auto found = processes_.find(s.session);
       if (found == processes_.end()) return;

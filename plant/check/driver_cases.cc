@@ -15,7 +15,7 @@ namespace {
 using Verdict = CaseResult::Verdict;
 
 constexpr double kMachine_s = 0.25;  // what a shared machine's load adds to a limit
-constexpr double kEnd_s = 5;         // in which a driver ends
+constexpr double kEnd_s = 5;         // for a driver to end
 constexpr double kTicks = 5;         // after the detection of a fault (docs/safety.md)
 
 CaseResult Kept(const std::string& found) { return {Verdict::kKept, found}; }

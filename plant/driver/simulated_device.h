@@ -14,7 +14,7 @@ namespace hydro::plant {
 // The ways in which the device can go wrong.
 enum class DeviceTrouble {
   kNone,
-  kSilent,     // it answers no more
+  kSilent,     // it no longer answers
   kNoNumbers,  // its readings are NaN, or beyond what its inputs can measure
   kLies,       // puts out what it is told and reads back something else
   kSlow,       // answers only once in kSlowAnswer

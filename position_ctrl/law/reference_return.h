@@ -38,8 +38,8 @@ class ReferenceReturn {
 
   int64_t ticks_;
   bool begun_ = false;      // a command has been in force
-  bool held_ = false;       // none is any more
-  bool returning_ = false;  // one is again
+  bool held_ = false;       // no command is in force any more
+  bool returning_ = false;  // a command is in force again
   int64_t returned_ = 0;    // since this tick
   double from_ = 0;
 };

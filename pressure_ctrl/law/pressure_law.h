@@ -40,7 +40,7 @@ double SteadyStateFeedforward(const model::Parameters& parameters, const Pressur
 // of dp, and dp_ref is the wanted load pressure. All 0: the sides are equal.
 struct UnequalSides {
   double areas = 0;          // model::Differences
-  double displacements = 0;  // the same
+  double displacements = 0;  // model::Differences
   double charge = 0;         // psi, p_3, the pressure of the side without load
 };
 
@@ -85,7 +85,7 @@ inline PumpShare ShareOf(const UnequalSides& sides, double load_pressure) {
 
 // Eq. (16) with the optional feed-forwards, V, without a limit:
 //   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref + transfer
-// With unequal sides, dp is the load pressure, and the feed-forwards act on the pump's share of the reference.
+// With unequal sides, dp is the load pressure, and the feed-forwards act on the pump's share of dp_ref.
 inline double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
   const double pressure_error =
       input.pressure_ref - model::LoadPressure(settings.sides.areas, input.p1, input.p2);

@@ -54,7 +54,7 @@ struct SafetyRow {
   // Kinds of faults that hydro-torture injects (sim/torture/schedule/fault_kinds.cc), each enough by itself
   // to reach the row in some run: "slow", or "slow:plant" where the process that it hits matters.
   std::string_view injected = {};
-  std::string_view not_injected = {};  // why there are none
+  std::string_view not_injected = {};  // the reason for injecting none
 };
 
 // In the order of docs/safety.md.

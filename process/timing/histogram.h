@@ -73,7 +73,7 @@ class Histogram {
   int64_t min_ = kHighest;
   int64_t max_ = 0;
   int64_t newest_ = -1;    // the newest record; -1: none
-  int newest_bucket_ = 0;  // and where it is counted
+  int newest_bucket_ = 0;  // the bucket that counts it
   std::array<int64_t, kBuckets> counts_{};
 };
 

@@ -108,7 +108,7 @@ class LoopStatistics {
   bus::Clock::TimePoint start_;
   Interval current_;
   int64_t cycles_ = 0;       // of the reported intervals
-  int64_t queue_depth_ = 0;  // the same
+  int64_t queue_depth_ = 0;  // of the reported intervals
   // Period and latency: of the reported intervals; others: of all.
   std::array<Histogram, kLoopQuantities> whole_;
   int next_histogram_ = kLoopQuantities;  // kLoopQuantities: all have been sent
