@@ -19,7 +19,8 @@ constexpr std::pair<std::string_view, std::string_view> kSpellings[] = {
     {"U/min", "rpm"},  {"Nm", "N m"},       {"N*m", "N m"},      {"N·m", "N m"},     {"°", "deg"},
     {"degree", "deg"}, {"degrees", "deg"},  {"Deg", "deg"},      {"DEG", "deg"},     {"°/s", "deg/s"},
     {"µs", "us"},      {"\xce\xbcs", "us"}, {"radian", "rad"},   {"radians", "rad"}, {"RAD", "rad"},
-    {"rev", "rev"},    {"µm", "um"},        {"\xce\xbcm", "um"}, {"inch", "in"},     {"KPa", "kPa"}};
+    {"rev", "rev"},    {"µm", "um"},        {"\xce\xbcm", "um"}, {"inch", "in"},     {"KPa", "kPa"},
+    {"°C", "degC"},    {"°F", "degF"},      {"kelvin", "K"}};
 
 bool IsSeparator(char c) { return std::string_view(" -/^()0123456789.").find(c) != std::string_view::npos; }
 

@@ -15,7 +15,7 @@ struct NamedUnit {
   Unit unit;
 };
 
-// The size of 1 of the unit, and its powers of m, kg, s, V and rad.
+// The size of 1 of the unit, and its powers of m, kg, s, V, rad, K and A. A temperature in degC or degF is such a difference, from a zero of its own.
 constexpr NamedUnit kUnits[] = {
     {"1", {1, {}}},
     {"m", {1, {1}}},
@@ -51,6 +51,11 @@ constexpr NamedUnit kUnits[] = {
     {"psi", {kPsi, {-1, 1, -2}}},
     {"V", {1, {0, 0, 0, 1}}},
     {"mV", {1e-3, {0, 0, 0, 1}}},
+    {"A", {1, {0, 0, 0, 0, 0, 0, 1}}},
+    {"mA", {1e-3, {0, 0, 0, 0, 0, 0, 1}}},
+    {"K", {1, {0, 0, 0, 0, 0, 1}}},
+    {"degC", {1, {0, 0, 0, 0, 0, 1}}},
+    {"degF", {5.0 / 9, {0, 0, 0, 0, 0, 1}}},
 };
 
 // The units in which figures are shown. Only pressures are separate: kPa or MPa, whichever is handier.
@@ -58,7 +63,7 @@ constexpr struct {
   std::string_view from;
   std::string_view to;
 } kShownIn[] = {
-    {"in", "mm"},
+    {"in", "m"},
     {"in/s", "m/s"},
     {"in^2", "cm^2"},
     {"in^3", "cm^3"},
@@ -203,7 +208,7 @@ std::optional<SiUnit> FindSiUnit(const std::string& unit, double size) {
   }
   // The unit may be another system's unit for one of these quantities.
   const std::optional<Unit> own = ParseUnit(unit);
-  if (!own.has_value() || own->powers == std::array<double, 5>{}) return std::nullopt;
+  if (!own.has_value() || own->powers == std::array<double, 7>{}) return std::nullopt;
   if (own->powers == ParseUnit("psi")->powers) return pressure(own->size);
   for (const auto& [from, to] : kShownIn) {
     if (own->powers != ParseUnit(from)->powers) continue;

@@ -22,7 +22,7 @@ constexpr double Degrees(double radians) { return radians * 180 / std::numbers::
 
 struct Unit {
   double size = 1;                 // in the coherent SI unit of the same powers
-  std::array<double, 5> powers{};  // of m, kg, s, V and rad
+  std::array<double, 7> powers{};  // of m, kg, s, V, rad, K and A
 };
 
 // Reads a unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/"

@@ -8,7 +8,7 @@ target_compile_definitions(bench_lockstep PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_
 add_executable(bench_event_source ${PROJECT_SOURCE_DIR}/bench/bench_event_source.cc)
 target_link_libraries(bench_event_source PRIVATE hydro_udpm hydro_settings)
 add_executable(bench_front_end ${PROJECT_SOURCE_DIR}/bench/bench_front_end.cc)
-target_link_libraries(bench_front_end PRIVATE hydro_udpm hydro_front_end hydro_pressure_app)
+target_link_libraries(bench_front_end PRIVATE hydro_udpm hydro_front_end hydro_pressure_app spdlog::spdlog)
 target_compile_definitions(bench_front_end PRIVATE
   HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/front_end.toml"
   HYDRO_BENCH_STACK="${PROJECT_SOURCE_DIR}/config/paper.toml"

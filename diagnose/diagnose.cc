@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"
@@ -68,6 +69,19 @@ bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& r
   });
 }
 
+// Whether some run was warmer than another, or became so.
+bool HasTemperature(const std::vector<const RunData*>& runs) {
+  constexpr double kLeast = 1;  // K
+  maths::Range range;
+  for (const RunData* run : runs) {
+    for (const model::Surroundings& around : run->stimulus.around) {
+      range.low = std::min(range.low, around.temperature);
+      range.high = std::max(range.high, around.temperature);
+    }
+  }
+  return range.high - range.low > kLeast;
+}
+
 // Whether the effect makes one channel late where there is no other: then it is the command that is early, an effect of the amplifier.
 bool IsOfTheCommand(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
   if (!model::HasRole(info.id, model::Role::kChannel) || !model::HasRole(info.id, model::Role::kTime))
@@ -107,7 +121,9 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
-    if ((info.on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
+    if (info.needs_temperature && !HasTemperature(runs)) continue;
+    const bool on_request = info.on_request && !info.needs_temperature;  // who records a temperature asks
+    if ((on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
     const bool has =

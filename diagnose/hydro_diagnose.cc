@@ -15,6 +15,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/text_file.h"
 #include "diagnose/evidence/checklist.h"
 #include "diagnose/recording/run_data.h"
@@ -72,25 +73,32 @@ class ReportFolder {
   bool created_ = false;
 };
 
-std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, const UnitSystem& units) {
+// Runs and the file of each: a sidecar may make several runs of a table.
+struct ReadFiles {
   std::vector<runs::MeasuredRun> runs;
-  runs.reserve(files.size());
+  std::vector<std::string> files;
+};
+
+ReadFiles ReadRuns(const std::vector<std::string>& files, const UnitSystem& units) {
+  ReadFiles read;
   for (const std::string& file : files) {
-    runs.push_back(runs::ReadMeasuredRun(file, units));
-    const std::string& caution = runs.back().caution;
-    if (!caution.empty()) std::fprintf(stderr, "hydro-diagnose: warning: %s\n", Printable(caution).c_str());
+    for (runs::MeasuredRun& run : runs::ReadMeasuredRuns(file, units)) {
+      read.runs.push_back(std::move(run));
+      read.files.push_back(file);
+    }
+    const std::string& caution = read.runs.back().caution;
+    if (!caution.empty()) Remark("hydro-diagnose: warning: " + caution);
   }
-  return runs;
+  return read;
 }
 
 // Adds their file to the names that several runs have, without its folder where that suffices.
-void TellApart(const DiagnoseRequest& request, std::vector<runs::MeasuredRun>* fitted,
-               std::vector<runs::MeasuredRun>* held_out) {
-  std::vector<std::string> files = request.runs;
-  files.insert(files.end(), request.held_out.begin(), request.held_out.end());
+void TellApart(ReadFiles* fitted, ReadFiles* held_out) {
+  std::vector<std::string> files = fitted->files;
+  files.insert(files.end(), held_out->files.begin(), held_out->files.end());
   std::vector<runs::MeasuredRun*> all;
-  for (std::vector<runs::MeasuredRun>* list : {fitted, held_out}) {
-    for (runs::MeasuredRun& run : *list) all.push_back(&run);
+  for (ReadFiles* list : {fitted, held_out}) {
+    for (runs::MeasuredRun& run : list->runs) all.push_back(&run);
   }
   std::map<std::string, int> names, labels;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -163,9 +171,9 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDesc
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
   report_progress({"reading the runs", 0});
-  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
-                                 held_out = ReadRuns(request.held_out, model.units);
-  TellApart(request, &runs, &held_out);
+  ReadFiles fitted = ReadRuns(request.runs, model.units), rest = ReadRuns(request.held_out, model.units);
+  TellApart(&fitted, &rest);
+  std::vector<runs::MeasuredRun>&runs = fitted.runs, &held_out = rest.runs;
   *motor_alone = IsMotorAlone(runs) && (held_out.empty() || IsMotorAlone(held_out));
   try {
     return diagnose(model, std::move(runs), std::move(held_out), options, report_progress);
@@ -261,10 +269,10 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   RequireJobs(request);
   RequireDifferentFiles(request);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
-  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
-                                 held_out = ReadRuns(request.held_out, model.units);
-  TellApart(request, &runs, &held_out);
-  runs.insert(runs.end(), held_out.begin(), held_out.end());
+  ReadFiles fitted = ReadRuns(request.runs, model.units), held_out = ReadRuns(request.held_out, model.units);
+  TellApart(&fitted, &held_out);
+  std::vector<runs::MeasuredRun>& runs = fitted.runs;
+  runs.insert(runs.end(), held_out.runs.begin(), held_out.runs.end());
   for (const runs::MeasuredRun& run : runs) CheckUsable(run);
   for (const runs::MeasuredRun& run : runs) {
     std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);

@@ -9,6 +9,7 @@
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/recording/contradictions.h"
 #include "diagnose/recording/held_samples.h"
+#include "diagnose/recording/measured_ratios.h"
 #include "diagnose/recording/recording_damage.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "diagnose/recording/run_data.h"
@@ -77,6 +78,7 @@ std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
   if (!checked.load.empty()) remarks.push_back(checked.load);
+  remarks.insert(remarks.end(), checked.ratios.begin(), checked.ratios.end());
   remarks.insert(remarks.end(), checked.repeats.begin(), checked.repeats.end());
   remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
   return remarks;
@@ -118,6 +120,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   std::vector<runs::MeasuredRun> on_one_clock;
   on_one_clock.reserve(all.size());
   for (const AlignedRun& one : checked.aligned) on_one_clock.push_back(one.run);
+  checked.ratios = RatioRemarks(model, on_one_clock);
   std::vector<RecordingFinding> findings =
       CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
   // What is to be mended there first may look like any other mistake.
@@ -184,6 +187,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong.insert(report.wrong.end(), checked.factors.begin(), checked.factors.end());
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
   if (!checked.load.empty()) report.limits.push_back(checked.load);
+  report.limits.insert(report.limits.end(), checked.ratios.begin(), checked.ratios.end());
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());
   report.judged = checked.unjudged.empty();
   if (!report.judged) report.limits.push_back(checked.unjudged);

@@ -20,6 +20,7 @@ struct CheckedRecordings {
   std::vector<std::string> damage;   // dropouts, spikes, cuts: a line each
   std::vector<std::string> repeats;  // slow sensors that repeat their values: a line each
   std::string load;                  // LoadRemark()
+  std::vector<std::string> ratios;   // RatioRemarks()
   std::string unjudged;              // runs that the model as given does not predict at all; empty: none
   // The mistakes make a search useless: it would name physics for them.
   bool mend_first = false;

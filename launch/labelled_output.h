@@ -52,6 +52,10 @@ class LabelledOutput {
   // blocking descriptor: a pipe that polls as writable has that much room.
   void WriteSome();
 
+  // errno of the first line for stdout that could not be written; 0: none. A reader that has gone does not
+  // count.
+  int lost() const { return lost_; }
+
   // Writes everything that waits, and blocks until that is done.
   void Flush();
 
@@ -78,6 +82,7 @@ class LabelledOutput {
   std::size_t label_width_ = 0;
   std::deque<Chunk> queue_;
   std::size_t queued_bytes_ = 0;
+  int lost_ = 0;
 };
 
 }  // namespace hydro::launch

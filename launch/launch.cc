@@ -8,6 +8,7 @@
 
 #include "base/new_file.h"
 #include "base/read_files.h"
+#include "base/standard_output.h"
 #include "launch/labelled_output.h"
 #include "launch/launch_lock.h"
 #include "launch/logic/stack_launch.h"
@@ -45,7 +46,11 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const La
       request.log_file);
   StackLaunch launch(*bus, clock, supervisor, report, config, plan, timing);
   lock.emplace(config, plan);
-  return launch.Run();
+  const int exit_code = launch.Run();
+  if (output.lost() == 0) return exit_code;
+  report.PrintError(CannotBeWritten(output.lost()));
+  output.Flush();
+  return exit_code == 0 ? 1 : exit_code;
 }
 
 int LaunchStack(const LaunchRequest& request) {

@@ -3,8 +3,28 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.h"
+#include "base/mapped_file.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::launch {
+namespace {
+
+// Whether anything moved: of a run that ended before, hydro-log summary has nothing to say. A log that has states begins with one soon, so
+// that little of it is read.
+bool HasState(const std::string& file) {
+  try {
+    const MappedFile log(file);
+    log::LogEvent event;
+    for (int64_t at = 0; at < static_cast<int64_t>(log.size()); at = log::EndOf(event)) {
+      if (!log::ParseLogEvent(log, at, event).empty()) return false;
+      if (event.channel.starts_with("HYDRO_STATE")) return true;
+    }
+  } catch (const InputError&) {
+  }
+  return false;
+}
+
+}  // namespace
 
 TerminalReport::TerminalReport(LabelledOutput& output, const settings::StackConfig& config,
                                const LaunchPlan& plan, const ReportStyle& style, const std::string& log_file)
@@ -56,7 +76,9 @@ void TerminalReport::End(int exit_code) {
     output_.Json(
         JsonText(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", written ? log_file_ : ""}}));
   } else if (written) {
-    Print("next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_);
+    Print(HasState(log_file_)
+              ? "next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_
+              : "next: hydro-log info " + log_file_ + ": the run ended before its first state");
   } else if (logs_here_) {
     Print("nothing was recorded: the run ended before " + log_file_ + " was begun");
   }

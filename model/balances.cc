@@ -82,6 +82,7 @@ void EvaluateMotion(const EquationData& m, const NumbersOf<T>& n, const KnownMot
   T y[kMaxStates];
   for (int i = 0; i < m.states; ++i) y[i] = T(state[i]);
   const auto read = [&] {
+    x.around = at.around;
     x.motor_angle = T(at.motor_angle);
     x.motor_speed = T(at.motor_speed);
     x.p1 = T(at.p1);

@@ -17,6 +17,7 @@ struct KnownMotion {
   double motor_angle = 0, motor_speed = 0, motor_acceleration = 0;
   double p1 = 0, p2 = 0, p1_rate = 0, p2_rate = 0;
   double arm_angle = 0, arm_speed = 0, arm_acceleration = 0;
+  Surroundings around = {};
   // The expected sign of the pump's and of the arm's motion, -1 to 1: between, where noise hides it.
   double pump_direction = 0, arm_direction = 0;
 };

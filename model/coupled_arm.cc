@@ -20,13 +20,19 @@
 namespace hydro::model {
 namespace {
 
+// Exchanges of loads per second: those of an arm that oscillates at 4e6 rad/s. Beyond, its links have no weight.
+constexpr double kMostExchanges = 1e7;
+
 // Calls `act`, whose errors then say which joint's they are.
 template <class Act>
 void Named(int joint, const Act& act) {
+  const std::string name = "joint " + std::to_string(joint + 1) + ": ";
   try {
     act();
+  } catch (const TooManySteps& error) {
+    throw TooManySteps(name + error.what());
   } catch (const ModelError& error) {
-    throw ModelError("joint " + std::to_string(joint + 1) + ": " + error.what());
+    throw ModelError(name + error.what());
   }
 }
 
@@ -69,6 +75,10 @@ class CoupledArm::Impl {
       const double left = until - time();
       const double steps =
           std::ceil(left * std::max(1 / options_.longest_step, options_.steps_per_radian * fastest_rate_));
+      if (!(steps <= std::max(1.0, kMostExchanges * left))) {
+        throw TooManySteps("too fast to simulate: its joints move each other at up to " +
+                           std::to_string(fastest_rate_) + " rad/s at t = " + std::to_string(time()) + " s");
+      }
       Step(voltages, steps <= 1 ? until : time() + left / steps);
     }
   }

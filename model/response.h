@@ -11,6 +11,7 @@
 
 #include "model/actuator.h"
 #include "model/terms/description.h"
+#include "model/terms/surroundings.h"
 #include "model/unknown.h"
 
 namespace hydro::model {
@@ -40,6 +41,8 @@ struct Stimulus {
   double begin = 0;             // s, of the whole run: what effects call t counts from there
   std::vector<double> time;     // s, increasing
   std::vector<double> voltage;  // V, each held from its time to the next
+  // What acts from outside, at each time and in a straight line to the next; empty: nothing, all the time.
+  std::vector<Surroundings> around = {};
 };
 
 // The base states at the first time, indexed as in model/state.h, then what no sensor shows. The arm's states are used with a free

@@ -28,6 +28,11 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   return result;
 }
 
+// Held for a sample, the mean of both ends gives the arm the impulse of the straight line between them.
+inline Surroundings OverASample(const Surroundings& from, const Surroundings& to) {
+  return {0.5 * (from.arm_force + to.arm_force), 0.5 * (from.temperature + to.temperature)};
+}
+
 // How many steps a pass may take in all, so that a far too stiff model does not take hours.
 inline int64_t MostSteps(const Stimulus& stimulus, const ResponseOptions& options) {
   const double duration = stimulus.time.back() - stimulus.time.front();
@@ -62,6 +67,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   actuator.motion = stimulus.motion;
   actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
   Equations equations(model, actuator);
+  if (!stimulus.around.empty()) equations.Surround(stimulus.around.front());
   NumbersOf<T> numbers = NumbersAs<T>(equations.data());
   constexpr size_t kNumbers = std::tuple_size_v<StartState>;
   T base[kNumbers];
@@ -79,6 +85,8 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {
+    if (k > 0 && !stimulus.around.empty())
+      machine.Surround(OverASample(stimulus.around[k - 1], stimulus.around[k]));
     if (k > 0) machine.Advance(stimulus.voltage[k - 1], stimulus.time[k]);
     if (k % options.stride != 0) continue;
     MeasurementOf<T> measured =

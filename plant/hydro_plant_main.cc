@@ -24,9 +24,9 @@ int main(int argc, char** argv) {
   return hydro::process::RunProcess(
       "hydro-plant", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        hydro::plant::SimulatedRig rig(config);  // first: what is refused is all that is said
         if (const std::string remark = hydro::design::FastMotionRemark(config); !remark.empty())
           spdlog::warn("{}", remark);
-        hydro::plant::SimulatedRig rig(config);
         return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-plant",
                                       hydro::process::HeartbeatArrived)
             .Run();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "model/terms/parameter_info.h"
+
 namespace hydro::plant {
 
 SimulatedRig::SimulatedRig(const settings::StackConfig& config)
@@ -17,6 +19,7 @@ SimulatedRig::SimulatedRig(const settings::StackConfig& config, std::unique_ptr<
       rate_hz_(config.plant.rate_hz),
       largest_angle_(config.limits.arm_angle_rad),
       units_(config.model.description.units),
+      unusual_(model::MostUnusual(config.model.description)),
       machine_(std::move(machine)) {}
 
 model::Measurement SimulatedRig::Read(int64_t tick) {
@@ -33,7 +36,10 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
 
 RigError SimulatedRig::Explained(const model::ModelError& error, int64_t tick, bool late) const {
   const double angle = machine_->Measure().arm_angle;
-  if (!late || !(std::fabs(angle) > largest_angle_)) return {"model_error", error.what()};
+  if (!late || !(std::fabs(angle) > largest_angle_)) {
+    const std::string cause = unusual_.empty() ? "" : "; the cause may be " + unusual_;
+    return {"model_error", fmt::format("{}, before tick {}{}", error.what(), tick, cause)};
+  }
   return {"arm_angle_limit",
           fmt::format("before tick {} the arm was at {:.6g} {unit}, allowed is |alpha| <= {:.6g} {unit} "
                       "(limits.arm_angle), and left its cylinder while the plant was late",

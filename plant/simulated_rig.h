@@ -44,7 +44,8 @@ class SimulatedRig : public Rig {
   double rate_hz_;
   double largest_angle_;
   UnitSystem units_;
-  int64_t read_ = -1;  // tick
+  std::string unusual_;  // in the model's numbers
+  int64_t read_ = -1;    // tick
   std::unique_ptr<SimulatedMachine> machine_;
   std::vector<RigFault> no_faults_;
 };

@@ -306,7 +306,12 @@ void Participant::Stop(int64_t addressee, const std::string& source, const std::
   stop.reason = reason;
   stop.exit_code = exit_code;
   stop_ = stop;
-  if (exit_code != 0 && !simulated_) spdlog::error("{}", reason);
+  if (exit_code != 0 && !simulated_ && !SaidAsFault(reason)) spdlog::error("{}", reason);
+}
+
+bool Participant::SaidAsFault(const std::string& reason) const {
+  return std::any_of(active_.begin(), active_.end(),
+                     [&](const auto& fault) { return reason.ends_with(fault.second.text); });
 }
 
 int Participant::Leave(const std::string& failure) {

@@ -12,7 +12,6 @@
 #include "runs/run_config.h"
 #include "runs/sampling.h"
 #include "runs/senders.h"
-#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -38,8 +37,8 @@ class SequenceCount {
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
       const auto distinct = static_cast<int64_t>(numbers.size());
       info.repeated += count - distinct;
-      info.lost = SaturatingSum(
-          info.lost,
+      info.missing = SaturatingSum(
+          info.missing,
           SaturatingDifference(SaturatingDifference(numbers.back(), numbers.front()), distinct - 1));
       info.before_first = SaturatingSum(info.before_first, std::max<int64_t>(numbers.front(), 0));
     }
@@ -283,7 +282,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
   info.stops = DistinctStops(log.messages.Of<stop_t>());
-  info.tunings = TuningHistory(log.messages);
+  info.tunings = TuningSteps(log.messages);
   info.outputs_left = OutputsLeft(log.messages);
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
   UnitSystem units;
@@ -300,6 +299,14 @@ LogInfo Summarise(const RunLog& log, bool si) {
     info.signals = SignalsOf(log.messages, units, si);
   }
   return info;
+}
+
+int64_t MissingMessages(const LogInfo& info) {
+  int64_t missing = 0;
+  for (const ChannelInfo& channel : info.channels) {
+    if (channel.numbered) missing = SaturatingSum(missing, channel.missing);
+  }
+  return missing;
 }
 
 }  // namespace hydro::runs

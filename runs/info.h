@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runs/run_log.h"
+#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 
@@ -17,7 +18,7 @@ struct ChannelInfo {
       0;  // events per second of receive time without its clock's steps; 0: fewer than two, or no time passed
   bool numbered = false;     // its messages have sequence numbers; otherwise the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
-  int64_t lost = 0;          // numbers missing between each sender's first and last
+  int64_t missing = 0;       // from the log: numbers missing between each sender's first and last
   int64_t repeated = 0;      // messages whose number had already been seen
   int64_t before_first = 0;  // messages that its senders sent before the log began
 };
@@ -87,7 +88,7 @@ struct LogInfo {
   std::vector<ProgramInfo> programs;  // those that introduced themselves
   std::vector<fault_t> faults;
   std::vector<stop_t> stops;                                // each once, however often it was sent
-  std::vector<tuned_settings_t> tunings;                    // changes of values while the run went on
+  std::vector<TuningStep> tunings;                          // changes of values while the run went on
   std::vector<output_left_t> outputs_left;                  // what plants or drivers left at their ends
   std::vector<run_description_t> descriptions;              // distinct ones
   std::string model_name;                                   // of the first description
@@ -96,6 +97,9 @@ struct LogInfo {
 
 // Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
+
+// Messages that are missing from the log, on all channels.
+int64_t MissingMessages(const LogInfo& info);
 
 // Several lines for people to read.
 std::string InfoText(const LogInfo& info);

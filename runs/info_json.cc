@@ -15,7 +15,7 @@ Json ChannelJson(const ChannelInfo& channel) {
                {"undecodable", channel.summary.undecodable}};
   if (channel.numbered) {
     json["senders"] = channel.senders;
-    json["lost"] = channel.lost;
+    json["missing"] = channel.missing;
     json["repeated"] = channel.repeated;
     json["before_first"] = channel.before_first;
   }

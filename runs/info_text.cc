@@ -9,7 +9,6 @@
 #include "bus/output_left.h"
 #include "runs/info.h"
 #include "runs/sampling.h"
-#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -56,11 +55,12 @@ void AppendDescriptions(const LogInfo& info, std::string& text) {
 }
 
 void AppendChannels(const LogInfo& info, std::string& text) {
-  Append(text, "{:<32} {:>10} {:>12} {:>8} {:>8}\n", "channel", "messages", "rate (Hz)", "lost", "repeated");
+  Append(text, "{:<32} {:>10} {:>12} {:>8} {:>8}\n", "channel", "messages", "rate (Hz)", "missing",
+         "repeated");
   for (const ChannelInfo& channel : info.channels) {
     Append(text, "{:<32} {:>10} {:>12.2f}", channel.summary.channel, channel.summary.events, channel.rate_hz);
     if (channel.numbered) {
-      Append(text, " {:>8} {:>8}", channel.lost, channel.repeated);
+      Append(text, " {:>8} {:>8}", channel.missing, channel.repeated);
       if (channel.senders > 1) Append(text, "  {} senders", channel.senders);
       if (channel.before_first > 0) Append(text, "  {} sent before the log began", channel.before_first);
     }
@@ -74,8 +74,8 @@ void AppendChannels(const LogInfo& info, std::string& text) {
 
 void AppendTicks(const TickInfo& ticks, std::string& text) {
   if (ticks.states == 0) return;
-  Append(text, "ticks: {}, from {} at {} s to {} at {} s, {} a second of plant time\n", ticks.states,
-         ticks.first, Number(ticks.first_time_s), ticks.last, Number(ticks.last_time_s),
+  Append(text, "states: {}, from tick {} at {} s to tick {} at {} s, {} ticks a second of plant time\n",
+         ticks.states, ticks.first, Number(ticks.first_time_s), ticks.last, Number(ticks.last_time_s),
          Number(ticks.rate_hz));
   if (ticks.sampled > 1) Append(text, "sampled: {}, not each\n", DescribeSampling(ticks.sampled));
   Append(text,
@@ -148,17 +148,20 @@ void AppendLoops(const LogInfo& info, std::string& text) {
   }
 }
 
+// Of a sender that knew of no tick, nothing.
+std::string TickText(int64_t tick) { return tick >= 0 ? "tick " + std::to_string(tick) + ": " : ""; }
+
 void AppendEnds(const LogInfo& info, std::string& text) {
   for (const fault_t& fault : info.faults) {
-    Append(text, "fault: tick {}: {}: {} {}: {}\n", fault.tick, fault.source, fault.code,
+    Append(text, "fault: {}{}: {} {}: {}\n", TickText(fault.tick), fault.source, fault.code,
            fault.active != 0 ? "begins" : "has gone", fault.text);
   }
   if (info.faults.empty()) text += "faults: none\n";
   for (const stop_t& stop : info.stops) {
-    Append(text, "stop: tick {}: {}: {} (exit code {})\n", stop.tick, stop.source, stop.reason,
+    Append(text, "stop: {}{}: {} (exit code {})\n", TickText(stop.tick), stop.source, stop.reason,
            stop.exit_code);
   }
-  for (const tuned_settings_t& tuning : info.tunings) Append(text, "tuned: {}\n", DescribeTuning(tuning));
+  for (const TuningStep& tuning : info.tunings) Append(text, "tuned: {}\n", DescribeTuning(tuning));
   for (const output_left_t& left : info.outputs_left) Append(text, "end: {}\n", bus::OutputLeftText(left));
   if (info.outputs_left.empty()) text += "end: no plant or driver says what voltage it left\n";
 }

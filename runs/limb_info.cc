@@ -22,7 +22,7 @@ void AddEvents(const JointInfo& joint, LogInfo* limb) {
     stop.source = Named(joint.name, stop.source);
     limb->stops.push_back(std::move(stop));
   }
-  for (tuned_settings_t tuning : joint.info.tunings) {
+  for (TuningStep tuning : joint.info.tunings) {
     tuning.source = Named(joint.name, tuning.source);
     limb->tunings.push_back(std::move(tuning));
   }

@@ -11,7 +11,6 @@
 #include "bus/output_left.h"
 #include "runs/limb_info.h"
 #include "runs/sampling.h"
-#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -19,14 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kListed = 40;  // of faults and outputs; the rest is counted
-
-int64_t Lost(const JointInfo& joint) {
-  int64_t lost = 0;
-  for (const ChannelInfo& channel : joint.info.channels) {
-    if (channel.numbered) lost = SaturatingSum(lost, channel.lost);
-  }
-  return lost;
-}
 
 // The codes of its faults, each once.
 std::string Faults(const JointInfo& joint) {
@@ -56,14 +47,14 @@ std::string RowsOf(const LimbInfo& info) {
   size_t width = 16;
   for (const JointInfo& joint : info.joints) width = std::max(width, joint.name.size());
   std::string text =
-      fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n", "joint", width, "states",
-                  "every", "time s", "lost", "skipped", "final error", "rms error", "target", "faults");
+      fmt::format("{:<{}} {:>9} {:>6} {:>9} {:>7} {:>8} {:>15} {:>13} {:<11} {}\n", "joint", width, "states",
+                  "every", "time s", "missing", "skipped", "final error", "rms error", "target", "faults");
   for (const JointInfo& joint : info.joints) {
     const TickInfo& ticks = joint.info.ticks;
     const bool has = joint.tracking.has_reference;
-    text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>6} {:>8} {:>15} {:>13} {:<11} {}\n",
+    text += fmt::format("{:<{}} {:>9} {:>6} {:>9.3f} {:>7} {:>8} {:>15} {:>13} {:<11} {}\n",
                         Printable(joint.name), width, ticks.states, ticks.sampled,
-                        ticks.last_time_s - ticks.first_time_s, Lost(joint), ticks.announced,
+                        ticks.last_time_s - ticks.first_time_s, MissingMessages(joint.info), ticks.announced,
                         has ? WithUnit(joint.tracking, joint.tracking.final_error_rad, 5) : "-",
                         has ? WithUnit(joint.tracking, joint.tracking.rms_error_rad, 4) : "-",
                         Target(joint.tracking), Faults(joint));
@@ -113,16 +104,10 @@ std::string LimbSummaryText(const LimbInfo& info) {
   const std::string caution = log::Caution(info.limb.verdict);
   if (!caution.empty()) text += "log: " + caution + "\n";
   text += LoopsText(info.limb);
-  AppendList(
-      info.limb.faults,
-      [](const fault_t& fault) {
-        return fmt::format("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code),
-                           fault.active ? "began" : "ended", Printable(fault.source));
-      },
-      &text);
+  AppendList(info.limb.faults, FaultText, &text);
   AppendList(
       info.limb.tunings,
-      [](const tuned_settings_t& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
+      [](const TuningStep& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
   AppendList(
       info.limb.outputs_left, [](const output_left_t& left) { return Printable(bus::OutputLeftText(left)); },
       &text);

@@ -96,7 +96,7 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
   run.time = SampleTimes(table, {.column = table.Find("time_s")});
   settings::SectionReader noise = document.Section("noise");
   for (const SignalName& name : kSignals) {
-    const tables::Column* column = table.Find(name.exported);
+    const tables::Column* column = name.exported == nullptr ? nullptr : table.Find(name.exported);
     if (column == nullptr || AllMissing(column->values)) continue;
     MeasuredSignal& signal = run.*name.signal;
     signal.values = name.signal == &MeasuredRun::voltage ? CommandValues(table, {.column = column})
@@ -119,18 +119,10 @@ RunName ParseRunName(const std::string& text) {
   return {text.substr(0, hash), text.substr(hash + 1)};
 }
 
-MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSystem>& units) {
-  const auto& [file, joint] = ParseRunName(text);
-  if (tables::IsTable(file)) {
-    if (joint)
-      throw InputError(text + ": found the joint " + Quoted(*joint) + " of a table, allowed of a log");
-    return ReadTableRun(file, units.value_or(UnitSystem{}));
-  }
-  if (file.ends_with(".toml")) {
-    const std::string allowed = "the run itself: a log, or the csv or mat beside its sidecar";
-    RequireKind(FileKind::kLog, ReadTextFile(file), file, allowed);
-    throw InputError(file + ": found a TOML file, allowed " + allowed);
-  }
+namespace {
+
+MeasuredRun ReadLogRun(const std::string& file, const std::optional<std::string>& joint,
+                       const std::optional<UnitSystem>& units) {
   const RunLog log = ReadRunLog(file, {.joint = joint});
   tables::Table table = ExportRun(log);
   table.file = file;
@@ -147,6 +139,31 @@ MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSys
   run.caution = DescribeCaution(log);
   if (units.has_value()) Convert(*units, &run);
   return run;
+}
+
+}  // namespace
+
+std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& text, const std::optional<UnitSystem>& units) {
+  const auto& [file, joint] = ParseRunName(text);
+  if (tables::IsTable(file)) {
+    if (joint)
+      throw InputError(text + ": found the joint " + Quoted(*joint) + " of a table, allowed of a log");
+    return ReadTableRuns(file, units.value_or(UnitSystem{}));
+  }
+  if (file.ends_with(".toml")) {
+    const std::string allowed = "the run itself: a log, or the csv or mat beside its sidecar";
+    RequireKind(FileKind::kLog, ReadTextFile(file), file, allowed);
+    throw InputError(file + ": found a TOML file, allowed " + allowed);
+  }
+  return {ReadLogRun(file, joint, units)};
+}
+
+MeasuredRun ReadMeasuredRun(const std::string& text, const std::optional<UnitSystem>& units) {
+  std::vector<MeasuredRun> runs = ReadMeasuredRuns(text, units);
+  if (runs.size() == 1) return std::move(runs.front());
+  throw InputError(runs.front().sidecar + ": found use, skip, shaft or bypass that make " +
+                   std::to_string(runs.size()) + " runs of " + Quoted(text) +
+                   ", allowed one here: give one of them as use = [[from, to]]");
 }
 
 std::string NameWithCaution(const MeasuredRun& run) {

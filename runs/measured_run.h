@@ -69,6 +69,12 @@ struct MeasuredRun {
   MeasuredSignal arm_speed;
   MeasuredSignal p1;
   MeasuredSignal p2;
+  // What was measured beside them.
+  MeasuredSignal arm_force;    // on the arm, in the direction of its angle, beside its weight: a load cell's
+  MeasuredSignal temperature;  // degC, of the oil
+  MeasuredSignal motor_voltage;   // V, at the motor's terminals, where the command is a current
+  MeasuredSignal bypass_valve;    // open above 0.5
+  bool current_commands = false;  // `voltage` is a current in A, and the motor's torque k_1 times it
 
   size_t samples() const { return time.size(); }
   // The time of the run's first sample, cut off or not.
@@ -99,7 +105,10 @@ RunName ParseRunName(const std::string& text);
 // - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, a limb's telemetry of
 //   some states only, no description of how the shaft
 //   was held, or an arm whose coordinate is not that of `units`.
-// "LOG#NAME" is the joint of that name in the log of a limb.
+// "LOG#NAME" is the joint of that name in the log of a limb. A sidecar may make several runs of a table (run_parts.h).
+std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& file,
+                                          const std::optional<UnitSystem>& units = std::nullopt);
+// The same of a file that is one run; InputError where it is several.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
 // The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run:

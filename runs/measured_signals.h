@@ -13,7 +13,7 @@ namespace hydro::runs {
 struct SignalName {
   MeasuredSignal MeasuredRun::*signal;
   const char* ours;      // in a sidecar
-  const char* exported;  // in a table of ExportRun(), with the paper's unit
+  const char* exported;  // in a table of ExportRun(), with the paper's unit; null: no log has it
   // In [noise] of a configuration; null: not a sensor's.
   const char* standard_deviation;
   const char* resolution;
@@ -21,7 +21,7 @@ struct SignalName {
   int arm = 0;       // power of the arm's coordinate in it
 };
 
-inline constexpr std::array<SignalName, 8> kSignals = {{
+inline constexpr std::array<SignalName, 12> kSignals = {{
     {&MeasuredRun::voltage, "voltage", "voltage_V", nullptr, nullptr, "V"},
     {&MeasuredRun::pressure_ref, "pressure_ref", "pressure_ref_psi", nullptr, nullptr, "psi"},
     {&MeasuredRun::motor_speed, "motor_speed", "motor_speed_rad_s", "motor_speed", "motor_speed_resolution",
@@ -33,7 +33,24 @@ inline constexpr std::array<SignalName, 8> kSignals = {{
      1},
     {&MeasuredRun::p1, "p1", "p1_psi", "p1", "p1_resolution", "psi"},
     {&MeasuredRun::p2, "p2", "p2_psi", "p2", "p2_resolution", "psi"},
+    {&MeasuredRun::arm_force, "arm_force", nullptr, nullptr, nullptr, "in-lbf", -1},
+    {&MeasuredRun::temperature, "temperature", nullptr, nullptr, nullptr, "degC"},
+    {&MeasuredRun::motor_voltage, "motor_voltage", nullptr, nullptr, nullptr, "V"},
+    {&MeasuredRun::bypass_valve, "bypass", nullptr, nullptr, nullptr, "1"},
 }};
+
+// Its key in the sidecar of the run, in whose words texts speak of it: where a current commands, `current` is the command and `voltage`
+// what was measured at the motor. Null: it has none there.
+inline const char* KeyIn(const MeasuredRun& run, const SignalName& name) {
+  if (name.signal == &MeasuredRun::voltage && run.current_commands) return "current";
+  if (name.signal == &MeasuredRun::motor_voltage) return run.current_commands ? "voltage" : nullptr;
+  return name.ours;
+}
+// Its unit in the run.
+inline std::string UnitIn(const MeasuredRun& run, const SignalName& name) {
+  if (name.signal == &MeasuredRun::voltage && run.current_commands) return "A";
+  return run.units.UnitFor(name.unit, name.arm);
+}
 
 inline const std::vector<std::pair<std::string, model::Shaft>> kShafts = {
     {"clamped", model::Shaft::kClamped}, {"free", model::Shaft::kFree}, {"driven", model::Shaft::kDriven}};

@@ -128,9 +128,10 @@ void RequireOneRun(const RunLog& log) {
   if (tick.has_value()) found += " (two different states of tick " + std::to_string(*tick) + ")";
   std::vector<std::string> remarks = log.verdict.remarks;
   remarks.push_back(log.verdict.note);
-  std::string remedy;
+  std::string remedy = ", so record each into a log of its own";
   for (const std::string& remark : remarks) {
-    if (remark.find("joined") != std::string::npos) remedy = "; " + remark + ": cut it there";
+    if (remark.find("joined") != std::string::npos)
+      remedy = "; " + remark + ": hydro-log repair says how to take them apart";
   }
   throw InputError(log.file + ": found " + found + "; one run by one sender is needed" + remedy +
                    "; hydro-log info " + log.file + " shows each");

@@ -6,6 +6,7 @@
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/measured_signals.h"
+#include "runs/run_parts.h"
 #include "runs/sidecar_columns.h"
 #include "runs/sidecar_search.h"
 #include "settings/read_quantities.h"
@@ -18,13 +19,15 @@ namespace {
 constexpr int kMostSkipped = 1'000'000;
 
 void ReadNoise(settings::SectionReader noise, MeasuredRun* run) {
-  for (const SignalName& name : kSignals)
-    noise.Number(name.ours, &(run->*name.signal).noise, settings::kPositive);
+  for (const SignalName& name : kSignals) {
+    const char* key = KeyIn(*run, name);
+    if (key != nullptr) noise.Number(key, &(run->*name.signal).noise, settings::kPositive);
+  }
   noise.Finish();
   for (const SignalName& name : kSignals) {
     const MeasuredSignal& signal = run->*name.signal;
     if (!signal.noise.has_value() || signal.measured()) continue;
-    throw noise.Error(name.ours, "the noise of a signal that has no column",
+    throw noise.Error(KeyIn(*run, name), "the noise of a signal that has no column",
                       "noise of the signals in [columns]");
   }
 }
@@ -38,28 +41,12 @@ void ReadText(const std::string& key, const std::string& unit, settings::TomlNod
 }
 
 void ReadTexts(const UnitSystem& units, settings::TomlNode* root) {
-  ReadText("arm_angle", units.UnitFor("rad", 1), root->Find("arm_angle"));
+  for (settings::TomlNode* angle : AnglesIn(root)) ReadText("arm_angle", units.UnitFor("rad", 1), angle);
   settings::TomlNode* noise = root->Find("noise");
   if (noise == nullptr) return;
   for (const SignalName& name : kSignals) {
     ReadText("noise." + std::string(name.ours), units.UnitFor(name.unit, name.arm), noise->Find(name.ours));
   }
-}
-
-// How the shaft was held, and the valve. Returns the key of its angle; empty: there is none.
-std::string ReadSetup(settings::SectionReader& document, MeasuredRun* run) {
-  document.Require("shaft", "\"clamped\", \"free\" or \"driven\"");
-  document.Choice("shaft", kShafts, &run->shaft);
-  document.Boolean("bypass", &run->bypass);
-  const bool present = document.Number("arm_angle", &run->arm_angle_rad);
-  if (!document.Number("arm_angle_rad", &run->arm_angle_rad)) return present ? "arm_angle" : "";
-  if (present) throw document.Error("arm_angle_rad", "it beside arm_angle", "one of the two");
-  if (run->units.linear_arm) {
-    const std::string unit = run->units.UnitFor("rad", 1);
-    throw document.Error("arm_angle_rad", "a key in rad, and a model whose arm is in " + unit,
-                         "arm_angle, a number in " + unit + " or a text such as \"30 mm\"");
-  }
-  return "arm_angle_rad";
 }
 
 // What the sidecar states about the text of a CSV; the rest is found.
@@ -92,7 +79,7 @@ void ReadName(settings::SectionReader& document, bool shared, MeasuredRun* run) 
 
 }  // namespace
 
-MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
+std::vector<MeasuredRun> ReadTableRuns(const std::string& file, const UnitSystem& units) {
   if (!std::filesystem::exists(file)) tables::ReadTable(file);  // says so, before a sidecar is looked for
   const SidecarFile sidecar = FindSidecar(file);
   settings::TomlNode root = settings::ParseToml(ReadTextFile(sidecar.file), sidecar.file);
@@ -108,21 +95,13 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
   ReadName(document, sidecar.shared, &run);
   std::string pattern;
   document.Text("tables", &pattern);  // FindSidecar has used it
-  const std::string angle = ReadSetup(document, &run);
+  const RunPlan plan = ReadPlan(document, units);
   settings::SectionReader columns = document.Section("columns");
   settings::SectionReader noise = document.Section("noise");
   document.Finish();
-  if (!angle.empty() && run.shaft != model::Shaft::kClamped) {
-    throw document.Error(angle, "it with a shaft that is not clamped",
-                         angle + " with shaft = \"clamped\" only");
-  }
   ReadColumns(columns, &table, &run);
   ReadNoise(noise, &run);
-  if (run.shaft == model::Shaft::kDriven && !run.arm_angle.measured()) {
-    throw document.Error("shaft", "\"driven\" without columns.arm_angle",
-                         "\"driven\" with the measured arm angle, which is imposed on the model");
-  }
-  return run;
+  return PartsOf(run, plan, document);
 }
 
 }  // namespace hydro::runs

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/unit_system.h"
 #include "runs/measured_run.h"
 
 namespace hydro::runs {
 
-// The run in a CSV or MAT file, in these units. Throws InputError as ReadMeasuredRun does.
-MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units);
+// The runs in a CSV or MAT file, in these units. Throws InputError as ReadMeasuredRun does.
+std::vector<MeasuredRun> ReadTableRuns(const std::string& file, const UnitSystem& units);
 
 }  // namespace hydro::runs

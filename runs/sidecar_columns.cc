@@ -38,13 +38,17 @@ double ReadUnit(settings::SectionReader& section, const std::string& key, const 
   if (factor.has_value()) return *factor;
   std::string allowed = QuotedList(UnitsLike(ours));
   const std::string meant = UnitMeant(unit, ours);
-  if (key == "voltage") allowed += ", or no unit for a command that is not a voltage";
+  if (key == "voltage" && ours == "V")
+    allowed += ", or no unit for a command that is not a voltage; a current may have the key current";
   throw section.Error("unit",
                       Quoted(unit) +
                           (ParseUnit(unit).has_value() ? ", no unit of " + key : ", an unknown unit") +
                           (meant.empty() ? "" : ", did you mean " + Quoted(meant) + "?"),
                       allowed);
 }
+
+// Where a temperature's unit has its zero, in its own degrees, against degC.
+double ZeroOf(const std::string& unit) { return unit == "K" ? -273.15 : unit == "degF" ? -32 : 0; }
 
 bool StatesUnit(const tables::Column& column) {
   return !column.unit.empty() && column.unit != "-" && column.unit != "1";
@@ -100,6 +104,8 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
   entry.converts = section.Number("scale", &entry.source.scale) || section.Has("unit");
   section.Number("offset", &entry.source.offset);
   entry.source.unit = ReadUnit(section, key, ours);
+  std::string unit;
+  if (key == "temperature" && section.Text("unit", &unit)) entry.source.offset += ZeroOf(unit);
   std::string date;
   if (key == "time" && section.Text("date", &date)) {
     const auto known = std::find(table.names.begin(), table.names.end(), date);
@@ -124,6 +130,7 @@ std::optional<SignalColumn> ReadSource(settings::SectionReader& columns, const s
   if (!entry->converts) {
     source.unit = UnitOfRow(columns, key, ours, *source.column);
     source.by_row = StatesUnit(*source.column);
+    if (key == "temperature" && source.by_row) source.offset += ZeroOf(source.column->unit);
   }
   return source;
 }
@@ -163,7 +170,7 @@ void NoteUnits(const tables::Table& table, const std::optional<SignalColumn>& ti
   if (time.has_value() && time->by_row) used.push_back("time in " + time->column->unit);
   for (size_t i = 0; i < sources.size(); ++i) {
     if (!sources[i].has_value() || !sources[i]->by_row) continue;
-    used.push_back(std::string(kSignals[i].ours) + " in " + sources[i]->column->unit);
+    used.push_back(std::string(KeyIn(*run, kSignals[i])) + " in " + sources[i]->column->unit);
   }
   run->layout += used.empty() ? ", whose units the sidecar replaces" : " (" + Joined(used) + ")";
 }
@@ -211,6 +218,7 @@ tables::AskedColumns AskedBy(const settings::TomlNode& sidecar) {
   if (time != nullptr && time->is(settings::TomlNode::Kind::kTable))
     asked.date = add(text_of(time->Find("date")));
   for (const SignalName& name : kSignals) add(name_of(name.ours));
+  add(name_of("current"));
   return asked;
 }
 
@@ -221,11 +229,12 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
     columns.Require("time", ColumnsOf(*table));
     time = ReadSource(columns, "time", "s", *table);
   }
-  columns.Require("voltage", ColumnsOf(*table));
+  run->current_commands = columns.Has("current");
+  if (!run->current_commands) columns.Require("voltage", ColumnsOf(*table));
   Sources sources;
   for (size_t i = 0; i < kSignals.size(); ++i) {
-    const SignalName& name = kSignals[i];
-    sources[i] = ReadSource(columns, name.ours, run->units.UnitFor(name.unit, name.arm), *table);
+    const char* key = KeyIn(*run, kSignals[i]);
+    if (key != nullptr) sources[i] = ReadSource(columns, key, UnitIn(*run, kSignals[i]), *table);
   }
   columns.Finish();
   if (every.has_value()) {
@@ -246,14 +255,14 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
   std::vector<SignalDelay> delays;
   for (size_t i = 0; i < kSignals.size(); ++i) {
     if (!sources[i].has_value()) continue;
+    const std::string key = KeyIn(*run, kSignals[i]);
     if (AllMissing(sources[i]->column->values)) {
-      throw columns.Error(kSignals[i].ours,
-                          Quoted(sources[i]->column->name) + ", which holds no value in any row",
-                          "a column with values, or leave " + std::string(kSignals[i].ours) + " out");
+      throw columns.Error(key, Quoted(sources[i]->column->name) + ", which holds no value in any row",
+                          "a column with values, or leave " + key + " out");
     }
     const bool command = kSignals[i].signal == &MeasuredRun::voltage;
     MeasuredSignal& signal = run->*kSignals[i].signal;
-    signal.values = command ? CommandValues(*table, *sources[i]) : SignalValues(*table, *sources[i]);
+    signal.values = command ? CommandValues(*table, *sources[i], key) : SignalValues(*table, *sources[i]);
     signal.source = sources[i]->Described();
     if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
   }

@@ -40,11 +40,12 @@ std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& 
   return times;
 }
 
-std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source) {
+std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source,
+                                  const std::string& what) {
   std::vector<double> command = SignalValues(table, source);
   if (std::isnan(command.front())) {
-    throw InputError(table.Place(0, source.column->name) +
-                     ": found no voltage in the first row, allowed a number there: the command is held from "
+    throw InputError(table.Place(0, source.column->name) + ": found no " + what +
+                     " in the first row, allowed a number there: the command is held from "
                      "row to row, so cut off the rows before its first one");
   }
   for (size_t i = 1; i < command.size(); ++i) {

@@ -1,6 +1,7 @@
 // Columns of a table as a run's signals.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/input_error.h"
@@ -30,7 +31,8 @@ std::vector<double> SignalValues(const tables::Table& table, const SignalColumn&
 // The times. Throws InputError for one that is missing or not above the one before, and for a single row.
 std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& source);
 
-// The command, held where a value is missing. Throws InputError for a first row without one.
-std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source);
+// The command, held where a value is missing. Throws InputError for a first row without one. `what`: its key.
+std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source,
+                                  const std::string& what = "voltage");
 
 }  // namespace hydro::runs

@@ -5,10 +5,11 @@
 namespace hydro::runs {
 namespace {
 
-constexpr const char* kUsual[] = {"s",   "ms",  "us",    "ns",    "min",  "h",     "V",    "mV",
-                                  "psi", "bar", "mbar",  "Pa",    "hPa",  "kPa",   "MPa",  "rad",
-                                  "deg", "rev", "rad/s", "deg/s", "rpm",  "rev/s", "m",    "cm",
-                                  "mm",  "in",  "ft",    "m/s",   "cm/s", "mm/s",  "in/s", "ft/s"};
+constexpr const char* kUsual[] = {"s",     "ms",    "us",   "ns",    "min",  "h",     "V",    "mV",  "psi",
+                                  "bar",   "mbar",  "Pa",   "hPa",   "kPa",  "MPa",   "rad",  "deg", "rev",
+                                  "rad/s", "deg/s", "rpm",  "rev/s", "m",    "cm",    "mm",   "in",  "ft",
+                                  "m/s",   "cm/s",  "mm/s", "in/s",  "ft/s", "degC",  "degF", "K",   "A",
+                                  "mA",    "N",     "kN",   "lbf",   "N m",  "in-lbf"};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -19,16 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-int64_t LostMessages(const LogInfo& info) {
-  int64_t lost = 0;
-  for (const ChannelInfo& channel : info.channels) {
-    if (channel.numbered) lost = SaturatingSum(lost, channel.lost);
-  }
-  return lost;
-}
+// How many ticks went by from the first state to the last.
+int64_t TicksPassed(const LogInfo& info) { return SaturatingDifference(info.ticks.last, info.ticks.first); }
 
 // How values of the arm are shown: an angle in rad, with `si` in degrees too; a linear arm's position in its
-// model's unit of length, with `si` in mm.
+// model's unit of length, with `si` in m.
 class ArmText {
  public:
   ArmText(const UnitSystem& units, bool si) : units_(units), si_(si), unit_(units.UnitFor("rad", 1)) {
@@ -98,16 +94,30 @@ std::string TrackingText(const Tracking& tracking, const LogInfo& info, bool si)
 std::string EarlyEndText(const LogInfo& info) {
   const stop_t* const end = EarlyEnd(info);
   if (end == nullptr) return {};
-  return fmt::format("the run {} at tick {}: {}: {}\n", end->exit_code != 0 ? "FAILED" : "was stopped",
-                     end->tick, Printable(end->source), Printable(end->reason));
+  // hydro-launch, which hears no state, knows no tick.
+  const std::string when = end->tick >= 0          ? fmt::format(" at tick {}", end->tick)
+                           : info.ticks.states > 0 ? fmt::format(" after tick {}", info.ticks.last)
+                                                   : "";
+  return fmt::format("the run {}{}: {}: {}\n", end->exit_code != 0 ? "FAILED" : "was stopped", when,
+                     Printable(end->source), Printable(end->reason));
+}
+
+std::string FaultText(const fault_t& fault) {
+  return fmt::format("fault {}: {} {} ({})",
+                     fault.tick >= 0 ? fmt::format("at tick {}", fault.tick) : "before the first tick",
+                     Printable(fault.code), fault.active ? "began" : "ended", Printable(fault.source));
 }
 
 std::string LoopsText(const LogInfo& info) {
-  if (info.loops.empty()) return {};
+  const auto ran = [](const LoopInfo& loop) {  // simulated time has no loops to report on
+    return loop.cycles > 0 || loop.missed_deadlines > 0 || loop.lost_messages > 0;
+  };
+  if (std::none_of(info.loops.begin(), info.loops.end(), ran)) return {};
   std::string text =
       fmt::format("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}\n", "loop", "cycles",
                   "period p50", "period p99", "late p50", "late p99", "late max", "missed", "lost");
   for (const LoopInfo& loop : info.loops) {
+    if (!ran(loop)) continue;
     text +=
         fmt::format("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}\n",
                     Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
@@ -126,9 +136,8 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
       "{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages missing from the "
       "log",
       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
-      LostMessages(info));
-  const std::string advice = timing::SkippedTicksAdvice(
-      info.ticks.announced, SaturatingSum(info.ticks.states, info.ticks.announced), "CONFIG");
+      MissingMessages(info));
+  const std::string advice = timing::SkippedTicksAdvice(info.ticks.announced, TicksPassed(info), "CONFIG");
   if (!advice.empty()) line("{}", advice);
   if (info.ticks.sampled > 1) line("the log has {}, not each", DescribeSampling(info.ticks.sampled));
   const std::string caution = log::Caution(info.verdict);
@@ -152,26 +161,24 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     }
   }
   text += LoopsText(info);
-  for (const fault_t& fault : info.faults) {
-    line("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code), fault.active ? "began" : "ended",
-         Printable(fault.source));
-  }
-  for (const tuned_settings_t& tuning : info.tunings) line("tuned: {}", Printable(DescribeTuning(tuning)));
+  for (const fault_t& fault : info.faults) line("{}", FaultText(fault));
+  for (const TuningStep& tuning : info.tunings) line("tuned: {}", Printable(DescribeTuning(tuning)));
   for (const output_left_t& left : info.outputs_left) line("{}", Printable(bus::OutputLeftText(left)));
   return text;
 }
 
 std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
   Json json = {
-      {"ticks", info.ticks.states},
+      {"states", info.ticks.states},
+      {"ticks", TicksPassed(info)},
       {"duration_s", info.ticks.last_time_s - info.ticks.first_time_s},
       {"skipped_ticks", info.ticks.announced},
       {"ticks_without_state", info.ticks.missing},
       {"ticks_to_next_state", info.ticks.sampled},
-      {"lost_messages", LostMessages(info)},
+      {"missing_messages", MissingMessages(info)},
       {"log", {{"verdict", NameOf(info.verdict.completeness)}, {"caution", log::Caution(info.verdict)}}}};
   if (const stop_t* const end = EarlyEnd(info)) {
-    json["ended_early"] = {{"tick", end->tick},
+    json["ended_early"] = {{"tick", end->tick >= 0 ? Json(end->tick) : Json(nullptr)},
                            {"source", end->source},
                            {"reason", end->reason},
                            {"failed", end->exit_code != 0}};
@@ -206,9 +213,9 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
   }
   json["faults"] = faults;
   Json tunings = Json::array();
-  for (const tuned_settings_t& tuning : info.tunings) {
+  for (const TuningStep& tuning : info.tunings) {
     tunings.push_back({{"version", tuning.version},
-                       {"tick", tuning.acts_at},
+                       {"tick", tuning.tick},
                        {"changes", tuning.changes},
                        {"source", tuning.source}});
   }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kShortestRest = 0.2;       // s
 constexpr double kEndTime = 0.1;            // s
+constexpr int kRestingReferences = 3;       // of one value at the end: a step that was just made is no motion
 constexpr double kSmallestAngle = 0.001;    // rad: a smaller error is none
 constexpr double kSmallestDistance = 1e-4;  // m, of a linear arm
 constexpr double kLeastStep = 10;           // of those, of a step that begins with the run
@@ -20,6 +21,8 @@ struct Samples {
   std::vector<double> times;
   std::vector<double> references;
   std::vector<double> angles;
+  int resting = 0;          // references of the last value at the end
+  bool follow_arm = false;  // the last reference is where the arm was measured then
   size_t size() const { return times.size(); }
 };
 
@@ -45,9 +48,15 @@ Samples ReadSamples(const RunLog& log) {
   std::stable_sort(states.begin(), states.end(), by_tick);
 
   Samples samples;
+  const auto moved = std::find_if(references.rbegin(), references.rend(), [&](const auto* reference) {
+    return reference->value != references.back()->value;
+  });
+  samples.resting = static_cast<int>(moved - references.rbegin());
   size_t next = 0;
   for (const state_t* state : states) {
     while (next < references.size() && references[next]->tick <= state->tick) ++next;
+    if (next == references.size() && next > 0 && references[next - 1]->tick == state->tick)
+      samples.follow_arm = references[next - 1]->value == state->arm_angle;
     if (next == 0 || !std::isfinite(state->arm_angle)) continue;
     samples.times.push_back(state->time);
     samples.references.push_back(references[next - 1]->value);
@@ -56,15 +65,27 @@ Samples ReadSamples(const RunLog& log) {
   return samples;
 }
 
-double MeanErrorAtEnd(const Samples& samples) {
+// Of the last 0.1 s; where the reference has rested at its last value for less, since then.
+double MeanErrorAtEnd(const Samples& samples, bool at_rest) {
   double sum = 0;
   int count = 0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (samples.times.back() - samples.times[i] > kEndTime) continue;
+  for (size_t i = samples.size(); i-- > 0;) {
+    if (samples.times.back() - samples.times[i] > kEndTime) break;
+    if (at_rest && samples.references[i] != samples.references.back()) break;
     sum += samples.angles[i] - samples.references[i];
     ++count;
   }
   return sum / count;
+}
+
+// Whether the reference has a target at the end: not one that moved within the last 0.1 s, but for a step.
+bool RestsAtEnd(const Samples& samples) {
+  if (samples.resting >= kRestingReferences) return true;
+  for (size_t i = samples.size(); i-- > 0;) {
+    if (samples.times.back() - samples.times[i] > kEndTime) break;
+    if (samples.references[i] != samples.references.back()) return false;
+  }
+  return true;
 }
 
 // Between two changes at least kShortestRest apart it rests; elsewhere it moves: a ramp, a curve, or the way back after a hold.
@@ -99,6 +120,25 @@ std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* l
   return steps;
 }
 
+template <class Message>
+auto NewestOf(const std::vector<Message>& messages) {
+  return std::max_element(messages.begin(), messages.end(),
+                          [](const Message& a, const Message& b) { return a.tick < b.tick; });
+}
+
+// Whether the voltage is held at zero at the end of a run that had begun: by the plant, or by the pressure loop's safe commands, which a
+// position loop in lockstep does not hear of and then does not follow the arm.
+bool IsHeldAtEnd(const RunMessages& messages, bool follow_arm) {
+  const std::vector<state_t>& states = messages.Of<state_t>();
+  const bool begun =
+      std::any_of(states.begin(), states.end(), [](const state_t& state) { return state.command_tick >= 0; });
+  if (!begun) return false;
+  if (NewestOf(states)->command_tick < 0) return true;
+  std::vector<motor_command_t> commands = messages.Of<motor_command_t>();
+  std::erase_if(commands, [](const auto& command) { return command.status == motor_command_t::STOPPED; });
+  return follow_arm && !commands.empty() && NewestOf(commands)->status == motor_command_t::SAFE;
+}
+
 }  // namespace
 
 Tracking TrackArm(const RunLog& log) {
@@ -116,7 +156,8 @@ Tracking TrackArm(const RunLog& log) {
   const auto [low, high] = std::minmax_element(samples.references.begin(), samples.references.end());
   tracking.rms_error_rad = std::sqrt(squares / static_cast<double>(samples.size()));
   tracking.target_rad = samples.references.back();
-  tracking.final_error_rad = MeanErrorAtEnd(samples);
+  const bool at_rest = RestsAtEnd(samples);
+  tracking.final_error_rad = MeanErrorAtEnd(samples, at_rest);
   tracking.steps = Steps(samples, tolerance, &tracking.steps_left_out);
   double scale = *high - *low;
   if (!tracking.steps.empty()) {
@@ -125,18 +166,7 @@ Tracking TrackArm(const RunLog& log) {
       scale = std::max(scale, std::fabs(step.to_rad - step.from_rad));
     }
   }
-  bool at_rest = true;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (samples.times.back() - samples.times[i] <= kEndTime && samples.references[i] != tracking.target_rad) {
-      at_rest = false;
-    }
-  }
-  const std::vector<state_t>& states = log.messages.Of<state_t>();
-  const auto newest = std::max_element(states.begin(), states.end(),
-                                       [](const state_t& a, const state_t& b) { return a.tick < b.tick; });
-  tracking.held =
-      newest->command_tick < 0 &&
-      std::any_of(states.begin(), states.end(), [](const state_t& state) { return state.command_tick >= 0; });
+  tracking.held = IsHeldAtEnd(log.messages, samples.follow_arm);
   if (at_rest && !tracking.held) {
     tracking.at_target = std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, tolerance);
   }

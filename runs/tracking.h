@@ -36,6 +36,9 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
 // The part of it that comes first: why the run ended, in a line; empty: at its duration, or the log does not say.
 std::string EarlyEndText(const LogInfo& info);
 
+// "fault at tick 12: pressure_limit began (plant)"
+std::string FaultText(const fault_t& fault);
+
 // The part of it on loop timing.
 std::string LoopsText(const LogInfo& info);
 

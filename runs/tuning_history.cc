@@ -34,11 +34,70 @@ int64_t EffectTick(const RunMessages& messages, const tuned_settings_t& settings
   return settings.acts_at;
 }
 
-std::string DescribeTuning(const tuned_settings_t& settings) {
-  const std::string changes =
-      settings.changes.empty() ? "as configured" : Joined(TextLines(settings.changes));
-  return "version " + std::to_string(settings.version) + " from tick " + std::to_string(settings.acts_at) +
-         " on: " + changes + (settings.source.empty() ? "" : " (" + settings.source + ")");
+namespace {
+
+using Lines = std::map<std::string, std::string>;  // by key, "key = value"
+
+Lines ByKey(const std::string& changes) {
+  Lines lines;
+  for (const std::string& line : TextLines(changes)) {
+    lines.emplace(Trimmed(line.substr(0, line.find('='))), line);
+  }
+  return lines;
+}
+
+std::string AskedBy(const std::string& source) { return source.empty() ? "" : " (" + source + ")"; }
+
+std::string OnOneLine(const std::string& changes) { return Joined(TextLines(changes)); }
+
+}  // namespace
+
+TuningStep StepTo(const tuned_settings_t& settings, const tuned_settings_t* before) {
+  TuningStep step;
+  step.version = settings.version;
+  step.tick = settings.acts_at;
+  step.source = settings.source;
+  step.before_unknown = before == nullptr && settings.version > 1;
+  const Lines was = before == nullptr ? Lines() : ByKey(before->changes), is = ByKey(settings.changes);
+  for (const auto& [key, line] : is) {
+    const auto known = was.find(key);
+    if (known == was.end() || known->second != line) step.changes += line + "\n";
+  }
+  for (const auto& [key, line] : was) {
+    if (!is.contains(key)) step.changes += key + " as configured\n";
+  }
+  return step;
+}
+
+std::vector<TuningStep> TuningSteps(const RunMessages& messages) {
+  std::map<int64_t, tuned_settings_t> in_force;  // by session
+  for (const tuned_settings_t& settings : messages.Of<tuned_settings_t>()) {
+    if (settings.version == 0 && settings.stage == tuned_settings_t::IN_FORCE)
+      in_force.emplace(settings.session, settings);
+  }
+  std::vector<TuningStep> steps;
+  for (tuned_settings_t& settings : TuningHistory(messages)) {
+    const auto before = in_force.find(settings.session);
+    steps.push_back(StepTo(settings, before == in_force.end() ? nullptr : &before->second));
+    in_force.insert_or_assign(settings.session, std::move(settings));
+  }
+  return steps;
+}
+
+std::string DescribeTuning(const TuningStep& step) {
+  const std::string changes = step.changes.empty() ? "nothing changes" : OnOneLine(step.changes);
+  return "version " + std::to_string(step.version) + " from tick " + std::to_string(step.tick) + " on" +
+         (step.before_unknown ? ", which differs from the configuration: " : ": ") + changes +
+         AskedBy(step.source);
+}
+
+std::string DescribeInForce(const tuned_settings_t& settings) {
+  std::string text = "version " + std::to_string(settings.version);
+  if (settings.version > 0)
+    text += " since tick " + std::to_string(settings.acts_at) + AskedBy(settings.source);
+  return text + (settings.changes.empty()
+                     ? ": as configured"
+                     : "; differs from the configuration: " + OnOneLine(settings.changes));
 }
 
 }  // namespace hydro::runs

@@ -97,7 +97,7 @@ void LiveTuning::Describe() {
   } catch (const InputError&) {
     // A stack of another version: nothing to show, and the plant refuses what this one asks.
   }
-  const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
+  const std::string text = in_force.version > 0 ? Printable(runs::DescribeInForce(in_force)) : std::string();
   message_ = JsonText(OrderedJson({{"op", "tuning"},
                                    {"run", run_},
                                    {"control", control_},

@@ -12,6 +12,7 @@
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 
 namespace hydro::settings {
@@ -314,10 +315,10 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForVersion&) {
     std::printf("%s %s\n", program.c_str(), ProgramVersion().c_str());
-    return 0;
+    return FinishStandardOutput(program, 0);
   } catch (const CLI::Success&) {
     std::fputs(app.help().c_str(), stdout);
-    return 0;
+    return FinishStandardOutput(program, 0);
   } catch (const CLI::ParseError& error) {
     const std::string verb_name = verb().empty() ? "" : " " + verb();
     std::fprintf(stderr, "%s%s: %s\n", program.c_str(), verb_name.c_str(),

@@ -78,8 +78,8 @@ class CommandLine {
   // The options and flags that were given, as "--log", in the order of declaration.
   std::vector<std::string> Given() const;
 
-  // Empty when the program should continue; otherwise the code to exit with now: 0 after --help or --version,
-  // 2 for bad usage, which one line on stderr explains.
+  // Empty when the program should continue; otherwise the code to exit with now: 0 after --help or --version (1 when they
+  // could not be written), 2 for bad usage. One line on stderr explains all but 0.
   std::optional<int> Parse(int argc, const char* const* argv);
 
  private:

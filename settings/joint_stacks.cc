@@ -29,7 +29,41 @@ std::string PlaceIn(const TomlNode& node, const std::string& message) {
   return "";
 }
 
+// What a joint has from the sections that hold for all.
+TomlNode WithoutOwn(TomlNode document, const TomlNode& own) {
+  for (const auto& [section, values] : own.members) {
+    TomlNode* merged = document.Find(section);
+    if (merged == nullptr || !merged->is(TomlNode::Kind::kTable)) continue;
+    for (const TomlMember& value : values.members) merged->Erase(value.first);
+  }
+  return document;
+}
+
+bool NamesItsModel(const TomlNode& root) {
+  const TomlNode* model = root.Find("model");
+  return model != nullptr && model->Find("file") != nullptr;
+}
+
 }  // namespace
+
+void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
+                        const std::vector<JointDocument>& documents, const std::string& file) {
+  const std::vector<JointDocument> as_written = SplitJoints(before, {});
+  const UnitSystem common = UnitsOfModelIn(NamesItsModel(root) ? root : documents.front().root, file);
+  for (size_t i = 0; i < documents.size(); ++i) {
+    const TomlNode& document = documents[i].root;
+    try {
+      if (i < as_written.size()) CheckUnitsOfOtherModel(as_written[i].root, document, file);
+      if (root.Find("arm") != nullptr) continue;  // whose joints all have the same units
+      CheckNumbersKeepTheirUnits(WithoutOwn(document, root.Find("joint")->items[i]), document, common,
+                                 UnitsOfModelIn(document, file));
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      const size_t place = message.find(": ");
+      throw InputError(message.substr(0, place) + ": joint " + documents[i].name + message.substr(place));
+    }
+  }
+}
 
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
                             const std::string& file) {

@@ -15,4 +15,10 @@ namespace hydro::settings {
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
                             const std::string& file);
 
+// Throws InputError where a number would change its meaning with the units of a joint's model: a number of the file when an option gives
+// a joint another model, and one of the sections that hold for all joints when a joint's own model is in other units than theirs.
+// `before` is the limb as in its file, `root` and `documents` are with the options.
+void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
+                        const std::vector<JointDocument>& documents, const std::string& file);
+
 }  // namespace hydro::settings

@@ -178,6 +178,7 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
     throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
                      root.place + " does not have");
   }
+  const TomlNode before = root;
   ApplyOverrides(overrides, &root);
   const std::vector<std::string> names = JointNames(root);
   if (!joint) {
@@ -187,6 +188,7 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   std::optional<StackConfig> chosen;
   std::vector<Sibling> siblings;
   const std::vector<JointDocument> documents = SplitJoints(root, overrides);
+  CheckUnitsOfJoints(before, root, documents, root.place);
   for (size_t i = 0; i < documents.size(); ++i) {
     if (documents[i].name == *joint) {
       chosen = StackOfDocument(root, documents, i, root.place);
@@ -223,9 +225,11 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   if (const auto joint = TakeJointChoice(&others)) {
     throw InputError("--joint: found " + Quoted(*joint) + ", allowed for a program of one joint's stack");
   }
+  const TomlNode before = root;
   ApplyOverrides(others, &root);
   if (!HasJoints(root)) throw InputError(file + ": found no [[joint]] section, allowed one or more");
   const std::vector<JointDocument> documents = SplitJoints(root, others);
+  CheckUnitsOfJoints(before, root, documents, file);
   LimbConfig limb;
   for (size_t i = 0; i < documents.size(); ++i) {
     limb.joints.push_back({documents[i].name, StackOfDocument(root, documents, i, file)});

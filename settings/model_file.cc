@@ -69,7 +69,7 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   if (has_r && has_d) {
     *c = r * r * d / 2;
     if (!RangeOf(info).Holds(*c)) {
-      throw section.Error("r", "r^2 d / 2 = " + ShortestNumber(*c), RangeOf(info).Allowed());
+      throw section.Error("r", "r^2 d / 2 = " + ShortestNumber(*c), RangeOf(info).AllowedInsteadOf(*c));
     }
   }
 }
@@ -95,8 +95,8 @@ bool ReadSides(SectionReader& section, const SideNames& names, const model::Para
                const UnitSystem& units, double* mean, std::vector<model::EffectDescription>* effects) {
   double first = 0, second = 0;
   const std::string wanted = Wanted(info, units);
-  const bool has_first = section.Number(names.first, &first, kPositive);
-  const bool has_second = section.Number(names.second, &second, kPositive);
+  const bool has_first = section.Number(names.first, &first, RangeOf(info));
+  const bool has_second = section.Number(names.second, &second, RangeOf(info));
   if (!has_first && !has_second) return false;
   section.Require(names.first, wanted + " (of side 1, beside " + names.second + ")");
   section.Require(names.second, wanted + " (of side 2, beside " + names.first + ")");

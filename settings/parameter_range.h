@@ -8,8 +8,17 @@
 
 namespace hydro::settings {
 
+// Where 0 is a value, a number next to 0 is as good; where it is none, what is divided by it is no machine's. In no units
+// does a machine have a number of a size beyond these.
 inline NumberRange RangeOf(const model::ParameterInfo& info) {
-  return {.min = info.min, .max = info.max, .min_allowed = info.min_allowed};
+  constexpr double kLargest = 1e30;
+  NumberRange range{.min = info.min,
+                    .max = info.max,
+                    .min_allowed = info.min_allowed,
+                    .largest = kLargest,
+                    .beyond_max = info.beyond_max};
+  if (!range.Holds(0)) range.smallest = 1 / kLargest;
+  return range;
 }
 
 inline std::string Wanted(const model::ParameterInfo& info, const UnitSystem& units) {

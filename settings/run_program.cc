@@ -7,11 +7,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 
 #include "base/input_error.h"
+#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "settings/command_line.h"
 
@@ -55,10 +56,8 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
   try {
     ReserveStack();
     const int exit_code = body();
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-    std::fprintf(stderr, "%s: standard output cannot be written: %s\n", program.c_str(),
-                 std::strerror(errno));
-    return exit_code == 0 ? 1 : exit_code;
+    SayRemarks();
+    return FinishStandardOutput(program, exit_code);
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 2;
@@ -70,6 +69,7 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
         program.c_str());
     return 1;
   } catch (const std::exception& error) {
+    SayRemarks();
     std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 1;
   }

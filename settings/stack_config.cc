@@ -46,36 +46,34 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   return config;
 }
 
-// The paper's where there is no such file, of which its reader tells.
-UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
+// What the model file is relative to is what people get wrong.
+void RequireModelFile(const TomlNode& root, const std::string& named, const std::string& path) {
+  std::error_code unknown;  // a folder that cannot be looked into: the reader of the file tells of it
+  if (std::filesystem::exists(path, unknown) || unknown) return;
+  throw KeyError(root, "model.file", Quoted(named) + ", and there is no " + Quoted(path),
+                 "a path that counts from the configuration's folder");
+}
+
+// Empty where none is named, of which its reader tells.
+std::string ModelNameIn(const TomlNode& root) {
   const TomlNode* model = root.Find("model");
   const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
-  if (name == nullptr || !name->is(TomlNode::Kind::kString) || name->text.empty()) return {};
-  const std::string path = PathBeside(file, name->text);
-  return std::filesystem::is_regular_file(path) ? ParseModelUnits(ReadTextFile(path), path) : UnitSystem{};
+  return name != nullptr && name->is(TomlNode::Kind::kString) ? name->text : "";
 }
 
-// "in, lbf, psi", for people.
+// The path of the model that a document names. Throws InputError where there is no such file.
+std::string ModelFileOf(const TomlNode& root, const std::string& file) {
+  const std::string name = ModelNameIn(root);
+  if (name.empty()) return "";
+  const std::string path = PathBeside(file, name);
+  RequireModelFile(root, name, path);
+  return path;
+}
+
+// "in, lbf, psi", for people; of a linear arm also the arm's.
 std::string Named(const UnitSystem& units) {
-  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi");
-}
-
-// --set model.file gives a configuration another model. Its numbers stay those of the one that it names itself.
-void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
-  const UnitSystem was = UnitsOfModelIn(before, file), is = UnitsOfModelIn(root, file);
-  if (was == is) return;
-  const std::string number = FirstNumberThatChanges(root, was, is);
-  if (number.empty()) return;
-  throw KeyError(root, "model.file",
-                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
-                 "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
-}
-
-// What the model file is relative to is what people get wrong.
-ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
-  if (std::filesystem::exists(model.resolved_file)) return LoadModelWithText(model.resolved_file);
-  throw KeyError(root, "model.file", Quoted(model.file) + ", and there is no " + Quoted(model.resolved_file),
-                 "a path that counts from the configuration's folder");
+  return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi") +
+         (units.linear_arm ? " and an arm in " + units.UnitFor("rad", 1) : "");
 }
 
 // A stack has one joint.
@@ -106,6 +104,40 @@ TomlNode ReadConfigDocument(const std::string& file) {
   return root;
 }
 
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
+  const std::string path = ModelFileOf(root, file);
+  return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
+}
+
+// Those of the model that another takes the place of; none where that cannot be read, because nothing asks for it.
+static std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
+  try {
+    return UnitsOfModelIn(root, file);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// Its numbers stay those of the model that it names itself.
+void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
+  if (ModelNameIn(root) == ModelNameIn(before)) return;
+  const std::string path = ModelFileOf(root, file);
+  if (path.empty()) return;
+  const std::optional<UnitSystem> was = UnitsOfReplacedModel(before, file);
+  const UnitSystem is = LoadModelFile(path).units;  // a file that is no model has no units
+  if (was) CheckNumbersKeepTheirUnits(root, root, *was, is);
+}
+
+void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
+                                const UnitSystem& is) {
+  if (was == is) return;
+  const std::string number = FirstNumberThatChanges(numbers, was, is);
+  if (number.empty()) return;
+  throw KeyError(root, "model.file",
+                 "a model in " + Named(is) + ", and numbers for one in " + Named(was) + " (" + number + ")",
+                 "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
+}
+
 StackConfig StackOf(TomlNode* root, const std::string& file) {
   CheckKeysHaveSections(*root);
   ReadQuantities(root, UnitsOfModelIn(*root, file));
@@ -114,7 +146,7 @@ StackConfig StackOf(TomlNode* root, const std::string& file) {
     throw KeyError(*root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  ModelWithText model = ReadModel(*root, config.model);
+  ModelWithText model = LoadModelWithText(config.model.resolved_file);
   config.model.text = std::move(model.text);
   config.model.description = std::move(model.description);
   CheckAgainstModel(*root, &config);

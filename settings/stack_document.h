@@ -16,6 +16,17 @@ TomlNode ReadConfigDocument(const std::string& file);
 // The configuration of the stack that `root` describes: sections, checks, and the model file that it names. Throws InputError.
 StackConfig StackOf(TomlNode* root, const std::string& file);
 
+// Throws InputError where the command line has made `root` of `before` with a model in other units, so that a number of the configuration would
+// mean another value; or where the model cannot be read.
+void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file);
+
+// The same for the numbers of a part of `root`, which are meant in the units `was`, with a model in `is`.
+void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
+                                const UnitSystem& is);
+
+// The units of the model that the configuration names; the paper's where it names none. Throws InputError where there is no such file.
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file);
+
 // The stack of one joint of the limb that `root` describes; none chosen is an error too. Throws InputError.
 StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
                          const std::optional<std::string>& joint);

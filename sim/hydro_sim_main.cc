@@ -8,6 +8,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/text_file.h"
 #include "process/stop_signal.h"
 #include "runs/log/log_writer.h"
@@ -28,13 +29,10 @@ hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig&
   for (const hydro::settings::ProcessSection& process : config.processes) {
     if (process.command.empty()) continue;
     const bool driver = process.role == "driver";  // the model stands for whatever machine
-    std::fprintf(stderr,
-                 "hydro-sim: warning: %s: %s is a program of your own; the simulation runs our %s in its "
-                 "place, `hydro-launch %s%s` runs yours\n",
-                 hydro::Printable(process.place).c_str(),
-                 hydro::Printable(hydro::settings::NameOf(process)).c_str(),
-                 driver ? "model" : process.role.c_str(), hydro::Printable(config.file).c_str(),
-                 driver ? "" : " --time lockstep");
+    hydro::Remark("hydro-sim: warning: " + process.place + ": " + hydro::settings::NameOf(process) +
+                  " is a program of your own; the simulation runs our " + (driver ? "model" : process.role) +
+                  " in its place, `hydro-launch " + config.file + (driver ? "" : " --time lockstep") +
+                  "` runs yours");
   }
   return hydro::settings::WithoutOwnPrograms(config);
 }
@@ -74,7 +72,7 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
   for (const std::string& remark : {ArmRemark(*config), hydro::design::FastMotionRemark(*config)}) {
-    if (!remark.empty()) std::fprintf(stderr, "hydro-sim: warning: %s\n", hydro::Printable(remark).c_str());
+    if (!remark.empty()) hydro::Remark("hydro-sim: warning: " + remark);
   }
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) {
@@ -86,6 +84,7 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
   if (!machine_file.empty()) {
     machine = std::make_shared<const hydro::model::ModelDescription>(LoadMachine(machine_file, *config));
   }
+  hydro::sim::CheckSimulates(*config, machine.get());
   return [config, tunings, machine](const auto& tap) {
     return hydro::sim::Simulate(*config, tap, tunings, machine.get());
   };
@@ -104,6 +103,7 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
       writer->Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
     };
   }
+  hydro::SayRemarks();
   const auto start = std::chrono::steady_clock::now();
   const hydro::sim::SimulationResult result = simulate(tap);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -38,6 +38,42 @@ void DescribeLimb(const settings::LimbConfig& config,
   bus.HandleUntil(clock.Now());
 }
 
+// All that takes part in a simulation.
+struct Stack {
+  Stack(const settings::StackConfig& config, const std::function<void(const bus::RawMessage&)>& tap,
+        const model::ModelDescription* machine)
+      : lockstep(InLockstep(config)),
+        clock(SessionOf(config)),
+        bus(&clock),
+        rig(WithMachine(lockstep, machine)) {
+    if (tap) bus.SubscribeAll(tap);
+    plant =
+        std::make_unique<plant::PlantApp>(bus, clock, lockstep, rig, std::vector<std::string>{}, "hydro-sim");
+    pressure = std::make_unique<pressure_ctrl::PressureApp>(bus, clock, lockstep);
+    position = std::make_unique<position_ctrl::PositionApp>(bus, clock, lockstep);
+  }
+
+  static settings::StackConfig InLockstep(settings::StackConfig config) {
+    CheckEnds(config);
+    config.time.mode = settings::TimeMode::kLockstep;
+    return config;
+  }
+  static settings::StackConfig WithMachine(settings::StackConfig config,
+                                           const model::ModelDescription* machine) {
+    if (machine != nullptr) config.model.description = *machine;
+    return config;
+  }
+
+  const settings::StackConfig lockstep;
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus;
+  plant::SimulatedRig rig;
+  // A stack that cannot grow ends a process without a word; of memory that cannot be had it is said.
+  std::unique_ptr<plant::PlantApp> plant;
+  std::unique_ptr<pressure_ctrl::PressureApp> pressure;
+  std::unique_ptr<position_ctrl::PositionApp> position;
+};
+
 }  // namespace
 
 int64_t SessionOf(const settings::StackConfig& config) {
@@ -45,39 +81,29 @@ int64_t SessionOf(const settings::StackConfig& config) {
   return std::max<int64_t>(1, static_cast<int64_t>(key >> 1));
 }
 
+void CheckSimulates(const settings::StackConfig& config, const model::ModelDescription* machine) {
+  const Stack stack(config, {}, machine);
+}
+
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
                           const std::vector<tuned_settings_t>& tunings,
                           const model::ModelDescription* machine) {
-  CheckEnds(config);
-  settings::StackConfig lockstep = config;
-  lockstep.time.mode = settings::TimeMode::kLockstep;
-  bus::SimulatedClock clock(SessionOf(config));
-  bus::InProcessBus bus(&clock);
-  if (tap) bus.SubscribeAll(tap);
-  settings::StackConfig simulated = lockstep;
-  if (machine != nullptr) simulated.model.description = *machine;
-  plant::SimulatedRig rig(simulated);
-  // A stack that cannot grow ends a process without a word; of memory that cannot be had it is said.
-  const auto plant =
-      std::make_unique<plant::PlantApp>(bus, clock, lockstep, rig, std::vector<std::string>{}, "hydro-sim");
-  const auto pressure = std::make_unique<pressure_ctrl::PressureApp>(bus, clock, lockstep);
-  const auto position = std::make_unique<position_ctrl::PositionApp>(bus, clock, lockstep);
-
-  plant->FollowTuning(tunings);
+  Stack stack(config, tap, machine);
+  stack.plant->FollowTuning(tunings);
   SimulationResult result;
-  result.exit_code = plant->Run();
+  result.exit_code = stack.plant->Run();
   const auto dispatch_all = [&] {
-    while (bus.HandleUntil(clock.Now()) > 0) {
+    while (stack.bus.HandleUntil(stack.clock.Now()) > 0) {
     }
   };
   dispatch_all();
-  position->Finish();
-  pressure->Finish();
+  stack.position->Finish();
+  stack.pressure->Finish();
   dispatch_all();
-  result.ticks = plant->tick();
-  result.duration = static_cast<double>(plant->tick()) / config.plant.rate_hz;
-  result.failure = plant->failure();
+  result.ticks = stack.plant->tick();
+  result.duration = static_cast<double>(stack.plant->tick()) / config.plant.rate_hz;
+  result.failure = stack.plant->failure();
   return result;
 }
 

@@ -35,7 +35,10 @@ SimulationResult Simulate(const settings::StackConfig& config,
                           const std::vector<tuned_settings_t>& tunings = {},
                           const model::ModelDescription* machine = nullptr);
 
-// The same for all joints of a limb, each on channels of its own suffix.
+// Throws what Simulate() would throw before its first tick.
+void CheckSimulates(const settings::StackConfig& config, const model::ModelDescription* machine = nullptr);
+
+// As Simulate(), for all joints of a limb, each on channels of its own suffix.
 SimulationResult SimulateLimb(const settings::LimbConfig& config,
                               const std::function<void(const bus::RawMessage&)>& tap);
 

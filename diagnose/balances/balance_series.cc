@@ -180,6 +180,7 @@ bool DependsOnCommandAlone(const model::ModelDescription& model, const RunMotion
           .voltage = moved.voltage,
           .p1 = 0.9 * moved.p1,
           .p2 = 1.1 * moved.p2,
+          .around = moved.around,
           .pump_direction = moved.pump_direction};
   }
   std::vector<double> drives[2];

@@ -98,6 +98,23 @@ std::vector<double> HeldOnGrid(const RunData& run, double step, size_t count) {
   return held;
 }
 
+std::vector<model::Surroundings> AroundOnGrid(const model::Stimulus& run, double step, size_t count) {
+  std::vector<model::Surroundings> around(run.around.empty() ? 0 : count);
+  size_t next = 1;
+  for (size_t k = 0; k < around.size(); ++k) {
+    const double t = run.time.front() + static_cast<double>(k) * step;
+    while (next + 1 < run.time.size() && run.time[next] < t) ++next;
+    const double part =
+        std::clamp((t - run.time[next - 1]) / (run.time[next] - run.time[next - 1]), 0.0, 1.0);
+    for (double model::Surroundings::*one :
+         {&model::Surroundings::arm_force, &model::Surroundings::temperature}) {
+      const double before = run.around[next - 1].*one;
+      around[k].*one = before + part * (run.around[next].*one - before);
+    }
+  }
+  return around;
+}
+
 // The arm's direction, remembered where it stands.
 std::vector<double> Directions(const std::vector<double>& angle, double noise) {
   const maths::Range range = maths::RangeOf(angle);
@@ -144,6 +161,16 @@ void SetPressures(double sigma, RunMotion* run) {
   }
 }
 
+// What acts from outside, smoothed as all signals are.
+void SetAround(double sigma, RunMotion* run) {
+  if (run->around.empty()) return;
+  std::vector<double> force;
+  force.reserve(run->size());
+  for (const model::Surroundings& one : run->around) force.push_back(one.arm_force);
+  force = Smoothed(force, sigma);
+  for (size_t k = 0; k < run->size(); ++k) run->at[k].around = {force[k], run->around[k].temperature};
+}
+
 // Fills `at` from the signals.
 void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   const size_t n = run->voltage.size();
@@ -153,6 +180,7 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
     run->at[k].time = begin + static_cast<double>(k) * run->step;
     run->at[k].voltage = run->voltage[k];
   }
+  SetAround(sigma, run);
   const auto set = [&](double model::KnownMotion::*place, const std::vector<double>& values) {
     for (size_t k = 0; k < n; ++k) run->at[k].*place = values[k];
   };
@@ -275,6 +303,9 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   RunMotion motion;
   motion.name = run.name;
   motion.options.shaft = run.stimulus.shaft;
+  // What moves an arm whose force is known leaves its balance as it is.
+  if (run.stimulus.shaft == model::Shaft::kDriven && run.measured.arm_force.measured())
+    motion.options.shaft = model::Shaft::kFree;
   motion.options.bypass = run.stimulus.bypass;
   motion.options.arm_angle = run.stimulus.arm_angle;
   motion.options.begin = run.stimulus.begin;
@@ -286,6 +317,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   motion.stride =
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
   motion.voltage = HeldOnGrid(run, motion.step, count);
+  motion.around = AroundOnGrid(run.stimulus, motion.step, count);
   for (size_t s = 0; s < kGridChannels; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
   for (size_t s = 0; s < kGridChannels; ++s) {
     if (std::find(inverted.begin(), inverted.end(), ChannelName(kChannelOf[s])) == inverted.end()) continue;

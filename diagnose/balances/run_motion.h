@@ -42,6 +42,7 @@ struct RunMotion {
   size_t stride = 1;               // every stride-th instant is enough for the balances
   std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
   std::vector<double> voltage;  // held from each instant to the next
+  std::vector<model::Surroundings> around;  // at each instant; empty: nothing was recorded of them
   std::array<GridSignal, kGridChannels> signals;
   bool pressures = false;              // both are known, and the two sides are not connected
   bool arm_moves = false;              // and was measured

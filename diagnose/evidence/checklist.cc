@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "base/maths/range.h"
@@ -12,6 +13,7 @@
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "runs/measured_signals.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -67,18 +69,20 @@ class RunChecklist {
     for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
     const bool even = longest < 1.5 * interval;
-    const bool slow = interval > kSlowestSamples;
+    const bool slow = interval > runs::kSlowestSamples;
     Add(even && !slow ? State::kGood : State::kLook, "samples",
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +
             (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms") +
-            (slow ? ": too slow for such a machine" + TimeUnitHint(interval) : ""));
+            (slow ? ": too slow for such a machine" + runs::TimeUnitHint(interval) : ""));
   }
 
   void AddSignal(const runs::SignalName& name) {
     const MeasuredSignal& signal = run_.*name.signal;
     if (!signal.measured()) {
-      if (name.signal != &MeasuredRun::pressure_ref) Add(State::kAbsent, name.ours, "not recorded");
+      // What few machines have is not missed.
+      if (name.signal != &MeasuredRun::pressure_ref && name.exported != nullptr)
+        Add(State::kAbsent, name.ours, "not recorded");
       return;
     }
     Range range = RangeOf(signal.values);
@@ -87,9 +91,10 @@ class RunChecklist {
       range = {range.low * shown->factor, range.high * shown->factor};
       unit = shown->to;
     }
-    if (name.signal == &MeasuredRun::voltage) unit = "V (the command that k_1 takes)";
+    if (name.signal == &MeasuredRun::voltage)
+      unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
     const bool moves = range.high > range.low;
-    Add(moves ? State::kGood : State::kLook, name.ours,
+    Add(moves ? State::kGood : State::kLook, runs::KeyIn(run_, name),
         Text(range, unit, MissingIn(signal.values)) + (moves ? "" : ": it never changes"));
   }
 
@@ -103,21 +108,58 @@ class RunChecklist {
       factor = shown->factor;
       unit = shown->to;
     }
-    // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
-    const double low = std::min(low1, low2);
-    const double noise = kFarOff * std::max(EstimateNoise(run_.p1.values), EstimateNoise(run_.p2.values));
-    const bool near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise;
-    const bool same = std::max(low1, low2) < 1.5 * low + noise;
+    const ChargeFit fit = FitOf(low1, low2, 1, 1);
     // Pressures of 4 to 20 bar that fit the model are pressures.
-    const bool currents = !(near && same) && LooksLikeCurrents();
-    Add(near && same ? State::kGood : State::kLook, "charge pressure",
+    const bool currents = !fit.good() && LooksLikeCurrents();
+    const std::string in_unit = fit.good() ? "" : UnitThatFits(low1, low2);
+    Add(fit.good() ? State::kGood : State::kLook, "charge pressure",
         "the lowest p1 is " + ShortNumber(low1 * factor) + " " + unit + ", the lowest p2 " +
             ShortNumber(low2 * factor) + " " + unit + ", the model's p_3 is " + ShortNumber(p_.p_3 * factor) +
             " " + unit +
-            (currents ? ": another unit, or currents of 4 to 20 mA that want a scale and an offset?"
-             : !near  ? ": another unit, gauge against absolute, or another charge?"
-             : same   ? ""
-                      : ": is one side under load all the time, or its sensor's scale another?"));
+            (fit.good() ? ""
+             : currents ? ": " + (in_unit.empty() ? "another unit" : in_unit) +
+                              ", or currents of 4 to 20 mA that want a scale and an offset?"
+             : !in_unit.empty() ? ": " + in_unit + "?"
+             : !fit.near        ? ": another unit, gauge against absolute, or another charge?"
+                                : ": is one side under load all the time, or its sensor's scale another?"));
+  }
+
+  // How the lowest pressures go with the model's charge.
+  struct ChargeFit {
+    bool near = false, same = false;
+    bool good() const { return near && same; }
+  };
+
+  // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it. The
+  // factors bring each pressure from another unit.
+  ChargeFit FitOf(double low1, double low2, double factor1, double factor2) const {
+    const double first = low1 * factor1, second = low2 * factor2, low = std::min(first, second);
+    const double noise =
+        kFarOff * std::max(factor1 * EstimateNoise(run_.p1.values), factor2 * EstimateNoise(run_.p2.values));
+    return {.near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise,
+            .same = std::max(first, second) < 1.5 * low + noise};
+  }
+
+  // "p1 and p2 are in mbar, not in bar": of all units that a sidecar can name, the one in which the pressures go with the charge best.
+  // "" where there is none. Needs no motion, which the balances do.
+  std::string UnitThatFits(double low1, double low2) const {
+    std::string best;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const RecordingMistake& mistake : PossibleMistakes(run_)) {
+      double factor1 = 1, factor2 = 1;
+      bool other = mistake.unit.empty() || mistake.factors.empty();
+      for (const auto& [signal, factor] : mistake.factors) {
+        other = other || (signal != &MeasuredRun::p1 && signal != &MeasuredRun::p2);
+        (signal == &MeasuredRun::p1 ? factor1 : factor2) = factor;
+      }
+      if (other || !FitOf(low1, low2, factor1, factor2).good()) continue;
+      const double away = std::abs(std::log(std::min(low1 * factor1, low2 * factor2) / p_.p_3));
+      if (away < nearest) {
+        nearest = away;
+        best = mistake.what;
+      }
+    }
+    return best;
   }
 
   // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.

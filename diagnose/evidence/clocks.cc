@@ -9,6 +9,7 @@
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/sample_interval.h"
 #include "runs/run_delays.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 
@@ -25,7 +26,7 @@ constexpr double kShortest = 2;
 bool CanBeAligned(const Run& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
-         run.time.back() - run.time.front() >= kShortest && MedianInterval(run.time) <= kSlowestSamples;
+         run.time.back() - run.time.front() >= kShortest && MedianInterval(run.time) <= runs::kSlowestSamples;
 }
 
 // The signals of a device, by name.

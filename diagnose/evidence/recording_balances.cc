@@ -273,6 +273,11 @@ class BalanceMaker {
       // Nobody measured the arm: below the resonance of the oil it follows the pump.
       Put(&open, Speed(), Series(&model::KnownMotion::motor_acceleration, -p_.J_a * p_.D / p_.c), inertia);
     }
+    if (run_.arm_force.measured()) {
+      Put(
+          &open, [](const Factors&) { return 1.0; },
+          Series([](const model::KnownMotion& at) { return at.around.arm_force; }), kGain);
+    }
     if (motion_.arm_moves && p_.mgl != 0) {
       for (const double size : SizesOf(&Factors::arm_angle)) {
         Put(

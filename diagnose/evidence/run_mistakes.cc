@@ -9,6 +9,7 @@
 #include "base/maths/range.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -55,7 +56,7 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
   const double interval = MedianInterval(run_.time);
   std::erase_if(possible_, [&](const RecordingMistake& mistake) {
     const double step = mistake.time_factor * interval;
-    return mistake.time_factor != 1 && (step > kSlowestSamples || step < kFastest);
+    return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < kFastest);
   });
   const Mistakes shafts = OtherShafts(run_);
   possible_.insert(possible_.end(), shafts.begin(), shafts.end());
@@ -71,7 +72,7 @@ const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
     std::get<model::Shaft>(reading) = one.shaft.value_or(std::get<model::Shaft>(reading));
     if (one.unsigned_signal.has_value()) std::get<std::string>(reading) += NameOf(*one.unsigned_signal);
   }
-  if (std::get<double>(reading) * MedianInterval(run_.time) > kSlowestSamples) return nullptr;
+  if (std::get<double>(reading) * MedianInterval(run_.time) > runs::kSlowestSamples) return nullptr;
   const auto known = readings_.find(reading);
   if (known != readings_.end()) return &known->second;
   Run run = run_;

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/maths/range.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
+#include "diagnose/recording/sample_interval.h"
 #include "runs/measured_signals.h"
 #include "runs/signal_unit.h"
 
@@ -17,14 +19,30 @@ constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi"
                                   "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
                                   "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
 constexpr const char* kTimeUnits[] = {"ms", "us", "ns", "min", "s"};
+constexpr double kShortestRun = 0.1;  // s
+// How large the largest reading of a run in which something moves can be.
+struct Possible {
+  const char* unit;
+  double least, most;
+};
+constexpr Possible kPossible[] = {
+    {"Pa", 1e3, 3e8}, {"rad/s", 1e-3, 1e5}, {"m/s", 1e-7, 100}, {"rad", 1e-5, 1e9}, {"m", 1e-7, 100}};
 constexpr double kSameScale = 1e-4;  // relative: scales are written with few digits
 
 bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
 
-std::string NamesOf(const std::vector<SignalOfRun>& signals) {
+// As the run's sidecar calls it.
+std::string NameIn(const Run& run, SignalOfRun signal) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return runs::KeyIn(run, one);
+  }
+  return "";
+}
+
+std::string NamesOf(const Run& run, const std::vector<SignalOfRun>& signals) {
   std::vector<std::string> names;
   names.reserve(signals.size());
-  for (const SignalOfRun signal : signals) names.emplace_back(NameOf(signal));
+  for (const SignalOfRun signal : signals) names.emplace_back(NameIn(run, signal));
   return Enumerated(names) + (names.size() > 1 ? " are" : " is");
 }
 
@@ -40,7 +58,7 @@ std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>
 // The signal's unit in the model.
 std::string UnitOf(const Run& run, SignalOfRun signal) {
   for (const runs::SignalName& one : runs::kSignals) {
-    if (one.signal == signal) return run.units.UnitFor(one.unit, one.arm);
+    if (one.signal == signal) return runs::UnitIn(run, one);
   }
   return "";
 }
@@ -105,9 +123,9 @@ class MistakeList {
     const std::string stated = StatedUnit((run_.*measured.front()).source, ours, kUnits);
     for (const char* unit : kUnits) {
       const std::optional<double> factor = FactorBetween(unit, ours, stated);
-      if (!factor.has_value()) continue;
+      if (!factor.has_value() || !IsPlausible(measured, ours, *factor)) continue;
       RecordingMistake mistake;
-      mistake.what = NamesOf(measured) + " in " + unit + NotIn(stated, ours);
+      mistake.what = NamesOf(run_, measured) + " in " + unit + NotIn(stated, ours);
       // A reference is in the unit of the pressures; no simulation depends on it.
       for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, *factor);
       mistake.unit = unit;
@@ -118,7 +136,7 @@ class MistakeList {
     const std::string stated = StatedUnit(run_.time_source, "s", kTimeUnits);
     for (const char* unit : kTimeUnits) {
       const std::optional<double> factor = FactorBetween(unit, "s", stated);
-      if (!factor.has_value()) continue;
+      if (!factor.has_value() || !IsPlausibleTime(*factor)) continue;
       RecordingMistake mistake;
       mistake.what = std::string("time is in ") + unit + NotIn(stated, "s");
       mistake.time_factor = *factor;
@@ -131,7 +149,7 @@ class MistakeList {
     if (bits == 0) return;
     RecordingMistake mistake;
     const double counts = std::exp2(bits);
-    mistake.what = std::string(NameOf(signal)) + " jumps by " + ShortNumber(counts, 10) +
+    mistake.what = NameIn(run_, signal) + " jumps by " + ShortNumber(counts, 10) +
                    " counts between values above 0 and below the top: a signed number read as unsigned (" +
                    std::to_string(bits) + " bits)";
     mistake.unsigned_signal = signal;
@@ -144,7 +162,7 @@ class MistakeList {
     RecordingMistake mistake;
     std::vector<std::string> names;
     for (const SignalOfRun signal : measured) {
-      names.emplace_back(NameOf(signal));
+      names.emplace_back(NameIn(run_, signal));
       mistake.factors.emplace_back(signal, -1.0);
     }
     mistake.what = Enumerated(names) + (names.size() > 1 ? " have" : " has") + " the wrong sign";
@@ -160,6 +178,29 @@ class MistakeList {
   std::vector<RecordingMistake> Take() { return std::move(list_); }
 
  private:
+  // Nobody records a run of a tenth of a second and less, unless what the sidecar says of the times is no run either.
+  bool IsPlausibleTime(double factor) const {
+    const double seconds = run_.time.back() - run_.time.front();
+    const double interval = seconds / static_cast<double>(run_.samples() - 1);
+    return factor > 1 || factor * seconds > kShortestRun || interval > kSlowestSamples;
+  }
+  // Whether a machine can have read what the signals would be. Where they are as impossible already, anything may mend them.
+  bool IsPlausible(const std::vector<SignalOfRun>& signals, const std::string& ours, double factor) const {
+    for (const Possible& one : kPossible) {
+      const std::optional<double> size = runs::UnitFactor(ours, one.unit);
+      if (!size.has_value()) continue;
+      double largest = 0;
+      for (const SignalOfRun signal : signals) {
+        const maths::Range range = maths::RangeOf((run_.*signal).values);
+        largest = std::max({largest, std::abs(range.low), std::abs(range.high)});
+      }
+      const double before = *size * largest, after = factor * before;
+      const auto inside = [&](double value) { return value > one.least && value < one.most; };
+      return inside(after) || !inside(before);
+    }
+    return true;
+  }
+
   const Run& run_;
   std::vector<RecordingMistake> list_;
 };
@@ -216,7 +257,7 @@ std::vector<RecordingMistake> OtherShafts(const Run& run) {
 
 RecordingMistake UnknownUnit(const std::vector<SignalOfRun>& signals, double factor) {
   RecordingMistake mistake;
-  mistake.what = NamesOf(signals) + " about " + ShortNumber(factor < 1 ? 1 / factor : factor, 2) +
+  mistake.what = NamesOf(Run{}, signals) + " about " + ShortNumber(factor < 1 ? 1 / factor : factor, 2) +
                  " times too " + (factor < 1 ? "large" : "small") + "; no known unit";
   for (const SignalOfRun signal : signals) mistake.factors.emplace_back(signal, factor);
   return mistake;

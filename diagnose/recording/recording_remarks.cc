@@ -10,6 +10,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -116,7 +117,7 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
   remarks->push_back(RunsNamed(slow) + ": samples " + ShortNumber(longest, 3) +
                      " s apart are too slow for the model's fastest motion, whose time constant is " +
                      ShortNumber(fastest, 2) + " s: what is as fast cannot be judged" +
-                     TimeUnitHint(longest));
+                     runs::TimeUnitHint(longest));
 }
 
 void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>& names, size_t runs,

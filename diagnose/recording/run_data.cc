@@ -9,6 +9,7 @@
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -157,6 +158,37 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
   return motion;
 }
 
+// The values at the samples, in straight lines where some are missing.
+std::vector<double> Bridged(const std::vector<double>& time, std::vector<double> values) {
+  size_t before = values.size();  // the last sample that is there; none yet
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    for (size_t k = before == values.size() ? 0 : before + 1; k < i; ++k) {
+      const double part = before == values.size() ? 1 : (time[k] - time[before]) / (time[i] - time[before]);
+      values[k] = part == 1 ? values[i] : values[before] + part * (values[i] - values[before]);
+    }
+    before = i;
+  }
+  if (before < values.size())
+    std::fill(values.begin() + static_cast<std::ptrdiff_t>(before), values.end(), values[before]);
+  return values;
+}
+
+// What was recorded of what acts from outside; empty: nothing.
+std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
+  std::vector<model::Surroundings> around;
+  if (!run.arm_force.measured() && !run.temperature.measured()) return around;
+  around.resize(run.samples());
+  const auto set = [&](const runs::MeasuredSignal& signal, double model::Surroundings::*place) {
+    if (CountValid(signal.values) == 0) return;
+    const std::vector<double> values = Bridged(run.time, signal.values);
+    for (size_t i = 0; i < around.size(); ++i) around[i].*place = values[i];
+  };
+  set(run.arm_force, &model::Surroundings::arm_force);
+  set(run.temperature, &model::Surroundings::temperature);
+  return around;
+}
+
 }  // namespace
 
 const runs::SignalName& SignalOf(model::Channel channel) {
@@ -200,6 +232,7 @@ model::Stimulus StimulusOf(const runs::MeasuredRun& run) {
   stimulus.begin = run.Begin();
   stimulus.time = run.time;
   stimulus.voltage = run.voltage.values;
+  stimulus.around = SurroundingsOf(run);
   return stimulus;
 }
 
@@ -282,16 +315,14 @@ void CheckUsable(const runs::MeasuredRun& run) {
 
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckUsable(run);
-  if (const double interval = MedianInterval(run.time); interval > kSlowestSamples) {
-    Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
-           "at most " + ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +
-               TimeUnitHint(interval));
-  }
+  runs::RequireFastSamples(run);
   RunData data;
   data.name = run.name;
   data.stimulus = StimulusOf(run);
   // A thousand times the voltage that saturates the amplifier, eq. (1).
-  CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
+  const runs::SignalName& command = runs::kSignals.front();
+  CheckRange(run, runs::KeyIn(run, command), run.voltage.values, 1000 * model.T_pmax / model.k_1,
+             runs::UnitIn(run, command));
   for (size_t place = 0; place < model::kChannels; ++place) {
     const auto channel = static_cast<model::Channel>(place);
     const runs::SignalName& row = SignalOf(channel);

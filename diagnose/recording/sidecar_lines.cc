@@ -67,7 +67,7 @@ Run SourcesOf(const Run& run) {
   for (const runs::SignalName& one : runs::kSignals) {
     (sources.*one.signal).source = (run.*one.signal).source;
     std::string& column = (sources.*one.signal).source.column;
-    if (column.empty()) column = runs::RunColumnIn(run.units, one.exported);
+    if (column.empty() && one.exported != nullptr) column = runs::RunColumnIn(run.units, one.exported);
   }
   if (sources.time_source.column.empty()) sources.time_source.column = "time_s";
   return sources;
@@ -94,7 +94,7 @@ std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Ru
   for (const runs::SignalName& one : runs::kSignals) {
     const runs::ColumnSource& now = (after.*one.signal).source;
     if (Same((before.*one.signal).source, now)) continue;
-    lines.push_back(Line(one.ours, now, units[one.ours], run.units.UnitFor(one.unit, one.arm)));
+    lines.push_back(Line(runs::KeyIn(run, one), now, units[one.ours], runs::UnitIn(run, one)));
   }
   return Joined(lines, "; ");
 }

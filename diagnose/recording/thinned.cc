@@ -34,6 +34,7 @@ void Thin(size_t fewest, RunData* run) {
       sum += stimulus.voltage[end];
     }
     stimulus.time[kept] = stimulus.time[i];
+    if (!stimulus.around.empty()) stimulus.around[kept] = stimulus.around[i];
     stimulus.voltage[kept] = sum / static_cast<double>(end - i);
     for (SignalData& signal : run->signals) signal.values[kept] = signal.values[i];
     i = end;
@@ -41,6 +42,7 @@ void Thin(size_t fewest, RunData* run) {
   run->most_steps_per_sample *= static_cast<double>(samples) / static_cast<double>(kept);
   stimulus.time.resize(kept);
   stimulus.voltage.resize(kept);
+  if (!stimulus.around.empty()) stimulus.around.resize(kept);
   for (SignalData& signal : run->signals) {
     signal.values.resize(kept);
     signal.valid = CountValid(signal.values);

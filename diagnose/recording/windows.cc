@@ -61,6 +61,7 @@ RunData CutWindow(const RunData& run, size_t first, size_t compared, size_t last
   window.stimulus.begin = run.stimulus.begin;
   window.stimulus.time = Slice(run.stimulus.time, first, last);
   window.stimulus.voltage = Slice(run.stimulus.voltage, first, last);
+  if (!run.stimulus.around.empty()) window.stimulus.around = Slice(run.stimulus.around, first, last);
   for (const SignalData& signal : run.signals) {
     SignalData part = signal;
     part.values = Slice(signal.values, first, last);

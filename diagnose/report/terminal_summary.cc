@@ -77,7 +77,9 @@ std::string LikelyLine(const Diagnosis& diagnosis) {
 
 std::string IntervalText(const Estimated& estimated) {
   if (!std::isfinite(estimated.low) && !std::isfinite(estimated.high)) return "no interval";
-  return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high);
+  const bool plain = estimated.unit.empty() || estimated.unit == "1";
+  return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high) +
+         (plain ? "" : " " + estimated.unit);
 }
 
 // By the key's line: "parameters.b", "effects.pump.stribeck.speed"; of an effect itself its heading's: "effects.pump.stribeck".

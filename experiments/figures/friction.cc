@@ -14,6 +14,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/pump_friction.h"
+#include "runs/slow_samples.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {
@@ -380,6 +381,7 @@ json Numbers(const RigStudy& study) {
 
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   const runs::MeasuredRun run = runs::ReadMeasuredRun(options.measured_run);
+  runs::RequireFastSamples(run);
   const bool own_model = !run.model_text.empty();
   const model::ModelDescription model =
       own_model ? settings::ParseModel(run.model_text, run.file + " (model)") : ShippedModel("table1");

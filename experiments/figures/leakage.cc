@@ -12,6 +12,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/leakage_fit.h"
+#include "runs/slow_samples.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {
@@ -229,6 +230,7 @@ constexpr char kNotDescribed[] =
 
 ExperimentResult AnalyseMeasuredLeakage(const ExperimentOptions& options) {
   const std::vector<runs::MeasuredRun> runs = {runs::ReadMeasuredRun(options.measured_run)};
+  runs::RequireFastSamples(runs.front());
   const runs::MeasuredRun& run = runs.front();
   const model::ModelDescription model = run.model_text.empty()
                                             ? ShippedModel("table1")

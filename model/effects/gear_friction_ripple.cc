@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/effects/effect.h"
+#include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
@@ -32,10 +32,12 @@ class FrictionRipple : public EffectOf<FrictionRipple> {
                                              .example = 0.3},
                                             {.name = "periods",
                                              .unit = "1/rev",
+                                             .max = kMostPeriods,
                                              .min_allowed = false,
                                              .meaning = "periods in one revolution",
                                              .starts = {1, 2, 3, 4},
-                                             .example = 1},
+                                             .example = 1,
+                                             .beyond_max = kOfMorePeriods},
                                             {.name = "phase",
                                              .unit = "rad",
                                              .min = -kUnbounded,

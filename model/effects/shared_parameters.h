@@ -17,15 +17,22 @@ inline ParameterInfo TimeConstant(double example) {
           .example = example};
 }
 
+// No motor, pump or gear has so many poles, teeth or pistons.
+inline constexpr double kMostPeriods = 1000;
+inline constexpr char kOfMorePeriods[] =
+    "at a usual speed more would pass within each tick, which none could follow";
+
 // periods: of a ripple over the motor's revolution.
 inline ParameterInfo PeriodsPerRevolution(double example) {
   return {.name = "periods",
           .unit = "1/rev",
+          .max = kMostPeriods,
           .min_allowed = false,
           .meaning = "periods in one revolution",
           .starts = PeriodsTried(),
           .role = Role::kPeriods,
-          .example = example};
+          .example = example,
+          .beyond_max = kOfMorePeriods};
 }
 
 }  // namespace hydro::model

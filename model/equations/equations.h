@@ -15,6 +15,7 @@
 #include "model/terms/model_error.h"
 #include "model/terms/power.h"
 #include "model/terms/state.h"
+#include "model/terms/surroundings.h"
 #include "model/terms/terms.h"
 
 namespace hydro::model {
@@ -50,6 +51,7 @@ struct EquationData : NumbersOf<double> {
   // s: `motion` is evaluated at times below this.
   double motion_limit = std::numeric_limits<double>::infinity();
   std::vector<std::shared_ptr<Effect>> effects;
+  Surroundings around;
   int states = 0;
   int switches = kFirstEffectSwitch;
   bool ideal_valves = true;  // false: an effect has the one-way valves; valve_1 and valve_2 stay closed
@@ -131,6 +133,10 @@ class Equations {
   // From `time` on the arm has this load; before the first integration step this makes the arm a loaded one.
   // Throws ModelError.
   void SetLoad(double time, const ArmLoad& load);
+
+  // What acts from outside from now on. An integrator then evaluates afresh, as for another voltage. Simulations of the plain
+  // equations do not see it.
+  void Surround(const Surroundings& around) { data_.around = around; }
 
   // Whether V_1 and V_2 are above 0 there.
   bool HasVolumes(double arm_angle) const {

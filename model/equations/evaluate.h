@@ -133,6 +133,10 @@ template <Form kForm, class T>
     x.arm_torque -= m.linear_arm ? p.mgl : T(p.mgl * cos(x.arm_angle));
   }
   if constexpr (kGeneralForm) {
+    if (x.around.arm_force != 0) [[unlikely]]
+      x.arm_torque += T(x.around.arm_force);
+  }
+  if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);
     ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddTorquesAndFlows(x); });
     x.load += x.shaft_load;
@@ -193,6 +197,7 @@ template <Form kForm, class T>
                                                  const T& voltage, const Mode& mode, const T* y, T* rate,
                                                  Terms<T>& x) {
   ReadState<kForm>(m, time, y, x);
+  if constexpr (kForm == Form::kGeneral) x.around = m.around;
   SetProperties<kForm>(m, n, time, voltage, mode, y, x);
   const T dp = AddTorquesAndFlows<kForm>(m, n, time, rate, x);
   const double direction = mode.pump;

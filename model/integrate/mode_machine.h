@@ -87,16 +87,24 @@ class ModeMachine {
   }
   void NewLoad() { started_ = false; }
 
+  // What acts from outside until the next call.
+  void Surround(const Surroundings& around) {
+    if (around == data().around) return;
+    equations_.Surround(around);
+    surrounded_ = true;
+  }
+
   // As Actuator::Advance.
   void Advance(double voltage, double until) {
     if (!std::isfinite(voltage)) throw ModelError("the voltage is not finite" + Where(equations_, *now_));
     if (!(until >= now_->time) || std::isinf(until)) {
       throw ModelError("cannot advance to t = " + std::to_string(until) + " s" + Where(equations_, *now_));
     }
-    if (voltage != voltage_ || !started_) Command(voltage);
+    if (voltage != voltage_ || !started_ || surrounded_) Command(voltage);
     while (now_->time < until) {
       double stop = std::min(until, known_stop_);
       if (remembers()) stop = std::min(stop, now_->time + kLongestStepToRead);
+      CountStep();
       // A switch on its boundary gets a moment to show which way it goes.
       if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       fresh_ = false;
@@ -122,6 +130,7 @@ class ModeMachine {
   static constexpr double kMoment = 1e-6;       // s
   static constexpr double kEventWidth = 1e-11;  // s, within which an event is located
   static constexpr int kMostEvents = 10000;     // within kLongestStep of time
+  static constexpr int kMostSteps = 200000;     // the same: twenty times slower than real time
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   struct Nothing {};
@@ -148,6 +157,7 @@ class ModeMachine {
 
   void Command(double voltage) {
     fresh_ = true;
+    surrounded_ = false;
     if constexpr (kForm == Form::kGeneral) {
       if (voltage != voltage_ || !commanded_) {
         equations_.Command(now_->time, voltage);
@@ -284,12 +294,21 @@ class ModeMachine {
     }
   }
 
+  // Bounds the work by counts, not by the clock, so that no model's numbers hang who simulates it, and the same
+  // model ends at the same step everywhere.
+  void CountStep() {
+    if (now_->time > counted_since_ + kLongestStep) [[unlikely]] {
+      counted_since_ = now_->time;
+      steps_ = events_ = 0;
+    }
+    static_assert(kMostSteps == 200000);  // as text it would be a copy of the library's (response_wide.cc)
+    if (++steps_ > kMostSteps) [[unlikely]]
+      throw TooManySteps("too fast to simulate: more than 200000 steps within 0.01 s" +
+                         Where(equations_, *now_));
+  }
+
   // More events than any machine's switches have: two of them undo each other.
   void CountEvent() {
-    if (now_->time > events_since_ + kLongestStep) {
-      events_since_ = now_->time;
-      events_ = 0;
-    }
     if (++events_ > kMostEvents) throw ModelError("the switches chatter" + Where(equations_, *now_));
   }
 
@@ -383,12 +402,14 @@ class ModeMachine {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
-  bool commanded_ = false;  // the equations know a voltage
-  bool fresh_ = true;       // mode or voltage is new
+  bool commanded_ = false;   // the equations know a voltage
+  bool fresh_ = true;        // mode or voltage is new
+  bool surrounded_ = false;  // what acts from outside is new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
-  int events_ = 0;  // since events_since_, s
-  double events_since_ = -kNever;
+  int steps_ = 0;  // since counted_since_, s, as are the events
+  int events_ = 0;
+  double counted_since_ = -kNever;
   PointOf<T> points_[3];
   PointOf<T>* now_ = &points_[0];
   PointOf<T>* next_ = &points_[1];

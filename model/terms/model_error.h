@@ -1,4 +1,4 @@
-// The model's only exception.
+// The model's exceptions.
 #pragma once
 
 #include <stdexcept>
@@ -10,6 +10,12 @@ namespace hydro::model {
 class ModelError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// The model is too fast for its integrator: a stretch of time took more steps than any machine needs.
+class TooManySteps : public ModelError {
+ public:
+  using ModelError::ModelError;
 };
 
 }  // namespace hydro::model

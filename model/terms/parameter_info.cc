@@ -1,5 +1,10 @@
 #include "model/terms/parameter_info.h"
 
+#include <cmath>
+#include <optional>
+
+#include "base/number_text.h"
+#include "base/units.h"
 #include "model/terms/model_error.h"
 
 namespace hydro::model {
@@ -15,11 +20,16 @@ struct Meaning {
   const char* name;
   const char* unit;
   const char* text;
+  double example;  // of Table 1, or of a machine like it where that has none
   int arm = 0;
 };
 
 BaseParameter NotNegative(double Parameters::*member, double uncertainty, const Meaning& meaning) {
-  return {{.name = meaning.name, .unit = meaning.unit, .meaning = meaning.text, .arm = meaning.arm},
+  return {{.name = meaning.name,
+           .unit = meaning.unit,
+           .meaning = meaning.text,
+           .arm = meaning.arm,
+           .example = meaning.example},
           member,
           uncertainty};
 }
@@ -41,33 +51,74 @@ BaseParameter AnySign(double Parameters::*member, double uncertainty, const Mean
 const std::vector<BaseParameter>& BaseParameters() {
   static const std::vector<BaseParameter> parameters = {
       Positive(&Parameters::k_1, kDataSheet,
-               {"k_1", "in-lbf/V", "torque per volt of the amplifier, eq. (1)"}),
+               {"k_1", "in-lbf/V", "torque per volt of the amplifier, eq. (1)", 4}),
       Positive(&Parameters::T_pmax, kDataSheet,
-               {"T_pmax", "in-lbf", "limit of the motor torque set by the amplifier"}),
-      Positive(&Parameters::D, kDataSheet, {"D", "in^3/rad", "displacement of the pump, eq. (3)"}),
-      Positive(&Parameters::J, kDataSheet, {"J", "lbf-in-s^2", "inertia of motor and pump, eq. (4)"}),
-      NotNegative(&Parameters::b, kFriction, {"b", "in-lbf-s", "viscous friction of the pump, eq. (4)"}),
-      NotNegative(&Parameters::T_s, kFriction, {"T_s", "in-lbf", "Coulomb friction of the pump, eq. (4)"}),
-      NotNegative(&Parameters::f, kFriction, {"f", "in-lbf/psi", "Coulomb friction per pressure, eq. (4)"}),
-      Positive(&Parameters::beta, kDataSheet, {"beta", "psi", "bulk modulus of the fluid, eq. (5)"}),
+               {"T_pmax", "in-lbf", "limit of the motor torque set by the amplifier", 40}),
+      Positive(&Parameters::D, kDataSheet, {"D", "in^3/rad", "displacement of the pump, eq. (3)", 0.00796}),
+      Positive(&Parameters::J, kDataSheet, {"J", "lbf-in-s^2", "inertia of motor and pump, eq. (4)", 0.03}),
+      NotNegative(&Parameters::b, kFriction,
+                  {"b", "in-lbf-s", "viscous friction of the pump, eq. (4)", 0.01455}),
+      NotNegative(&Parameters::T_s, kFriction, {"T_s", "in-lbf", "Coulomb friction of the pump, eq. (4)", 4}),
+      NotNegative(&Parameters::f, kFriction,
+                  {"f", "in-lbf/psi", "Coulomb friction per pressure, eq. (4)", 0.001}),
+      Positive(&Parameters::beta, kDataSheet, {"beta", "psi", "bulk modulus of the fluid, eq. (5)", 247000}),
       Positive(&Parameters::V_ms, kGeometry,
-               {"V_ms", "in^3", "volume of one side at mid-stroke, eqs. (6), (7)"}),
+               {"V_ms", "in^3", "volume of one side at mid-stroke, eqs. (6), (7)", 3.16}),
       Positive(&Parameters::c, kGeometry,
-               {"c", "in^3/rad", "displacement of the actuator, r^2 d/2, eqs. (6), (7)", -1}),
+               {"c", "in^3/rad", "displacement of the actuator, r^2 d/2, eqs. (6), (7)", 3.68, -1}),
       NotNegative(&Parameters::c_E, kFriction,
-                  {"c_E", "in^3/(s psi)", "external leakage to the accumulator, eqs. (11), (12)"}),
+                  {"c_E", "in^3/(s psi)", "external leakage to the accumulator, eqs. (11), (12)", 6.5e-6}),
       NotNegative(&Parameters::c_I, kFriction,
-                  {"c_I", "in^3/(s psi)", "internal leakage across the ports, eqs. (11), (12)"}),
+                  {"c_I", "in^3/(s psi)", "internal leakage across the ports, eqs. (11), (12)", 1e-6}),
       NotNegative(&Parameters::p_3, kDataSheet,
-                  {"p_3", "psi", "pressure of the accumulator, eqs. (11), (12)"}),
+                  {"p_3", "psi", "pressure of the accumulator, eqs. (11), (12)", 100}),
       Positive(&Parameters::k_2, kDataSheet,
-               {"k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)", -1}),
-      Positive(&Parameters::J_a, kDataSheet, {"J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)", -2}),
-      AnySign(
-          &Parameters::mgl, kDataSheet,
-          {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15); a linear arm's weight", -1}),
+               {"k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)", 3.68, -1}),
+      Positive(&Parameters::J_a, kDataSheet, {"J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)", 23.3, -2}),
+      AnySign(&Parameters::mgl, kDataSheet,
+              {"mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15); a linear arm's weight",
+               562, -1}),
   };
   return parameters;
+}
+
+namespace {
+
+// A value that stands out, and by how many powers of ten.
+struct Outlier {
+  double decades = 3;
+  std::string text;
+};
+
+void Compare(const ParameterInfo& info, const UnitSystem& units, const std::string& owner, double value,
+             Outlier* most) {
+  const std::string unit = info.UnitIn(units);
+  const std::optional<Unit> paper = ParseUnit(info.unit), own = ParseUnit(unit);
+  const double usual = paper && own ? info.example * paper->size / own->size : info.example;
+  if (value == 0 || usual == 0 || !std::isfinite(value)) return;
+  const double decades = std::log10(std::fabs(value / usual));
+  const bool small_is_none = info.min < 0 || (info.min == 0 && info.min_allowed);
+  if ((small_is_none && decades < 0) || !(std::fabs(decades) > most->decades)) return;
+  most->decades = std::fabs(decades);
+  most->text = owner + info.name + " = " + ShortestNumber(value) + (unit == "1" ? "" : " " + unit) +
+               ", where " + ShortNumber(usual, 2) + " is usual";
+}
+
+}  // namespace
+
+std::string MostUnusual(const ModelDescription& model) {
+  Outlier most;
+  for (const BaseParameter& base : BaseParameters())
+    Compare(base.info, model.units, "", model.parameters.*base.member, &most);
+  for (const EffectDescription& effect : model.effects) {
+    const EffectInfo* known = FindEffect(effect);
+    if (known == nullptr) continue;
+    for (const ParameterInfo& info : known->parameters) {
+      const auto value = effect.parameters.find(info.name);
+      if (value != effect.parameters.end()) Compare(info, model.units, effect.id + ".", value->second, &most);
+    }
+  }
+  return most.text;
 }
 
 size_t BasePlace(const std::string& name) {

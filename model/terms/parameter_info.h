@@ -79,11 +79,13 @@ struct ParameterInfo {
   // The base parameter to which it is added as the same term. The gap finder frees one of the two: the base
   // parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
-  // A size at which the effect shows on the paper's rig (Table 1); tests run every effect of the catalogue
-  // with it.
+  // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there; tests run every
+  // effect of the catalogue with it.
   double example = 0;
   List list = List::kNone;
   bool optional = false;  // a list that need not be there
+  // Why a value above max is refused, where that is not obvious.
+  const char* beyond_max = "";
 
   bool is_name() const { return list == List::kNone && !names.empty(); }
   bool is_number() const { return list == List::kNone && names.empty(); }
@@ -96,6 +98,10 @@ struct BaseParameter {
   double Parameters::*member;
   double uncertainty;  // relative standard deviation where a model states none
 };
+
+// The parameter whose value is farthest from what is usual for a machine, by a factor of at least a thousand, in the direction that
+// makes a model hard to simulate: "effects.amp.lag.tau = 1e-25 s, where 0.0004 is usual". "" when there is none.
+std::string MostUnusual(const ModelDescription& model);
 
 // How well the model knows a base parameter (an index in BaseParameters()): its relative standard deviation, as
 // stated or by kind.
@@ -138,6 +144,8 @@ struct EffectInfo {
   // Runs that all have the bypass open and no pressure recorded, as of a bare motor, cannot show it: it would stand there for what is the
   // motor's.
   bool needs_oil = false;
+  // Runs without a recorded temperature say nothing of it.
+  bool needs_temperature = false;
   // The gap finder looks for it only where it is asked for by name: most machines do not have it, or runs tell it from what it is
   // confused with only on a machine that is known to have it.
   bool on_request = false;

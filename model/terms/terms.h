@@ -6,6 +6,7 @@
 #include "model/terms/description.h"
 #include "model/terms/jet.h"
 #include "model/terms/mode.h"
+#include "model/terms/surroundings.h"
 
 namespace hydro::model {
 
@@ -19,6 +20,7 @@ struct Terms {
   bool arm_free = false;  // the shaft is neither clamped nor driven
   bool bypass = false;    // the two sides are connected
   double atmosphere = 0;  // pressure of the air around, from which the model's pressures count
+  Surroundings around;
   const ParametersOf<T>* parameters = nullptr;
   const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on

@@ -82,7 +82,7 @@ void Connection::Receive(TimePoint now) {
     for (size_t at = 0; at < got; ++at) {
       if (hydro_receive(&receiver_, chunk[at], &frame)) Take(frame, now);
     }
-    if (got < chunk.size()) return;
+    if (got + Link::kLargestDatagram <= chunk.size()) return;
   }
 }
 

@@ -241,7 +241,7 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
 
 void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
-    output_.Look(sample, now_, &faults_);
+    output_.Look(sample, connection_.settings().sample_interval_ticks, now_, &faults_);
   } else {
     Add("output_differs",
         fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,

@@ -47,10 +47,11 @@ int64_t OutputWatch::CommandTick(const hydro_sample& sample) const {
   return told != nullptr ? told->command_tick : -1;
 }
 
-void OutputWatch::Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
+void OutputWatch::Look(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
+                       std::vector<RigFault>* faults) {
   const size_t before = faults->size();
   LookAtReport(sample, faults);
-  if (faults->size() == before) LookAtReadBack(sample, now, faults);
+  if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
 
 // The device's own loop may do so, where it has one. So may a command so old that its age is the fault,
@@ -76,28 +77,37 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
        voltage, told});
 }
 
-// The read-back was measured before the device put out the voltage of this sample. The output may hold
-// anything that the device reported recently: it takes a while to follow, and a loop on the device changes it
-// between two samples.
-void OutputWatch::LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now,
+// The read-back was measured before the device put out the voltage of this sample. The output takes a while to
+// follow, so it may hold anything that the device reported recently. Its earlier voltage is not known when the
+// sample before was lost, or when a loop on the device has had ticks between the two samples. A swing of that
+// loop's voltage that no sample shows is short; a wrong output is not.
+void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});
   Forget(&reported_, now - patience_);
+  const bool next = last_tick_ && sample.tick == *last_tick_ + interval;
+  last_tick_ = sample.tick;
   const auto read_back = static_cast<double>(sample.read_back);
-  if (!std::isfinite(read_back)) {
-    differing_ = 0;
-    return;
-  }
   const auto [least, most] =
       std::minmax_element(reported_.begin(), reported_.end(),
                           [](const PutOut& a, const PutOut& b) { return a.voltage < b.voltage; });
   const double nearest = std::clamp(read_back, least->voltage, most->voltage);
-  differing_ = std::fabs(read_back - nearest) > tolerance_ ? std::min(differing_ + 1, kInARow) : 0;
-  if (differing_ < kInARow) return;
+  if (!Differs(read_back, nearest, next && (interval == 1 || sample.source != HYDRO_SOURCE_LAW), now)) return;
   faults->push_back(
       {"output_differs",
        fmt::format("the front end's output reads back {:.4g} V; {:.4g} V was put out", read_back, nearest),
        read_back, nearest});
+}
+
+bool OutputWatch::Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now) {
+  if (!std::isfinite(read_back) || std::fabs(read_back - nearest) <= tolerance_) {
+    differing_ = 0;
+    differs_since_.reset();
+    return false;
+  }
+  if (!differs_since_) differs_since_ = now;
+  if (held_is_known) differing_ = std::min(differing_ + 1, kInARow);
+  return differing_ == kInARow || now - *differs_since_ >= patience_;
 }
 
 }  // namespace hydro::plant

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "bus/clock.h"
@@ -24,9 +25,11 @@ class OutputWatch {
 
   // Adds "output_differs" in three cases. First, the voltage that a sample reports is not the one that the
   // command it names has told. Second, the voltage is not zero although the device is not armed or no recent
-  // command can have caused it. Third, the output reads back, twice in a row, a voltage that was not put out
-  // within the patience.
-  void Look(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+  // command can have caused it. Third, the output reads back a voltage that was not put out within the
+  // patience: twice in a row when its earlier voltage is known, otherwise for as long as the patience.
+  // `interval` is the number of the device's ticks from one sample to the next.
+  void Look(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
+            std::vector<RigFault>* faults);
 
   double tolerance() const { return tolerance_; }  // V of eq. (1), for the voltage that is read back
 
@@ -48,17 +51,21 @@ class OutputWatch {
 
   const Told* Find(const hydro_sample& sample) const;
   void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
-  void LookAtReadBack(const hydro_sample& sample, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+  void LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
+                      std::vector<RigFault>* faults);
+  bool Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now);
 
   // Whether the device may put out a voltage that no recent command of the driver told it.
   bool MayPutOut(const hydro_sample& sample) const;
 
   const bool own_loop_;  // on the device
   const bus::Clock::Duration patience_;
-  const double tolerance_;       // V of eq. (1)
-  std::deque<Told> told_;        // within the patience, and the one before
-  std::deque<PutOut> reported_;  // the same, by the device
-  int differing_ = 0;            // readings in a row
+  const double tolerance_;             // V of eq. (1)
+  std::deque<Told> told_;              // within the patience, and the one before
+  std::deque<PutOut> reported_;        // the same, by the device
+  std::optional<uint64_t> last_tick_;  // of the sample before
+  int differing_ = 0;                  // readings in a row, of those where it is known what the output held
+  std::optional<bus::Clock::TimePoint> differs_since_;
 };
 
 }  // namespace hydro::plant

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/standard_output.h"
 
 namespace hydro::exports {
 namespace {
@@ -19,8 +20,7 @@ void WriteAll(int descriptor, const char* data, size_t size) {
   while (size > 0) {
     const ssize_t written = write(descriptor, data, size);
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0)
-      throw WriteError(std::string("the standard output cannot be written: ") + std::strerror(errno));
+    if (written <= 0) throw WriteError(CannotBeWritten(errno));
     data += written;
     size -= static_cast<size_t>(written);
   }

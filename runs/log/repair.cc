@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/read_files.h"
+#include "runs/log/log_check.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
 #include "runs/log/message_kinds.h"
@@ -74,6 +75,26 @@ void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::ve
   });
 }
 
+// Where logs were joined end to end: a part of a rotated recording goes on with the one before it, another log does not. Without check
+// events the numbers tell, which each recorder counts from 0.
+std::vector<int64_t> JoinsOf(const MappedFile& file, const std::vector<KeptEvent>& sound) {
+  std::vector<int64_t> begins, restarts;
+  LogEvent event;
+  bool checked = false;
+  int64_t previous = 0;
+  for (const KeptEvent& place : sound) {
+    ParseLogEvent(file, place.begin, event);
+    const std::optional<LogCheck> check = IsCheck(event) ? ParseCheck(event) : std::nullopt;
+    checked = checked || check.has_value();
+    const bool begins_anew =
+        check && check->sound && check->kind == CheckKind::kBegin && check->previous == 0;
+    if (begins_anew && place.begin > 0) begins.push_back(place.begin);
+    if (event.number == 0 && previous > 0) restarts.push_back(place.begin);
+    previous = event.number;
+  }
+  return checked ? begins : restarts;
+}
+
 // What a mended log says of itself.
 std::string NoteOf(const RepairResult& result, const std::string& file) {
   if (!result.mended()) return {};
@@ -130,6 +151,7 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   RepairResult result;
   result.verdict = ExamineLog(contents);
   const std::vector<KeptEvent> sound = FindSoundEvents(contents, result.lost);
+  result.joined_at = JoinsOf(contents, sound);
   VouchedEvents vouched = KeepVouched(contents, sound, result.lost);
   std::vector<KeptEvent>& kept = vouched.messages;
   DropUndecodable(contents, kept, result.lost);
@@ -191,6 +213,43 @@ RepairResult RepairInPlace(const std::string& file) {
     throw;
   }
   return result;
+}
+
+namespace {
+
+// A file's name as one word of a command line.
+std::string ShellWord(const std::string& name) {
+  std::string quoted;
+  for (const char c : name) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  const bool plain =
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./") ==
+      std::string::npos;
+  return plain && !name.starts_with('-') ? name : "'" + quoted + "'";
+}
+
+}  // namespace
+
+std::string DescribeJoined(const RepairResult& result, const std::string& file) {
+  if (result.joined_at.empty()) return {};
+  const std::filesystem::path path(file);
+  const std::string ending = path.extension() == ".lcmlog" ? ".lcmlog" : "";
+  const std::string stem = ending.empty() ? file : file.substr(0, file.size() - ending.size());
+  const size_t count = result.joined_at.size() + 1;
+  std::string text =
+      file + ": " + std::to_string(count) +
+      " recordings were joined in it, and other verbs read one run; these commands take them apart:\n";
+  constexpr size_t kMostParts = 20;
+  for (size_t k = 0; k < std::min(count, kMostParts); ++k) {
+    const int64_t begin = k == 0 ? 0 : result.joined_at[k - 1];
+    const std::string size = k + 1 == count ? "" : std::to_string(result.joined_at[k] - begin);
+    const std::string word = ShellWord(file);
+    text += "  ";
+    if (k > 0) text += "tail -c +" + std::to_string(begin + 1) + " " + word + (size.empty() ? "" : " | ");
+    if (!size.empty()) text += "head -c " + size + (k == 0 ? " " + word : "");
+    text += " > " + ShellWord(stem + "-" + std::to_string(k + 1) + ending) + "\n";
+  }
+  if (count > kMostParts) text += "  and so on, at each byte where hydro-log info says that one was joined\n";
+  return text;
 }
 
 std::string Describe(const RepairResult& result, const std::string& file) {

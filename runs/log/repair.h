@@ -18,7 +18,9 @@ struct RepairResult {
   int64_t lost_messages = 0;    // written and not kept, as far as the check events tell
   int64_t unvouched = 0;        // kept messages of which no checksum says that they are right
   std::vector<LostBytes> lost;  // in order of the file
-  std::string damaged;          // where RepairInPlace() has left the log as it was found
+  std::vector<int64_t>
+      joined_at;        // bytes at which another recording begins, which was joined to the one before
+  std::string damaged;  // where RepairInPlace() has left the log as it was found
 
   // Whether there was anything to mend: bytes lost, messages missing, or no mark of the end.
   bool mended() const;
@@ -40,6 +42,10 @@ RepairResult RepairLog(const std::string& file, const std::string& out);
 // that name. Leaves a whole log alone, and one without checksums in which nothing is wrong. Throws WriteError, and
 // InputError, also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
+
+// One line on the recordings that were joined in a log, and one with the command that takes each out of it; empty: it is one
+// recording. `file` holds the log as it was found.
+std::string DescribeJoined(const RepairResult& result, const std::string& file);
 
 // One line for what was kept, and one for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);

@@ -63,7 +63,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   left_ = false;
   sequence_ = -1;
   reference_.reset();
-  tuning_version_ = 0;
+  tuned_.reset();
   active_.clear();
   doubted_.clear();
   time_ = state.time;

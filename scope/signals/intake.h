@@ -93,10 +93,10 @@ class Intake {
   std::map<int64_t, int64_t> fault_sequence_;            // the newest of each sender
   std::map<std::string, std::set<std::string>> active_;  // faults by role
   std::map<std::string, std::set<std::string>>
-      doubted_;                  // active here, and missing from the role's last list
-  int64_t tuning_version_ = 0;   // the newest that is an event
-  int64_t tuning_request_ = -1;  // refused last
-  ProcessReport flood_;          // of processes beyond those that are kept
+      doubted_;                            // active here, and missing from the role's last list
+  std::optional<tuned_settings_t> tuned_;  // the newest that was decided; empty: none was heard
+  int64_t tuning_request_ = -1;            // refused last
+  ProcessReport flood_;                    // of processes beyond those that are kept
   std::string last_stop_;
   std::string last_rearm_;
   int64_t last_stop_utime_ = 0;

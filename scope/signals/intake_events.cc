@@ -158,10 +158,13 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
 void Intake::OnSettings(const tuned_settings_t& settings) {
   const bool certain =
       settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
-  if (settings.session != session_ || !certain || settings.version <= tuning_version_) return;
-  tuning_version_ = settings.version;
-  AddEvent(TimeOf(settings.acts_at), "tuning", settings.source, "version " + std::to_string(settings.version),
-           runs::DescribeTuning(settings));
+  if (settings.session != session_ || !certain || (tuned_ && settings.version <= tuned_->version)) return;
+  if (settings.version > 0) {
+    AddEvent(TimeOf(settings.acts_at), "tuning", settings.source,
+             "version " + std::to_string(settings.version),
+             runs::DescribeTuning(runs::StepTo(settings, tuned_ ? &*tuned_ : nullptr)));
+  }
+  tuned_ = settings;
 }
 
 void Intake::OnTuningAnswer(const tuning_answer_t& answer) {

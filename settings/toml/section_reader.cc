@@ -42,7 +42,13 @@ InputError KeyError(const TomlNode& root, const std::string& dotted_key, const s
 bool NumberRange::Holds(double value) const {
   if (std::isinf(value) && value > 0 && infinity_allowed) return true;
   if (!std::isfinite(value)) return false;
-  return (min_allowed ? value >= min : value > min) && (max_allowed ? value <= max : value < max);
+  return (min_allowed ? value >= min : value > min) && (max_allowed ? value <= max : value < max) &&
+         HoldsSize(value);
+}
+
+bool NumberRange::HoldsSize(double value) const {
+  const double size = std::fabs(value);
+  return size == 0 || (size >= smallest && size <= largest);
 }
 
 std::string NumberRange::Allowed() const {
@@ -55,6 +61,14 @@ std::string NumberRange::Allowed() const {
   return infinity_allowed ? allowed + ", or inf" : allowed;
 }
 
+std::string NumberRange::AllowedInsteadOf(double value) const {
+  if (value > max && *beyond_max != '\0') return Allowed() + "; " + beyond_max;
+  if (!std::isfinite(value) || HoldsSize(value)) return Allowed();
+  const double size = std::fabs(value);
+  return Allowed() + ", of a size of " +
+         (size < smallest ? "at least " + ShortNumber(smallest) : "at most " + ShortNumber(largest));
+}
+
 SectionReader::SectionReader(const TomlNode& table, std::string path, std::vector<AskedKey>* asked)
     : table_(&table), path_(std::move(path)), asked_(asked) {}
 
@@ -62,8 +76,10 @@ bool SectionReader::Number(const std::string& key, double* out, const NumberRang
   NoteStandard(key, ShortestNumber(*out));
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
-  if (!node->is_number() || !range.Holds(node->AsDouble())) throw Error(key, node->Shown(), range.Allowed());
-  *out = node->AsDouble();
+  if (!node->is_number()) throw Error(key, node->Shown(), range.Allowed());
+  const double value = node->AsDouble();
+  if (!range.Holds(value)) throw Error(key, node->Shown(), range.AllowedInsteadOf(value));
+  *out = value;
   return true;
 }
 

@@ -32,9 +32,18 @@ struct NumberRange {
   bool min_allowed = true;
   bool max_allowed = true;
   bool infinity_allowed = false;  // "inf" for "no limit"
+  // The sizes of numbers other than 0. Nearer to 0 a number loses its digits, and what is divided by it overflows.
+  double smallest = std::numeric_limits<double>::min();
+  double largest = std::numeric_limits<double>::max();
+  const char* beyond_max = "";  // why a value above max is refused
 
   bool Holds(double value) const;
   std::string Allowed() const;  // "a finite number above 0"
+  // The same, with the sizes where it is they that the number misses.
+  std::string AllowedInsteadOf(double value) const;
+
+ private:
+  bool HoldsSize(double value) const;
 };
 
 inline constexpr NumberRange kAnyNumber{};

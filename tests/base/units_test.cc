@@ -48,7 +48,7 @@ TEST(UnitsTest, ShownInSi) {
     const char* to;
     double factor;
   } rows[] = {{"psi", "kPa", 6.894757293},
-              {"in", "mm", 25.4},
+              {"in", "m", 0.0254},
               {"in/s", "m/s", 0.0254},
               {"in^2", "cm^2", 6.4516},
               {"in^3", "cm^3", 16.387064},
@@ -77,6 +77,8 @@ TEST(UnitsTest, ShownInSi) {
   EXPECT_EQ(FindSiUnit("psi", -200)->to, "MPa");
   EXPECT_FALSE(FindSiUnit("rad/s", 1).has_value());
   EXPECT_FALSE(FindSiUnit("N m", 1).has_value());
+  EXPECT_FALSE(FindSiUnit("m", 0.03).has_value()) << "a length is in m, whatever its size";
+  EXPECT_EQ(FindSiUnit("mm", 30)->to, "m");
   EXPECT_FALSE(FindSiUnit("kPa", 1).has_value());
   EXPECT_FALSE(FindSiUnit("furlong", 1).has_value());
 }

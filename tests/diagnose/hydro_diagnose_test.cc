@@ -164,8 +164,10 @@ TEST_F(HydroDiagnoseTest, ModelHasComments) {
   Run(diagnosis);
   const std::string model = Read("out/model.toml");
   EXPECT_TRUE(model.starts_with("# Written by hydro-diagnose "));
-  EXPECT_THAT(model, HasSubstr("\nb = 0.0203  # 95 %: 0.0199 to 0.0207, fitted to the runs; was 0.01455\n"));
-  EXPECT_THAT(model, HasSubstr("# 95 %: 0.09 to 0.15, fitted to the runs; was 0.03; implausible\n"));
+  EXPECT_THAT(
+      model, HasSubstr("\nb = 0.0203  # 95 %: 0.0199 to 0.0207 in-lbf-s, fitted to the runs; was 0.01455\n"));
+  EXPECT_THAT(model,
+              HasSubstr("# 95 %: 0.09 to 0.15 lbf-in-s^2, fitted to the runs; was 0.03; implausible\n"));
   EXPECT_THAT(model, HasSubstr("# no interval, fitted to the runs; was 100\n"));
   EXPECT_THAT(model,
               HasSubstr("  # refitted with the others; was 0.00796, which these runs do not exclude\n"));

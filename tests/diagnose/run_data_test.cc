@@ -10,6 +10,7 @@
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
 #include "model/terms/state.h"
+#include "runs/slow_samples.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -179,10 +180,10 @@ TEST(PrepareRun, StartOfWhatIsNotMeasured) {
 TEST(PrepareRun, NamesTheUnitOfTimes) {
   for (const auto& [interval, unit] : {std::pair(1.0, "ms"), std::pair(10.0, "ms"), std::pair(1e3, "us"),
                                        std::pair(2e4, "us"), std::pair(1e6, "ns"), std::pair(2e7, "ns")}) {
-    EXPECT_EQ(TimeUnitHint(interval),
+    EXPECT_EQ(runs::TimeUnitHint(interval),
               std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")");
   }
-  for (const double interval : {1e-3, 0.2, 1e12}) EXPECT_EQ(TimeUnitHint(interval), "");
+  for (const double interval : {1e-3, 0.2, 1e12}) EXPECT_EQ(runs::TimeUnitHint(interval), "");
 }
 
 // Tests that data from which nothing can be learnt are refused with run, signal and row.

@@ -25,7 +25,7 @@ class DemoTest(stack.TestCase):
             if summary["skipped_ticks"] < 0.1 * summary["ticks"]:
                 break
         self.assertTrue(summary["tracking"]["at_target"], summary)
-        self.assertEqual(summary["lost_messages"], 0, summary)
+        self.assertEqual(summary["missing_messages"], 0, summary)
 
         log = event_log.Log(log_file)
         # The same two from the log itself. The reference ends at 0.1 rad; friction leaves a small error.

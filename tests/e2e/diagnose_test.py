@@ -131,7 +131,7 @@ class DiagnoseTest(stack.TestCase):
         checked = check(bar)
         self.assertEqual(checked.wait(timeout=LONG), 1, checked.report())
         self.assertEqual(checked.stderr, "")
-        self.assertRegex(checked.stdout, "\nlook    charge pressure .*another unit")
+        self.assertRegex(checked.stdout, "\nlook    charge pressure .*: p1 and p2 are in bar")
         self.assertIn('p1 = { column = "p1", unit = "bar" }; p2 = { column = "p2", unit = "bar" }', checked.stdout)
         strange = check(self.bench_table("strange", {"motor_speed_rad_s": 0.01}))
         self.assertEqual(strange.wait(timeout=LONG), 1, strange.report())

@@ -8,6 +8,7 @@ import os
 import re
 import select
 import shutil
+import signal
 import socket
 import threading
 import time
@@ -46,6 +47,12 @@ class FrontEnd:
             self.url = f"udp://127.0.0.1:{self.port}"
         else:
             self.url = ("serial:" if self.link == "pty" else "unix:") + self.case.path("front_end")
+
+    def reset(self):
+        self.board.send(signal.SIGUSR1)
+
+    def relay(self):
+        return Relay(self.case, self.port)
 
     def shown(self):
         """The machine's own words, once a second: tick, volts, p1, p2, motor speed, arm angle."""
@@ -96,9 +103,18 @@ class EmulatedFrontEnd(FrontEnd):
         self.url = "unix:" + self.case.path("front_end")
         lines = [argument for name in ("front_end", "converters")
                  for argument in ("-serial", f"unix:{self.case.path(name)},server=on,wait=off")]
+        lines += ["-monitor", f"unix:{self.case.path('monitor')},server=on,wait=off"]
         self.board = self.case.start(shutil.which("qemu-system-arm"), "-M", "mps2-an386", "-kernel", self.image, "-display", "none",
                                      "-icount", "shift=3", *lines, label="qemu")
-        self.case.wait_until(lambda: os.path.exists(self.converters), "qemu")
+        self.case.wait_until(lambda: os.path.exists(self.converters) and os.path.exists(self.case.path("monitor")), "qemu")
+
+    def reset(self):
+        monitor = wire.Stream(self.case.path("monitor"))
+        self.case.addCleanup(monitor.close)
+        monitor.send(b"system_reset\n")
+
+    def relay(self):
+        return StreamRelay(self.case, self.url.removeprefix("unix:"))
 
 
 class Relay:
@@ -109,7 +125,10 @@ class Relay:
         self.driver.bind(("127.0.0.1", 0))
         self.device = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.device.connect(("127.0.0.1", device_port))
-        self.url = "udp://127.0.0.1:%d" % self.driver.getsockname()[1]
+        self.begin(case, "udp://127.0.0.1:%d" % self.driver.getsockname()[1])
+
+    def begin(self, case, url):
+        self.url = url
         self.peer = None
         self.cut = False
         self.kept = []
@@ -145,6 +164,9 @@ class Relay:
         if self.peer and not self.cut:
             self.driver.sendto(data, self.peer)
 
+    def to_driver(self, data):
+        self.driver.sendto(data, self.peer)
+
     def frames(self):
         """(kind, session, sequence, fields) of what the device has sent so far."""
         receiver = wire.Receiver()
@@ -164,6 +186,46 @@ class Relay:
     def command(self):
         """The newest command of the driver: (kind, session, sequence, fields)."""
         return next(iter(wire.Receiver().take(self.newest_command)), None)
+
+
+class StreamRelay(Relay):
+    """The same between two Unix sockets, whole frame by whole frame: an emulator's serial line passes single bytes."""
+
+    def __init__(self, case, device_path):
+        self.path = case.path("relay")
+        self.listener = socket.socket(socket.AF_UNIX)
+        self.listener.bind(self.path)
+        self.listener.listen(1)
+        self.device = socket.socket(socket.AF_UNIX)
+        self.device.connect(device_path)
+        self.driver = self.listener  # until somebody has connected
+        self.parts = {}
+        case.addCleanup(self.listener.close)
+        self.begin(case, "unix:" + self.path)
+
+    def pass_on(self, ready):
+        if ready is self.listener:
+            self.driver, _ = self.listener.accept()
+            self.peer = self.driver
+            return
+        data = b""
+        with contextlib.suppress(ConnectionResetError):  # of a driver that was killed
+            data = ready.recv(4096)
+        if not data and ready is self.driver:
+            self.driver.close()
+            self.driver, self.peer = self.listener, None
+        *pieces, self.parts[ready] = (self.parts.get(ready, b"") + data).split(b"\0")
+        for frame in (b"\0" + piece + b"\0" for piece in pieces if piece):
+            if ready is self.device:
+                self.kept.append(frame)
+            elif not self.cut:
+                self.newest_command = frame
+            if not self.cut:
+                self.device.sendall(frame) if ready is not self.device else self.peer and self.to_driver(frame)
+
+    def to_driver(self, data):
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+            self.peer.sendall(data)
 
 
 def age_at_trip(samples):

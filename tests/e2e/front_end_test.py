@@ -110,9 +110,14 @@ class FrontEndRunTest(FrontEndCase):
 class LastLineTest(FrontEndCase):
     """The device puts out zero volts within its own limit, counted in its ticks, whatever becomes of the computer."""
 
+    watchdog = WATCHDOG
+
+    def new_front_end(self):
+        return front_end.FrontEnd(self)
+
     def driven(self, *settings):
-        self.front = front_end.FrontEnd(self)
-        self.relay = front_end.Relay(self, self.front.port)
+        self.front = self.new_front_end()
+        self.relay = self.front.relay()
         run = self.run_by_hand(self.relay.url, *settings)
         self.front.wait_until_driven()
         return run
@@ -128,7 +133,7 @@ class LastLineTest(FrontEndCase):
         self.assertEqual(after["voltage"], 0)
         self.assertEqual(after["state"], wire.TRIPPED)
         self.assertEqual(after["faults_latched"], wire.WATCHDOG)
-        ticks = round(WATCHDOG * self.front.rate)
+        ticks = round(self.watchdog * self.front.rate)
         # A board that is a process may wake up late, and then counts several ticks as one.
         samples = self.relay.samples()
         late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
@@ -164,7 +169,7 @@ class LastLineTest(FrontEndCase):
         age, after = front_end.age_at_trip(samples)
         late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
         self.assertEqual(after["voltage"], 0)
-        self.assertLess(age, round(WATCHDOG * self.front.rate) + late)
+        self.assertLess(age, round(self.watchdog * self.front.rate) + late)
 
     # Tests that an ordered end leaves the device disarmed, at once.
     def test_ordered_end(self):
@@ -189,7 +194,7 @@ class LastLineTest(FrontEndCase):
         run = self.driven()
         boots = lambda: {fields["boot"] for kind, _, _, fields in self.relay.frames() if kind == wire.IDENTITY}
         self.assertEqual(len(boots()), 1)
-        self.front.board.send(signal.SIGUSR1)
+        self.front.reset()
         self.front.wait_until_zero()
         run["driver"].wait_for("device_fault.*has reset itself|has reset itself")
         self.front.wait_until_driven()
@@ -203,7 +208,7 @@ class LastLineTest(FrontEndCase):
         body = struct.pack("<Iqf", self.relay.command()[3].get("fingerprint", 0), 0, 9.0)
         for i in range(20):
             self.relay.device.send(wire.frame(wire.VOLTAGE, session ^ 0x55, 0x70000000 + i, body))
-            self.relay.driver.sendto(self.relay.kept[-1], self.relay.peer)  # once more
+            self.relay.to_driver(self.relay.kept[-1])  # once more
         front_end.wait(lambda: self.relay.newest()[2]["frames_refused"] - refused >= 20, "20 refused frames")
         self.assertTrue(self.armed())
         run["driver"].send(signal.SIGINT)
@@ -229,7 +234,7 @@ class LastLineTest(FrontEndCase):
         self.relay.cut = False
         run["driver"].wait_for("put out zero volts by itself")
         count = len(self.relay.kept)
-        front_end.wait(lambda: len(self.relay.kept) > count + 500, "half a second of samples")
+        front_end.wait(lambda: len(self.relay.kept) > count + self.front.rate // 2, "half a second of samples")
         self.assertFalse(self.armed())
         self.run_program("hydro-launch", stack.config(self.config), "--set", f"bus.url={run.url}", "--rearm")
         self.front.wait_until_driven()
@@ -300,16 +305,15 @@ class LoopOnDeviceTest(FrontEndCase):
         self.assertIn('found hydro-pressure-ctrl with driver.mode = "loop_on_device"', process.stderr)
 
 
-class EmulatorTest(FrontEndCase):
+class Emulated:
     """The whole stack on an emulated microcontroller, its two UARTs and the FPU: 100 ticks a second, which QEMU's serial lines carry, for a
     machine ten times as slow as the paper's. Gains and times are those of config/front_end.toml, in that machine's time."""
 
     SLOWER = {"J": 100, "J_a": 100, "b": 10, "c_E": 0.1, "c_I": 0.1}
     SETTINGS = ("plant.rate_hz=100", "position.sample_interval_s=0.05", "pressure.natural_frequency_rad_s=6", "position.c2=12000",
-                'driver.arm_speed={ source = "derivative", low_pass_hz = 5 }', "driver.watchdog_s=0.5", "limits.stale_input_s=0.6",
-                STEP)
+                'driver.arm_speed={ source = "derivative", low_pass_hz = 5 }', "driver.watchdog_s=0.5", "limits.stale_input_s=0.6")
 
-    def arrives(self, *settings):
+    def emulated(self):
         with open(front_end.MODEL, encoding="utf-8") as file:
             text = file.read()
         for name, factor in self.SLOWER.items():
@@ -317,9 +321,17 @@ class EmulatorTest(FrontEndCase):
             self.assertEqual(count, 1, name)
         with open(self.path("slow.toml"), "w", encoding="utf-8") as file:
             file.write(text)
-        front = front_end.EmulatedFrontEnd(self, self.path("slow.toml"))
+        return front_end.EmulatedFrontEnd(self, self.path("slow.toml"))
+
+    def slow(self):
+        return (f'model.file="{self.path("slow.toml")}"', *self.SETTINGS)
+
+
+class EmulatorTest(Emulated, FrontEndCase):
+    def arrives(self, *settings):
+        front = self.emulated()
         log_file = self.path("run.lcmlog")
-        launch = self.launch_until_arrived(front, 0.02, log_file, f'model.file="{self.path("slow.toml")}"', *self.SETTINGS, *settings, seconds=60)
+        launch = self.launch_until_arrived(front, 0.02, log_file, *self.slow(), STEP, *settings, seconds=60)
         log = event_log.Log(log_file)
         self.assertRegex(launch.stderr + launch.stdout, r"\(mps2-an386, firmware [\d.]+, 100 ticks/s\)")
         # The machine's own word, and the driver's.
@@ -334,6 +346,18 @@ class EmulatorTest(FrontEndCase):
 
     def test_loop_on_device(self):
         self.arrives(*LOOP)
+
+
+class EmulatorLastLineTest(Emulated, LastLineTest):
+    """The same last line where the firmware runs on the emulated microcontroller, counted in its ticks."""
+
+    watchdog = 0.5
+
+    def new_front_end(self):
+        return self.emulated()
+
+    def driven(self, *settings):
+        return super().driven(*self.slow(), 'reference={ signal = "arm_angle", kind = "sine", amplitude = 0.2, frequency_hz = 0.05 }', *settings)
 
 
 class FrontEndInputTest(FrontEndCase):

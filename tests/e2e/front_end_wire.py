@@ -20,6 +20,7 @@ SENSOR, CONVERTER, INTERLOCK = 64, 256, 1024
 HEADER = struct.Struct("<BBHII")
 BODIES = {
     HELLO: ("", ()),
+    SETTINGS: ("192s", ("settings",)),
     ZERO: ("", ()),
     ARM: ("II", ("fingerprint", "trips")),
     VOLTAGE: ("Iqf", ("fingerprint", "host_tick", "voltage")),

@@ -1,5 +1,6 @@
 """A driver of one's own: the examples of examples/own_driver with their simulated devices, and what hydro-driver-check finds."""
 
+import fcntl
 import os
 import re
 import shutil
@@ -81,7 +82,7 @@ class OwnDriverCase(stack.TestCase):
         with open(os.path.join(EXAMPLES, example, example + ".toml"), encoding="utf-8") as file:
             text = file.read()
         built = {f"build/{example}": os.path.join(TOOLS, example), "build/simulated_device": os.path.join(TOOLS, example + "_device"),
-                 "../../../config": stack.CONFIG, "5005": str(self.port), "build/can.sock": "can.sock"}
+                 "../../../config": stack.CONFIG, "5005": str(self.port), "build/can.sock": "can.sock", "build/board": "board"}
         for old, new in (*built.items(), *changes):
             self.assertIn(old, text) if (old, new) in changes else None
             text = text.replace(old, new)
@@ -103,7 +104,7 @@ class OwnDriverTest(OwnDriverCase):
     # Tests that hydro-launch runs each example with its simulated device: the arm reaches its target through scales, inputs and
     # outputs of the example, and it is the driver's run in the log.
     def test_arm_reaches_its_target(self):
-        for example in ("udp_box", "cia402"):
+        for example in ("udp_box", "cia402", "serial_board"):
             with self.subTest(example):
                 log_file = self.path(example + ".lcmlog")
                 launch = self.launch(self.config(example), "--set", "limits.stale_input_s=0.3", "--log", log_file)
@@ -122,7 +123,7 @@ class OwnDriverTest(OwnDriverCase):
 
     # Tests that each of them, and hydro-driver on the simulated board, keeps what docs/safety.md promises.
     def test_promises(self):
-        for example in ("udp_box", "cia402"):
+        for example in ("udp_box", "cia402", "serial_board"):
             with self.subTest(example):
                 table = self.check(self.config(example)).stdout
                 self.assertRegex(table, r"(?m)^18 kept, 0 broken, 0 not tried$")
@@ -244,6 +245,23 @@ class OwnDriverInputTest(OwnDriverCase):
         nobody = subprocess.run([os.path.join(TOOLS, "udp_box")], capture_output=True, text=True, timeout=30, check=False, env=env)
         self.assertEqual((nobody.returncode, nobody.stderr.count("\n")), (2, 1), nobody.stderr)
         self.assertIn("found no CONFIG", nobody.stderr)
+
+    # Tests the same of a board on a serial port: a rate that does not exist, and ports that are none, missing or somebody else's.
+    def test_serial_board(self):
+        taken, end = os.openpty()
+        self.addCleanup(os.close, taken)
+        self.addCleanup(os.close, end)
+        fcntl.flock(end, fcntl.LOCK_EX)
+        for changes, says in (
+                ((("baud = 2000000", "baud = 123456"),), "driver.own.baud: found 123456, allowed 115200, 230400, "),
+                ((("baud = 2000000", "# baud"),), "driver.own.baud: found nothing, allowed bits per second, as the sketch has them"),
+                ((('device = "board"', 'device = "/dev/ttyNone0"'),), r'driver.device: found "/dev/ttyNone0" \(No such file or directory\), allowed a serial port: is'),
+                ((('device = "board"', 'device = "/dev/null"'),), r'driver.device: found "/dev/null" \(Inappropriate ioctl for device\), allowed a serial port$'),
+                ((('device = "board"', f'device = "{os.ttyname(end)}"'),), r"driver.device: .* allowed a port that no other program has open: fuser -v names it")):
+            process = subprocess.run([os.path.join(TOOLS, "serial_board"), self.config("serial_board", *changes), "--set", f"bus.url={self.url}",
+                                      "--set", "driver.simulated_device=[]"], capture_output=True, text=True, timeout=30, check=False)
+            self.assertEqual((process.returncode, process.stderr.count("\n")), (2, 1), process.stderr)
+            self.assertRegex(process.stderr.strip(), says)
 
     # Tests that a device that does not answer ends the program with 1 and its address.
     def test_nobody_answers(self):

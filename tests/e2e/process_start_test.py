@@ -68,6 +68,84 @@ class ClosedStreamsTest(ProcessStartCase):
                     self.assertEqual(self.run_closed(closed, name, "missing.toml").returncode, 2)
 
 
+class FullDiskTest(ProcessStartCase):
+    def run_full(self, *argv):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            return self.run_prepared(None, *argv, stdout=full, stderr=subprocess.PIPE)
+
+    # Tests that every program ends with 1 and one line when what it has to print cannot be written: --help and --version.
+    def test_help(self):
+        programs = sorted(name for name in os.listdir(stack.BIN) if name.startswith("hydro-") and os.access(stack.program(name), os.X_OK))
+        self.assertGreater(len(programs), 0)
+        for name in programs:
+            for option in ("--help", "--version"):
+                with self.subTest(name, option=option):
+                    done = self.run_full(name, option)
+                    self.assertEqual((done.returncode, done.stderr),
+                                     (1, f"{name}: the standard output cannot be written: No space left on device\n"))
+
+    # Tests the same of results, and of a launch, whose stack comes to its end all the same.
+    def test_results(self):
+        self.record()
+        for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-sim", stack.config("demo.toml"), "--duration", "2")):
+            with self.subTest(" ".join(argv)):
+                done = self.run_full(*argv)
+                self.assertEqual(done.returncode, 1)
+                self.assertRegex(done.stderr, r"\A[^\n]*the standard output cannot be written: No space left on device\n\Z")
+        done = self.run_full("hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time", "lockstep",
+                             "--duration", "0.5", "--log", self.path("launch.lcmlog"))
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"\[launch\] +the standard output cannot be written: No space left on device\n\Z")
+        self.assertEqual(len(event_log.Log(self.path("launch.lcmlog")).states), 501)
+
+
+class OneLineTest(ProcessStartCase):
+    # Tests that a fault that ends the run is said once by the process that has found it.
+    def test_fault(self):
+        done = self.run_prepared(None, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time", "lockstep",
+                                 "--duration", "0.5", "--set", "limits.pressure=120", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        own = [line for line in done.stderr.splitlines() if line.startswith("[pressure_ctrl]")]
+        self.assertEqual(len(own), 1, done.stderr)
+        self.assertRegex(own[0], r"fault pressure_limit: tick \d+: p2 is 1\d\d")
+
+    # Tests that a program says nothing else of an input that it refuses: neither what it left out of a log nor that a model is fast.
+    def test_refusals(self):
+        with open(self.path("fast.toml"), "w", encoding="utf-8") as file, \
+                open(stack.config("models/table1.toml"), encoding="utf-8") as given:
+            file.write(given.read().replace("D = 0.00796 ", "D = 1e9 "))
+        self.record()
+        with open(self.path("run.lcmlog"), "rb") as log, open(self.path("cut.lcmlog"), "wb") as cut:
+            cut.write(log.read()[:-100])
+        for argv in (("hydro-sim", stack.config("demo.toml"), "--set", f"model.file={self.path('fast.toml')}"),
+                     ("hydro-log", "export", "cut.lcmlog", "-o", "a.csv", "--from", "100"),
+                     ("hydro-diagnose", "cut.lcmlog", "missing.csv", "--model", stack.config("models/table1.toml"), "--check")):
+            with self.subTest(" ".join(argv)):
+                done = self.run_prepared(None, *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+
+
+class SlowModelTest(ProcessStartCase):
+    # Tests that a model that takes some seven times as long as it moves is stopped by a signal within a tick, alone and in a launch.
+    def test_stop(self):
+        with open(self.path("slow.toml"), "w", encoding="utf-8") as file, open(stack.config("models/table1.toml"), encoding="utf-8") as given:
+            text = given.read()
+            self.assertIn("J_a = 23.3 ", text)
+            file.write(text.replace("J_a = 23.3 ", "J_a = 2e-7 "))
+        arguments = [stack.config("demo.toml"), "--set", f"model.file={self.path('slow.toml')}", "--set", f"bus.url={self.url}",
+                     "--time", "lockstep", "--duration", "1000"]
+        alone = self.start("hydro-sim", *arguments)
+        alone.wait_for("which may take very long to simulate")
+        alone.send(signal.SIGTERM)
+        self.assertEqual(alone.wait(), 0, alone.report())
+        self.assertIn("hydro-sim: stopped by signal 15", alone.stderr)
+        launch = self.start("hydro-launch", *arguments)
+        launch.wait_for("all 3 processes ready")
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(), 0, launch.report())
+        self.assertNotIn("did not end", launch.stdout + launch.stderr)
+
+
 class FileSizeLimitTest(ProcessStartCase):
     def check(self, outputs, *argv, limits=(0, 500)):
         """With less room than its output needs, a program ends with 1 and a line that says why, and leaves nothing."""

@@ -43,6 +43,7 @@ class TuningTest(fault_case.FaultCase):
         self.replay()
         summary = self.run_program("hydro-log", "summary", self.log_file).stdout
         self.assertIn(f"tuned: version 1 from tick {tick[1]} on: position.c2 = 900, pressure.natural_frequency_rad_s = 140 (hydro-set)", summary)
+        self.assertRegex(summary, r"(?m)^tuned: version 2 from tick \d+ on: position\.c2 as configured, pressure\.natural_frequency_rad_s as configured \(hydro-set\)$")
 
     # Tests that what is refused is said with the reason and exit code 1, and changes nothing.
     def test_refused(self):
@@ -59,7 +60,7 @@ class TuningTest(fault_case.FaultCase):
                               (("position.c3=5",), 'position.c3: no such value, did you mean "position.c1"'),
                               (("c2=900",), "c2: no such value, did you mean position.c2?")):
             self.assertIn(says, self.set(*changes, expect=2).stderr)
-        self.assertIn("version 0 in force", self.set("--list").stdout)
+        self.assertIn("in force: version 0: as configured", self.set("--list").stdout)
         self.finish()
 
     # Tests wrong usage, and that nobody is there.

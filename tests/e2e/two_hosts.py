@@ -124,9 +124,9 @@ class TestCase(stack.TestCase):
         return launches
 
     def lost_by_info(self, log):
-        """{channel: messages lost}, as hydro-log info counts them."""
+        """{channel: messages missing}, as hydro-log info counts them."""
         info = json.loads(self.run_program("hydro-log", "info", log, "--json").stdout)
-        return {name: channel["lost"] for name, channel in info["channels"].items() if "lost" in channel}
+        return {name: channel["missing"] for name, channel in info["channels"].items() if "missing" in channel}
 
 
 def final_error(log):

@@ -254,6 +254,35 @@ TEST(PumpFrictionTest, Errors) {
               HasSubstr("found 2 different speeds in 4 steady holds"));
 }
 
+// Tests that times in another unit than is said, which would make days of holds, are refused at once with the unit that is meant.
+TEST(FrictionRunFile, TimesInAnotherUnit) {
+  const std::string stem = testing::TempDir() + "/friction_times";
+  const runs::MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
+  std::ofstream(stem + ".toml")
+      << "shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"v\"\nmotor_speed = \"w\"\n";
+  ExperimentOptions options;
+  options.measured_run = stem + ".csv";
+  for (const auto& [unit, factor] : {std::pair("ns", 1e9), {"us", 1e6}, {"ms", 1e3}}) {
+    tables::Table table;
+    table.columns = {{"t", run.time}, {"v", run.voltage.values}, {"w", run.motor_speed.values}};
+    for (double& time : table.columns[0].values) time *= factor;
+    tables::WriteTable(table, stem + ".csv");
+    for (const auto& analyse : {RunFriction, RunLeakage}) {
+      try {
+        analyse(options);
+        ADD_FAILURE() << "times in " << unit << " are taken";
+      } catch (const InputError& error) {
+        EXPECT_THAT(
+            error.what(),
+            AllOf(HasSubstr("friction_times.csv: time: found rows "), HasSubstr("allowed at most 0.25 s"),
+                  HasSubstr(std::string("(is the column in ") + unit + "? unit = \"" + unit + "\")")));
+      }
+    }
+  }
+  std::filesystem::remove(stem + ".csv");
+  std::filesystem::remove(stem + ".toml");
+}
+
 // Tests that a file with its sidecar is analysed like a run of the simulated rig, using the angle where there
 // is no speed.
 TEST(FrictionRunFile, TableWithSidecar) {

@@ -79,14 +79,15 @@ class InstallTest(unittest.TestCase):
         self.assertRegex(done.stderr, "^position_ctrl: HYDRO_CONFIG: found nothing, allowed the path")
 
     def test_a_driver_builds_and_runs(self):
-        """Tests that what `hydro-launch new-driver` writes builds on what is installed, and runs at once; and that the other example builds."""
+        """Tests that what `hydro-launch new-driver` writes builds on what is installed, and runs at once; and that the other examples build."""
         folder = pathlib.Path(self.folder.name) / "drivers"
         folder.mkdir()
         subprocess.run([BUILD / "bin/hydro-launch", "new-driver", "mine"], cwd=folder, check=True, capture_output=True, timeout=60)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        for source, program in ((folder / "mine", "mine"), (SOURCE / "examples/own_driver/cia402", "cia402")):
+        for source, program in ((folder / "mine", "mine"), (SOURCE / "examples/own_driver/cia402", "cia402"),
+                                (SOURCE / "examples/own_driver/serial_board", "serial_board")):
             built = folder / program / "build"
             run("cmake", "-S", source, "-B", built, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
             run("cmake", "--build", built)

@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <string>
 
@@ -55,6 +56,28 @@ TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
   output.Line(Stream::kOut, "a", longer);
   output.Flush();
   EXPECT_EQ(Read(), "[a] " + longer + "\n[b] short\n[a] " + longer + "\n");
+}
+
+// Tests that a full disk is told from a reader that has gone, and from one of the other stream.
+TEST_F(LabelledOutputTest, KnowsWhatIsLost) {
+  const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+  LabelledOutput good(pipe_[1], full, false);
+  good.Line(Stream::kOut, "a", "one");
+  good.Line(Stream::kErr, "a", "two");
+  good.Flush();
+  EXPECT_EQ(good.lost(), 0);
+  LabelledOutput lost(full, pipe_[1], false);
+  lost.Line(Stream::kOut, "a", "one");
+  lost.Flush();
+  EXPECT_EQ(lost.lost(), ENOSPC);
+  signal(SIGPIPE, SIG_IGN);
+  close(pipe_[0]);
+  pipe_[0] = -1;
+  LabelledOutput gone(pipe_[1], pipe_[1], false);
+  gone.Line(Stream::kOut, "a", "one");
+  gone.Flush();
+  EXPECT_EQ(gone.lost(), 0);
+  close(full);
 }
 
 // Tests that text from the network can neither control the terminal nor pass for another process's line.

@@ -312,6 +312,50 @@ TEST(Response, StickingAtTheStart) {
   EXPECT_GT(moving.derivatives[0][0].back(), 0);
 }
 
+// Tests that a force on the arm acts as the weight of a linear arm does that pulls the other way, to the bit.
+TEST(Response, AConstantForceIsAWeight) {
+  model::ModelDescription heavy = Table1Model(), light = heavy;
+  heavy.units.linear_arm = light.units.linear_arm = true;
+  heavy.parameters.mgl = 40;
+  light.parameters.mgl = 0;
+  const model::Stimulus stimulus = LevelsFor(kHoldings[1]);
+  model::Stimulus pushed = stimulus;
+  pushed.around.assign(pushed.time.size(), {.arm_force = -40});
+  const model::Response weight = Respond(heavy, stimulus, SomeStart(), {}, {});
+  EXPECT_EQ(Difference(weight.values, Respond(light, pushed, SomeStart(), {}, {}).values), 0);
+  EXPECT_GT(Difference(weight.values, Respond(light, stimulus, SomeStart(), {}, {}).values), 0.01);
+}
+
+// Tests that a force that changes gives the arm its impulse: with the bypass open nothing else accelerates it.
+TEST(Response, AForceGivesItsImpulse) {
+  model::ModelDescription model = Table1Model();
+  model.parameters.mgl = 0;
+  model::Stimulus stimulus = LevelsFor({"bypass", model::Shaft::kFree, true});
+  double impulse = 0;
+  for (const double time : stimulus.time) stimulus.around.push_back({.arm_force = 30 * std::sin(20 * time)});
+  for (size_t k = 1; k < stimulus.time.size(); ++k)
+    impulse += 0.5e-3 * (stimulus.around[k].arm_force + stimulus.around[k - 1].arm_force);
+  const model::Response response = Respond(model, stimulus, {0, 0, 150, 150, 0.1, 0.05}, {}, {});
+  EXPECT_NEAR(response.values[3].back(), 0.05 + impulse / model.parameters.J_a, 1e-9);
+}
+
+// Tests that warm oil is that of a model with less viscous friction and more leakage, and that it may warm up during the run.
+TEST(Response, WarmOilIsThinner) {
+  const model::ModelDescription given = Table1Model({{"fluid.viscosity", {{"rate", 0.03}}, {}}});
+  model::ModelDescription warm = Table1Model();
+  const double thinner = std::exp(0.03 * (65 - 40));
+  warm.parameters.b /= thinner;
+  warm.parameters.c_E *= thinner;
+  warm.parameters.c_I *= thinner;
+  model::Stimulus stimulus = LevelsFor(kHoldings[0]);
+  const model::Response expected = Respond(warm, stimulus, SomeStart(), {}, {});
+  stimulus.around.assign(stimulus.time.size(), {.temperature = 65});
+  EXPECT_LT(Difference(expected.values, Respond(given, stimulus, SomeStart(), {}, {}).values), 1e-5);
+  // Where nobody measured it, the machine is at 20 degC.
+  stimulus.around.clear();
+  EXPECT_GT(Difference(expected.values, Respond(given, stimulus, SomeStart(), {}, {}).values), 1e-3);
+}
+
 // Tests that a model far too stiff to be followed soon ends in an error.
 TEST(Response, TooStiffIsAnError) {
   model::ModelDescription model = Table1Model();

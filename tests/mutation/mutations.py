@@ -306,6 +306,15 @@ MUTATIONS = [
         ("stiffening.swapped", "x.p1;\n    x.beta_2 += x.own[0] * x.p2;", "x.p2;\n    x.beta_2 += x.own[0] * x.p1;"),
     ),
     *_rows(
+        "model/effects/fluid_viscosity.cc",
+        ("viscosity.sign", "(x.around.temperature - kReference)", "(kReference - x.around.temperature)"),
+        ("viscosity.viscous", "x.b /= thinner;", "x.b *= thinner;"),
+    ),
+    *_rows(
+        "model/equations/evaluate.h",
+        ("arm_force.sign", "x.arm_torque += T(x.around.arm_force);", "x.arm_torque -= T(x.around.arm_force);"),
+    ),
+    *_rows(
         "model/effects/fluid_warming.cc",
         ("warming.sign", "exp(x.own[0] * x.time)", "exp(-x.own[0] * x.time)"),
         ("warming.viscous", "x.b /= thinner;", "x.b *= thinner;"),

@@ -41,7 +41,7 @@ TEST_F(InfoTest, CompleteRun) {
   EXPECT_EQ(info.ticks.gaps, 0);
   const ChannelInfo& state = Channel(info, "HYDRO_STATE");
   EXPECT_DOUBLE_EQ(state.rate_hz, 1000);
-  EXPECT_EQ(state.lost, 0);
+  EXPECT_EQ(state.missing, 0);
   EXPECT_EQ(state.repeated, 0);
   EXPECT_DOUBLE_EQ(Channel(info, "HYDRO_PRESSURE_COMMAND").rate_hz, 200);
   EXPECT_EQ(info.model_name, "Table 1");
@@ -60,10 +60,10 @@ TEST_F(InfoTest, LostAndRepeatedMessages) {
   run.Of<motor_command_t>()[10].session = 77;  // a second sender: its numbers are its own
   run.Of<motor_command_t>()[10].sequence = 0;
   const LogInfo info = InfoOf(run);
-  EXPECT_EQ(Channel(info, "HYDRO_STATE").lost, 3);
+  EXPECT_EQ(Channel(info, "HYDRO_STATE").missing, 3);
   EXPECT_EQ(Channel(info, "HYDRO_STATE").repeated, 1);
   EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").before_first, 4);
-  EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").lost, 1);
+  EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").missing, 1);
   EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").senders, 2);
   EXPECT_EQ(info.ticks.states, 17);
   EXPECT_EQ(info.ticks.gaps, 1);

@@ -99,9 +99,10 @@ TEST_F(SidecarTest, CommandThatIsNoVoltage) {
   log::WriteBytes(Path("run.csv"), kTable);
   log::WriteBytes(Path("run.toml"),
                   "shaft = \"free\"\n[columns]\ntime = \"t\"\nvoltage = { column = \"u\", unit = \"A\" }\n");
-  EXPECT_THAT(log::InputErrorOf([&] { ReadMeasuredRun(Path("run.csv")); }),
-              AllOf(HasSubstr("columns.voltage.unit: found \"A\", an unknown unit"),
-                    HasSubstr("or no unit for a command that is not a voltage")));
+  EXPECT_THAT(
+      log::InputErrorOf([&] { ReadMeasuredRun(Path("run.csv")); }),
+      AllOf(HasSubstr("columns.voltage.unit: found \"A\", no unit of voltage"),
+            HasSubstr("or no unit for a command that is not a voltage; a current may have the key current")));
 }
 
 // Tests that the layout of a table is found or stated, and said.

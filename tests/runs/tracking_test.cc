@@ -145,7 +145,7 @@ run_description_t InUnits(const std::string& length) {
 }
 
 // Tests that a linear arm is judged and shown in its own unit: 0.05 mm from its target it is there, 0.2 mm from it not, whether its
-// position is in mm or in m.
+// position is in mm or in m; with --si in m.
 TEST(TrackingTest, ALinearArmHasLengths) {
   for (const std::string length : {"mm", "m"}) {
     const double mm = length == "mm" ? 1 : 1e-3;
@@ -164,7 +164,7 @@ TEST(TrackingTest, ALinearArmHasLengths) {
     EXPECT_THAT(own, ::testing::HasSubstr(mm == 1 ? "to 30 mm: overshoot" : "to 0.03 m: overshoot"));
     EXPECT_THAT(own, ::testing::Not(::testing::HasSubstr("rad")));
     const std::string si = SummaryText(tracking, Summarise(log, true), true);
-    EXPECT_THAT(si, ::testing::HasSubstr("at its target 30 mm: final error 0 mm"));
+    EXPECT_THAT(si, ::testing::HasSubstr("at its target 0.03 m: final error 0 m"));
     EXPECT_THAT(si, ::testing::Not(::testing::HasSubstr("deg")));
     EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)),
                 ::testing::HasSubstr("\"target_" + std::string(length) + "\": "));
@@ -194,6 +194,13 @@ TEST(TrackingTest, WhatEndedARunStandsFirst) {
   add(0, "stopped by signal 2");
   EXPECT_THAT(text(), StartsWith("the run was stopped at tick 500: launch: stopped by signal 2\n501 states"));
   EXPECT_THAT(text(), HasSubstr("\nwhen it ended: arm at its target 0.2000 rad: error"));
+  log.messages.Of<stop_t>().front().tick = -1;  // hydro-launch knows of no tick
+  EXPECT_THAT(text(),
+              StartsWith("the run was stopped after tick 500: launch: stopped by signal 2\n501 states"));
+  EXPECT_THAT(InfoText(Summarise(log, false)),
+              HasSubstr("\nstop: launch: stopped by signal 2 (exit code 0)\n"));
+  EXPECT_THAT(SummaryJson(TrackArm(log), Summarise(log, false)), HasSubstr("\"tick\": null"));
+  log.messages.Of<stop_t>().front().tick = 500;
   add(1, "fault pressure_limit: 2001 psi");
   EXPECT_THAT(text(),
               StartsWith("the run FAILED at tick 500: pressure_ctrl: fault pressure_limit: 2001 psi\n"));
@@ -224,6 +231,112 @@ TEST(TrackingTest, AHeldVoltageHasNoTarget) {
   EXPECT_THAT(SummaryText(tracking, Summarise(log, false), false),
               ::testing::HasSubstr("the voltage is held at zero, and the reference follows the arm"));
   EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)), ::testing::HasSubstr("\"at_target\": null"));
+}
+
+// Tests that the same holds where the pressure loop holds the voltage at zero by its safe commands and the position loop follows the arm; and
+// that a safe command under a reference that goes its own way, as in lockstep, leaves the target what it is.
+TEST(TrackingTest, SafeCommandsHoldToo) {
+  const auto arm = [](double t) { return 0.1 + 0.01 * std::sin(20 * t); };
+  for (const bool follows : {true, false}) {
+    RunLog log = MakeRun(500, arm, [&](double t) { return follows ? arm(t) : 0.2; });
+    for (state_t& state : log.messages.Of<state_t>()) state.command_tick = state.tick;
+    motor_command_t command{};
+    command.tick = 500;
+    command.status = motor_command_t::SAFE;
+    log.messages.Of<motor_command_t>().push_back(command);
+    EXPECT_EQ(TrackArm(log).held, follows);
+    EXPECT_EQ(TrackArm(log).at_target.has_value(), !follows);
+    command.tick = 501;
+    command.status = motor_command_t::STOPPED;
+    log.messages.Of<motor_command_t>().push_back(command);
+    EXPECT_EQ(TrackArm(log).held, follows) << "what ends a run ends no hold";
+    log.messages.Of<motor_command_t>().back().status = motor_command_t::LAW;
+    EXPECT_FALSE(TrackArm(log).held);
+  }
+}
+
+// Tests that a run which a fault ended right after a step is said to be on its way to a target, not to follow a reference that moves, and that
+// its error there counts from the step.
+TEST(TrackingTest, AStepJustBeforeTheEndIsATarget) {
+  const auto still = [](double) { return 0.1; };
+  RunLog log = MakeRun(500, still, [](double t) { return t < 0.48 ? 0.1 : 0.3; });
+  const Tracking tracking = TrackArm(log);
+  EXPECT_EQ(tracking.at_target, false);
+  EXPECT_NEAR(tracking.final_error_rad, -0.2, 1e-12);
+  EXPECT_THAT(SummaryText(tracking, Summarise(log, false), false),
+              ::testing::HasSubstr("arm NOT at its target 0.3000 rad"));
+  EXPECT_EQ(TrackArm(MakeRun(500, still, [](double t) { return t; })).at_target, std::nullopt)
+      << "a ramp moves";
+}
+
+// Tests that skipped ticks are a share of those that went by, as in hydro-launch's table; and that a fault of a sender which knew of no tick
+// is not put at tick -1.
+TEST(TrackingTest, CountsOfTicks) {
+  const auto still = [](double) { return 0.2; };
+  RunLog log = MakeRun(400, still, still);
+  std::vector<state_t>& states = log.messages.Of<state_t>();
+  states.erase(states.begin() + 100, states.begin() + 200);
+  states[100].skipped_ticks = 100;
+  fault_t fault{};
+  fault.tick = -1;
+  fault.code = "stale_state";
+  fault.source = "pressure_ctrl";
+  fault.active = 1;
+  log.messages.Of<fault_t>().push_back(fault);
+  const LogInfo info = Summarise(log, false);
+  const std::string text = SummaryText(TrackArm(log), info, false);
+  EXPECT_THAT(text, ::testing::HasSubstr("301 states over 0.400 s of plant time, 100 ticks skipped"));
+  EXPECT_THAT(text, ::testing::HasSubstr("\n100 of 400 ticks (25 %) were skipped"));
+  EXPECT_THAT(text,
+              ::testing::HasSubstr("\nfault before the first tick: stale_state began (pressure_ctrl)\n"));
+  EXPECT_THAT(InfoText(info), ::testing::HasSubstr("\nstates: 301, from tick 0 at 0 s to tick 400 at 0.4 s"));
+  EXPECT_THAT(InfoText(info), ::testing::HasSubstr("\nfault: pressure_ctrl: stale_state begins"));
+  EXPECT_THAT(SummaryJson(TrackArm(log), info), ::testing::HasSubstr("\"states\": 301,\n  \"ticks\": 400,"));
+}
+
+tuned_settings_t Version(int64_t version, const std::string& changes, int64_t session = 7) {
+  tuned_settings_t settings{};
+  settings.session = session;
+  settings.version = version;
+  settings.acts_at = 1000 * version;
+  settings.stage = tuned_settings_t::IN_FORCE;
+  settings.source = "hydro-set";
+  settings.changes = changes;
+  return settings;
+}
+
+// Tests that each version is told by what it changed of the one before it, with values that came back; of a log that begins in the middle, the
+// first by how it differs from the configuration; and two plants' versions apart.
+TEST(TuningHistoryTest, WhatEachVersionChanged) {
+  RunMessages run;
+  std::vector<tuned_settings_t>& told = run.Of<tuned_settings_t>();
+  told = {Version(0, ""),
+          Version(1, "position.c1 = 1\nposition.c2 = 2\n"),
+          Version(2, "position.c1 = 1\nposition.c2 = 3\n"),
+          Version(2, "position.c1 = 1\nposition.c2 = 3\n"),
+          Version(3, "position.c2 = 3\n"),
+          Version(4, "")};
+  const auto texts = [&] {
+    std::vector<std::string> lines;
+    for (const TuningStep& step : TuningSteps(run)) lines.push_back(DescribeTuning(step));
+    return lines;
+  };
+  EXPECT_THAT(texts(), ::testing::ElementsAre(
+                           "version 1 from tick 1000 on: position.c1 = 1, position.c2 = 2 (hydro-set)",
+                           "version 2 from tick 2000 on: position.c2 = 3 (hydro-set)",
+                           "version 3 from tick 3000 on: position.c1 as configured (hydro-set)",
+                           "version 4 from tick 4000 on: position.c2 as configured (hydro-set)"));
+  told.erase(told.begin(), told.begin() + 2);
+  told.push_back(Version(0, "", 8));
+  told.push_back(Version(5, "noise.p1 = 9\n", 8));
+  EXPECT_THAT(texts(),
+              ::testing::ElementsAre(
+                  "version 2 from tick 2000 on, which differs from the configuration: position.c1 = 1, "
+                  "position.c2 = 3 (hydro-set)",
+                  ::testing::_, ::testing::_, "version 5 from tick 5000 on: noise.p1 = 9 (hydro-set)"));
+  EXPECT_EQ(DescribeInForce(Version(3, "position.c2 = 3\n")),
+            "version 3 since tick 3000 (hydro-set); differs from the configuration: position.c2 = 3");
+  EXPECT_EQ(DescribeInForce(Version(0, "")), "version 0: as configured");
 }
 
 // Tests that a run without arm-angle references says so instead of dividing by zero.

@@ -261,5 +261,24 @@ TEST_F(LimbConfigTest, Arm) {
               HasSubstr("found some of the joints of an [arm], allowed all of them in one hydro-limb"));
 }
 
+// Tests that numbers keep their units in limbs as in stacks: under a model of an option, of all joints or of one, and under a joint's own
+// model beside sections that hold for all.
+TEST_F(LimbConfigTest, NumbersKeepTheirUnits) {
+  Write("si.toml", std::string("units = \"si\"\n") + kModelText);
+  const auto refusal =
+      AllOf(HasSubstr("model.file: found a model in m, N, Pa, and numbers for one in in, lbf, psi ("),
+            HasSubstr("allowed a model in the same units, or values with a unit"));
+  EXPECT_THAT(Error(kJoints, {"model.file=si.toml"}), AllOf(refusal, HasSubstr("joint hip: ")));
+  EXPECT_THAT(Error(kJoints, {"joint.knee.model.file=si.toml"}), AllOf(refusal, HasSubstr("joint knee: ")));
+  const std::string own = std::string(kJoints) + "[joint.model]\nfile = \"si.toml\"\n";
+  EXPECT_THAT(Error(own), AllOf(refusal, HasSubstr("joint knee: ")));
+  EXPECT_THAT(
+      InputErrorOf([&] {
+        LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee", "model.file=si.toml"});
+      }),
+      refusal)
+      << "the stack of one joint";
+}
+
 }  // namespace
 }  // namespace hydro::settings

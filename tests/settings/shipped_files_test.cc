@@ -55,6 +55,43 @@ TEST(ShippedFilesTest, AModelInOtherUnits) {
   EXPECT_EQ(error("demo.toml", {"limits.pressure=inf"}), "");
 }
 
+// Tests that of a model that cannot be read, or is none, its own error is told, not its units; that the model in whose place it stands need not be
+// there; and that the joints of a limb are judged like a stack.
+TEST(ShippedFilesTest, AModelThatCannotBeRead) {
+  using ::testing::HasSubstr;
+  const auto error = [](const char* config, const std::string& model) {
+    return InputErrorOf([&] { LoadCommonConfig((kConfig / config).string(), {"model.file=" + model}); });
+  };
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "models_of_none";
+  std::filesystem::create_directories(folder);
+  const auto written = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  };
+  const std::string torn = written("torn.toml", "name = [");
+  const std::string half = written("half.toml", "units = \"si\"\n[parameters]\nk_1 = 4\n");
+  for (const char* config : {"demo_si.toml", "demo.toml", "limb.toml"}) {
+    EXPECT_THAT(error(config, "models/none.toml"),
+                HasSubstr("model.file: found \"models/none.toml\", and there is no \""))
+        << config;
+    EXPECT_THAT(error(config, torn), HasSubstr(torn + ":1: syntax")) << config;
+    EXPECT_THAT(error(config, half), HasSubstr(half)) << config;
+    EXPECT_THAT(error(config, half), ::testing::Not(HasSubstr("numbers for one in"))) << config;
+    EXPECT_THAT(error(config, "demo.toml"), HasSubstr("found the configuration of a stack, allowed a model"))
+        << config;
+    EXPECT_THAT(error(config, "models"), HasSubstr("found a folder")) << config;
+  }
+  EXPECT_THAT(error("limb.toml", "models/table1_si.toml"), HasSubstr("numbers for one in in, lbf, psi"));
+  std::ifstream given(kConfig / "demo_si.toml");
+  std::string text((std::istreambuf_iterator<char>(given)), {});
+  text.replace(text.find("models/table1_si.toml"), 21, "gone.toml");
+  const std::string config = written("stack.toml", text);
+  const std::string model = (kConfig / "models/table1_si.toml").string();
+  EXPECT_EQ(InputErrorOf([&] { LoadStackConfig(config, {"model.file=" + model}); }), "");
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {}); }), HasSubstr("found \"gone.toml\""));
+  std::filesystem::remove_all(folder);
+}
+
 // Tests that the variants differ from Table 1 only where they say so.
 TEST(ShippedFilesTest, VariantsOfTable1) {
   const auto load = [](const char* name) { return LoadModelFile((kConfig / "models" / name).string()); };

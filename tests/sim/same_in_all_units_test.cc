@@ -1,10 +1,12 @@
 // One configuration, whose values are texts with units, drives the same rig in the same way whatever units the
 // rig's model is in.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <hydro/state_t.hpp>
 #include <string>
 #include <utility>
@@ -171,6 +173,91 @@ TEST(SameInAllUnits, LoopsAreJudgedAlike) {
       }
     }
   }
+}
+
+// Two joints of an arm with weight, whose models are `hip` and `knee`; each link is as heavy in every system.
+constexpr char kLimb[] = R"([limb]
+on_joint_fault = "all_to_zero"
+[arm]
+gravity = "9.81 m/s^2"
+payload = "0.5 kg"
+[[arm.link]]
+mass = "4 kg"
+length = "300 mm"
+centre = "15 cm"
+inertia = "0.05 kg m^2"
+[[arm.link]]
+mass = "2 kg"
+length = "10 in"
+centre = "5 in"
+inertia = "0.02 kg m^2"
+[[joint]]
+name = "hip"
+[joint.model]
+file = "hip.toml"
+[[joint]]
+name = "knee"
+[joint.model]
+file = "knee.toml"
+[joint.reference]
+steps = [[0.1, "-0.2 ARM"]]
+)";
+
+// The motion of each joint.
+std::vector<Motion> LimbMotion(const std::filesystem::path& folder, const model::ModelDescription& hip,
+                               const model::ModelDescription& knee) {
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  };
+  write("hip.toml", settings::FormatModel(hip));
+  write("knee.toml", settings::FormatModel(knee));
+  std::string common = ConfigText(false), joints = kLimb;
+  common.erase(common.find("file = "), common.find("arm_angle") - common.find("file = "));
+  joints.replace(joints.find("ARM"), 3, "rad");
+  write("limb.toml", common + joints);
+  std::vector<Motion> motions(2);
+  const settings::LimbConfig limb = settings::LoadLimbConfig((folder / "limb.toml").string());
+  const int exit_code = SimulateLimb(limb, [&](const bus::RawMessage& message) {
+                          const std::string channel(message.channel);
+                          for (size_t i = 0; i < motions.size(); ++i) {
+                            if (channel != "HYDRO_STATE" + limb.joints[i].config.bus.channel_suffix) continue;
+                            state_t state;
+                            EXPECT_GT(state.decode(message.data, 0, static_cast<int>(message.size)), 0);
+                            motions[i].states.push_back(state);
+                          }
+                        }).exit_code;
+  for (Motion& motion : motions) motion.exit_code = exit_code;
+  return motions;
+}
+
+// Joints of an arm are integrated to 1e-5 at best (CoupledArmOptions), and their steps depend on roundings. A unit that is taken for another
+// shows by far more.
+constexpr double kLimbsAlike = 2e-3;
+
+// Tests the same of a limb, whose joints load each other by an arm, with every shipped model.
+TEST(SameInAllUnits, Limbs) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("hydro_units_of_limbs_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::vector<model::ModelDescription> models = ShippedModels();
+  for (size_t m = 0; m < models.size(); ++m) {
+    const model::ModelDescription &hip = models[m], &knee = models[(m + 1) % models.size()];
+    const std::vector<Motion> first = LimbMotion(folder, hip, knee);
+    ASSERT_EQ(first[1].states.size(), 1201u) << hip.name;
+    EXPECT_EQ(first[0].exit_code, 0) << hip.name;
+    EXPECT_GT(std::abs(first[0].states[600].arm_angle - first[0].states[0].arm_angle), 1e-4) << hip.name;
+    EXPECT_GT(std::abs(first[1].states[600].arm_angle - first[1].states[0].arm_angle), 1e-4) << knee.name;
+    for (const UnitSystem& units : hydro::testing::kSystems) {
+      const std::vector<Motion> other =
+          LimbMotion(folder, hydro::testing::InUnits(hip, units), hydro::testing::InUnits(knee, units));
+      for (size_t i = 0; i < first.size(); ++i) {
+        ASSERT_EQ(other[i].states.size(), first[i].states.size()) << hip.name << " in " << units.length;
+        EXPECT_LT(Difference(first[i], hip.units, other[i], units), kLimbsAlike)
+            << hip.name << " and " << knee.name << ", joint " << i << ", in " << units.length;
+      }
+    }
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

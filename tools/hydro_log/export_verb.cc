@@ -5,6 +5,7 @@
 #include "base/input_error.h"
 #include "base/new_folder.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
 #include "runs/exports/export_runs.h"
@@ -65,9 +66,7 @@ int ExportVerb::Run() const {
     CheckKeeps(out_, logs_);
     CheckCanBeWritten(out_);
   }
-  const auto say = [](const std::string& line) {
-    std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(line).c_str());
-  };
+  const auto say = [](const std::string& line) { Remark("hydro-log: warning: " + line); };
   const auto runs = exports::ReadRuns(logs_, choice_, selection, messages, say);
   exports::WriteExport(runs, format, "hydro-log " + settings::ProgramVersion(), out_,
                        missing_ == "nan" ? exports::Missing::kNan : exports::Missing::kEmpty);

@@ -6,6 +6,7 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/compare.h"
@@ -72,15 +73,13 @@ class ImportVerb {
     tables::Table table = tables::ReadTableWithoutUnits(table_);
     tables::TakeStructOf("time_s", &table);
     if (!table.layout.empty()) {
-      std::fprintf(stderr, "hydro-log: %s: read with %s\n", table_.c_str(), table.layout.c_str());
+      Remark("hydro-log: " + table_ + ": read with " + table.layout);
     }
     runs::ImportRun(table, settings::ProgramVersion(), out_);
     if (!table.left_out.empty()) {
       const tables::LeftOut& first = table.left_out.front();
-      std::fprintf(
-          stderr,
-          "hydro-log: warning: %s: left out what is no signal of the run, %zu in all; the first: %s: %s\n",
-          table_.c_str(), table.left_out.size(), Printable(first.name).c_str(), Printable(first.why).c_str());
+      Remark("hydro-log: warning: " + table_ + ": left out what is no signal of the run, " +
+             std::to_string(table.left_out.size()) + " in all; the first: " + first.name + ": " + first.why);
     }
     return 0;
   }
@@ -146,14 +145,32 @@ class RepairVerb {
     if (!out_.empty()) CheckKeeps(out_, {log_});
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (!result.mended()) {
-      std::printf("%s: nothing to repair\n", log_.c_str());
+      std::printf("%s: nothing to repair\n", Printable(log_).c_str());
     } else {
-      std::fputs(log::Describe(result, log_).c_str(), stdout);
+      std::fputs(PrintableLines(log::Describe(result, log_)).c_str(), stdout);
     }
+    const std::string joined = log::DescribeJoined(result, result.damaged.empty() ? log_ : result.damaged);
+    std::fputs(PrintableLines(joined.empty() ? WhyNotOneRun() : joined).c_str(), stdout);
     return 0;
   }
 
  private:
+  // A log may be as it was written and yet be refused by the other verbs.
+  std::string WhyNotOneRun() const {
+    std::optional<runs::LimbLog> log;
+    try {
+      log = runs::ReadLimbLog(out_.empty() ? log_ : out_, {}, runs::Undecodable::kLeftOut);
+    } catch (const InputError&) {
+      return "";  // of no stack, or of several: nothing is said of their runs
+    }
+    try {
+      runs::RequireOneRun(*log);
+    } catch (const InputError& error) {
+      return std::string(error.what()) + "\n";
+    }
+    return "";
+  }
+
   std::string log_, out_;
 };
 

@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
 #include "process/stop_signal.h"
@@ -58,7 +59,7 @@ int Print(const std::string& name, const char* commands, const ReplayResult& res
 
 void WarnOfUndecodable(const runs::RunLog& log) {
   const std::string left_out = runs::DescribeUndecodable(log);
-  if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
+  if (!left_out.empty()) Remark("hydro-log: warning: " + left_out);
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ runs::LimbLog ReadLimbWithWarning(const std::string& file, const runs::StackChoi
 
 void WarnOf(const runs::RunLog& log) {
   const std::string caution = runs::DescribeCaution(log);
-  if (!caution.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(caution).c_str());
+  if (!caution.empty()) Remark("hydro-log: warning: " + caution);
 }
 
 SummaryVerb::SummaryVerb(settings::CommandLine& line) {

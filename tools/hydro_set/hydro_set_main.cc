@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/remarks.h"
 #include "base/text_file.h"
 #include "bus/clock.h"
 #include "process/stack_bus.h"
@@ -36,9 +37,8 @@ int Run(SetRequest request, const std::vector<std::string>& arguments, std::vect
   if (!request.config_file.empty()) {
     const hydro::settings::StackConfig config =
         hydro::settings::LoadStackConfig(request.config_file, overrides);
-    if (const std::string remark = ArmRemark(config); !remark.empty()) {
-      std::fprintf(stderr, "hydro-set: warning: %s\n", hydro::Printable(remark).c_str());
-    }
+    if (const std::string remark = ArmRemark(config); !remark.empty())
+      hydro::Remark("hydro-set: warning: " + remark);
     section = config.bus;
   } else if (!overrides.empty()) {
     throw hydro::InputError((request.joint.empty() ? "--set: found " : "--joint: found ") +
@@ -47,6 +47,7 @@ int Run(SetRequest request, const std::vector<std::string>& arguments, std::vect
   }
   hydro::process::CatchStopSignals();
   const auto bus = hydro::process::OpenStackBus(section);
+  hydro::SayRemarks();
   return hydro::hydro_set::RunSet(
       *bus, hydro::bus::WallClock(), section, request,
       {.out = stdout, .err = stderr, .interrupted = [] { return hydro::process::StopSignal() != 0; }});

@@ -133,10 +133,7 @@ class Setter {
             fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "(default)" : value->second,
                         tuning::UnitOf(row, config), row.range, row.acts_in, row.what));
     }
-    const tuned_settings_t& in_force = *client_.in_force();
-    Print(said_,
-          fmt::format("version {} in force since tick {}: {}", in_force.version, in_force.acts_at,
-                      in_force.changes.empty() ? "as configured" : tuning::OnOneLine(in_force.changes)));
+    Print(said_, "in force: " + runs::DescribeInForce(*client_.in_force()));
   }
 
   void Save() const {
@@ -149,19 +146,19 @@ class Setter {
   }
 
   void Watch() {
-    std::optional<int64_t> shown;
+    std::optional<tuned_settings_t> shown;
     std::map<std::string, int64_t> acting;
     while (!output_.interrupted()) {
       const tuned_settings_t& in_force = *client_.in_force();
-      if (shown != in_force.version) {
-        shown = in_force.version;
-        Print(said_, runs::DescribeTuning(in_force));
-      }
+      if (!shown) Print(said_, "in force: " + runs::DescribeInForce(in_force));
+      if (shown && shown->version != in_force.version)
+        Print(said_, runs::DescribeTuning(runs::StepTo(in_force, &*shown)));
+      shown = in_force;
       for (const auto& [role, status] : client_.controllers()) {
         const auto known = acting.find(role);
         if (known == acting.end() || known->second != status.in_force) {
-          Print(said_,
-                fmt::format("{} acts by version {} since tick {}", role, status.in_force, status.since));
+          Print(said_, fmt::format("{} acts by version {}{}", role, status.in_force,
+                                   status.since >= 0 ? fmt::format(" since tick {}", status.since) : ""));
           acting[role] = status.in_force;
         }
       }

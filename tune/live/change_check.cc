@@ -158,6 +158,22 @@ std::string DifferenceOf(const settings::StackConfig& from, const settings::Stac
 
 namespace {
 
+// An undo that would loosen a limit does nothing: what to ask for instead.
+std::string HowToTakeBackTheRest(const settings::StackConfig& in_force, const settings::StackConfig& next) {
+  std::string words;
+  for (const std::string& line : TextLines(DifferenceOf(in_force, next))) {
+    const std::string key = KeyOf(line);
+    if (std::any_of(kLimits.begin(), kLimits.end(), [&](const Limit& limit) { return key == limit.key; }))
+      continue;
+    const std::string value = Trimmed(line.substr(line.find('=') + 1));
+    const bool plain = value.find_first_of(" \"[]{}") == std::string::npos;
+    words += plain ? " " + key + "=" + value : " '" + key + "=" + value + "'";
+  }
+  if (words.empty())
+    return "; nothing else would change: with the limit as it is there is nothing to take back";
+  return "; to take back the rest alone, set it: hydro-set CONFIG" + words;
+}
+
 // For people: an undo may take a key out again.
 std::string KeysTakenOut(const settings::StackConfig& from, const settings::StackConfig& to) {
   const auto before = TunableEntries(from), after = TunableEntries(to);
@@ -202,6 +218,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   }
   if (!situation.held)
     change.text = LoosenedLimit(in_force.limits, next->limits, next->model.description.units);
+  if (!change.text.empty() && situation.undo) change.text += HowToTakeBackTheRest(in_force, *next);
   if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
   if (!change.text.empty()) return change;
   std::string margins;

@@ -9,6 +9,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
+#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/terminal_line.h"
 #include "base/text_file.h"
@@ -54,9 +55,7 @@ settings::StackConfig Load(const TuneRequest& request) {
   }
   if (config.model.shaft != model::Shaft::kFree) refuse("model.shaft", "a shaft that is held", "\"free\"");
   if (config.model.bypass) refuse("model.bypass", "true", "false");
-  if (const std::string remark = ArmRemark(config); !remark.empty()) {
-    std::fprintf(stderr, "hydro-tune: warning: %s\n", Printable(remark).c_str());
-  }
+  if (const std::string remark = ArmRemark(config); !remark.empty()) Remark("hydro-tune: warning: " + remark);
   return config;
 }
 
@@ -197,6 +196,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
 
+  SayRemarks();
   ProgressLine line(progress, terminal);
   const Gains pressure = ChoosePressureLoop(config);
   const double share = request.fixed_gains ? 1 : 0.25;

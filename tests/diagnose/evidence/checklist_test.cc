@@ -125,7 +125,7 @@ TEST(ChecklistTest, UnitsShaftAndTime) {
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value /= 14.5038;
   }
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*another unit"));
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*: p1 and p2 are in bar"));
   run = PlainSwing(model::Shaft::kFree);
   const double fifth = 0.2 * *std::min_element(run.p1.values.begin(), run.p1.values.end());
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
@@ -139,6 +139,32 @@ TEST(ChecklistTest, UnitsShaftAndTime) {
   run = PlainSwing(model::Shaft::kFree);
   for (size_t i = 500; i < run.time.size(); ++i) run.time[i] += 0.05;
   EXPECT_THAT(LineOf(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
+}
+
+// Tests that pressures in any other unit than the sidecar says have it named by the charge alone: of both, and of one.
+TEST(ChecklistTest, UnitsOfPressures) {
+  const double psi = 6894.757;  // Pa
+  struct {
+    const char* said;
+    const char* is;
+    double said_size, is_size;  // Pa
+  } cases[] = {{"bar", "mbar", 1e5, 100}, {"bar", "kPa", 1e5, 1e3}, {"bar", "Pa", 1e5, 1},
+               {"mbar", "bar", 100, 1e5}, {"MPa", "bar", 1e6, 1e5}, {"kPa", "MPa", 1e3, 1e6},
+               {"bar", "psi", 1e5, psi},  {"Pa", "mbar", 1, 100}};
+  for (const auto& one : cases) {
+    for (const bool both : {true, false}) {
+      runs::MeasuredRun run = PlainSwing(model::Shaft::kClamped);
+      for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
+        signal->source.scale = one.said_size / psi;
+        if (signal == &run.p2 && !both) continue;
+        for (double& value : signal->values) value *= one.said_size / one.is_size;
+      }
+      EXPECT_THAT(LineOf(run, "charge pressure"),
+                  ::testing::HasSubstr(std::string(both ? ": p1 and p2 are in " : ": p1 is in ") + one.is +
+                                       ", not in " + one.said))
+          << one.said << " for " << one.is;
+    }
+  }
 }
 
 // Tests that what is not recorded is absent, and that a run that rests says nothing of signs.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "diagnose/recording/other_side.h"
 #include "diagnose/recording/sidecar_lines.h"
@@ -40,6 +42,35 @@ TEST(RecordingMistake, OfWhatIsMeasured) {
   bypass.bypass = true;
   for (const RecordingMistake& mistake : PossibleMistakes(bypass)) EXPECT_FALSE(mistake.pressures_exchanged);
   Mistake("p1 and p2 are exchanged");
+}
+
+std::vector<std::string> Offered(const runs::MeasuredRun& run) {
+  std::vector<std::string> what;
+  for (const RecordingMistake& mistake : PossibleMistakes(run)) what.push_back(mistake.what);
+  return what;
+}
+
+// Tests that nothing is offered which makes a run of some ms of one of some s, or readings that no machine has; unless what the sidecar says
+// is as impossible.
+TEST(RecordingMistake, NothingImpossibleIsOffered) {
+  using ::testing::Contains;
+  using ::testing::Not;
+  runs::MeasuredRun run;
+  for (int k = 0; k <= 1200; ++k) {
+    run.time.push_back(0.005 * k);
+    run.p1.values.push_back(k);
+    run.p2.values.push_back(2 * k);  // psi
+    run.motor_speed.values.push_back(0.1 * k);
+  }
+  for (const char* unit : {"ms", "us", "ns"})
+    EXPECT_THAT(Offered(run), Not(Contains("time is in " + std::string(unit))));
+  EXPECT_THAT(Offered(run), Contains("p1 and p2 are in kPa"));
+  EXPECT_THAT(Offered(run), Not(Contains("p1 and p2 are in MPa")));
+  EXPECT_THAT(Offered(run), Contains("motor_speed is in rpm"));
+  for (double& time : run.time) time *= 1e6;  // 5000 s a row
+  EXPECT_THAT(Offered(run), Contains("time is in us"));
+  for (double& pressure : run.p1.values) pressure *= 1e6;
+  EXPECT_THAT(Offered(run), Contains("p1 and p2 are in Pa"));
 }
 
 // Tests that values, noise, and the sidecar's scale and offset are corrected together.
@@ -93,8 +124,8 @@ TEST(RecordingMistake, StatedUnit) {
   for (const RecordingMistake& mistake : all) {
     if (mistake.factors.size() == 2) pressures.push_back(mistake.what);
   }
-  EXPECT_THAT(pressures, ElementsAre("p1 and p2 are in mbar, not in bar", "p1 and p2 are in kPa, not in bar",
-                                     "p1 and p2 are in MPa, not in bar", "p1 and p2 are in Pa, not in bar",
+  // In mbar or Pa they would be next to nothing.
+  EXPECT_THAT(pressures, ElementsAre("p1 and p2 are in kPa, not in bar", "p1 and p2 are in MPa, not in bar",
                                      "p1 and p2 are in psi, not in bar"));
   const auto psi = std::find_if(
       all.begin(), all.end(), [](const auto& one) { return one.what == "p1 and p2 are in psi, not in bar"; });

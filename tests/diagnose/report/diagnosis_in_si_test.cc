@@ -33,7 +33,7 @@ TEST(UnitOf, IsTheModels) {
   EXPECT_DOUBLE_EQ(diagnose::UnitOf(model::Channel::kP1, kSiUnits, true).factor, 1e-3);
   const UnitSystem cylinder{"in", "lbf", true};
   EXPECT_EQ(diagnose::UnitOf(model::Channel::kArmSpeed, cylinder, false).unit, "in/s");
-  EXPECT_EQ(diagnose::UnitOf(model::Channel::kArmAngle, cylinder, true).unit, "mm");
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kArmAngle, cylinder, true).unit, "m");
   EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, cylinder, false).unit, "rad/s");
 }
 

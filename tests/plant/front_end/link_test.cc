@@ -223,6 +223,15 @@ TEST(LinkTest, Udp) {
   send_to_driver(device, {});
   send_to_driver(device, {3});
   EXPECT_EQ(ReadSome(*link, 3), (Bytes{1, 2, 3}));
+  // More than are read at once, as after this process stood still: none is cut off.
+  for (int i = 0; i < 100; ++i) send_to_driver(device, Bytes(107, 5));
+  size_t all = 0;
+  Bytes chunk(4096);
+  while (const size_t got = link->Read(chunk)) {
+    EXPECT_EQ(got % 107, 0U);
+    all += got;
+  }
+  EXPECT_EQ(all, 100U * 107);
   close(device);
   close(stranger);
   for (int i = 0; i < 5; ++i) {

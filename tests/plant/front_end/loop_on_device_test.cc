@@ -1,6 +1,8 @@
 // The pressure loop on the device: what the rig passes on, and what comes back.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "tests/plant/front_end/device_bench.h"
 
 namespace hydro::plant {
@@ -87,6 +89,33 @@ TEST_F(LoopOnDeviceTest, ReleaseAndHold) {
     bench.Tick(1, /*obeys=*/false);
     EXPECT_FALSE(bench.rig->Follow(state_t{}, 100, Law(0.02)).by_law);
     EXPECT_EQ(bench.volts, 0) << "the hold is stronger than the loop";
+  }
+}
+
+// Tests that swings of the device's loop between two samples, and samples that are lost, do not make its
+// output look wrong, and that one which is stuck is found in spite of both, within limits.stale_input_s.
+TEST_F(LoopOnDeviceTest, ReadBackOfWhatNoSampleShows) {
+  for (const double lost : {0.0, 0.5}) {
+    bench.to_computer = Wire({.lost_frame = lost}, 36);
+    std::mt19937 random(36);
+    bool swings = false;
+    bench.before_tick = [&](uint64_t) {
+      const bool sampled = bench.device.sample_in_ticks <= 1;
+      bench.readings.analog_V[1] = swings && !sampled ? 0.95F : 0.35F;  // 6 V less
+      if (sampled) swings = std::bernoulli_distribution(0.5)(random);
+      bench.readings.read_back_V = bench.device.written_volts;
+    };
+    for (int i = 0; i < 2000; ++i) {
+      Follow(100, Law(0.02));
+      ASSERT_EQ(bench.Fault("output_differs"), "") << i << " " << lost;
+    }
+    EXPECT_TRUE(answer.by_law);
+    bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = 4; };
+    int ticks = 0;
+    for (; bench.Fault("output_differs").empty() && ticks < 1000; ++ticks) Follow(100, Law(0.02));
+    EXPECT_LE(ticks, 1.1 * 1000 * bench.config.limits.stale_input_s) << lost;
+    bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = bench.device.written_volts; };
+    for (int i = 0; i < 300; ++i) Follow(100, Law(0.02));
   }
 }
 

@@ -128,6 +128,46 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
+// Tests that repair says of logs that were joined how to take them apart, intact or not, with checksums or without, and that its commands give back
+// what was joined; and of two runs in one recording that they are two.
+TEST_F(HydroLogTest, RepairOfJoinedLogs) {
+  log::WriteRun(Path("a.lcmlog"), log::SampleRun(9));
+  log::WriteRun(Path("b.lcmlog"), log::SampleRun(20));
+  const std::string a = log::ReadBytes(Path("a.lcmlog")), b = log::ReadBytes(Path("b.lcmlog"));
+  const auto take_apart = [&](const std::string& name, const std::string& bytes) {
+    log::WriteBytes(Path(name), bytes);
+    const Outcome outcome = HydroLog({"repair", Path(name)});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const size_t commands = outcome.out.find("take them apart:\n");
+    if (commands != std::string::npos) {
+      EXPECT_EQ(system(outcome.out.substr(commands + 17).c_str()), 0);
+    }
+    return outcome.out;
+  };
+  EXPECT_THAT(take_apart("all it's.lcmlog", a + b + a),
+              AllOf(HasSubstr(": nothing to repair\n"), HasSubstr(": 3 recordings were joined in it")));
+  EXPECT_EQ(log::ReadBytes(Path("all it's-1.lcmlog")), a);
+  EXPECT_EQ(log::ReadBytes(Path("all it's-2.lcmlog")), b);
+  EXPECT_EQ(log::ReadBytes(Path("all it's-3.lcmlog")), a);
+  std::string flipped = a;
+  flipped[a.size() / 2] ^= 1;
+  EXPECT_THAT(take_apart("torn", flipped + b),
+              HasSubstr(Path("torn.damaged") + ": 2 recordings were joined in it"));
+  EXPECT_EQ(log::ReadBytes(Path("torn.damaged-1")), flipped);
+  EXPECT_EQ(log::ReadBytes(Path("torn.damaged-2")), b);
+  EXPECT_EQ(take_apart("alone", b), Path("alone") + ": nothing to repair\n");
+  runs::RunMessages both = log::SampleRun(9);
+  runs::RunMessages other = both;
+  for (state_t& state : other.Of<state_t>()) {
+    state.session = 77;
+    both.Of<state_t>().push_back(state);
+  }
+  log::WriteRun(Path("two"), both);
+  EXPECT_THAT(HydroLog({"repair", Path("two")}).out,
+              AllOf(HasSubstr(": nothing to repair\n"), HasSubstr("found states from 2 senders"),
+                    HasSubstr("record each into a log of its own")));
+}
+
 // Tests that each verb says of an incomplete log that it is one, and refuses a damaged one in one line that
 // names file, place and cure.
 TEST_F(HydroLogTest, IncompleteAndDamaged) {

@@ -14,6 +14,7 @@ namespace {
 using settings::InputErrorOf;
 using settings::kConfigText;
 using settings::Parsed;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -196,6 +197,24 @@ TEST(PrepareChange, FromAnUnstableLoop) {
                           {.undo = true})
                 .config,
             nullptr);
+}
+
+// Tests that an undo that would loosen a limit says what to set instead, or that nothing else would change.
+TEST(PrepareChange, AnUndoThatWouldLoosenALimit) {
+  const settings::StackConfig configured = Parsed(kFast);
+  const auto undone = [&](const std::vector<std::string>& changes) {
+    return PrepareChange(configured, settings::Changed(configured, changes),
+                         std::make_shared<const settings::StackConfig>(configured), {.undo = true})
+        .text;
+  };
+  EXPECT_THAT(
+      undone({"limits.pressure=1500", "position.c2=400", "pressure.damping_ratio=0.6"}),
+      AllOf(StartsWith("limits.pressure: found 2000 psi, allowed up to 1500 psi"),
+            ::testing::EndsWith("; to take back the rest alone, set it: hydro-set CONFIG position.c2=350 "
+                                "pressure.damping_ratio=0.5")));
+  EXPECT_THAT(undone({"limits.pressure=1500", "reference.steps=[[0.6, 0.1]]"}),
+              ::testing::ContainsRegex("hydro-set CONFIG 'reference.steps=\\[\\[.*'$"));
+  EXPECT_THAT(undone({"limits.pressure=1500"}), HasSubstr("; nothing else would change"));
 }
 
 // Tests that what is stable by a hair is accepted with a warning, and what is well stable without.

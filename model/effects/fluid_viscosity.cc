@@ -1,0 +1,44 @@
+// fluid.viscosity: warm oil is thinner. With the oil's temperature theta: b exp(-rate (theta - 40 degC)), c_E and c_I exp(+rate (theta - 40
+// degC)), as viscosity grades of ISO 3448 count from 40 degC. Over some tens of kelvin the logarithm of the viscosity of a mineral oil
+// falls in a straight line (Walther's equation, ASTM D341, is nearly that). The temperature is what a run has recorded, else 20 degC.
+
+#include <cmath>
+
+#include "model/effects/effect.h"
+
+namespace hydro::model {
+
+namespace {
+
+constexpr double kReference = 40;  // degC
+
+class Viscosity : public EffectOf<Viscosity> {
+ public:
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    using std::exp;
+    const T thinner = exp(x.own[0] * (x.around.temperature - kReference));
+    x.b /= thinner;
+    x.c_E *= thinner;
+    x.c_I *= thinner;
+  }
+};
+
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "fluid.viscosity",
+              .summary = "viscous friction and leakage follow the oil's temperature",
+              .equation = "viscous friction and leakage follow the oil's temperature theta: b exp(-rate "
+                          "(theta - 40 degC)), c_E and c_I exp(+rate (theta - 40 degC))",
+              .confused_with = "fluid.warming, parameter b",
+              .parameters = {{.name = "rate",
+                              .unit = "1/K",
+                              .min = -kUnbounded,
+                              .meaning = "relative change per kelvin",
+                              .example = 0.03}},
+              .needs_temperature = true,
+              .on_request = true},
+     .make = MakeEffect<Viscosity>});
+
+}  // namespace
+
+}  // namespace hydro::model

@@ -1,0 +1,46 @@
+// Which parts of a table are runs, and how the shaft and the bypass were in each: [use], [skip], and what changes within a recording.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runs/measured_run.h"
+#include "settings/toml/section_reader.h"
+#include "settings/toml/toml_document.h"
+
+namespace hydro::runs {
+
+// A part of fewer samples is no run.
+inline constexpr size_t kFewestOfAPart = 100;
+
+// What a sidecar says of times: each holds from its time to the next one's.
+struct RunPlan {
+  struct ShaftFrom {
+    double from = 0;  // s
+    model::Shaft shaft = model::Shaft::kFree;
+    double arm_angle = 0;
+  };
+  struct BypassFrom {
+    double from = 0;
+    bool open = false;
+  };
+  struct Window {
+    double from = 0, to = 0;
+  };
+  std::vector<ShaftFrom> shafts;     // in the order of their times; the first from the beginning on
+  std::vector<BypassFrom> bypasses;  // the same; empty: the table has a column of it
+  std::vector<Window> use, skip;     // no `use`: all
+};
+
+// Reads shaft, arm_angle, bypass, use and skip. `angle_unit`: the arm's. Throws InputError.
+RunPlan ReadPlan(settings::SectionReader& document, const UnitSystem& units);
+
+// The arm's angles in a list of shafts, as texts with a unit or as numbers.
+std::vector<settings::TomlNode*> AnglesIn(settings::TomlNode* sidecar);
+
+// The run, or its parts, each with a name of its own. Throws InputError for a window that holds too little, and for a driven shaft without
+// the arm's angle.
+std::vector<MeasuredRun> PartsOf(const MeasuredRun& whole, const RunPlan& plan,
+                                 const settings::SectionReader& document);
+
+}  // namespace hydro::runs

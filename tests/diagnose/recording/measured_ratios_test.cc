@@ -1,0 +1,103 @@
+#include "diagnose/recording/measured_ratios.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A cylinder whose c/D is 100.
+model::ModelDescription Cylinder() {
+  model::ModelDescription model;
+  model.units = {"m", "N", true};
+  model.parameters.c = 1e-3;
+  model.parameters.D = 1e-5;
+  model.parameters.k_2 = 1e-3;
+  return model;
+}
+
+// 20 s to and fro. The motor turns `out` and `back` times as fast as the arm moves, and for leakage.
+runs::MeasuredRun Moved(double out, double back) {
+  runs::MeasuredRun run;
+  run.shaft = model::Shaft::kFree;
+  run.units = {"m", "N", true};
+  double angle = 0;
+  for (int k = 0; k <= 4000; ++k) {
+    const double time = 0.005 * k, speed = 0.1 * std::cos(time), dp = 1e6 * std::sin(3 * time);
+    run.time.push_back(time);
+    run.arm_angle.values.push_back(0.1 * std::sin(time));
+    run.p1.values.push_back(1e6);
+    run.p2.values.push_back(1e6 + dp);
+    run.motor_angle.values.push_back(angle);
+    angle += 0.005 * ((speed > 0 ? out : back) * speed + 1e-6 * dp);
+    run.voltage.values.push_back(1);
+  }
+  return run;
+}
+
+// Tests that c/D is said where it is not the model's, with what it may come from, and nothing where it is.
+TEST(MeasuredRatios, OfMotorAndArm) {
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(101, 101)}), IsEmpty());
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(110, 110)}),
+              ElementsAre(AllOf(HasSubstr("c/D = 110."), HasSubstr("the model 100 (1.1 times as much"),
+                                HasSubstr("a bore"))));
+  const double turn = 2 * std::numbers::pi;
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 * turn, 100 * turn)}), ElementsAre(HasSubstr("in rev/s?")));
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(100 / turn, 100 / turn)}),
+              ElementsAre(HasSubstr("per revolution?")));
+  EXPECT_THAT(RatioRemarks(Cylinder(), {Moved(-100, -100)}), ElementsAre(HasSubstr("the other way")));
+  EXPECT_THAT(
+      RatioRemarks(Cylinder(), {Moved(108, 92)}),
+      ElementsAre(AllOf(HasSubstr("c/D = 108"), HasSubstr(" upwards and 92"), HasSubstr("unequal areas"))));
+}
+
+// Tests that what holds still, or was not measured, says nothing.
+TEST(MeasuredRatios, NeedMotion) {
+  runs::MeasuredRun run = Moved(120, 120);
+  run.shaft = model::Shaft::kClamped;
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), IsEmpty());
+  run = Moved(120, 120);
+  run.arm_angle = {};
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), IsEmpty());
+  // Without pressures the speeds still do.
+  run = Moved(120, 120);
+  run.p1 = {};
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), ElementsAre(HasSubstr("(1.21 times")));
+}
+
+// Tests a load cell: its share, the friction, and a cell that is the wrong way round.
+TEST(MeasuredRatios, OfALoadCell) {
+  runs::MeasuredRun run = Moved(100, 100);
+  for (size_t k = 0; k < run.samples(); ++k) {
+    const double sign = std::cos(run.time[k]) > 0 ? 1 : -1;
+    run.arm_force.values.push_back(-0.9e-3 * (run.p2.values[k] - run.p1.values[k]) + 50 * sign + 20);
+  }
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}),
+              ElementsAre(AllOf(HasSubstr("arm_force is 0.9"), HasSubstr("friction of 50"),
+                                HasSubstr("constant of 20"), HasSubstr("is off by as much"))));
+  for (double& force : run.arm_force.values) force = -force;
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}), ElementsAre(HasSubstr("scale = -1")));
+}
+
+// Tests a winding: the voltage at the terminals against current and speed.
+TEST(MeasuredRatios, OfAWinding) {
+  runs::MeasuredRun run = Moved(100, 100);
+  run.current_commands = true;
+  for (size_t k = 0; k < run.samples(); ++k) {
+    run.voltage.values[k] = 5 * std::sin(2 * run.time[k]);
+    const double speed = 10 * std::cos(run.time[k]) + 1e-6 * (run.p2.values[k] - run.p1.values[k]);
+    run.motor_voltage.values.push_back(0.32 * run.voltage.values[k] + 0.086 * speed);
+  }
+  EXPECT_THAT(RatioRemarks(Cylinder(), {run}),
+              ElementsAre(AllOf(HasSubstr("R = 0.3"), HasSubstr("k_e = 0.08"))));
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
