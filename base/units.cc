@@ -15,7 +15,8 @@ struct NamedUnit {
   Unit unit;
 };
 
-// The size of 1 of the unit, and its powers of m, kg, s, V, rad, K and A. A temperature in degC or degF is such a difference, from a zero of its own.
+// The size of one unit, and its powers of m, kg, s, V, rad, K and A. A temperature in degC or degF is a
+// difference in that unit, from a zero of its own.
 constexpr NamedUnit kUnits[] = {
     {"1", {1, {}}},
     {"m", {1, {1}}},

@@ -129,7 +129,7 @@ class Participant {
   bool PublishConfiguration(bus::Clock::Duration period);
   void AnswerWithConfiguration();
   void Stop(int64_t addressee, const std::string& source, const std::string& reason, int exit_code);
-  bool SaidAsFault(const std::string& reason) const;  // on stderr, by Raise
+  bool SaidAsFault(const std::string& reason) const;  // Raise() has printed it on stderr
   void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
   void PublishActiveFaults();

@@ -41,7 +41,7 @@ int Link::Trouble(std::string found, std::string allowed) {
 size_t Link::Read(std::span<uint8_t> into) {
   size_t filled = 0;
   while (is_open() && filled < into.size()) {
-    // The kernel cuts a datagram off where it finds no room.
+    // The kernel cuts off a datagram that finds too little room.
     if (datagrams() && filled > 0 && into.size() - filled < kLargestDatagram) break;
     const ssize_t got = read(descriptor_, into.data() + filled, into.size() - filled);
     if (got > 0) {

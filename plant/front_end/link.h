@@ -41,7 +41,7 @@ class Link {
   // read one after the other, each whole: when less than kLargestDatagram is left of `into`, there may be
   // more. A link whose other end has gone is closed.
   size_t Read(std::span<uint8_t> into);
-  static constexpr size_t kLargestDatagram = 1500;  // that Ethernet carries whole
+  static constexpr size_t kLargestDatagram = 1500;  // bytes that Ethernet carries whole
 
   // Hands over one frame, and sends any frame that waits. At most one frame is on its way: while the previous
   // one has not left this machine, the new frame replaces the one that waits, and the replaced frame is

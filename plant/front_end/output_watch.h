@@ -62,9 +62,9 @@ class OutputWatch {
   const bus::Clock::Duration patience_;
   const double tolerance_;             // V of eq. (1)
   std::deque<Told> told_;              // within the patience, and the one before
-  std::deque<PutOut> reported_;        // the same, by the device
+  std::deque<PutOut> reported_;        // reported by the device, likewise
   std::optional<uint64_t> last_tick_;  // of the sample before
-  int differing_ = 0;                  // readings in a row, of those where it is known what the output held
+  int differing_ = 0;  // readings in a row, among those for which the earlier voltage is known
   std::optional<bus::Clock::TimePoint> differs_since_;
 };
 
