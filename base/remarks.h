@@ -1,5 +1,5 @@
-// Holds a program's remarks on its input back until it has accepted the input: a program that refuses its input
-// prints the refusal alone.
+// Holds back a program's remarks on its input until it has accepted the input: a program that refuses its
+// input prints the refusal alone.
 #pragma once
 
 #include <string>

@@ -19,8 +19,8 @@ void WriteTextFile(const std::string& file, const std::string& text, std::FILE* 
 // "the standard output cannot be written: No space left on device", given an errno.
 std::string CannotBeWritten(int error);
 
-// The exit code of a program that would end with `exit_code`: 1 instead of 0, after one line on stderr, when a
-// part of its standard output could not be written. The line is printed only once.
+// The exit code of a program that would end with `exit_code`: 1 instead of 0, after one line on stderr, when
+// a part of its standard output could not be written. The line is printed only once.
 int FinishStandardOutput(const std::string& program, int exit_code);
 
 // The stream for a program's messages beside the files that it writes: `out`, or `err` when `out` takes one

@@ -9,8 +9,8 @@
 namespace hydro::launch {
 namespace {
 
-// Whether the log has a state: without one, hydro-log summary has nothing to report. A log with states has one
-// near its beginning, so little of it is read.
+// Whether the log has a state: without one, hydro-log summary has nothing to report. A log with states has
+// one near its beginning, so little of it is read.
 bool HasState(const std::string& file) {
   try {
     const MappedFile log(file);

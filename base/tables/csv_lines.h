@@ -20,7 +20,7 @@ struct Line {
 
 using Lines = std::vector<Line>;
 
-// The lines that are not blank, without the ends that the separator allows to remove; at most `most`, after
+// The lines that are not blank, each without its end (WithoutEnd() of csv_cells.h): at most `most`, after
 // those that are skipped.
 Lines LinesOf(std::string_view text, char separator, size_t skip, size_t most);
 

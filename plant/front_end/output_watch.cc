@@ -77,10 +77,10 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
        voltage, told});
 }
 
-// The read-back was measured before the device put out the voltage of this sample. The output takes a while to
-// follow, so it may hold anything that the device reported recently. Its earlier voltage is not known when the
-// sample before was lost, or when a loop on the device has had ticks between the two samples. A swing of that
-// loop's voltage that no sample shows is short; a wrong output is not.
+// The read-back was measured before the device put out the voltage of this sample. The output takes a while
+// to follow, so it may hold anything that the device reported recently. Its earlier voltage is not known when
+// the sample before was lost, or when a loop on the device has had ticks between the two samples. A swing of
+// that loop's voltage that no sample shows is short; a wrong output is not.
 void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});
