@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 Json ListOf(const OperatorResult& result) {
   Json list = Json::array();
   for (const auto& [joint, forecast] : result.forecasts) {
-    const auto& f = forecast;  // a lambda may not take a structured binding
+    const auto& f = forecast;  // a lambda cannot capture a structured binding
     Json json;
     if (!joint.empty()) json["joint"] = Printable(joint);
     json["text"] = Printable(f.text);

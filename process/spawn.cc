@@ -18,13 +18,13 @@
 namespace hydro::process {
 namespace {
 
-// What the child could not do, for the parent.
+// Tells the parent what the child could not do.
 struct Trouble {
   enum What { kFolder, kCpu, kPriority, kProgram } what;
   int error;
 };
 
-// Everything that the child needs, made before the fork: afterwards it must not allocate.
+// Everything that the child needs, made before the fork, because the child must not allocate.
 struct Prepared {
   std::vector<char*> argv, environment;
   int nothing = -1;  // /dev/null
@@ -74,7 +74,7 @@ bool Become(int fd, int standard) { return fd < 0 || dup2(fd, standard) >= 0; }
 // Runs in the child between fork and exec: only async-signal-safe calls, no allocation.
 [[noreturn]] void BecomeProgram(const SpawnRequest& request, const Prepared& prepared, pid_t parent) {
   setpgid(0, 0);
-  // When the parent died before that request, the signal would never come.
+  // If the parent died before that request, the signal would never come.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);
   ResetSignals();
@@ -106,13 +106,13 @@ std::string Describe(const Trouble& trouble, const SpawnRequest& request) {
       break;
   }
   std::string text = request.argv[0] + ": cannot be started: " + why;
-  // A script's first line is what the kernel runs.
+  // The kernel runs the interpreter that a script's first line names.
   const bool no_such_interpreter = trouble.error == ENOENT && std::filesystem::exists(request.argv[0]);
   if (trouble.error != ENOEXEC && !no_such_interpreter) return text;
   return text + "; a script needs a first line such as #!/usr/bin/env python3 that names a program here";
 }
 
-// Reads what the child could not do, until its exec closes the pipe. Throws StartError.
+// Reads reports of what the child could not do, until its exec closes the pipe. Throws StartError.
 std::vector<std::string> Troubles(int fd, pid_t pid, const SpawnRequest& request) {
   std::vector<std::string> warnings;
   Trouble trouble{};
@@ -171,7 +171,7 @@ Spawned Spawn(const SpawnRequest& request) {
   if (spawned.pid < 0) throw StartError(request.argv[0] + ": cannot be started: " + ReasonOf(errno));
   if (spawned.pid == 0) BecomeProgram(request, prepared, parent);
 
-  setpgid(spawned.pid, spawned.pid);  // also here, so that it is done whichever process runs first
+  setpgid(spawned.pid, spawned.pid);  // also set here, so that it is done whichever process runs first
   descriptors.CloseWrite();
   spawned.warnings = Troubles(prepared.report_read, spawned.pid, request);
   return spawned;

@@ -43,7 +43,7 @@ class Asked {
     bus.Subscribe<state_t>(channels_.Of<state_t>(), [this](const state_t& state) {
       plants_.insert(state.session);
       tick_ = state.tick;
-      // The state in which it was asked: later ones may show what the re-arm did.
+      // Keeps the state in which the plant was asked: later ones may show what the re-arm did.
       if (!asked_ || (!answer_ && state.command_tick < 0)) heard_.state = state;
     });
     bus.Subscribe<run_description_t>(channels_.Of<run_description_t>(),
@@ -90,19 +90,19 @@ class Asked {
     bus_.Publish(channels_.Of<rearm_t>(), request);
   }
 
-  // What came of it, in words.
+  // The outcome in words.
   std::string Text() const {
     if (!answer_) return "the plant does not answer";
     const bool nothing = nothing_latched() && !joint_.empty();  // of a limb, another joint may have had one
     return accepted() || nothing ? answer_->text : "refused by the " + answer_->source + ": " + answer_->text;
   }
 
-  // From the last state before an answer, when the voltage was still held at zero.
+  // Uses the last state before an answer, when the voltage was still held at zero.
   tuning::RearmForecast Forecast() const { return tuning::ForecastRearm(heard_); }
 
  private:
   bus::Bus& bus_;
-  std::string joint_;  // empty: it is a stack by itself
+  std::string joint_;  // empty for a single stack
   bus::Channels channels_;
   int64_t session_;
   std::set<int64_t> plants_;
@@ -130,7 +130,7 @@ bool All(const Joints& joints, Is is) {
   return std::all_of(joints.begin(), joints.end(), [&](const auto& joint) { return is(*joint); });
 }
 
-// "hip, knee" of those for which `is` holds.
+// "hip, knee": the joints for which `is` is true.
 template <class Is>
 std::string Names(const Joints& joints, Is is) {
   std::string names;
@@ -140,7 +140,8 @@ std::string Names(const Joints& joints, Is is) {
   return names;
 }
 
-// Why nobody is asked; empty: all are there, each once. Of a limb it is all or nothing: who re-arms it counts on each joint.
+// The reason why no plant is asked; empty when all are heard, each once. A limb is re-armed as a whole or not
+// at all: its operator counts on each joint.
 std::string WhyNot(const Joints& joints, const std::string& url) {
   const auto silent = [](const Asked& joint) { return !joint.heard(); };
   if (All(joints, silent)) return "no plant or driver is heard on " + url;
@@ -156,7 +157,8 @@ std::string WhyNot(const Joints& joints, const std::string& url) {
   return "";
 }
 
-// "hip: ended pressure_limit; knee, ankle: no fault is latched": joints with the same answer together, refusals first.
+// "hip: ended pressure_limit; knee, ankle: no fault is latched": joints with the same answer come together,
+// refusals first.
 std::string Answers(const Joints& joints) {
   std::string text;
   for (const bool answers : {false, true}) {
@@ -171,7 +173,7 @@ std::string Answers(const Joints& joints) {
   return text;
 }
 
-// Until `done` holds for all.
+// Listens until `done` is true for all joints.
 template <class Done>
 void Listen(bus::Bus& bus, const bus::Clock& clock, const Joints& joints, bus::Clock::Duration longest,
             Done done) {
@@ -187,7 +189,7 @@ void ListenForAll(bus::Bus& bus, const bus::Clock& clock, const Joints& joints,
   for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
 }
 
-// "hip: the arm is at ...; knee: ..."; `all`: also of joints whose voltage is not held.
+// Adds "hip: the arm is at ...; knee: ..."; with `all`, also for joints whose voltage is not held.
 void AddForecasts(const Joints& joints, bool all, OperatorResult* result) {
   for (const auto& joint : joints) {
     result->forecasts.emplace_back(joint->joint(), joint->Forecast());

@@ -1,4 +1,5 @@
-// A front end as hydro-driver has it: zero volts on every way out of the process, and the pressure loop of a device that runs one.
+// A front end as hydro-driver uses it: with zero volts on every way out of the process, and with the pressure
+// loop of a device that runs one.
 #pragma once
 
 #include <functional>
@@ -11,10 +12,9 @@
 
 namespace hydro::plant {
 
-// Connects. From then on each way out of this process in which it can still act asks the device for zero
-// volts first (zero_output.h). After any other way out its guardian asks (zero_guardian.h), which shares the
-// open link; and should that be of no use either, the device hears nothing and does so by itself
-// (driver.watchdog_s).
+// Connects to the device. From then on, each way out of this process in which the process can still act first
+// asks the device for zero volts (zero_output.h). After any other way out, the device hears nothing and goes
+// to zero volts by itself (driver.watchdog_s).
 class GuardedFrontEnd : public FrontEndRig {
  public:
   // Throws InputError like FrontEndRig::Connect().
@@ -48,8 +48,8 @@ class GuardedFrontEnd : public FrontEndRig {
   int guarded_ = -1;                        // its descriptor
 };
 
-// With driver.mode = "loop_on_device" this process is also the stack's pressure loop: it leads that of the device. Returns what ends it;
-// nothing in other stacks.
+// With driver.mode = "loop_on_device" this process is also the stack's pressure loop: it leads the loop on
+// the device. Returns the function that ends it, or nothing in other stacks.
 std::function<void()> LeadLoopOnDevice(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                                        Rig& rig);
 

@@ -23,8 +23,8 @@ namespace {
 constexpr char kDismissed = 'd';
 constexpr int kExitTimeout_ms = 500;  // for a dismissed guardian
 
-// Closes every descriptor but these, in rising order: a pipe or socket that the guardian held open would make
-// the driver look alive.
+// Closes every descriptor but these, which are in rising order: a pipe or socket that the guardian held open
+// would make the driver look alive.
 void CloseAllBut(const std::vector<int>& files) {
   unsigned next = 0;
   for (const int file : files) {
@@ -35,10 +35,10 @@ void CloseAllBut(const std::vector<int>& files) {
   close_range(next, ~0U, 0);
 }
 
-// Runs in the fork of a process that may have threads: only system calls from here on.
+// Runs in the fork of a process that may have threads, so only system calls are allowed from here on.
 [[noreturn]] void Guard(Device& device, const std::vector<int>& files, double zero, int pipe) {
   prctl(PR_SET_NAME, "hydro-zero");
-  // Only the driver's end may end the guardian.
+  // Only the end of the driver may end the guardian.
   for (int signal = 1; signal < NSIG; ++signal) {
     if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
   }
@@ -73,8 +73,9 @@ ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double
     close(ends[1]);
     Guard(device, kept, zero, ends[0]);
   }
-  // It must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends what a
-  // program of the user's own has left. From here, because the child may not run for a while.
+  // The guardian must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends
+  // the remaining processes of a user's own program. The parent sets the group because the child may not run
+  // for a while.
   setpgid(pid_, pid_);
   close(ends[0]);
   pipe_ = ends[1];
@@ -86,7 +87,8 @@ bool ZeroGuardian::Watches() {
   const pid_t changed = waitpid(pid_, &status, WNOHANG | WUNTRACED);
   if (changed == 0) return true;
   watches_ = false;
-  // Its number may soon be another process's. A guardian that stands still is left for Dismiss().
+  // The guardian's process number may soon belong to another process. A guardian that stands still is left
+  // for Dismiss().
   if (changed < 0 || !WIFSTOPPED(status)) pid_ = -1;
   return false;
 }

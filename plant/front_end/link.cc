@@ -17,7 +17,7 @@ bool MustWait(int error) {
   return error == EAGAIN || error == EWOULDBLOCK || error == EINTR || error == ENOBUFS;
 }
 
-// A datagram that nobody took is like one that was lost: the device may be about to start.
+// A datagram that no process took is like one that was lost: the device may be about to start.
 bool NobodyThere(int error) {
   return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH || error == ENETDOWN;
 }
@@ -74,7 +74,8 @@ size_t Link::TakeRest(std::span<uint8_t> into) {
 }
 
 void Link::Write(std::span<const uint8_t> frame, bool must_leave) {
-  ForgetOld();  // before the line is looked at: else each frame would wait behind the one before it, for ever
+  // Before the line is looked at: otherwise each frame would wait behind the one before it, for ever.
+  ForgetOld();
   Flush();
   if (!is_open()) return;
   if (begun_.empty() && waiting_.empty() && BytesOnTheirWay(descriptor_) <= frame.size()) {
@@ -104,13 +105,13 @@ void Link::Flush() {
   Send(next);
 }
 
-// The end of a socket must not end this process.
+// A socket whose other end has gone must not end this process.
 ssize_t Link::Put(std::span<const uint8_t> bytes) const noexcept {
   return kind_ == Kind::kPort ? write(descriptor_, bytes.data(), bytes.size())
                               : send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// Of a datagram nothing is left to send later: it left whole, or it was lost.
+// No part of a datagram is left to send later: it left whole, or it was lost.
 void Link::Send(std::span<const uint8_t> bytes) {
   ssize_t sent = 0;
   do {

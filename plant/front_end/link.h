@@ -1,4 +1,4 @@
-// The way to a front end: bytes to and from a serial port or a socket. Nothing here waits.
+// The way to a front end: it carries bytes to and from a serial port or a socket. Nothing here waits.
 #pragma once
 
 #include <sys/types.h>
@@ -14,7 +14,7 @@
 
 namespace hydro::plant {
 
-// What is wrong with a link that cannot be opened, in the words of an error message.
+// The reason why a link cannot be opened, in the words of an error message.
 struct LinkTrouble {
   std::string found;    // "\"/dev/ttyACM0\" (Permission denied)"
   std::string allowed;  // what is allowed, and what to do
@@ -29,8 +29,8 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() says why. Takes no
-  // longer than the system call, also with nobody at the other end.
+  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() gives the reason.
+  // Takes no longer than the system call, even when nothing is connected at the other end.
   bool Open();
   void Close();
   bool is_open() const { return descriptor_ >= 0; }
@@ -42,15 +42,15 @@ class Link {
   // that no flood of empty ones holds it. A link whose other end has gone is closed.
   size_t Read(std::span<uint8_t> into);
 
-  // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
-  // new one replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.
-  // What is not a command of each tick `must_leave`: commands do not replace it.
+  // Hands over one frame, and sends any frame that waits. At most one frame is on its way: while the previous
+  // one has not left this machine, the new frame replaces the one that waits, and the replaced frame is
+  // counted. A frame that is not one tick's command `must_leave`: commands do not replace it.
   void Write(std::span<const uint8_t> frame, bool must_leave = false);
   void Flush();
-  // The tick of what waits is over: unless it must leave, it is left out.
+  // The tick of the waiting frame is over: the frame is left out unless it must leave.
   void ForgetOld();
 
-  // For signal handlers: the frame as one system call, whatever waits.
+  // For signal handlers: writes the frame with one system call, even if another one waits.
   void WriteAtOnce(std::span<const uint8_t> frame) const noexcept;
 
   // Until what this machine has to send on a port has left, a tenth of a second at most: its last close drops
@@ -84,7 +84,7 @@ class Link {
   int64_t frames_left_out_ = 0;
 };
 
-// Not yet open.
+// Makes a link that is not yet open.
 std::unique_ptr<Link> MakeLink(const settings::FrontEndUrl& url);
 
 }  // namespace hydro::plant

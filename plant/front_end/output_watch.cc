@@ -11,7 +11,7 @@ namespace {
 constexpr int kInARow = 2;
 constexpr double kUsualTolerance = 0.1;  // V at the terminal: converters' offsets are below it
 
-// All within the patience, and the one before, which acted until the first of them.
+// Keeps all entries within the patience, and the one before, which acted until the first of them.
 template <class Entries>
 void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
@@ -104,8 +104,8 @@ void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& ra
   if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
 
-// By a command so old that this is the fault, unless all of late told it zero volts; or by its own loop, if
-// it was told of late to act by it.
+// The device's own loop may do so, where it has one. So may a command so old that its age is the fault,
+// unless all recent commands told zero.
 bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
   const bool law = sample.source == HYDRO_SOURCE_LAW;
   if (law && !own_loop_) return false;
@@ -144,6 +144,8 @@ void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const
   }
 }
 
+// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
+// and never the other sign.
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
@@ -157,10 +159,10 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
        voltage, told});
 }
 
-// What it reads back was measured before it put out the voltage of this sample. Anything that it reported of
-// late may be what it holds, as the output takes a while to follow. What it held is not known where the sample
-// before was lost, or where a loop on the device has had ticks between the two: a swing of its voltage that no
-// sample shows is short, a wrong output is not.
+// The read-back was measured before the device put out the voltage of this sample. The output takes a while
+// to follow, so it may hold anything that the device reported recently. Its earlier voltage is not known when
+// the sample before was lost, or when a loop on the device has had ticks between the two samples. A swing of
+// that loop's voltage that no sample shows is short; a wrong output is not.
 void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});

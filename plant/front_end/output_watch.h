@@ -1,4 +1,5 @@
-// What a front end was told to put out, what it says that it does, and what its output reads back.
+// Compares what a front end was told to put out, what it reports that it puts out, and what its output reads
+// back.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ class OutputWatch {
   OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience,
               bus::Clock::Duration transfer);
 
-  // The frame `sequence` has told it a voltage, which came from the motor command for `command_tick` (-1:
-  // from none).
+  // Records that the frame `sequence` has told the device a voltage, which came from the motor command for
+  // `command_tick` (-1: from none).
   void OnTold(uint32_t sequence, double voltage, int64_t command_tick, bus::Clock::TimePoint now);
 
   // The frame `sequence` has told it to act by eq. (16).
@@ -37,9 +38,9 @@ class OutputWatch {
   void Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
             bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
-  double tolerance() const { return tolerance_; }  // V of eq. (1), of what is read back
+  double tolerance() const { return tolerance_; }  // V of eq. (1), for the voltage that is read back
 
-  // Of the voltage that a sample reports as that of a command, the tick of the motor command; -1: it came
+  // The tick of the motor command from which the voltage of a sample came, if a command told it; -1: it came
   // from none.
   int64_t CommandTick(const hydro_sample& sample) const;
   // Whether the sample's voltage comes from eq. (16) by a command of late.
@@ -71,7 +72,7 @@ class OutputWatch {
                       std::vector<RigFault>* faults);
   bool Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now);
 
-  // Whether the device may put out a voltage that no command of the driver's of late told it.
+  // Whether the device may put out a voltage that no recent command of the driver told it.
   bool MayPutOut(const hydro_sample& sample) const;
 
   const bool own_loop_;  // on the device
@@ -82,7 +83,7 @@ class OutputWatch {
   std::optional<bus::Clock::TimePoint> gains_changed_at_;
   std::deque<PutOut> reported_;        // the same, by the device
   std::optional<uint64_t> last_tick_;  // of the sample before
-  int differing_ = 0;                  // readings in a row, of those where it is known what the output held
+  int differing_ = 0;  // readings in a row, among those for which the earlier voltage is known
   std::optional<bus::Clock::TimePoint> differs_since_;
 };
 
