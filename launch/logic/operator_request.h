@@ -62,8 +62,9 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
 std::string Stopped(size_t count);
 
 // Asks the plant (or driver) to end its latched faults; for a limb, asks those of all joints at the same
-// time, if all are heard. The exit code is 0 when each did so or had none; 1 when one refused, or when none
-// or more than one is heard for a joint. The text ends with what the machine does after the re-arm.
+// time, if all are heard. The exit code is 0 when at least one did so and each other one did or had none; 1
+// when one refused, when none had a latched fault, or when none or more than one is heard for a joint. The
+// text ends with what the machine does after the re-arm.
 OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing = {}, const Asker& asker = kHydroLaunch);
 

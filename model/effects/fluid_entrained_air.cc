@@ -39,21 +39,21 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
 };
 
 [[maybe_unused]] const bool kFluidEntrainedAirAdded = AddToCatalogue(
-    {.info =
-         {.id = "fluid.entrained_air",
-          .summary = "air bubbles make the fluid soft at low pressure",
-          .equation = "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at "
-                      "atmospheric "
-                      "pressure, compressed polytropically",
-          .confused_with = "parameter beta, fluid.stiffening",
-          // The less air there is, the more each small amount of it matters: a fit that starts from none does
-          // not find 1 part in 500.
-          .parameters = {{.name = "air_fraction",
-                          .unit = "1",
-                          .max = 1,
-                          .meaning = "volume of the air at atmospheric pressure over the fluid's",
-                          .starts = {0, 5e-4, 5e-3},
-                          .example = 0.02}}},
+    {.info = {.id = "fluid.entrained_air",
+              .summary = "air bubbles make the fluid soft at low pressure",
+              .equation =
+                  "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at "
+                  "atmospheric "
+                  "pressure, compressed polytropically",
+              .confused_with = "parameter beta, fluid.stiffening",
+              // The less air there is, the more each small amount of it matters: a fit that starts from none
+              // does not find 1 part in 500.
+              .parameters = {{.name = "air_fraction",
+                              .unit = "1",
+                              .max = 1,
+                              .meaning = "volume of the air at atmospheric pressure over the fluid's",
+                              .starts = {0, 5e-4, 5e-3},
+                              .example = 0.02}}},
      .make = MakeEffect<EntrainedAir>});
 
 }  // namespace

@@ -15,19 +15,19 @@ struct LoadSide {
   }
 };
 
-[[maybe_unused]] const bool kGearLoadFrictionAdded = AddToCatalogue(
-    {.info = {.id = "gear.load_friction",
-              .summary = "friction grows with the torque of the load",
-              .equation = "+ load abs(D dp + other loads) sgn(theta')",
-              .confused_with = "pump.pressure_friction, gear.motor_friction, parameter T_s",
-              .parameters = {{.name = "load",
-                              .unit = "1",
-                              .meaning = "friction per torque of the load",
-                              .example = 0.15}},
-              // With oil it is the same as friction of the pump, by D dp, and of the seals, by the arm's
-              // load.
-              .of_bare_motors = true},
-     .make = MakeEffect<GearFriction<LoadSide>>});
+[[maybe_unused]] const bool kGearLoadFrictionAdded =
+    AddToCatalogue({.info = {.id = "gear.load_friction",
+                             .summary = "friction grows with the torque of the load",
+                             .equation = "+ load abs(D dp + other loads) sgn(theta')",
+                             .confused_with = "pump.pressure_friction, gear.motor_friction, parameter T_s",
+                             .parameters = {{.name = "load",
+                                             .unit = "1",
+                                             .meaning = "friction per torque of the load",
+                                             .example = 0.15}},
+                             // With oil it is the same as friction of the pump, by D dp, and of the seals, by
+                             // the arm's load.
+                             .of_bare_motors = true},
+                    .make = MakeEffect<GearFriction<LoadSide>>});
 
 }  // namespace
 

@@ -22,9 +22,9 @@ struct DeviceInput {
 
   std::string name;  // its name in the configuration: [driver.p1] input = "ai0"; without the key, "p1"
   Kind kind = Kind::kValue;
-  std::string unit = "V";  // kValue
-  double low = -std::numeric_limits<
-      double>::infinity();  // kValue: the ends of its range, where readings are not credible
+  std::string unit = "V";                                 // kValue
+  double low = -std::numeric_limits<double>::infinity();  // kValue: the ends of its range, where readings are
+                                                          // not credible
   double high = std::numeric_limits<double>::infinity();  // unless the configuration says which readings are
   // kCount: the highest count, after which the counter wraps to 0.
   uint32_t highest_count = 0xffffffff;

@@ -13,8 +13,9 @@
 namespace hydro::plant {
 
 // Connects to the device. From then on, each way out of this process in which the process can still act first
-// asks the device for zero volts (zero_output.h). After any other way out, the device hears nothing and goes
-// to zero volts by itself (driver.watchdog_s).
+// asks the device for zero volts (zero_output.h). After any other way out its guardian, which shares the open
+// link, asks for them (zero_guardian.h). If that fails too, the device hears nothing and goes to zero volts
+// by itself (driver.watchdog_s).
 class GuardedFrontEnd : public FrontEndRig {
  public:
   // Throws InputError like FrontEndRig::Connect().

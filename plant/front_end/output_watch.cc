@@ -17,8 +17,8 @@ void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
 }
 
-// A device may put out less than it was told, where its range ends, and says so; never more, and never the
-// other sign.
+// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
+// and never the other sign.
 bool IsLess(const hydro_sample& sample, double told) {
   const auto voltage = static_cast<double>(sample.voltage);
   return sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
@@ -104,8 +104,8 @@ void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& ra
   if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
 
-// The device's own loop may do so, where it has one. So may a command so old that its age is the fault,
-// unless all recent commands told zero.
+// The device's own loop may do so, if it was told recently to act by it. So may a command so old that its age
+// is the fault, unless all recent commands told zero volts.
 bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
   const bool law = sample.source == HYDRO_SOURCE_LAW;
   if (law && !own_loop_) return false;
@@ -144,8 +144,6 @@ void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const
   }
 }
 
-// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
-// and never the other sign.
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);

@@ -1,5 +1,5 @@
-// safety_page [--write] PAGE: checks the table of PAGE (docs/safety.md) against process/safety; with --write, brings
-// it up to date. safety_page --json: the table for other programs.
+// safety_page [--write] PAGE: checks the table of PAGE (docs/safety.md) against process/safety; with --write,
+// brings it up to date. safety_page --json: the table for other programs.
 #include <cstdio>
 #include <exception>
 #include <fstream>

@@ -34,8 +34,8 @@ struct LoopMargins {
 };
 
 // Whether a pole on the positive real axis (a motion that grows without oscillating) makes a loop unstable.
-// If it is ignored, the response far below the highest frequency with a gain of 1 does not count either:
-// another loop must stop that motion.
+// If it is ignored, an oscillation that grows far below the highest frequency with a gain of 1 does not count
+// either, nor does the response there: another loop must stop that motion.
 enum class Drift { kCounts, kIgnored };
 
 // A filter over z through which the reference passes before it enters where the output is fed back: c1/(c1 +

@@ -30,8 +30,9 @@ double LargestArmAngle(double stop, double limit, double farthest);
 // a driven one, at the middle and the ends of its motion). In each place there is a case with both sides
 // compressing, and one with each side held at p_3 by its valve. A model with effects is examined with low and
 // with high pressures, and also backwards where the effects distinguish the directions. The pump slips so
-// fast that no friction falls with speed any more. A sticking pump is no case, because no voltage moves it
-// and so no loop is closed. Throws model::ModelError.
+// fast that no friction falls with speed any more. An arm that an effect may hold is examined as it slips
+// and, for the pressure loop, also as it sticks. A sticking pump is no case, because no voltage moves it and
+// so no loop is closed. Throws model::ModelError.
 std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config);
 
 }  // namespace hydro::design

@@ -103,8 +103,8 @@ static int read_options(int argc, char** argv, const char** link, const char** c
   return 0;
 }
 
-/* Where descriptors 0 to 2 were closed, a link would get one of their numbers, and what is printed would be sent to the
- * computer. Each is opened for the opposite of its use, so that using it still fails. */
+/* Where descriptors 0 to 2 were closed, a link would get one of their numbers, and what is printed would be
+ * sent to the computer. Each is opened for the opposite of its use, so that using it still fails. */
 static bool open_standard_descriptors(void) {
   for (int standard = 0; standard <= 2; ++standard) {
     if (fcntl(standard, F_GETFD) >= 0) continue;

@@ -216,7 +216,8 @@ TEST(FrontEndRigTest, ATripIsAFaultFirst) {
   EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
 }
 
-// Tests that a device which says that it drives, by its own law or by a command that was never sent, while it is told zero, is a fault.
+// Tests that a device which says that it drives, by its own law or by a command that was never sent, while it
+// is told zero, is a fault.
 TEST(FrontEndRigTest, OutputByNoCommand) {
   for (const uint8_t source : {HYDRO_SOURCE_LAW, HYDRO_SOURCE_VOLTAGE}) {
     DeviceBench bench;

@@ -89,8 +89,8 @@ TEST_F(LimbTest, SomeJoints) {
   EXPECT_EQ(limb.joints()[1]->name(), "ankle");
 }
 
-// Tests that a fault of one joint holds the others at zero volts from the very tick at which it is seen, whichever of them
-// is first, and that they say why.
+// Tests that a fault of one joint holds the others at zero volts from the very tick at which it is seen,
+// whichever of them is first, and that they say why.
 TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
   for (const size_t which : {size_t{0}, size_t{1}, size_t{2}}) {
     Make(WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, which));
@@ -109,7 +109,8 @@ TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
   }
 }
 
-// Tests that they go on by themselves once the joint that had the fault has been re-armed, although none of them is asked.
+// Tests that they go on by themselves once the joint that had the fault has been re-armed, although none of
+// them is asked.
 TEST_F(LimbTest, OneRearmLetsAllGoOn) {
   settings::LimbConfig config =
       WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);

@@ -96,8 +96,8 @@ TEST(LoopCheck, JudgesTheLoopsThatAreClosed) {
   EXPECT_TRUE(std::isinf(none.position->worst.gain));
 }
 
-// Tests every effect's example: whatever a model has, there is a verdict. (That delays cost margin is tested in
-// linear_stack_test.)
+// Tests every effect's example: whatever a model has, there is a verdict. (That delays cost margin is tested
+// in linear_stack_test.)
 TEST(LoopCheck, TakesEffectsIntoAccount) {
   model::ModelDescription model = ShippedModel("table1");
   model.effects = {{"amp.delay", {{"delay", 0.004}}, {}}};
@@ -150,8 +150,9 @@ Swing SwingOf(const tables::Table& run, const std::string& column, double early,
   return {half_range(early), half_range(late)};
 }
 
-// Tests the critical factor of the position loop, at mid-stroke with both sides compressing, on the stack in simulation:
-// with 3 % less gain a small oscillation decays, with 3 % more it grows as fast as the spectral radius says.
+// Tests the critical factor of the position loop, at mid-stroke with both sides compressing, on the stack in
+// simulation: with 3 % less gain a small oscillation decays, with 3 % more it grows as fast as the spectral
+// radius says.
 TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
   const std::vector<std::string> base = {"model.initial_pressure=1500", "limits.pressure=inf",
                                          "reference.steps=[[0.1, 1e-5]]", "time.duration_s=2.1"};

@@ -12,7 +12,8 @@ using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kPeriod = 0.01;
 
-// An integrator behind a delay of one sample: x(k+1) = x(k) - gain x(k-1). Its poles solve z^2 - z + gain = 0.
+// An integrator behind a delay of one sample: x(k+1) = x(k) - gain x(k-1). Its poles solve z^2 - z + gain =
+// 0.
 std::vector<Complex> DelayedIntegrator(double gain) {
   const Complex root = std::sqrt(Complex(0.25 - gain));
   return {0.5 + root, 0.5 - root};

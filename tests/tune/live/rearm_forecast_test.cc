@@ -203,8 +203,8 @@ TEST_F(RearmForecastTest, APulseAfterwards) {
   EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between 0.2 rad and 0.4 rad;"));
 }
 
-// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast promises
-// the reference alone, which comes true, and names the limit.
+// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast
+// promises the reference alone, which comes true, and names the limit.
 TEST_F(RearmForecastTest, ALimitThatBinds) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.arm_torque=1"});
   ExpectTrue();
@@ -215,7 +215,8 @@ TEST_F(RearmForecastTest, ALimitThatBinds) {
               HasSubstr("; the arm follows as far as its load and limits.arm_torque 1 in-lbf let it"));
 }
 
-// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast says.
+// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast
+// says.
 TEST_F(RearmForecastTest, ALimitThatStopsAgain) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0.02", "limits.motor_speed=20"});
   ASSERT_TRUE(forecast_.known);
