@@ -20,7 +20,7 @@
 
 namespace hydro::settings {
 
-// The version of all programs, e.g. "0.1.0".
+// The version of all programs, e.g. "0.3.0".
 std::string ProgramVersion();
 
 struct CommonOptions {
