@@ -127,6 +127,9 @@ PAGES = {
         "hydro-launch CONFIG --rearm        # hydro-launch: re-armed": As("hydro-launch config/demo.toml --rearm", "nothing is latched", 1, "re-arm|rearm"),
         "hydro-launch CONFIG --rearm        # hydro-launch: refused": Not("the same line", "fault"),
     }),
+    "safety_tests.md": (None, "", {
+        "build/tests/safety_page": Not("writes into the sources", "safety_page"),
+    }),
     "scope.md": (None, "", {
         "hydro-launch config/demo.toml --set time.duration_s=0 &": Not("runs until it is stopped", "scope"),
         "hydro-scope config/demo.toml": Not("serves until it is ended", "scope"),
