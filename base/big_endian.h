@@ -1,4 +1,4 @@
-// Numbers as they lie in messages and logs: most significant byte first.
+// Numbers in the byte order of messages and logs: most significant byte first.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Copies of what was written field by field a moment ago.
+// Copies a value that was written field by field a moment ago.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,16 @@
 
 namespace hydro {
 
-// *to = from, 8 bytes at a time where that is a copy. Compilers and memcpy() take 16 and more at a time, but a processor cannot
-// take such a load from two stores that are still under way: it waits for them, some 20 cycles, several times a message.
+// *to = from, 8 bytes at a time if the value can be copied bytewise. Compilers and memcpy() take 16 bytes and
+// more at a time, but a processor cannot serve such a load from two stores that are still under way: it waits
+// for them, some 20 cycles, several times a message.
 template <class Value>
 void CopyFresh(Value* to, const Value& from) {
   if constexpr (std::is_trivially_copyable_v<Value> && sizeof(Value) % 8 == 0) {
     const auto copy = [&](size_t word) {
       uint64_t bits;
       std::memcpy(&bits, reinterpret_cast<const char*>(&from) + 8 * word, 8);
-      asm("" : "+r"(bits));  // keeps the compiler from joining two
+      asm("" : "+r"(bits));  // keeps the compiler from joining two copies
       std::memcpy(reinterpret_cast<char*>(to) + 8 * word, &bits, 8);
     };
     [&]<size_t... word>(std::index_sequence<word...>) { (copy(word), ...); }

@@ -1,4 +1,4 @@
-// Which file a name leads to, however it is called.
+// Identifies the file to which a name leads, however it is spelled.
 #pragma once
 
 #include <compare>
@@ -11,11 +11,11 @@ namespace hydro {
 struct FileIdentity {
   uint64_t device = 0;
   uint64_t inode = 0;
-  int64_t birth_ns = 0;  // because inodes are used again; 0 where the file system does not know it
+  int64_t birth_ns = 0;  // because inodes are reused; 0 if the file system does not know it
   auto operator<=>(const FileIdentity&) const = default;
 };
 
-// None when the name leads to nothing that can be looked at.
+// None when the name leads to nothing that can be examined.
 std::optional<FileIdentity> IdentityOf(const std::string& file);
 
 // The same for a regular file only.

@@ -30,7 +30,7 @@ constexpr std::pair<std::string_view, FileKind> kBeginnings[] = {
     {"hydro-torture "sv, FileKind::kSchedule},
 };
 
-// Sections that only one kind of TOML file has, the most telling first.
+// Sections that only one kind of TOML file has; the most distinctive come first.
 constexpr std::pair<std::string_view, FileKind> kSections[] = {
     {"[[joint]]", FileKind::kLimb},    {"[limb]", FileKind::kLimb},      {"[columns]", FileKind::kSidecar},
     {"[[step]]", FileKind::kStudy},    {"[[draw]]", FileKind::kStudy},   {"[[grid]]", FileKind::kStudy},
@@ -107,7 +107,7 @@ std::optional<FileKind> FindFileKind(std::string_view beginning) {
     return FileKind::kPicture;
   const size_t first = beginning.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && beginning[first] == '{') return FileKind::kJson;
-  // Text that only talks about sections has none at the beginning of a line.
+  // A text that only mentions sections has none at the beginning of a line.
   if (beginning.find('\0') != std::string_view::npos) return std::nullopt;
   for (const auto& [section, kind] : kSections) {
     if (HasLine(beginning, section)) return kind;

@@ -1,4 +1,4 @@
-// What a file is that was given to the wrong program, and who reads it.
+// Tells which kind of file was given to the wrong program, and which program reads it.
 #pragma once
 
 #include <optional>
@@ -29,14 +29,14 @@ enum class FileKind {
   kSchedule  // of hydro-torture
 };
 
-// The kind by the beginning of the file, 4 KiB or more where there are as many; empty for tables and any other text, and for what
-// is not known.
+// The kind, from the beginning of the file: 4 KiB or more, if the file has as many. Empty for tables and any
+// other text, and for unknown kinds.
 std::optional<FileKind> FindFileKind(std::string_view beginning);
 
 // "found an LCM event log, allowed `allowed`; hydro-log info FILE says what is in it, ...".
 std::string OtherKind(FileKind kind, const std::string& file, const std::string& allowed);
 
-// Throws InputError with that where a text is known to be of another kind than `kind`.
+// Throws InputError with that text when `text` is known to be of another kind than `kind`.
 void RequireKind(FileKind kind, std::string_view text, const std::string& file, const std::string& allowed);
 
 }  // namespace hydro

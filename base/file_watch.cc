@@ -9,7 +9,8 @@ namespace {
 
 constexpr size_t kBeginning = 64;  // bytes; no two recordings begin alike for that long
 
-// Whether a regular file lacks bytes before its end: it was cut, and its writer has gone on where it was.
+// Whether a regular file lacks bytes before its end: another program cut it, and its writer went on at its
+// old position.
 bool HasHole(int descriptor) {
   struct stat status {};
   if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return false;
@@ -17,17 +18,17 @@ bool HasHole(int descriptor) {
   return hole >= 0 && hole < status.st_size;
 }
 
-// Its first kBeginning bytes; empty: it is shorter, or cannot be read, as a pipe.
+// The file's first kBeginning bytes; empty when it is shorter or cannot be read, as a pipe cannot.
 std::string BeginningOf(int descriptor) {
   std::string bytes(kBeginning, '\0');
   if (pread(descriptor, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) bytes.clear();
   return bytes;
 }
 
-// Remembers the beginning the first time; then whether the file is another one inside.
+// Stores the beginning the first time; after that, returns whether the file has other contents.
 bool Changed(const std::string& file, std::string* beginning) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return false;  // written by a user who may not read it
+  if (descriptor < 0) return false;  // the writing user may not read the file
   const std::string found = BeginningOf(descriptor);
   const bool hole = HasHole(descriptor);
   close(descriptor);

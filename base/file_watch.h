@@ -1,5 +1,6 @@
-// Notices when the file that is being recorded has been deleted, renamed or replaced, its folder has gone, or another program has cut or
-// overwritten it: writing to it goes on working, and nobody would find the log, or all of it.
+// Notices when the file that is being recorded has been deleted, renamed or replaced, when its folder has
+// gone, or when another program has cut or overwritten it. Writing still succeeds in these cases, and nobody
+// would find the log, or all of it.
 #pragma once
 
 #include <chrono>
@@ -14,17 +15,17 @@ class FileWatch {
  public:
   static constexpr auto kPeriod = std::chrono::seconds(1);
 
-  // `file` exists and is the one to watch from now on.
+  // Watches `file`, which must exist, from now on.
   void Watch(const std::string& file);
 
-  // Looks once a second. Returns what is wrong, once for each file: "run.lcmlog: has been deleted or ...".
+  // Checks once a second. Returns what is wrong, once for each file: "run.lcmlog: has been deleted or ...".
   std::optional<std::string> Look(std::chrono::steady_clock::time_point now);
-  // Looks now.
+  // Checks now.
   std::optional<std::string> LookNow();
 
  private:
   std::string file_;
-  std::optional<FileIdentity> identity_;  // none: nothing to look for any more
+  std::optional<FileIdentity> identity_;  // none: there is no file to check any more
   std::string beginning_;                 // its first bytes; empty until there are enough
   std::chrono::steady_clock::time_point last_look_{};
 };

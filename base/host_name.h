@@ -1,4 +1,4 @@
-// The name of the machine that this process runs on.
+// The name of the machine on which this process runs.
 #pragma once
 
 #include <unistd.h>
@@ -7,7 +7,7 @@
 
 namespace hydro {
 
-// As `hostname` prints it; "unknown" when the system does not say.
+// The name that `hostname` prints; "unknown" when the system does not tell.
 inline std::string HostName() {
   char name[256] = {};
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";

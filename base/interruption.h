@@ -1,5 +1,5 @@
-// Long work on a thread that another may want to end: reading a log or a table, of which nobody knows how
-// large it is.
+// Interrupts long work when another thread wants it to end: reading a log or a table whose size is not known
+// in advance.
 #pragma once
 
 #include <atomic>
@@ -12,8 +12,8 @@ class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// While one exists, the readers of logs and tables on this thread throw Interrupted soon after `wanted` has
-// become true.
+// While an Interruption exists, the readers of logs and tables on this thread throw Interrupted soon after
+// `wanted` has become true.
 class Interruption {
  public:
   explicit Interruption(const std::atomic<bool>* wanted);
@@ -21,7 +21,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  // For those who work: throws Interrupted when somebody wants that. Costs a nanosecond.
+  // The working code calls this; it throws Interrupted when an end is wanted. Costs a nanosecond.
   static void Check();
 
  private:

@@ -34,7 +34,7 @@ class Descriptor {
   throw InputError(file + ": cannot be read: " + std::strerror(error) + "; a readable file is needed");
 }
 
-// No fault of the file.
+// Not an InputError, because the file is not at fault.
 [[noreturn]] void ThrowTooLarge(const std::string& file, size_t size) {
   throw std::runtime_error(
       file + ": out of memory: its " + std::to_string(size) +
@@ -44,7 +44,8 @@ class Descriptor {
 }  // namespace
 
 MappedFile::MappedFile(const std::string& file) {
-  // A named pipe that nobody writes to would be waited for. What a shell hands over (<(...), /dev/stdin) has a writer.
+  // Opening a named pipe that has no writer would wait. A pipe that a shell passes (<(...), /dev/stdin) has
+  // one.
   const bool device = file.starts_with("/dev/") && !file.starts_with("/dev/shm/");
   if (!device && !file.starts_with("/proc/")) CheckIsFile(file);
   const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));

@@ -24,7 +24,7 @@ class MappedFile {
   const uint8_t* data_ = nullptr;
   size_t size_ = 0;
   void* mapping_ = nullptr;
-  std::vector<uint8_t> contents_;  // of a file that cannot be mapped
+  std::vector<uint8_t> contents_;  // contents of a file that cannot be mapped
 };
 
 }  // namespace hydro

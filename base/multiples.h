@@ -1,4 +1,4 @@
-// Which whole numbers are multiples of a fixed one, without a division for numbers that mostly go up by one, as ticks do.
+// Finds multiples of a fixed number without a division, for numbers that mostly go up by one, as ticks do.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,15 @@ namespace hydro {
 
 class Multiples {
  public:
-  // of: above 0.
+  // `of` is above 0.
   explicit Multiples(int64_t of) : of_(of) {}
 
   int64_t of() const { return of_; }
 
-  // Of any number.
+  // Takes any number.
   bool Contains(int64_t number) { return UpTo(number) == number; }
 
-  // The largest multiple that is at most `number`, which is not below 0.
+  // The largest multiple that is not above `number`, which is not below 0.
   int64_t UpTo(int64_t number) {
     const uint64_t ahead = static_cast<uint64_t>(number) - static_cast<uint64_t>(newest_);
     if (number < newest_ || ahead >= static_cast<uint64_t>(of_)) {

@@ -53,8 +53,8 @@ void Remove(const std::string& name) {
   if (unlink(name.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
 }
 
-// FILE.part or, where something has that name already, FILE.part1 and so on: it may be anybody's. Throws where another process is
-// writing to FILE under such a name.
+// FILE.part or, if something has that name already, FILE.part1 and so on: the existing one may belong to
+// anyone. Throws when another process is writing to FILE under such a name.
 std::string FreePart(const std::string& name) {
   for (int i = 0;; ++i) {
     std::string part = name + std::string(kPart) + (i == 0 ? "" : std::to_string(i));
@@ -74,7 +74,8 @@ void CheckIsNew(const std::string& file) {
   throw InputError(file + ": found a file of this name, allowed: another name, or --force to replace it");
 }
 
-// Every NewFile holds a lock on its file. A shared one is tried: two that ask at the same time do not take each other for writers.
+// Every NewFile holds a lock on its file. This function tries a shared lock, so that two callers at the same
+// time do not take each other for writers.
 bool IsBeingWritten(const std::string& file) {
   struct stat status;
   if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
@@ -126,7 +127,8 @@ NewFile::~NewFile() {
   close(descriptor_);
 }
 
-// Whether the temporary name still leads to the file that was written: somebody may have moved it and put another there.
+// Whether the temporary name still leads to the file that was written: another program may have moved it and
+// put another file there.
 bool NewFile::IsStillOurs() const {
   struct stat ours, there;
   return fstat(descriptor_, &ours) == 0 && lstat(path_.c_str(), &there) == 0 && ours.st_dev == there.st_dev &&
@@ -134,7 +136,7 @@ bool NewFile::IsStillOurs() const {
 }
 
 size_t NewFile::WriteSome(const void* data, size_t size) {
-  // Linux writes at most 0x7ffff000 bytes a call.
+  // Linux writes at most 0x7ffff000 bytes in one call.
   const size_t chunk = std::min<size_t>(size, 1u << 30);
   for (;;) {
     const ssize_t written = write(descriptor_, data, chunk);
@@ -161,8 +163,8 @@ bool NewFile::TakeBack(size_t size) {
 int NewFile::GiveName() const {
   if (existing_ == Existing::kKept && !may_replace && HasContents(name_)) return EEXIST;
   if (std::rename(path_.c_str(), name_.c_str()) != 0) return errno;
-  // The new name survives a power failure, too. That it does not is no reason to fail: one of the two files
-  // is there.
+  // This makes the new name survive a power failure, too. If it fails, that is no reason to fail: the name
+  // leads to one of the two files.
   const size_t slash = name_.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : name_.substr(0, slash + 1);
   const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -174,7 +176,8 @@ int NewFile::GiveName() const {
 
 int NewFile::Close() {
   int error = 0;
-  // A name that is given before its bytes are on the disk may lead to an empty file after a power failure.
+  // If a file gets its name before its bytes are on the disk, the name may lead to an empty file after a
+  // power failure.
   if (path_ != name_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) error = errno;
   if (close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
   return error;

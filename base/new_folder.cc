@@ -36,7 +36,7 @@ NewFolder::~NewFolder() {
 
 void NewFolder::Finish() {
   std::error_code failed;
-  std::filesystem::rename(path_, name_, failed);  // takes an empty folder's place
+  std::filesystem::rename(path_, name_, failed);  // replaces an empty folder
   if (failed) throw WriteError(name_ + ": cannot be written: " + failed.message());
   path_.clear();
 }

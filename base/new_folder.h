@@ -1,4 +1,4 @@
-// A folder while its files are being written: it has its name when it is whole, or not at all.
+// A folder while its files are being written: it gets its name when it is whole, or not at all.
 #pragma once
 
 #include <string>
@@ -7,17 +7,18 @@ namespace hydro {
 
 class NewFolder {
  public:
-  // Makes FOLDER.part (or .part1 ..., where that name is taken) for a folder of this name, with or without a slash at its end. Throws
-  // InputError when it cannot be made, and when something of its name is there that is not an empty folder.
+  // Makes FOLDER.part (or .part1 ..., if that name is taken) for a folder of this name, with or without a
+  // slash at its end. Throws InputError when it cannot be made, and when the name leads to something other
+  // than an empty folder.
   explicit NewFolder(const std::string& folder);
-  // Without Finish(): removes what is in it.
+  // Unless Finish() was called, removes the folder and its contents.
   ~NewFolder();
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
-  // Where the files go until Finish().
+  // The folder that takes the files until Finish().
   const std::string& path() const { return path_; }
-  // Gives it its name. Throws WriteError (new_file.h).
+  // Gives the folder its name. Throws WriteError (new_file.h).
   void Finish();
 
  private:

@@ -36,7 +36,7 @@ std::string NumberText(double value) {
 
 std::string ShortestNumber(double value) {
   char text[64];
-  // Shortest digits either way; people read 0.0002 more easily than 2e-04.
+  // Both formats give the shortest digits; people read 0.0002 more easily than 2e-04.
   const double size = std::abs(value);
   const bool plain = value == 0 || (size >= 1e-4 && size < 1e15);
   const auto end = plain ? std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr
@@ -46,7 +46,7 @@ std::string ShortestNumber(double value) {
 
 std::string ShortNumber(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  // As printf("%.*g") in the C locale; in others that writes decimal commas.
+  // Formats like printf("%.*g") in the C locale; in other locales printf writes decimal commas.
   char text[64];
   const auto written = [&](std::chars_format format, int precision) {
     const auto end =
@@ -54,7 +54,7 @@ std::string ShortNumber(double value, int digits) {
     return std::string(text, end);
   };
   std::string shown = written(std::chars_format::general, digits);
-  // It would write 81000 as 8.1e+04.
+  // The general format would write 81000 as 8.1e+04.
   const double size = std::abs(value);
   if (size >= 1 && size < 1e7 && shown.find('e') != std::string::npos)
     shown = written(std::chars_format::fixed, 0);

@@ -18,15 +18,15 @@ std::string NumberText(double value);
 // 1e15 ("0.0002").
 std::string ShortestNumber(double value);
 
-// For reports: rounded to that many significant digits, or to a whole number if that has more: 3.14, 81000,
+// For reports: rounded to this many significant digits, or to a whole number if that has more: 3.14, 81000,
 // 2.6e-05. "-" when it is not finite.
 std::string ShortNumber(double value, int digits = 4);
 
-// "0x001f", with at least that many digits.
+// "0x001f", with at least this many digits.
 std::string HexNumber(uint64_t value, int digits);
 
-// Reads a whole text as a number; decimal, "inf" and "nan" in any case, a leading '+'. Empty when it is not a
-// number or is outside the range of a double.
+// Reads a whole text as a number: decimal, "inf" and "nan" in any case, a leading '+'. Empty when the text is
+// not a number or is outside the range of a double.
 std::optional<double> ParseNumber(std::string_view text);
 std::optional<int64_t> ParseInteger(std::string_view text);
 

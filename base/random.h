@@ -1,4 +1,4 @@
-// Random numbers that are the same with every standard library, unlike those of its distributions.
+// Random numbers that are the same with every standard library; those of its distributions are not.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ constexpr uint64_t Scatter(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// A name as a number to draw with: its 64-bit FNV-1a hash.
+// Turns a name into a key for drawing: its 64-bit FNV-1a hash.
 constexpr uint64_t NameKey(std::string_view name) {
   uint64_t key = 0xcbf29ce484222325u;
   for (const char c : name) key = (key ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -25,8 +25,8 @@ constexpr uint64_t NameKey(std::string_view name) {
 // in size. Its last bits are those of the C library's log and cos.
 double StandardNormal(uint64_t key);
 
-// A sequence: SplitMix64. Cheap to make: everything that draws has one of its own, so that leaving out what
-// one of them draws changes nothing that the others draw.
+// A sequence of random numbers: SplitMix64. Cheap to make: everything that draws has a sequence of its own,
+// so that leaving out the draws of one changes none of the others'.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}

@@ -1,7 +1,8 @@
-// Which files this process has read, so that it never writes over one of them.
+// Remembers which files this process has read, so that it never writes over one of them.
 //
-// Every reader of files (text_file.h, mapped_file.h, base/tables/) remembers what it opens, and every writer asks (new_file.h). A file is
-// the same under whatever path: another spelling, a symbolic or a hard link.
+// Every reader of files (text_file.h, mapped_file.h, base/tables/) records the files that it opens, and every
+// writer asks (new_file.h). A file counts as the same under any path: another spelling, a symbolic or a hard
+// link.
 #pragma once
 
 #include <string>
@@ -13,15 +14,15 @@ namespace hydro {
 void RememberRead(const std::string& file);
 bool WasRead(const std::string& file);
 
-// Throws InputError if writing to `output` would replace what this process has read, or one of `inputs`, which it will read. A
-// device may be both.
+// Throws InputError if writing to `output` would replace a file that this process has read, or one of
+// `inputs`, which it will read. A device may be both input and output.
 void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs = {});
 
-// Throws InputError if two of the names, which will be written, lead to one file: the second would replace the first. Empty ones are left
-// out, and devices.
+// Throws InputError if two of the names, which will be written, lead to one file: the second would replace
+// the first. Empty names and devices are left out.
 void CheckDistinct(const std::vector<std::string>& outputs);
 
-// For who replaces on purpose what it has read, and has kept it under another name.
+// For a caller that replaces on purpose a file that it has read, and has kept it under another name.
 void ForgetRead(const std::string& file);
 
 }  // namespace hydro

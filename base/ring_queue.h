@@ -12,7 +12,7 @@ namespace hydro {
 template <class Value>
 class RingQueue {
  public:
-  // Has room for `capacity` values (a power of two); doubles when full.
+  // Has room for `capacity` values (a power of two); the room doubles when it is full.
   explicit RingQueue(size_t capacity = 64) : values_(capacity), mask_(capacity - 1) {}
 
   bool empty() const { return first_ == end_; }
@@ -26,7 +26,7 @@ class RingQueue {
   }
   void pop_front() { ++first_; }
   void clear() { first_ = end_ = 0; }
-  // Leaves out those of which `out(value)` is true; the others keep their order.
+  // Removes the values for which `out(value)` is true; the others keep their order.
   template <class Out>
   void erase_if(Out&& out) {
     for (size_t left = size(); left > 0; --left) {
@@ -48,7 +48,7 @@ class RingQueue {
 
   std::vector<Value> values_;
   size_t mask_;       // one less than the capacity
-  size_t first_ = 0;  // counts on; the position is modulo the capacity
+  size_t first_ = 0;  // counts on; the position is this number modulo the capacity
   size_t end_ = 0;
 };
 

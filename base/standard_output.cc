@@ -29,7 +29,7 @@ int FinishStandardOutput(const std::string& program, int exit_code) {
   static bool said = false;
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-  // An earlier write has failed, and of its errno nothing is left.
+  // Where errno is 0, an earlier write has failed, and its errno is lost.
   if (!said)
     std::fprintf(stderr, "%s: %s\n", program.c_str(), CannotBeWritten(errno == 0 ? EIO : errno).c_str());
   said = true;

@@ -7,23 +7,24 @@
 
 namespace hydro {
 
-// What stands for the standard output where the name of a file is given.
+// Stands for the standard output in the place of a file name.
 inline constexpr const char* kStandardOutput = "-";
 
-// As CheckCanBeCreated (new_file.h).
+// Checks as CheckCanBeCreated does (new_file.h).
 void CheckCanBeWritten(const std::string& file);
 
-// As WriteWholeFile (new_file.h) with Existing::kKept; `-` goes to `out`.
+// Writes as WriteWholeFile does (new_file.h) with Existing::kKept; `-` goes to `out`.
 void WriteTextFile(const std::string& file, const std::string& text, std::FILE* out = stdout);
 
 // "the standard output cannot be written: No space left on device", given an errno.
 std::string CannotBeWritten(int error);
 
-// What a program that would end with `exit_code` ends with: 1 instead of 0, after one line on stderr, when something of its
-// standard output could not be written. Says so once.
+// The exit code of a program that would end with `exit_code`: 1 instead of 0, after one line on stderr, when
+// a part of its standard output could not be written. The line is printed only once.
 int FinishStandardOutput(const std::string& program, int exit_code);
 
-// Where a program prints what it has to say beside the files that it writes: `out`, or `err` when `out` takes one of them.
+// The stream for a program's messages beside the files that it writes: `out`, or `err` when `out` takes one
+// of the files.
 std::FILE* OutputBeside(std::initializer_list<std::string> files, std::FILE* out = stdout,
                         std::FILE* err = stderr);
 

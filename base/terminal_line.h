@@ -15,7 +15,7 @@ class TerminalLine {
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
-  // Shows "[####....] 50 % text", cut to the terminal's width. `fraction`: 0 to 1.
+  // Shows "[####....] 50 % text", cut to the terminal's width. `fraction` is from 0 to 1.
   void Draw(double fraction, const std::string& text);
   // Call before writing anything else to the terminal.
   void Wipe();

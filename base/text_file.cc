@@ -38,7 +38,7 @@ void CheckIsFile(const std::string& file) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   const bool folder = std::filesystem::is_directory(status);
-  // Opening a pipe that nobody writes to waits forever.
+  // Opening a pipe that has no writer waits forever.
   if (folder || std::filesystem::is_fifo(status) || std::filesystem::is_socket(status)) {
     throw InputError(file + ": found a " + (folder ? "folder" : "pipe") + ", allowed: a file");
   }
@@ -79,7 +79,7 @@ std::string Printable(std::string_view text) {
     size_t length = CharacterLength(text);
     const unsigned char c = static_cast<unsigned char>(text[0]);
     const bool control = length == 1 && ((c < 0x20 && c != '\t') || c == 0x7f);
-    // U+0080 to U+009F: the same commands as ESC and a letter.
+    // U+0080 to U+009F are the same commands as ESC and a letter.
     const bool long_control = length == 2 && c == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
     if (length == 0 || control || long_control) {
       length = std::max<size_t>(length, 1);

@@ -18,7 +18,7 @@ void CheckIsFile(const std::string& file);
 // The path of `file`, which is absolute or relative to the folder of `beside`.
 std::string PathBeside(const std::string& beside, const std::string& file);
 
-// `text` in double quotes on one line: control characters escaped, the middle of long texts omitted.
+// `text` in double quotes on one line, with control characters escaped and the middle of long texts omitted.
 std::string Quoted(std::string_view text);
 
 // `text` made safe for a terminal: tabs and valid UTF-8 stay. Anything that could move the cursor, change
@@ -26,10 +26,10 @@ std::string Quoted(std::string_view text);
 // control characters) becomes "\\x1b".
 std::string Printable(std::string_view text);
 
-// Printable, line by line: the text's own line ends stay.
+// Makes the text printable line by line: its own line ends stay.
 std::string PrintableLines(std::string_view text);
 
-// "\"a\", \"b\" or \"c\""; of a very long list the first names and how many there are more.
+// "\"a\", \"b\" or \"c\""; for a very long list, the first names and the number of the others.
 template <class Names>
 std::string QuotedList(const Names& names) {
   constexpr size_t kMost = 100;

@@ -1,4 +1,4 @@
-// Text as lines.
+// Splits text into lines.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace hydro {
 
-// Without their ends; an end at the end of the text begins no line.
+// The lines without their ends; a line end at the end of the text begins no further line.
 std::vector<std::string> TextLines(const std::string& text);
 
-// Without blanks, tabs and carriage returns at both ends.
+// The text without blanks, tabs and carriage returns at both ends.
 std::string Trimmed(const std::string& text);
 
 }  // namespace hydro

@@ -11,7 +11,7 @@
 namespace hydro {
 namespace {
 
-// Spellings of one meaning only. Upper and lower case differ otherwise: mPa is not MPa.
+// Spellings that have only one meaning. Elsewhere, upper and lower case differ: mPa is not MPa.
 constexpr std::pair<std::string_view, std::string_view> kSpellings[] = {
     {"sec", "s"},      {"Sec", "s"},        {"S", "s"},          {"msec", "ms"},     {"volt", "V"},
     {"Volt", "V"},     {"volts", "V"},      {"Volts", "V"},      {"PSI", "psi"},     {"Psi", "psi"},
@@ -30,7 +30,7 @@ std::string LowerCase(std::string_view text) {
   return lower;
 }
 
-// A unit of the table, or two without anything between them.
+// A unit of the table, or two units without anything between them.
 std::vector<std::string> MeaningsOf(const std::string& name) {
   std::vector<std::string> meanings = {std::string(OurSpelling(name))};
   const std::string lower = LowerCase(name);
@@ -46,7 +46,7 @@ std::vector<std::string> MeaningsOf(const std::string& name) {
   return meanings;
 }
 
-// A text with " " for other signs of a product, and powers as ours.
+// The text with " " for other signs of a product, and with powers written our way.
 std::string WithOurSigns(std::string_view text) {
   constexpr std::pair<std::string_view, std::string_view> kSigns[] = {{"*", " "}, {"·", " "},  {"⋅", " "},
                                                                       {"×", " "}, {"²", "^2"}, {"³", "^3"}};

@@ -45,7 +45,7 @@ std::string Written(const std::vector<UnitPower>& powers, char times) {
   return above + "/" + (divisors == 1 ? below : "(" + below + ")");
 }
 
-// force / length^2 as one name where there is one; else as the two.
+// force / length^2 under one name if there is one; otherwise as the two units.
 std::vector<UnitPower> Pressure(const UnitSystem& units) {
   std::vector<UnitPower> quotient = {{units.force, 1}, {units.length, -2}};
   const Unit wanted = *ParseUnit(std::string(units.force) + "/" + std::string(units.length) + "^2");
@@ -56,7 +56,7 @@ std::vector<UnitPower> Pressure(const UnitSystem& units) {
   return quotient;
 }
 
-// In the order in which units are written: force before length, as in N m.
+// The place of a unit in the written order: force before length, as in N m.
 int Place(const UnitPower& unit, const UnitSystem& units) {
   return unit.name == units.force ? 0 : unit.name == units.length ? 1 : 2;
 }

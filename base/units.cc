@@ -15,7 +15,8 @@ struct NamedUnit {
   Unit unit;
 };
 
-// The size of 1 of the unit, and its powers of m, kg, s, V, rad, K and A. A temperature in degC or degF is such a difference, from a zero of its own.
+// The size of one unit, and its powers of m, kg, s, V, rad, K and A. A temperature in degC or degF is a
+// difference in that unit, from a zero of its own.
 constexpr NamedUnit kUnits[] = {
     {"1", {1, {}}},
     {"m", {1, {1}}},
@@ -91,7 +92,7 @@ constexpr struct {
     {"1/psi", "1/MPa"},
 };
 
-// Reads factors off a text one by one.
+// Reads the factors of a text one by one.
 class UnitReader {
  public:
   explicit UnitReader(std::string_view text) : text_(text) {}
@@ -100,7 +101,7 @@ class UnitReader {
     const std::optional<Unit> unit = Product();
     return text_.empty() ? unit : std::nullopt;
   }
-  // What Whole() has read.
+  // The parts that Whole() has read.
   std::vector<UnitPower>& parts() { return parts_; }
 
  private:
@@ -163,7 +164,7 @@ class UnitReader {
     for (size_t i = first; i < parts_.size(); ++i) parts_[i].power *= exponent;
   }
 
-  static constexpr int kMostBrackets = 8;  // so that no text exhausts the stack
+  static constexpr int kMostBrackets = 8;  // limits the depth, so that no text exhausts the stack
 
   std::string_view text_;
   int brackets_ = 0;
@@ -206,7 +207,7 @@ std::optional<SiUnit> FindSiUnit(const std::string& unit, double size) {
   for (const auto& [from, to] : kShownIn) {
     if (unit == from) return Conversion(from, to);
   }
-  // Another system's unit for one of these quantities.
+  // The unit may be another system's unit for one of these quantities.
   const std::optional<Unit> own = ParseUnit(unit);
   if (!own.has_value() || own->powers == std::array<double, 7>{}) return std::nullopt;
   if (own->powers == ParseUnit("psi")->powers) return pressure(own->size);

@@ -1,4 +1,4 @@
-// Units of measurement: their one table, and how figures are shown in SI units (--si).
+// Units of measurement: the only table of them, and the SI units in which figures are shown (--si).
 #pragma once
 
 #include <array>
@@ -25,12 +25,12 @@ struct Unit {
   std::array<double, 7> powers{};  // of m, kg, s, V, rad, K and A
 };
 
-// A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided
-// by), with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty when the text
-// is not a unit.
+// Reads a unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/"
+// (divided by), with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty when
+// the text is not a unit.
 std::optional<Unit> ParseUnit(std::string_view text);
 
-// "rad_s" for "rad/s", for names.
+// "rad_s" for "rad/s", for use in names.
 std::string UnitInName(const std::string& unit);
 
 // A unit of the table to a power.
@@ -39,7 +39,7 @@ struct UnitPower {
   double power = 1;
 };
 
-// The parts of such a text in its order: in^3, s^-1 and psi^-1 for "in^3/(s psi)".
+// The parts of such a text in their order: in^3, s^-1 and psi^-1 for "in^3/(s psi)".
 std::optional<std::vector<UnitPower>> UnitPowers(std::string_view text);
 
 // The table's names.
@@ -51,9 +51,9 @@ struct SiUnit {
   double factor;  // value in `to` = factor * value in `from`
 };
 
-// The SI unit in which to show a figure given in the paper's units or a model's own; empty when that is the
-// same unit, or when there is none for it. `size`, the largest value to be shown, decides between kPa and
-// MPa.
+// The SI unit in which to show a figure that is given in the paper's units or a model's own; empty when that
+// is the same unit, or when there is none for it. `size`, the largest value to be shown, decides between kPa
+// and MPa.
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size);
 
 }  // namespace hydro

@@ -5,7 +5,7 @@
 
 namespace hydro {
 
-// Table 3-7 of the Unicode standard: what the second byte may be depends on the first.
+// Follows table 3-7 of the Unicode standard: the range allowed for the second byte depends on the first.
 size_t CharacterLength(std::string_view text) {
   if (text.empty()) return 0;
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -54,7 +54,7 @@ std::string AsUtf8(std::string_view text) {
 std::string_view FirstBytes(std::string_view text, size_t most) {
   if (text.size() <= most) return text;
   size_t end = most;
-  // At most three bytes of a character come after its first; longer rows of such bytes are no characters.
+  // At most three bytes of a character follow its first; longer sequences of such bytes are not characters.
   while (end > 0 && most - end < 3 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, CharacterLength(text.substr(end)) > most - end ? end : most);
 }

@@ -1,4 +1,4 @@
-// Lists of words in a sentence.
+// Joins lists of words for a sentence.
 #pragma once
 
 #include <string>

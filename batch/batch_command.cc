@@ -83,7 +83,8 @@ RunOutcome RunAll(const Study& study, const BatchOptions& options, const std::st
                     there.done + (options.failed_again ? 0 : there.failed));
   bool told = false;
   request.progress = [&](const RunProgress& now) {
-    // A mistake that every case makes: no need to wait for all of them.
+    // After this many failures, every case probably has the same mistake, and there is no need to wait for
+    // all of them.
     constexpr int64_t kEnough = 10;
     if (!told && now.ran >= kEnough && now.ran < now.to_run && now.failed == now.ran) {
       told = true;
@@ -105,7 +106,7 @@ int RunStudy(const BatchOptions& options) {
   const std::string folder =
       options.out.empty() ? "out/batch/" + std::filesystem::path(options.study).stem().string() : options.out;
   PrepareStudy(asked, folder);
-  // As every worker reads it.
+  // Reads the study in the way in which every worker reads it.
   const Study study = OpenStudy(folder);
   const StudyLock lock(folder);
   if (options.slurm.on) {
@@ -115,7 +116,8 @@ int RunStudy(const BatchOptions& options) {
     return Stopped();
   }
   TableCounts counts = FinishStudy(folder, Jobs(options));
-  // Each has run, so what is missing now was no result (a power cut while it was stored), and is away.
+  // Each case has run, so a case that is missing now had no valid result (a power cut while it was stored),
+  // and the result was removed.
   if (counts.missing > 0 && !options.slurm.on) {
     std::fprintf(stderr, "hydro-batch: %lld stored results are not whole; their cases run again\n",
                  static_cast<long long>(counts.missing));

@@ -1,4 +1,4 @@
-// What the command line of hydro-batch asks for.
+// The request on the command line of hydro-batch.
 #pragma once
 
 #include <string>
@@ -13,16 +13,17 @@ struct BatchOptions {
   std::string out;    // the study's folder; empty: out/batch/ and the name of the study's file
   int jobs = 0;       // cases at the same time; 0: as many as processors
   bool failed_again = false;
-  std::string status;  // folder of a study to tell of
-  std::string finish;  // folder of a study to make the table of
-  std::string worker;  // folder of a prepared study to run cases of
-  std::string cases;   // "A:B", which ones
+  std::string status;  // folder of a study whose status is shown
+  std::string finish;  // folder of a study whose table is made
+  std::string worker;  // folder of a prepared study whose cases are run
+  std::string cases;   // "A:B", the cases to run
   SlurmOptions slurm;
 };
 
 void AddOptions(settings::CommandLine* line, BatchOptions* options);
 
-// Exit code: 0 all cases are done, 1 some failed or are missing. Throws InputError, StoreError, WriteError.
+// Returns the exit code: 0 all cases are done, 1 some failed or are missing. Throws InputError, StoreError,
+// WriteError.
 int Run(const BatchOptions& options);
 
 }  // namespace hydro::batch

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Removes what a process that was killed while it wrote a study's own file left.
+// Removes what a killed process left when it was writing one of the study's own files.
 void SweepParts(const Study& study, const std::string& folder) {
   std::error_code failed;
   std::vector<fs::path> left;

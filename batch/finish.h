@@ -7,8 +7,8 @@
 
 namespace hydro::batch {
 
-// Makes table.csv, table.json, the pictures and index.html in a study's folder from the cases that are there; missing ones are counted
-// and stand in the table as missing. Throws WriteError, StoreError, InputError.
+// Makes table.csv, table.json, the pictures and index.html in a study's folder from the cases that are there.
+// Missing cases are counted and appear in the table as missing. Throws WriteError, StoreError, InputError.
 TableCounts FinishStudy(const std::string& folder, int jobs);
 
 }  // namespace hydro::batch

@@ -1,4 +1,4 @@
-// hydro-batch STUDY.toml: many cases of one thing, with other values in each.
+// hydro-batch STUDY.toml: runs many cases of one thing, with other values in each.
 #include "batch/batch_command.h"
 #include "process/stop_signal.h"
 #include "settings/command_line.h"

@@ -22,7 +22,7 @@ void CheckSame(const Study& study, const std::string& folder) {
                    "; go on with that one, or give another --out");
 }
 
-// study.toml comes last: where it is, all is.
+// study.toml is written last, so that its presence means that everything is there.
 void WriteStudy(const Study& study, const std::string& folder) {
   std::error_code failed;
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
@@ -50,7 +50,7 @@ void PrepareStudy(const Study& study, const std::string& folder) {
   const std::string file = folder + "/study.toml";
   if (fs::exists(file)) {
     CheckSame(study, folder);
-    // The report may ask for something else.
+    // The report may differ.
     if (OpenStudy(folder).files.at("study.toml") != study.files.at("study.toml")) {
       ForgetRead(file);
       WriteWholeFile(file, study.files.at("study.toml"));

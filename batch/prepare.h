@@ -1,8 +1,8 @@
 // A study's folder:
 //
-//   study.toml, config.toml, model.toml, inputs/   the study, and all that its cases need
+//   study.toml, config.toml, model.toml, inputs/   the study, and everything that its cases need
 //   cases/     the cases (store/case_store.h)
-//   times/     when they ran, and how long
+//   times/     when they ran, and for how long
 //   staging/   cases that are being stored
 //   table.csv, table.json, index.html and pictures, once FinishStudy() has run
 #pragma once
@@ -13,11 +13,11 @@
 
 namespace hydro::batch {
 
-// Makes the folder, or finds it made for the same study. Throws InputError for the folder of another study, naming the first difference,
-// and where something else is in it.
+// Makes the folder, or finds it already made for the same study. Throws InputError for the folder of another
+// study, naming the first difference, and for a folder that holds something else.
 void PrepareStudy(const Study& study, const std::string& folder);
 
-// The study that a folder was made for. Throws InputError when there is none.
+// Reads the study for which a folder was made. Throws InputError when there is none.
 Study OpenStudy(const std::string& folder);
 
 }  // namespace hydro::batch

@@ -1,4 +1,4 @@
-// The progress of a study: a line redrawn on a terminal, a line a minute elsewhere.
+// Shows the progress of a study: one line that is redrawn on a terminal, and a line per minute elsewhere.
 #pragma once
 
 #include <cstdio>
@@ -11,12 +11,13 @@ namespace hydro::batch {
 
 class Progress {
  public:
-  // `total`: cases of the study; `there`: those that were there before. The caller keeps `out`.
+  // `total` is the number of cases of the study, and `there` the number that existed before. The caller keeps
+  // `out`.
   Progress(std::FILE* out, bool terminal, int64_t total, int64_t there);
 
-  // `more`: what follows the text.
+  // `more` is appended to the text.
   void Show(const RunProgress& progress, const std::string& more = "");
-  // A line that stays.
+  // Prints a line that stays.
   void Say(const std::string& text);
 
  private:

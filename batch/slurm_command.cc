@@ -26,14 +26,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMostPilot_s = 20;  // what hydro-batch itself computes before it submits
+constexpr double kMostPilot_s = 20;  // s that hydro-batch itself computes before it submits
 constexpr double kEnoughPilot_s = 1;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Closing the terminal is no wish to end jobs on a cluster.
+// A user who closes the terminal does not mean to end jobs on a cluster.
 StopWish Wish() {
   const int signal = process::StopSignal();
   if (signal == 0) return StopWish::kNone;
@@ -48,7 +48,8 @@ void Wait(std::chrono::milliseconds time) {
         std::min<Clock::duration>(end - Clock::now(), std::chrono::milliseconds(100)));
 }
 
-// The first cases, run here, tell how long a case takes. They are cases like all others, stored and not repeated.
+// Runs the first cases here to find out how long a case takes. They are cases like all others: they are
+// stored and not repeated.
 void RunPilot(const Study& study, const std::string& folder, Progress* progress) {
   const auto start = Clock::now();
   int64_t first = 0, count = 1;
@@ -114,7 +115,8 @@ class Drive {
     try {
       return driver->Run();
     } catch (const ClusterError& error) {
-      // A partition that is not there, a time that is too long: bad usage. A controller that does not answer is none.
+      // A partition that does not exist, or a time that is too long, is bad usage. A controller that does not
+      // answer is not.
       if (error.refused()) throw InputError(error.what());
       throw;
     }

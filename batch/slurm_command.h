@@ -1,4 +1,4 @@
-// hydro-batch --slurm: a study on a cluster.
+// hydro-batch --slurm: runs a study on a cluster.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@ struct SlurmOptions {
   std::string partition, account, time;
   std::vector<std::string> sbatch;  // further arguments of sbatch
   int64_t at_once = 0;              // most jobs at the same time; 0: any number
-  int64_t processors = 1;           // of a job
-  int64_t cases_per_job = 0;        // 0: chosen
-  double case_s = 0;                // how long a case takes; 0: measured
+  int64_t processors = 1;           // of one job
+  int64_t cases_per_job = 0;        // 0: chosen automatically
+  double case_s = 0;                // s that a case takes; 0: measured
   bool detach = false;
 };
 
 void AddSlurmOptions(settings::CommandLine* line, SlurmOptions* options);
 
-// Throws InputError for options of --slurm without it, and for values out of range.
+// Throws InputError for options of --slurm without --slurm, and for values out of range.
 void CheckSlurmOptions(const SlurmOptions& options);
 
 enum class SlurmEnd {
-  kEnded,  // all cases are there, or no further attempt was of use
+  kEnded,  // all cases are there, or another attempt would be of no use
   kStopped,
 };
 
-// Runs the missing cases of a prepared study whose lock the caller holds. `failed_again`: failed cases are missing. Throws InputError for
-// what Slurm refuses, StoreError.
+// Runs the missing cases of a prepared study. The caller must hold its lock. With `failed_again`, failed
+// cases count as missing. Throws InputError for what Slurm refuses, StoreError.
 SlurmEnd RunOnSlurm(const Study& study, const std::string& folder, const SlurmOptions& options,
                     bool failed_again);
 
-// A line about the jobs of a study that runs on a cluster; empty for another.
+// A line about the jobs of a study that runs on a cluster; empty for other studies.
 std::string SlurmStatusText(const std::string& folder);
 
 }  // namespace hydro::batch

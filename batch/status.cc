@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr double kWindow = 60;  // s
 
-// When the cases of a file of times ended, seconds since 1970. The last line may be half written.
+// Adds the times, in seconds since 1970, at which the cases in a file of times ended. The last line may be
+// only half written.
 void AddEnds(const std::string& text, std::vector<double>* ends) {
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = text.find('\n', begin);

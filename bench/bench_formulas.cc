@@ -1,5 +1,5 @@
-// What an effect costs as text over what it costs compiled: the equations' right-hand side with the effect, and with its
-// derivatives.
+// What an effect costs as text over what it costs compiled: the equations' right-hand side with the effect,
+// and with its derivatives.
 #include <chrono>
 #include <cstdio>
 #include <string>

@@ -1,5 +1,5 @@
-// A command to a front end and the first sample that obeys it, over each kind of link, beside a state and its command between two of
-// our own processes over UDP multicast, alternating in the same run at the same rates.
+// A command to a front end and the first sample that obeys it, over each kind of link, beside a state and its
+// command between two of our own processes over UDP multicast, alternating in the same run at the same rates.
 //   bench_front_end [SECONDS]
 #include <poll.h>
 #include <spdlog/spdlog.h>

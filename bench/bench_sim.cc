@@ -1,6 +1,6 @@
-// What hydro-sim spends beside the model and the laws: the whole stack in one process at 5 kHz, with its messages, checks and
-// statistics, beside the same ticks of model and laws alone, in pairs within one run. Goal: 1.6 times as long; and 1,000 times
-// real time without a log.
+// What hydro-sim spends beside the model and the laws: the whole stack in one process at 5 kHz, with its
+// messages, checks and statistics, beside the same ticks of model and laws alone, in pairs within one run.
+// Goal: 1.6 times as long; and 1,000 times real time without a log.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

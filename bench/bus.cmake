@@ -1,4 +1,4 @@
-# The cost of a message on the bus, and lockstep beside bare LCM in the same pattern.
+# The cost of a message on the bus, and of lockstep compared with bare LCM in the same pattern.
 find_package(benchmark REQUIRED)
 add_executable(bench_bus ${PROJECT_SOURCE_DIR}/bench/bench_bus.cc)
 target_link_libraries(bench_bus PRIVATE hydro_udpm benchmark::benchmark)

@@ -1,6 +1,6 @@
 // How many stacks (plant, pressure loop, position loop: three processes each) one machine and one multicast
-// segment can run in real time, on a port each and on one shared port with channel suffixes; how many joints a limb can have on one
-// core; and how many of both hydro-sim can run in one process.
+// segment can run in real time, on a port each and on one shared port with channel suffixes; how many joints
+// a limb can have on one core; and how many of both hydro-sim can run in one process.
 //   many_stacks [--seconds S] [--most N] [--rate HZ] [--priority P] [--joints N] [--limbs]
 // Each row is compared with a single stack measured just before it, because the machine may have other work.
 #include <sys/prctl.h>
@@ -245,8 +245,8 @@ pid_t ForkLimb(const settings::LimbConfig& config, const Options& options, int c
   });
 }
 
-// Many joints in a process on one core, and at the same time one joint on the other: whatever the machine does to one of
-// them, it is likely to do to the other.
+// Many joints in a process on one core, and at the same time one joint on the other: whatever the machine
+// does to one of them, it is likely to do to the other.
 void Limbs(const Options& options) {
   std::printf(
       "\nlimbs at %g Hz: all joints in one process on core 0, telemetry at 50 Hz; beside it, at the same "

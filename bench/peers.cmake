@@ -1,5 +1,5 @@
-# Other middleware, if its development package is installed: libzmq3-dev with cppzmq-dev, libnng-dev, cyclonedds-dev.
-# scripts/bench says how to install them; nothing else needs them.
+# Other middleware, if its development package is installed: libzmq3-dev with cppzmq-dev, libnng-dev,
+# cyclonedds-dev. scripts/bench says how to install them. Nothing else needs them.
 add_executable(bench_round_trip bench_round_trip.cc echo_lcm.cc)
 target_link_libraries(bench_round_trip PRIVATE hydro_udpm hydro_pressure_app)
 target_compile_definitions(bench_round_trip PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/paper.toml")

@@ -4,15 +4,15 @@
 // multicast (udpm/open_udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a
 // recorded log (log_bus.h).
 //
-// The contract, which every transport keeps (tests/bus/bus_contract_test.cc):
+// Every transport keeps this contract (tests/bus/bus_contract_test.cc):
 // - Messages from one sender on one channel arrive in the order in which they were sent.
 // - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler
 //   publishes is delivered in a later turn of the same HandleUntil() or in a later call, never inside
 //   Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never passes through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
-// - The seal of an authenticated message (bus/seal/) is never delivered with it. On a bus with a key, a
-//   message that is not genuine is counted in refused() and not delivered.
+// - A message is never delivered with its seal (bus/seal/). On a bus with a key, a message that is not
+//   genuine is counted in refused() and not delivered.
 // - A handler may subscribe, also to its own channel: the new handler gets later messages, not this one.
 // - Only one thread uses a bus.
 #pragma once
@@ -35,8 +35,8 @@
 
 namespace hydro::bus {
 
-// The bus cannot work here: no multicast route, a bad URL, a failed self-test. what() says what to do about
-// it.
+// Thrown when the bus cannot work here: no multicast route, a bad URL, a failed self-test. what() says what
+// to do about it.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -53,13 +53,13 @@ struct MessageType {
   bool (*decode_into)(void* message, const void* data, int size);  // false: not a message of this type
 };
 
-// True when decoding consumed all `size` bytes, except for a seal.
+// Returns true when decoding consumed all `size` bytes, except for a seal.
 inline bool DecodedAll(int decoded, const void* data, int size) {
   return decoded == size || (decoded >= 0 && decoded == SizeWithoutSeal(data, size));
 }
 
-// Whether a message that was decoded from another process can be sent on: LCM's strings end at the first zero
-// byte, which a changed or made-up message may have anywhere. Only messages with strings can fail.
+// Whether a message that was decoded from another process can be sent on. LCM's strings end at the first zero
+// byte, and a changed or made-up message may have one anywhere. Only messages with strings can fail.
 template <class Message>
 bool CanBeEncoded(const Message& message) {
   if constexpr (std::is_trivially_copyable_v<Message>) return true;
@@ -69,7 +69,7 @@ bool CanBeEncoded(const Message& message) {
   return message.encode(bytes.data(), 0, size) == size;
 }
 
-// Decodes all `size` bytes; false: not a message of this type.
+// Decodes all `size` bytes. Returns false when they are not a message of this type.
 template <class Message>
 bool DecodeInto(Message* message, const void* data, int size) {
   return DecodedAll(message->decode(data, 0, size), data, size) && CanBeEncoded(*message);
@@ -97,7 +97,8 @@ const MessageType& TypeOf() {
   return type;
 }
 
-// A message as it crosses the wire or lies in a log. Its bytes are valid only while the handler runs.
+// A message as it is sent over the network or stored in a log. Its bytes are valid only while the handler
+// runs.
 struct RawMessage {
   std::string_view channel;
   const uint8_t* data = nullptr;
@@ -105,18 +106,18 @@ struct RawMessage {
   int64_t receive_utime = 0;  // us since 1970-01-01 UTC, or simulated time, when it was received
 };
 
-// Messages refused on authenticated channels, by reason.
+// Counts of messages refused on authenticated channels, by reason.
 struct RefusedMessages {
   int64_t unsealed = 0;        // without a seal: the sender has no key
   int64_t wrong_seal = 0;      // the sender has another key, or the message changed on the way
-  int64_t repeated = 0;        // no newer than one already accepted: replayed, or overtaken
+  int64_t repeated = 0;        // no newer than one already accepted: replayed or overtaken
   int64_t unknown_sender = 0;  // genuine, but its sender does not answer: a recording of an earlier run
   std::string last_channel;
 
   int64_t total() const { return unsealed + wrong_seal + repeated + unknown_sender; }
 };
 
-// A channel that the bus has already looked up, for messages of one type: what a Publisher sends through.
+// A channel that the bus has already looked up, for messages of one type. A Publisher sends through it.
 class Outlet {
  public:
   virtual ~Outlet() = default;
@@ -183,24 +184,24 @@ class Bus {
   // the clock to the deadline and returns. A handler must not call this (std::logic_error).
   virtual int HandleUntil(TimePoint deadline) = 0;
 
-  // From now on HandleUntil() also returns, 0 or more, while `descriptor` (-1: none) has something to read.
-  // Transports without sockets wait for messages alone.
+  // From now on HandleUntil() also returns, with 0 or more, while `descriptor` (-1: none) has something to
+  // read. Transports without sockets wait for messages alone.
   virtual void WakeOn(int /*descriptor*/) {}
 
-  // Messages that arrived on a subscribed channel but could not be decoded as its type.
+  // The number of messages that arrived on a subscribed channel but could not be decoded as its type.
   int64_t undecodable() const { return undecodable_; }
 
-  // Messages that could not be sent because the network was down.
+  // The number of messages that could not be sent because the network was down.
   int64_t unsent() const { return unsent_; }
 
-  // The simulated process that this bus belongs to; null: the real one that runs this code.
+  // The simulated process to which this bus belongs; null: the real process that runs this code.
   const HostedProcess* process() const { return process_; }
 
   // The channel of the newest message that could not be decoded; empty when there was none or the transport
   // does not know.
   const std::string& undecodable_channel() const { return undecodable_channel_; }
 
-  // Messages that were not genuine. Always none on a bus without a key.
+  // The counts of messages that were not genuine. Always zero on a bus without a key.
   const RefusedMessages& refused() const { return *refused_; }
 
  protected:
@@ -208,12 +209,12 @@ class Bus {
   virtual void SubscribeTyped(const std::string& channel, const MessageType& type,
                               std::function<void(const void*)> handler) = 0;
 
-  // What Advertise() returns; by default it calls PublishTyped() on `channel`.
+  // Makes the outlet for Advertise(); by default it calls PublishTyped() on `channel`.
   virtual std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) {
     return std::make_shared<NamedOutlet>(this, channel, type);
   }
 
-  // What a transport counts and is; loops ask for it at every turn.
+  // The transport's counters and identity; loops read them at every turn.
   int64_t undecodable_ = 0;
   int64_t unsent_ = 0;
   const RefusedMessages* refused_ = &NoneRefused();

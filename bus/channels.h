@@ -20,10 +20,10 @@ class Channels {
     return names_[MessageIndex<Message>()];
   }
 
-  // What comes behind each channel's own name.
+  // The text that follows each channel's own name.
   std::string suffix() const { return Of<fault_t>().substr(RowOf<fault_t>().channel.size()); }
 
-  // In the table's order.
+  // The names, in the table's order.
   const std::array<std::string, kMessageCount>& names() const { return names_; }
 
  private:

@@ -25,24 +25,24 @@ class Clock {
   // How long the machine has been suspended since boot. Now() does not count that time.
   virtual Duration Suspended() const { return {}; }
 
-  // Suspended(), or longer by as much as has passed since Now() was `now`: one reading of a clock less.
+  // Suspended(), or more by the time that has passed since Now() was `now`. It saves one reading of a clock.
   virtual Duration SuspendedAtMost(TimePoint /*now*/) const { return Suspended(); }
 
   // True when time passes only because a caller that waits advances the clock.
   virtual bool simulated() const { return false; }
 
-  // On a simulated clock, the session of all that run on it (bus/session.h).
+  // On a simulated clock, the session of all processes that run on it (bus/session.h).
   virtual int64_t session() const { return 0; }
 
  protected:
   // A clock that goes by itself.
   Clock() = default;
-  // A clock that stands still, at `now`, until it is set: loops read it without a call.
+  // A clock that stands still, at `now`, until it is set: loops read it without a virtual call.
   explicit Clock(TimePoint now) : stands_(true), now_(now) {}
   void SetTo(TimePoint now) { now_ = now; }
 
  private:
-  // What Now() is on a clock that goes by itself.
+  // The time that Now() returns on a clock that goes by itself.
   virtual TimePoint Read() const { return now_; }
 
   bool stands_ = false;
@@ -74,7 +74,7 @@ class WallClock : public Clock {
   }
 };
 
-// Starts at 0 and stands still until advanced.
+// A clock that starts at 0 and stands still until it is advanced.
 class SimulatedClock : public Clock {
  public:
   explicit SimulatedClock(int64_t session = 0) : Clock(TimePoint()), session_(session) {}

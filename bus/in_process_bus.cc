@@ -26,7 +26,7 @@ struct InProcessBus::Slot {
 
 struct InProcessBus::Handler {
   const MessageType* type;
-  bool of_channel;                // its type is that of the channel's typed copies
+  bool of_channel;                // it has the same type as the channel's typed copies
   std::shared_ptr<void> decoded;  // for raw messages
   std::function<void(const void*)> call;
   std::unique_ptr<Handler> next;
@@ -34,11 +34,11 @@ struct InProcessBus::Handler {
 
 struct InProcessBus::Channel {
   std::string name;
-  const MessageType* type = nullptr;  // of the typed copies: that of the first publisher or subscriber
+  const MessageType* type = nullptr;  // of the typed copies: the type of the first publisher or subscriber
   std::unique_ptr<Handler> handlers;  // in the order of subscription
   const Handler* last = nullptr;      // of them
   std::vector<std::unique_ptr<Slot>> slots;
-  Slot* idle = nullptr;  // the first of those in which no message waits
+  Slot* idle = nullptr;  // the first of the slots without a waiting message
 
   Slot& TakeSlot() {
     if (idle == nullptr) AddSlots();
@@ -154,7 +154,7 @@ inline void InProcessBus::Done(Slot& slot) {
 }
 
 inline void InProcessBus::Dispatch(const Slot& slot) {
-  // Who subscribes meanwhile does not get this message.
+  // A handler that is subscribed meanwhile does not get this message.
   const Handler* const last = slot.channel->last;
   if (!taps_.empty()) ShowTaps(slot);
   if (last == nullptr) return;

@@ -18,17 +18,18 @@ namespace hydro::bus {
 // subscriber. SubscribeAll() handlers see a message before the typed ones do.
 class InProcessBus : public Bus {
  public:
-  // HandleUntil() advances `clock`, which also stamps what SubscribeAll() sees. Null: wall time, and
-  // HandleUntil() sleeps until the deadline when nothing is waiting.
+  // HandleUntil() advances `clock`, which also stamps the messages that SubscribeAll() shows. Null: the bus
+  // uses wall time, and HandleUntil() sleeps until the deadline when no message waits.
   explicit InProcessBus(SimulatedClock* clock);
-  // As with null, but `wall` stamps what SubscribeAll() sees. It must outlive the bus.
+  // Like a null clock, but `wall` stamps the messages that SubscribeAll() shows. It must outlive the bus.
   explicit InProcessBus(const Clock& wall);
   ~InProcessBus() override;
 
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
-  // Handles the messages waiting at the call. What handlers publish meanwhile waits for the next call.
+  // Handles the messages that wait at the time of the call. What handlers publish meanwhile waits for the
+  // next call.
   int HandleUntil(TimePoint deadline) override;
 
  protected:

@@ -31,7 +31,7 @@ LogBus::TimePoint LogBus::DueTime() const {
   return wall_start_ + std::chrono::duration_cast<TimePoint::duration>(since);
 }
 
-// False: a signal came first.
+// Returns false when a signal came first.
 bool LogBus::WaitUntil(TimePoint time) {
   if (options_.clock != nullptr) {
     options_.clock->AdvanceTo(time);
@@ -65,7 +65,8 @@ int LogBus::HandleUntil(TimePoint deadline) {
 
 bool LogBus::Dispatch(const RawMessage& event) {
   bool handled = !taps_.empty();
-  const size_t taps = taps_.size(), handlers = handlers_.size();  // who subscribes meanwhile does not get it
+  // A handler subscribed meanwhile does not get this event.
+  const size_t taps = taps_.size(), handlers = handlers_.size();
   for (size_t i = 0; i < taps; ++i) taps_[i](event);
   for (size_t i = 0; i < handlers; ++i) {
     Handler& handler = handlers_[i];

@@ -1,7 +1,7 @@
-// The messages of a stack: one table, from which everything that depends on the set of messages derives: the
-// names of the channels (channels.h), what is sealed (seal/authenticated_channels.h), what the logger orders
-// and counts, what is decoded in logs and repaired, what is fuzzed, and docs/messages.md. A new message is
-// one .lcm file in lcmtypes/ and one row here.
+// The messages of a stack, in one table. From it derives everything that depends on the set of messages: the
+// names of the channels (channels.h), which messages are sealed (seal/authenticated_channels.h), which the
+// logger orders and counts, which are decoded in logs and repaired, which are fuzzed, and docs/messages.md. A
+// new message is one .lcm file in lcmtypes/ and one row here.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ enum class Rate {
   kEvent,             // when something happens, and again while it lasts
 };
 
-// A message's role in the control loops. In lockstep the logger puts those with a role in order
+// A message's role in the control loops. In lockstep the logger puts messages with a role in order
 // (runs/log/causal_order.h) and counts missing ones.
 enum class LoopPart { kNone, kState, kMotorCommand, kPressureCommand, kArmReference };
 inline constexpr size_t kLoopParts = 5;
@@ -36,7 +36,7 @@ struct MessageRow {
   std::string_view channel;  // without the stack's suffix
   std::string_view sender;   // for docs/messages.md
   Rate rate = Rate::kEvent;
-  bool sealed = true;  // when the stack has a key; false: anybody may send it
+  bool sealed = true;  // when the stack has a key; false: anyone may send it
   LoopPart part = LoopPart::kNone;
 };
 
@@ -138,7 +138,7 @@ constexpr void ForEachMessage(Visit visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, kMessages);
 }
 
-// Calls `found` with each row until it returns true. False: it never did.
+// Calls `found` with each row until it returns true. Returns false when it never did.
 template <class Found>
 constexpr bool AnyMessage(Found found) {
   return std::apply([&](const auto&... row) { return (found(row) || ...); }, kMessages);
@@ -190,7 +190,7 @@ struct NumberPlaces {
 
 // LCM encodes the type's hash (8 bytes), then the fields in the order of the .lcm file. In all our messages
 // the identifying fields come first, eight bytes each, so an offset in the struct is also one in the encoding
-// (a test encodes every type to prove it).
+// (a test proves this by encoding every type).
 template <StackMessage Message>
 constexpr NumberPlaces PlacesOf() {
   constexpr int kHashSize = 8;

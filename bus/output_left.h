@@ -1,4 +1,4 @@
-// How a run ended, in words: why, and what a plant or driver has left at the amplifier.
+// Describes in words how a run ended: why, and which voltage a plant or driver has left at the amplifier.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace hydro::bus {
 
-// How the reason of a stop begins that is the run's own end, after its duration.
+// The beginning of a stop's reason when the run has ended by itself, after its duration.
 inline constexpr std::string_view kRunComplete = "the run is complete";
 
 inline bool IsCompletion(const stop_t& stop) {

@@ -1,4 +1,4 @@
-// The form of the seal that may follow an encoded message (made and checked in bus/seal/). It stands here
+// The form of the seal that may follow an encoded message (made and checked in bus/seal/). It is defined here
 // because every reader must know where the message ends. LCM's encoding stays as it is, and LCM's own
 // decoders do not look beyond a message's end.
 #pragma once
@@ -14,7 +14,7 @@ inline constexpr std::array<uint8_t, 8> kSealMagic = {'h', 'y', 'd', 'r', 'o', '
 inline constexpr int kSealTagSize = 16;
 inline constexpr int kSealSize = 8 + 8 + 8 + kSealTagSize;
 
-// Size of the message without its seal; `size` when there is none. Verifies nothing.
+// The size of the message without its seal; `size` when it has none. Verifies nothing.
 inline int SizeWithoutSeal(const void* data, int size) {
   if (size < kSealSize) return size;
   const uint8_t* const seal = static_cast<const uint8_t*>(data) + size - kSealSize;

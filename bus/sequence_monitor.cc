@@ -27,13 +27,12 @@ SequenceMonitor::Verdict SequenceMonitor::ObserveOther(int64_t session, Place pl
     return Verdict::kAccept;
   }
   // The same number again is a repetition (lockstep asks again), however long ago it came; a lower number
-  // after a silence is a log being played again.
-  // Ticks never go back, however long the silence.
+  // after a silence means that a log is being played again. Ticks never go back, however long the silence.
   const bool earlier = place.tick < newest_.tick;
   if (place.sequence < newest_.sequence && silent && !earlier) return Restart(session, place, now);
   if (place.sequence != newest_.sequence && !earlier) {
-    // A sender that goes on behind the newest, for as long as nothing has followed the newest, shows that the
-    // newest was not its own: one message with a far number must not deafen this receiver for good.
+    // When a sender goes on behind the newest message, and nothing has followed that message, then it was not
+    // the sender's own: one message with a far number must not deafen this receiver for good.
     const bool goes_on = behind_ && place.sequence > behind_->sequence && place.tick >= behind_->tick;
     behind_ = place;
     if (goes_on && now - advanced_ > alive_) return Restart(session, place, now);
@@ -51,7 +50,7 @@ bool SequenceMonitor::OtherAlive(Clock::TimePoint now) const {
                      [&](const Other& other) { return other.heard && now - *other.heard <= alive_; });
 }
 
-// In the place of the same session, or of the one that has been silent longest.
+// The new entry replaces that of the same session, or of the session that has been silent longest.
 void SequenceMonitor::Note(int64_t session, Clock::TimePoint now) {
   second_session_ = session;
   Other* place = &others_.front();
@@ -74,7 +73,8 @@ void SequenceMonitor::Follow(int64_t session, Place place, Clock::TimePoint now)
 }
 
 SequenceMonitor::Verdict SequenceMonitor::Restart(int64_t session, Place place, Clock::TimePoint now) {
-  // Who takes over was a second sender and is one no more; any other is there still.
+  // The sender that takes over was a second sender and is no longer one; any other second sender is still
+  // there.
   for (Other& other : others_) {
     if (other.session == session) other.heard.reset();
   }

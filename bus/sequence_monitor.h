@@ -1,5 +1,5 @@
-// Watches the session and sequence numbers of one received channel, so that no lost message and no second
-// sender goes unnoticed.
+// Watches the session and sequence numbers of one received channel, so that every lost message and every
+// second sender is noticed.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace hydro::bus {
 
-// Pure: the caller passes the time in. One per channel; the channel must have exactly one sender.
+// Pure: the caller passes the time in. Use one for each channel; the channel must have exactly one sender.
 class SequenceMonitor {
  public:
   enum class Verdict {
@@ -29,8 +29,9 @@ class SequenceMonitor {
     return Observe(session, sequence, 0, now);
   }
 
-  // The same, but a message of the same sender with a lower tick than an earlier one is kDuplicate, always. The
-  // caller never passes a tick that has not been: it would make all later ones lower.
+  // Does the same, but a message of the same sender with a lower tick than an earlier one is always
+  // kDuplicate. The caller must never pass a tick that lies in the future: it would make all later ticks
+  // lower.
   Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now) {
     if (!IsNext(session, sequence, tick)) return ObserveOther(session, {sequence, tick}, now);
     gap_ = 0;
@@ -45,7 +46,7 @@ class SequenceMonitor {
     return session_ && session != *session_ && now - heard_ <= alive_;
   }
 
-  // A sender beside the one that is followed was heard within the last `alive`.
+  // Whether a sender other than the one that is followed was heard within the last `alive`.
   bool SecondSenderAlive(Clock::TimePoint now) const { return second_session_ && OtherAlive(now); }
 
   std::optional<int64_t> session() const { return session_; }                // of the sender being followed
@@ -62,7 +63,8 @@ class SequenceMonitor {
     int64_t sequence = 0;
     int64_t tick = 0;
   };
-  // The one that nearly every message is: the next of the sender that is followed, with nothing odd before it.
+  // Whether this is the usual case: the next message of the sender that is followed, with nothing odd before
+  // it.
   bool IsNext(int64_t session, int64_t sequence, int64_t tick) const {
     return session_ && session == *session_ && sequence > newest_.sequence &&
            sequence - 1 == newest_.sequence && tick >= newest_.tick && refused_since_ == 0;
@@ -75,8 +77,8 @@ class SequenceMonitor {
 
   Clock::Duration alive_;
   std::optional<int64_t> session_;  // of the sender being followed; none before the first message
-  Place newest_;                    // of its messages
-  Clock::TimePoint advanced_{};     // when that came
+  Place newest_;                    // its newest message
+  Clock::TimePoint advanced_{};     // arrival of newest_
   std::optional<Place> behind_;     // its last message, if that was older than the newest
   int64_t refused_since_ = 0;       // its messages in sequence whose tick went back, since the newest
   Clock::TimePoint heard_{};        // when it was last heard at all
@@ -85,7 +87,7 @@ class SequenceMonitor {
     int64_t session = 0;
     std::optional<Clock::TimePoint> heard;
   };
-  std::array<Other, 4> others_;  // the last senders beside the one that is followed
+  std::array<Other, 4> others_;  // the last senders other than the one that is followed
   int64_t gap_ = 0;
   int64_t lost_ = 0;
   int64_t duplicates_ = 0;

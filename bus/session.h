@@ -11,11 +11,12 @@ namespace hydro::bus {
 // A random number, never 0.
 int64_t RandomSession();
 
-// RandomSession() on a wall clock. On a simulated one that of the clock, so that every run is bit-identical.
+// On a wall clock, RandomSession(). On a simulated clock, that clock's session, so that every run is
+// bit-identical.
 int64_t SessionOn(const Clock& clock);
 
-// Who this process is: what the bus says of a simulated process (Bus::process()), otherwise the machine's
-// name, the id of this process and SessionOn(clock).
+// The identity of this process: for a simulated process, the one that the bus holds (Bus::process());
+// otherwise the machine's name, the id of this process and SessionOn(clock).
 HostedProcess IdentityOn(const Bus& bus, const Clock& clock);
 
 }  // namespace hydro::bus

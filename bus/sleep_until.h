@@ -1,4 +1,4 @@
-// Waits on a bus on which nobody else can send.
+// Waits on a bus on which no other process can send.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace hydro::bus {
 
-// True: the time has come. False: a signal came first.
+// Returns true when the time has come, false when a signal came first.
 inline bool SleepUntil(std::chrono::steady_clock::time_point time) {
   const auto since = std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
   if (since <= 0) return true;

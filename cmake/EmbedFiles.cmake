@@ -1,4 +1,5 @@
-# cmake -DOUTPUT=FILE.cc "-DFILES=NAME|PATH;..." -P EmbedFiles.cmake: writes files as arrays of a C++ source (scope/page_files.h).
+# cmake -DOUTPUT=FILE.cc "-DFILES=NAME|PATH;..." -P EmbedFiles.cmake writes files as arrays of a C++ source
+# (scope/page_files.h).
 set(arrays "")
 set(table "")
 set(index 0)

@@ -1,5 +1,5 @@
-# embed_texts(TARGET HEADER NAMESPACE SYMBOL=FILE...): a header with the text of each file as a constant, for the sources of the target
-# and those who use it. A file that changes configures the build anew.
+# embed_texts(TARGET HEADER NAMESPACE SYMBOL=FILE...) makes a header with the text of each file as a constant,
+# for the sources of the target and of its users. A changed file configures the build again.
 function(embed_texts target header namespace)
   set(code "#pragma once\nnamespace ${namespace} {\n")
   foreach(pair ${ARGN})

@@ -1,23 +1,26 @@
 # One call for each library and each program of a room.
 #
-# The standard library's headers are a fifth of all compiling. Builds of everything (presets release and asan) precompile them
-# once for each set of flags; the preset dev compiles every file alone, and so finds includes that are missing.
+# The standard library's headers take a fifth of all compile time. Builds of everything (presets release and
+# asan) precompile them once for each set of flags. The preset dev compiles every file alone, and so finds
+# missing includes.
 option(HYDRO_PRECOMPILE "Precompile the standard library's headers" OFF)
-# They also compile a library's files in batches of 24: most of compiling is reading the same headers and templates. Files whose names in
-# anonymous namespaces are also those of others in their batch stay alone.
+# These builds also compile a library's files in batches of 24, because most of the compile time goes into
+# reading the same headers and templates. Files are compiled alone if they share names in anonymous namespaces
+# with others in their batch.
 option(HYDRO_UNITY "Compile each library's files in batches" OFF)
 set(hydro_alone_file ${CMAKE_CURRENT_LIST_DIR}/compiled_alone.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hydro_alone_file})
 file(STRINGS ${hydro_alone_file} HYDRO_COMPILED_ALONE REGEX "^[a-z]")
-# GCC 12 does not count what is precompiled as system headers, and warns falsely about strings in its own (its bug 105651).
+# GCC 12 does not treat precompiled headers as system headers, and warns falsely about strings in its own (its
+# bug 105651).
 if(HYDRO_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
-# LCM's flags have it: what is precompiled without would not serve sources that use LCM.
+# LCM's flags contain this one. Headers precompiled without it would not fit sources that use LCM.
 add_compile_options(-pthread)
 
-# Under the sanitizers what computes is optimised a little, and does without the check of every access's alignment: it reads no
-# raw bytes, and that check is much of all compiling.
+# Under the sanitizers, files that only compute are optimised a little and compiled without the check of every
+# access's alignment. They read no raw bytes, and that check takes much of the compile time.
 set(HYDRO_COMPUTES_OPTIONS "")
 if(HYDRO_SANITIZE)
   set(HYDRO_COMPUTES_OPTIONS -O1 -fno-sanitize=alignment,object-size)
@@ -32,10 +35,12 @@ if(HYDRO_PRECOMPILE)
   target_compile_options(hydro_precompiled_computes PRIVATE ${HYDRO_COMPUTES_OPTIONS})
 endif()
 
-# hydro_library(NAME [OBJECTS] [COMPUTES] [INSTALLED] SOURCES FILES... [HEADERS FILES...] [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
-# others know as hydro::NAME. Its headers are included by their path from the root, here and where they are installed
-# (include/hydro). COMPUTES: see above. INSTALLED: it and the headers of its folder are what others build on
-# (find_package(hydro), cmake/hydroConfig.cmake.in); with HEADERS only these, where the folder has other libraries. OBJECTS: objects without a library around them.
+# hydro_library(NAME [OBJECTS] [COMPUTES] [INSTALLED] SOURCES FILES... [HEADERS FILES...] [PUBLIC LIBS...]
+# [PRIVATE LIBS...]) makes a static library, hydro_NAME, which others know as hydro::NAME. Its headers are
+# included by their path from the root, both here and where they are installed (include/hydro). COMPUTES: see
+# above. INSTALLED: the library and the headers of its folder are part of what other projects build on
+# (find_package(hydro), cmake/hydroConfig.cmake.in). HEADERS limits this to the given headers, where the
+# folder has other libraries. OBJECTS: makes objects without a library around them.
 function(hydro_library name)
   cmake_parse_arguments(arg "OBJECTS;COMPUTES;INSTALLED" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -86,7 +91,7 @@ function(hydro_compile_in_batches name)
   endforeach()
 endfunction()
 
-# hydro_install_headers(SOURCES...): installs the headers that lie beside these sources of the current folder.
+# hydro_install_headers(SOURCES...) installs the headers beside these sources of the current folder.
 function(hydro_install_headers)
   set(folders "")
   foreach(source ${ARGN})
@@ -106,13 +111,14 @@ function(hydro_install_headers)
   endforeach()
 endfunction()
 
-# hydro_install_public(ROOM HEADERS...): what others build on, and what the reference shows (packaging/reference).
+# hydro_install_public(ROOM HEADERS...) installs what other projects build on, and what the reference shows
+# (packaging/reference).
 function(hydro_install_public room)
   install(FILES ${ARGN} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development)
   install(FILES ${ARGN} DESTINATION include/hydro/${room} COMPONENT reference EXCLUDE_FROM_ALL)
 endfunction()
 
-# hydro_install_library(hydro_NAME): exports a library as hydro::NAME.
+# hydro_install_library(hydro_NAME) exports a library as hydro::NAME.
 function(hydro_install_library name)
   string(REGEX REPLACE "^hydro_" "" short_name ${name})
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name})
@@ -121,7 +127,8 @@ function(hydro_install_library name)
   set_property(GLOBAL APPEND PROPERTY HYDRO_INSTALLED_LIBRARIES ${name})
 endfunction()
 
-# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed, with a man page and completions (packaging/help).
+# hydro_program(NAME SOURCES FILES... LIBS LIBS...) makes a program and installs it with a man page and
+# completions (packaging/help).
 function(hydro_program name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -133,7 +140,7 @@ function(hydro_program name)
   set_property(GLOBAL APPEND PROPERTY HYDRO_PROGRAMS ${name})
 endfunction()
 
-# hydro_script(FILE): the same for a script; its --help is of the same form.
+# hydro_script(FILE) does the same for a script, whose --help has the same form.
 function(hydro_script file)
   install(PROGRAMS ${file} TYPE BIN)
   set_property(GLOBAL APPEND PROPERTY HYDRO_SCRIPTS ${file})

@@ -1,6 +1,8 @@
-# hydro.pc, for projects that are not built with CMake: the installed libraries, each before those that it uses.
+# Makes hydro.pc, for projects that are not built with CMake. It lists the installed libraries, each before
+# those that it uses.
 
-# hydro_link_order(OUT NAMES...): the installed libraries among these and what they use, users first.
+# hydro_link_order(OUT NAMES...) lists the installed libraries among these and those that they use, users
+# first.
 function(hydro_link_order out)
   get_property(installed GLOBAL PROPERTY HYDRO_INSTALLED_LIBRARIES)
   set(order "")
@@ -11,7 +13,7 @@ function(hydro_link_order out)
       get_target_property(used ${name} INTERFACE_LINK_LIBRARIES)
       if(used)
         hydro_link_order(below ${used})
-        # What was placed already moves behind its new user.
+        # A library that was already placed moves behind its new user.
         list(REMOVE_ITEM order "" ${below})
         list(APPEND order ${name} ${below})
       else()

@@ -1,6 +1,6 @@
-# lcm_wrap_cpp(TARGET FILES...): an interface library with the C++ classes that lcm-gen makes of the .lcm files, and with
-# hydro/messages.hpp, which includes them all.
-# (Debian's LCM 1.3.1 ships no CMake package and no lcm_wrap_types.)
+# lcm_wrap_cpp(TARGET FILES...) makes an interface library with the C++ classes that lcm-gen makes from the
+# .lcm files, and with hydro/messages.hpp, which includes them all. (Debian's LCM 1.3.1 ships no CMake package
+# and no lcm_wrap_types.)
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 function(lcm_wrap_cpp target)

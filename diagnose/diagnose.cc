@@ -23,7 +23,7 @@
 namespace hydro::diagnose {
 namespace {
 
-// Up to where the pump moves: many recordings end at rest, and what stands still tests nothing.
+// The end of the pump's motion: many recordings end at rest, and a pump at rest tests nothing.
 size_t EndOfMotion(const runs::MeasuredRun& run) {
   const std::vector<double>& values =
       run.motor_speed.measured() ? run.motor_speed.values : run.motor_angle.values;
@@ -32,7 +32,7 @@ size_t EndOfMotion(const runs::MeasuredRun& run) {
   return end > 0 ? end + 1 : run.samples();
 }
 
-// Splits off the last third of a single run, of the time in which it moves, as the held-out run.
+// Splits off the last third of the time in which a single run moves, as the held-out run.
 void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
   const size_t first = EndOfMotion(*run) * 2 / 3;
   runs::MeasuredRun rest = *run;
@@ -42,8 +42,8 @@ void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* he
   held_out->push_back(std::move(rest));
 }
 
-// Whether one of the effect's parameters only adds to a base parameter that the model has: then that base
-// parameter may be what is wrong.
+// Whether one of the effect's parameters only adds to a base parameter that the model has. In that case the
+// base parameter may be wrong instead.
 bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& given) {
   return std::any_of(info.parameters.begin(), info.parameters.end(),
                      [&](const model::ParameterInfo& parameter) {
@@ -52,7 +52,7 @@ bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& gi
 }
 
 // Whether some effect contains this base parameter's term. Where the model has the parameter at 0, the effect
-// then stands for it.
+// then replaces it.
 bool IsTermOfAnEffect(const model::BaseParameter& base) {
   const std::vector<model::EffectInfo>& catalogue = model::EffectCatalogue();
   return std::any_of(catalogue.begin(), catalogue.end(), [&](const model::EffectInfo& info) {
@@ -69,7 +69,7 @@ bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& r
   });
 }
 
-// Whether some run was warmer than another, or became so.
+// Whether the temperature differed between runs or changed during one.
 bool HasTemperature(const std::vector<const RunData*>& runs) {
   constexpr double kLeast = 1;  // K
   maths::Range range;
@@ -82,7 +82,8 @@ bool HasTemperature(const std::vector<const RunData*>& runs) {
   return range.high - range.low > kLeast;
 }
 
-// Whether the effect makes one channel late where there is no other: then it is the command that is early, an effect of the amplifier.
+// Whether the effect makes one channel late where there is no other channel. In that case the command is
+// early, which is an effect of the amplifier.
 bool IsOfTheCommand(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
   if (!model::HasRole(info.id, model::Role::kChannel) || !model::HasRole(info.id, model::Role::kTime))
     return false;
@@ -122,7 +123,8 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
     if (info.needs_temperature && !HasTemperature(runs)) continue;
-    const bool on_request = info.on_request && !info.needs_temperature;  // who records a temperature asks
+    // A recorded temperature counts as a request.
+    const bool on_request = info.on_request && !info.needs_temperature;
     if ((on_request || (info.of_bare_motors && oil)) && allowed.empty()) continue;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     if (IsTermOfTheModel(info, given.parameters)) continue;
@@ -153,7 +155,7 @@ struct PreparedRuns {
   std::vector<ClockDelay> clocks;
 };
 
-// `aligned`: the fitted runs, then the held-out ones.
+// `aligned` has the fitted runs, then the held-out runs.
 PreparedRuns Prepare(const model::ModelDescription& model, int jobs, std::vector<runs::MeasuredRun> runs,
                      std::vector<runs::MeasuredRun> held_out, std::vector<AlignedRun> aligned) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
@@ -189,8 +191,8 @@ ProofContext MakeContext(const model::ModelDescription& model, const PreparedRun
   return context;
 }
 
-// The search's clock: asks whether its time is up, and remembers whether it ever was. It counts the processor's time, a job's
-// share of it: a loaded machine does not end a search.
+// The search's clock: checks whether its time is up, and remembers whether it ever was. It counts the
+// processor's time, divided by the number of jobs, so that a loaded machine does not end a search.
 class TimeLimit {
  public:
   TimeLimit(double seconds, int jobs) : seconds_(seconds), jobs_(std::max(1, jobs)) {}

@@ -35,7 +35,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of the report. If this run created the folder, it removes it again unless the report is in it.
+// The folder of the report. If this run created it, the folder is removed again unless the report is in it.
 class ReportFolder {
  public:
   explicit ReportFolder(std::string folder) : folder_(std::move(folder)) {
@@ -54,7 +54,7 @@ class ReportFolder {
   ReportFolder(const ReportFolder&) = delete;
   ReportFolder& operator=(const ReportFolder&) = delete;
 
-  // Writes all of the files; if one fails, those of an earlier report stay.
+  // Writes all of the files. If one fails, the files of an earlier report stay.
   void Write(const std::vector<std::pair<std::string, std::string>>& files) const {
     std::vector<std::unique_ptr<NewFile>> open;
     for (const auto& [name, text] : files) {
@@ -73,7 +73,7 @@ class ReportFolder {
   bool created_ = false;
 };
 
-// Runs and the file of each: a sidecar may make several runs of a table.
+// Runs and the file of each, because a sidecar may split a table into several runs.
 struct ReadFiles {
   std::vector<runs::MeasuredRun> runs;
   std::vector<std::string> files;
@@ -92,7 +92,7 @@ ReadFiles ReadRuns(const std::vector<std::string>& files, const UnitSystem& unit
   return read;
 }
 
-// Adds their file to the names that several runs have, without its folder where that suffices.
+// Adds the file name to names that several runs share, without its folder where that suffices.
 void TellApart(ReadFiles* fitted, ReadFiles* held_out) {
   std::vector<std::string> files = fitted->files;
   files.insert(files.end(), held_out->files.begin(), held_out->files.end());
@@ -138,7 +138,7 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
   }
 }
 
-// What RunDiagnosis may write, or remove, in the request's folder.
+// Files that RunDiagnosis may write, or remove, in the request's folder.
 constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
 
 // An earlier report is a result like any other, and stays unless --force is given.
@@ -153,7 +153,7 @@ void RequireFilesKept(const DiagnoseRequest& request) {
   for (const char* name : kReportFiles) CheckIsNew(request.folder + "/" + name);
 }
 
-// Whether the runs are of a motor alone: the bypass is open in all, and none has pressures.
+// Whether the runs are of a motor alone: the bypass is open in all of them, and none has pressures.
 bool IsMotorAlone(const std::vector<runs::MeasuredRun>& runs) {
   return !runs.empty() && std::all_of(runs.begin(), runs.end(), [](const runs::MeasuredRun& run) {
     return run.bypass && !run.p1.measured() && !run.p2.measured();

@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kSign[] = "sensor.sign";
 
-// Whether all that is wrong is the sign of single sensors, which the catalogue has as an effect.
+// Whether only the signs of single sensors are wrong, which the catalogue has as an effect.
 bool OnlySigns(const std::vector<RecordingFinding>& findings) {
   return std::all_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) {
     return finding.mistakes.size() == 1 && !finding.mistakes[0].InvertedSensor().empty();
@@ -37,7 +37,7 @@ bool MayHave(const RecordingMistake& mistake, const std::vector<RecordingMistake
   return mistake.shaft.has_value() || std::find(possible.begin(), possible.end(), mistake) != possible.end();
 }
 
-// Of these mistakes one at least.
+// The number of runs with at least one of these mistakes.
 size_t RunsWith(const std::vector<RecordingMistake>& mistakes,
                 const std::vector<RecordingFinding>& findings) {
   return static_cast<size_t>(
@@ -49,7 +49,8 @@ size_t RunsWith(const std::vector<RecordingMistake>& mistakes,
       }));
 }
 
-// Runs whose arm moves may have an arm in degrees, for example; clamped ones cannot.
+// The number of runs that may have these mistakes: a run whose arm moves may have its angle in degrees, for
+// example; a clamped one cannot.
 size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
                        const std::vector<runs::MeasuredRun>& runs) {
   return static_cast<size_t>(std::count_if(runs.begin(), runs.end(), [&](const runs::MeasuredRun& run) {
@@ -73,7 +74,7 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
 
-// What is said before all else.
+// The remarks that come before all others.
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
@@ -123,7 +124,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   checked.ratios = RatioRemarks(model, on_one_clock);
   std::vector<RecordingFinding> findings =
       CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
-  // What is to be mended there first may look like any other mistake.
+  // A contradiction that must be corrected first may look like any other mistake.
   std::erase_if(findings, [&](const RecordingFinding& one) { return contradicts[one.run]; });
   std::erase_if(unpredicted, [&](size_t run) { return contradicts[run]; });
   checked.unjudged = UnjudgedLine(unpredicted, all);
@@ -132,8 +133,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   for (std::string& remark : FindingRemarks(findings, all)) said.push_back(std::move(remark));
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
-  // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the
-  // search goes on.
+  // A recorder's mistake appears in most of its runs. A mistake in a single run may have another cause: it is
+  // reported, and the search continues.
   const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
@@ -191,7 +192,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());
   report.judged = checked.unjudged.empty();
   if (!report.judged) report.limits.push_back(checked.unjudged);
-  if (checked.mend_first) return report;  // the rest is said of recordings that can be read
+  if (checked.mend_first) return report;  // the rest applies to recordings that can be read
   std::vector<ClockDelay> clocks;
   std::vector<RunData> prepared;
   prepared.reserve(runs.size());
@@ -199,7 +200,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
     prepared.push_back(PrepareAligned(runs[r], std::move(checked.aligned[r]), model.parameters, &clocks));
   MakeNamesUnique(&prepared);
   const std::vector<const RunData*> pointers = PointersTo(prepared);
-  // As runs that are not fitted: what their motion lacks is no fault of the recording.
+  // As for runs that are not fitted: what their motion does not show is no fault of the recording.
   const std::vector<std::string> remarks = RecordingRemarks(clocks, {}, pointers);
   report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());
   const std::vector<std::string> layouts = LayoutRemarks(pointers);

@@ -1,4 +1,5 @@
-// The recordings come first: what is wrong with them is said before any physics, and nothing is named on top of it.
+// Checks the recordings first. Their faults are reported before any physics, and no effect is named on top of
+// a fault.
 #pragma once
 
 #include <functional>
@@ -14,45 +15,46 @@
 namespace hydro::diagnose {
 
 struct CheckedRecordings {
-  std::vector<std::string> mistakes;  // signs, exchanged channels, units: a line each, with the remedy
-  // Factors that are no known unit's, a line each: oil or a hose may look like one, so the search goes on.
+  std::vector<std::string> mistakes;  // signs, exchanged channels, units: one line each, with the remedy
+  // Factors that match no known unit, one line each. Oil or a hose may look like such a factor, so the search
+  // goes on.
   std::vector<std::string> factors;
-  std::vector<std::string> damage;   // dropouts, spikes, cuts: a line each
-  std::vector<std::string> repeats;  // slow sensors that repeat their values: a line each
+  std::vector<std::string> damage;   // dropouts, spikes, cuts: one line each
+  std::vector<std::string> repeats;  // slow sensors that repeat their values: one line each
   std::string load;                  // LoadRemark()
   std::vector<std::string> ratios;   // RatioRemarks()
-  std::string unjudged;              // runs that the model as given does not predict at all; empty: none
-  // The mistakes make a search useless: it would name physics for them.
+  std::string unjudged;              // runs that the given model does not predict at all; empty: none
+  // The mistakes make a search useless, because it would explain them by physics.
   bool mend_first = false;
-  // Sensors of which only the sign is wrong, which is left to the search ("p1").
+  // Sensors ("p1") of which only the sign is wrong. The search deals with them.
   std::vector<std::string> inverted = {};
-  // The fitted, then the held-out runs, on one clock.
+  // The fitted runs, then the held-out runs, each with its signals on one clock.
   std::vector<AlignedRun> aligned = {};
 };
 
-// Checks the fitted and the held-out runs and sets damaged samples aside. Where `sensor.sign` is among the
-// effects that may be named (none listed: all), a single inverted sensor is left to the search. What `time_is_up` cuts off
-// is not found.
+// Checks the fitted and the held-out runs and sets damaged samples aside. A single inverted sensor is left to
+// the search if `sensor.sign` is among the effects that may be named (an empty list means all). Mistakes that
+// `time_is_up` cuts off are not found.
 CheckedRecordings CheckFirst(
     const model::ModelDescription& model, const std::vector<std::string>& effects, int jobs,
     std::vector<runs::MeasuredRun>* runs, std::vector<runs::MeasuredRun>* held_out,
     const std::function<bool()>& time_is_up = [] { return false; });
 
-// The diagnosis of runs that must be mended first: `unexplained`, nothing searched.
+// The diagnosis of runs that must be corrected first: `unexplained`, without a search.
 Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecordings& checked,
                     const std::vector<runs::MeasuredRun>& runs,
                     const std::vector<runs::MeasuredRun>& held_out);
 
-// Puts the remarks of the check first; where a mistake was left to the search and the search did not name it,
-// nothing else stays named.
+// Puts the remarks of the check first. If a mistake was left to the search and the search did not name it, no
+// other effect stays named.
 void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis);
 
-// What there is to say of recordings alone.
+// A report on the recordings alone.
 struct RecordingReport {
-  std::vector<std::string> wrong;  // a line each
-  // How tables were read, and what these runs cannot show, though nothing is wrong with them.
+  std::vector<std::string> wrong;  // one line each
+  // How tables were read, and what these runs cannot show although nothing is wrong with them.
   std::vector<std::string> limits;
-  bool judged = true;  // false: a limit names runs that the model as given does not predict at all
+  bool judged = true;  // false: a limit names runs that the given model does not predict at all
 };
 // Throws InputError for data that cannot be used, unless a mistake explains it.
 RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,

@@ -38,7 +38,7 @@ void CreateFolder(const std::string& folder) {
 // The share of an experiment that is done once only its pictures remain to be drawn.
 constexpr double kRunShare = 0.9;
 
-// `failure` keeps the exception; the caller decides what it means.
+// `failure` keeps the exception, and the caller decides what it means.
 ReportEntry RunOne(const Experiment& experiment, const ExperimentRequest& request,
                    const std::function<void(double)>& progress, std::exception_ptr& failure) {
   ReportEntry entry{experiment, std::nullopt, {}, ""};

@@ -1,4 +1,4 @@
-/* What a device does in each tick, and what it sends. What it makes of the frames it receives: device_frames.c. */
+/* What a device does in each tick, and what it sends. device_frames.c handles the frames that it receives. */
 #include "firmware/device.h"
 
 #include "firmware/device_frames.h"
@@ -21,10 +21,10 @@ void hydro_device_trip(struct hydro_device* device, uint16_t faults) {
   hydro_device_leave_armed(device, HYDRO_TRIPPED);
 }
 
-/* |value| > limit; false for NaN, which the sensor's fault stands for. */
+/* value| > limit; false for NaN, which the sensor's fault covers. */
 static bool exceeds(float value, float limit) { return value > limit || value < -limit; }
 
-/* The faults that last, as this tick finds them. */
+/* The lasting faults, as this tick finds them. */
 static uint16_t present_faults(const struct hydro_device* device, const struct hydro_readings* readings) {
   const struct hydro_settings* settings = &device->settings;
   const struct hydro_sensor* sensor = device->sensors.sensor;
@@ -43,7 +43,8 @@ static uint16_t present_faults(const struct hydro_device* device, const struct h
   return (uint16_t)faults;
 }
 
-/* Compares what the output holds with what was written; one tick of difference may be the converter settling. */
+/* Compares the output's voltage with the written one; a difference for one tick may be the converter
+ * settling. */
 static void judge_read_back(struct hydro_device* device, const struct hydro_readings* readings) {
   const float tolerance = device->settings.read_back_tolerance;
   if (tolerance == 0.0f || !hydro_is_finite(readings->read_back_V)) return;
@@ -62,7 +63,7 @@ static void read_machine(struct hydro_device* device, const struct hydro_reading
   device->faults_present = present_faults(device, readings);
 }
 
-/* Counts the ticks since the newest command, and trips what must not go on. */
+/* Counts the ticks since the newest command, and trips when the device must not go on. */
 static void watch(struct hydro_device* device, const struct hydro_readings* readings) {
   struct hydro_obeyed* obeyed = &device->obeyed;
   obeyed->age_ticks = obeyed->fresh ? 0 : obeyed->age_ticks + readings->elapsed_ticks;
@@ -75,7 +76,7 @@ static void watch(struct hydro_device* device, const struct hydro_readings* read
   if (device->faults_present != 0) hydro_device_trip(device, device->faults_present);
 }
 
-/* Eq. (16). A change of gains while it acts leaves the voltage where it was; the difference passes. */
+/* Eq. (16). A change of gains while it acts leaves the voltage where it was; the difference fades out. */
 static float act_by_law(struct hydro_device* device, uint32_t elapsed_ticks) {
   const struct hydro_sensor* sensor = device->sensors.sensor;
   const struct hydro_command* command = &device->obeyed.command;
@@ -97,7 +98,8 @@ static float act_by_law(struct hydro_device* device, uint32_t elapsed_ticks) {
   return voltage + device->sample.transfer;
 }
 
-/* V of eq. (1) of this tick, into the sample: from the command in force, within what the limit and the range allow. */
+/* Puts this tick's V of eq. (1) into the sample: from the command in force, within the limit and the
+ * range. */
 static float act(struct hydro_device* device, uint32_t elapsed_ticks) {
   struct hydro_sample* sample = &device->sample;
   sample->source = HYDRO_SOURCE_ZERO;
@@ -113,7 +115,7 @@ static float act(struct hydro_device* device, uint32_t elapsed_ticks) {
     sample->pressure_ref = obeyed->command.pressure_ref;
     asked = act_by_law(device, elapsed_ticks);
   }
-  /* A sum that overflows, or an arm speed that is not measured: no number is a reason for volts. */
+  /* The sum overflows, or the arm speed is not measured: without a number, no voltage goes out. */
   if (!hydro_is_finite(asked)) {
     hydro_device_trip(device, HYDRO_FAULT_COMMAND);
     sample->source = HYDRO_SOURCE_ZERO;

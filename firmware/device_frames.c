@@ -1,4 +1,4 @@
-/* What a device makes of the frames that it receives. */
+/* How a device handles the frames that it receives. */
 #include "firmware/device_frames.h"
 
 void hydro_device_identify(const struct hydro_device* device, struct hydro_frame* frame) {
@@ -30,7 +30,7 @@ static bool session_is_free(const struct hydro_device* device) {
   return device->state != HYDRO_ARMED && device->heard_ticks >= device->facts.tick_rate_hz / 4;
 }
 
-/* True: this session is in charge now. */
+/* Returns true when this session is in charge now. */
 static bool take_hello(struct hydro_device* device, const struct hydro_frame* frame) {
   device->owes_identity = true;
   if (frame->protocol != HYDRO_PROTOCOL || frame->session == 0) return false;
@@ -70,7 +70,7 @@ static void take_settings(struct hydro_device* device, const struct hydro_settin
   hydro_sensors_begin(&device->sensors);
 }
 
-/* False: it was made for other settings. */
+/* Returns false when the command was made for other settings. */
 static bool fits(struct hydro_device* device, uint32_t fingerprint) {
   if (device->fingerprint != 0 && fingerprint == device->fingerprint) return true;
   ++device->frames_refused;
@@ -119,14 +119,14 @@ static bool is_for_devices(uint8_t kind) {
   return kind == HYDRO_SETTINGS || kind == HYDRO_ARM || kind == HYDRO_VOLTAGE || kind == HYDRO_PRESSURE;
 }
 
-/* Takes a whole frame; true as hydro_device_receive(). */
+/* Takes a whole frame; returns true in the same cases as hydro_device_receive(). */
 static bool take_frame(struct hydro_device* device, const struct hydro_frame* frame) {
   if (frame->kind == HYDRO_HELLO) {
     const bool taken = take_hello(device, frame);
     if (!taken) ++device->frames_refused;
     return taken;
   }
-  /* Zero volts are anyone's to ask for, at any time. */
+  /* Any sender may ask for zero volts, at any time. */
   if (frame->kind == HYDRO_ZERO) take_zero(device);
   const bool ours = device->session != 0 && frame->session == device->session;
   const bool known = is_for_devices(frame->kind) || frame->kind == HYDRO_ZERO;

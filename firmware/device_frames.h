@@ -1,4 +1,4 @@
-/* What device.c and device_frames.c share; not for boards. */
+/* Functions that device.c and device_frames.c share; not for boards. */
 #ifndef HYDRO_FIRMWARE_DEVICE_FRAMES_H
 #define HYDRO_FIRMWARE_DEVICE_FRAMES_H
 
@@ -8,13 +8,14 @@
 extern "C" {
 #endif
 
-/* Ends obedience; counts a trip when the device was armed. */
+/* Ends obedience to commands, and counts a trip if the device was armed. */
 void hydro_device_leave_armed(struct hydro_device* device, enum hydro_state state);
 
-/* Faults that were found: an armed device trips and latches them, any device reports them in its next sample. */
+/* Reports faults that were found: an armed device trips and latches them; any device reports them in its
+ * next sample. */
 void hydro_device_trip(struct hydro_device* device, uint16_t faults);
 
-/* Fills an identity. */
+/* Fills in an identity. */
 void hydro_device_identify(const struct hydro_device* device, struct hydro_frame* frame);
 
 #ifdef __cplusplus

@@ -1,10 +1,10 @@
-/* The codec of frames.h. Each body is described once, by a function that visits its fields in order; the same visit
- * writes them and reads them, so that the two cannot differ. */
+/* The codec of frames.h. A function describes each body once by visiting its fields in order. The same
+ * visit writes and reads the fields, so that writing and reading cannot differ. */
 #include "firmware/frames.h"
 
 _Static_assert(sizeof(float) == 4, "floats of 32 bits");
 
-/* Where a visit is, and in which direction it goes. */
+/* The position of a visit, and its direction. */
 struct cursor {
   uint8_t* bytes;
   size_t at;
@@ -175,7 +175,7 @@ static void visit_converters(struct cursor* cursor, struct hydro_converters* con
   visit_bytes(cursor, 0, 3);
 }
 
-/* Visits the body of the frame's kind. False: there is no such kind. */
+/* Visits the body of the frame's kind. Returns false when there is no such kind. */
 static bool visit_body(struct cursor* cursor, struct hydro_frame* frame) {
   switch (frame->kind) {
     case HYDRO_HELLO:
@@ -213,7 +213,7 @@ static bool visit_body(struct cursor* cursor, struct hydro_frame* frame) {
   }
 }
 
-/* Visits all but the checksum. False: no such kind. */
+/* Visits all but the checksum. Returns false when there is no such kind. */
 static bool visit_frame(struct cursor* cursor, struct hydro_frame* frame) {
   visit_u8(cursor, &frame->protocol);
   visit_u8(cursor, &frame->kind);
@@ -224,7 +224,7 @@ static bool visit_frame(struct cursor* cursor, struct hydro_frame* frame) {
 }
 
 uint32_t hydro_crc32(uint32_t crc, const uint8_t* bytes, size_t count) {
-  /* Four bits at a time: 64 bytes of table, fast enough for 5 kHz on a small microcontroller. */
+  /* Takes four bits at a time: a table of 64 bytes, fast enough for 5 kHz on a small microcontroller. */
   static const uint32_t table[16] = {0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac, 0x76dc4190, 0x6b6b51f4,
                                      0x4db26158, 0x5005713c, 0xedb88320, 0xf00f9344, 0xd6d6a3e8, 0xcb61b38c,
                                      0x9b64c2b0, 0x86d3d2d4, 0xa00ae278, 0xbdbdf21c};
@@ -253,7 +253,7 @@ size_t hydro_encode(const struct hydro_frame* frame, uint8_t wire[HYDRO_WIRE_MAX
   if (!visit_frame(&cursor, &copy)) return 0;
   uint32_t crc = hydro_crc32(0, cursor.bytes, cursor.at);
   visit_u32(&cursor, &crc);
-  /* Consistent overhead byte stuffing: each zero becomes the distance to the next one, from the code byte on. */
+  /* Consistent overhead byte stuffing: from the code byte on, each zero becomes the distance to the next. */
   wire[0] = 0;
   size_t code_at = 1;
   const size_t end = 2 + cursor.at;
@@ -267,7 +267,7 @@ size_t hydro_encode(const struct hydro_frame* frame, uint8_t wire[HYDRO_WIRE_MAX
   return end + 1;
 }
 
-/* Undoes the stuffing in place; false: the distances do not lead to the end. */
+/* Undoes the stuffing in place; returns false when the distances do not lead to the end. */
 static bool unstuff(uint8_t* bytes, size_t count) {
   size_t code_at = 0;
   for (size_t i = 0; i < count; ++i) {
@@ -278,13 +278,14 @@ static bool unstuff(uint8_t* bytes, size_t count) {
   return code_at == count;
 }
 
-/* A later protocol may append to a hello and to an identity, and change neither: each side must learn what the other is. */
+/* A later protocol may append to a hello and to an identity but change neither: each side must learn what
+ * the other is. */
 static bool is_greeting(const struct hydro_frame* frame, size_t known, size_t count) {
   const bool greets = frame->kind == HYDRO_HELLO || frame->kind == HYDRO_IDENTITY;
   return greets && frame->protocol != HYDRO_PROTOCOL && known <= count;
 }
 
-/* True: what has been collected is a frame, now in `frame`. */
+/* Returns true when the collected bytes are a frame, which is now in `frame`. */
 static bool read_frame(struct hydro_receiver* receiver, struct hydro_frame* frame) {
   if (receiver->count < 1 + HYDRO_HEADER_BYTES + HYDRO_CRC_BYTES) return false;
   if (!unstuff(receiver->bytes, receiver->count)) return false;

@@ -1,8 +1,8 @@
-/* The frames between a computer and a front end, and their codec. docs/front_end.md has every byte.
+/* The frames between a computer and a front end, and their codec. docs/front_end.md describes every byte.
  *
- * One codec for both sides: portable C11, compiled into the device and into the programs on the computer. It allocates
- * nothing, keeps no static state, and reads and writes bytes one by one, so that neither the byte order nor the
- * alignment of a machine shows. Floats are IEEE 754 of 32 bits. */
+ * Both sides use one codec: portable C11, compiled into the device and into the programs on the computer.
+ * It allocates nothing, keeps no static state, and reads and writes bytes one by one, so that it does not
+ * depend on a machine's byte order or alignment. Floats are IEEE 754 of 32 bits. */
 #ifndef HYDRO_FIRMWARE_FRAMES_H
 #define HYDRO_FIRMWARE_FRAMES_H
 
@@ -15,10 +15,10 @@ extern "C" {
 #endif
 
 enum {
-  HYDRO_PROTOCOL = 1,                   /* the first byte of every frame */
-  HYDRO_HEADER_BYTES = 12,              /* protocol, kind, two zeros, session, sequence */
-  HYDRO_CRC_BYTES = 4,                  /* at the end of every frame */
-  HYDRO_FRAME_MAX = 254,                /* bytes of a frame before stuffing: one code byte suffices then */
+  HYDRO_PROTOCOL = 1,      /* the first byte of every frame */
+  HYDRO_HEADER_BYTES = 12, /* protocol, kind, two zeros, session, sequence */
+  HYDRO_CRC_BYTES = 4,     /* at the end of every frame */
+  HYDRO_FRAME_MAX = 254,   /* bytes of a frame before stuffing, for which one code byte suffices */
   HYDRO_WIRE_MAX = HYDRO_FRAME_MAX + 3, /* zero, code byte, frame, zero */
   HYDRO_SETTINGS_BYTES = 192,           /* of struct hydro_settings on the wire */
   HYDRO_SENSORS = 6,
@@ -64,14 +64,14 @@ enum hydro_fault {
   HYDRO_FAULT_PRESSURE = 1 << 3,    /* p1 or p2 above pressure_limit */
   HYDRO_FAULT_MOTOR_SPEED = 1 << 4, /* |motor speed| above motor_speed_limit */
   HYDRO_FAULT_ARM_ANGLE = 1 << 5,   /* |arm angle| above arm_angle_limit */
-  HYDRO_FAULT_SENSOR = 1 << 6,      /* a sensor's reading is not credible: sensor_faults says which */
+  HYDRO_FAULT_SENSOR = 1 << 6,      /* a sensor's reading is not credible: sensor_faults tells which one */
   HYDRO_FAULT_READ_BACK = 1 << 7,   /* the output is not what was written */
   HYDRO_FAULT_CONVERTER = 1 << 8,   /* the board's converters do not answer */
   HYDRO_FAULT_OVERRUN = 1 << 9,     /* a tick took longer than its time */
   HYDRO_FAULT_INTERLOCK = 1 << 10   /* the board's emergency stop or enable input is open */
 };
 
-/* Where the voltage of a sample comes from. */
+/* The origin of the voltage in a sample. */
 enum hydro_source {
   HYDRO_SOURCE_ZERO = 0,
   HYDRO_SOURCE_VOLTAGE = 1, /* HYDRO_VOLTAGE, passed on */
@@ -82,10 +82,10 @@ enum hydro_sensor_kind {
   HYDRO_SENSOR_NONE = 0,
   HYDRO_SENSOR_ANALOG = 1,
   HYDRO_SENSOR_COUNTER = 2,
-  HYDRO_SENSOR_RATE = 3 /* of the angle before it */
+  HYDRO_SENSOR_RATE = 3 /* the rate of the angle before it */
 };
 
-/* The order of sensors in settings, and of the bits of sensor_faults. */
+/* The order of the sensors in settings, and of the bits of sensor_faults. */
 enum hydro_sensor_index {
   HYDRO_P1 = 0,
   HYDRO_P2 = 1,
@@ -101,16 +101,16 @@ struct hydro_sensor_settings {
   uint8_t counter_bits; /* 8 to 32: a counter wraps between 2^counter_bits - 1 and 0; 0 for the other kinds */
   float scale;          /* unit per V, or unit per count */
   float offset;         /* unit */
-  float low_pass_share; /* what each tick takes over of the reading, above 0 to 1; 1: no low pass */
-  float minimum_V;      /* an analog reading outside them is not credible; -inf and +inf: */
+  float low_pass_share; /* share of a reading that each tick takes over, above 0 to 1; 1: no low pass */
+  float minimum_V;      /* an analog reading outside these is not credible; -inf and +inf: */
   float maximum_V;      /* the ends of the converter's range are the limits */
 };
 
 struct hydro_settings {
   uint8_t mode;                   /* enum hydro_mode */
-  uint16_t sample_interval_ticks; /* a sample is sent every so many ticks, 1 or more */
+  uint16_t sample_interval_ticks; /* ticks from one sample to the next, 1 or more */
   uint32_t watchdog_ticks;        /* N */
-  uint32_t transfer_ticks;        /* in how many ticks what a change of gains leaves passes to nothing */
+  uint32_t transfer_ticks;        /* ticks in which the effect of a change of gains fades out */
   float voltage_limit;            /* V of eq. (1), +/- */
   float pressure_limit;           /* of p1 and p2 */
   float motor_speed_limit;        /* rad/s, +/- */
@@ -159,7 +159,7 @@ struct hydro_identity {
 };
 
 struct hydro_settings_held {
-  uint8_t refused;      /* 0: taken; else enum hydro_refusal, and the settings in force are as before */
+  uint8_t refused;      /* 0: taken; else enum hydro_refusal, and the settings in force are unchanged */
   uint8_t refused_part; /* HYDRO_REFUSED_SENSOR: index of the sensor */
   uint32_t fingerprint; /* of `settings`; 0: none held, and `settings` is all zeros */
   struct hydro_settings settings;
@@ -185,20 +185,20 @@ struct hydro_sample {
   uint8_t saturated;          /* 1: the command asked for more than the limit */
   uint8_t sensor_faults;      /* a bit for each sensor */
   uint16_t faults_present;    /* bits of enum hydro_fault */
-  uint16_t faults_latched;    /* those that tripped, until the next HYDRO_ARM that is taken */
-  uint32_t trips;             /* counts each way out of HYDRO_ARMED */
+  uint16_t faults_latched;    /* faults that tripped, until the next HYDRO_ARM that is taken */
+  uint32_t trips;             /* counts each time that HYDRO_ARMED ends */
   uint32_t command_sequence;  /* of the newest command obeyed */
   int64_t host_tick;          /* of the newest command obeyed */
   uint32_t command_age;       /* in ticks of the device */
   float value[HYDRO_SENSORS]; /* NaN: not measured, or not credible */
   int32_t motor_count;        /* unwrapped modulo 2^32, where the motor angle is a counter; else 0 */
   int32_t arm_count;
-  float voltage;           /* V of eq. (1), which acts from this tick on */
-  float read_back;         /* V of eq. (1), measured before that was written; NaN: the board cannot */
+  float voltage;           /* V of eq. (1), acting from this tick on */
+  float read_back;         /* V of eq. (1), measured before `voltage` was written; NaN: not possible */
   float pressure_ref;      /* in force; 0 without the law */
-  float transfer;          /* V, in `voltage`: what is left of the law before a change of gains */
+  float transfer;          /* V, in `voltage`: the remainder of the law before a change of gains */
   uint16_t frames_bad;     /* counts, modulo 2^16: damaged */
-  uint16_t frames_refused; /* whole, but of another session, old or repeated, or not allowed now */
+  uint16_t frames_refused; /* intact, but of another session, old or repeated, or not allowed now */
 };
 
 struct hydro_output {
@@ -207,7 +207,7 @@ struct hydro_output {
 };
 
 struct hydro_converters {
-  uint64_t tick; /* of the newest HYDRO_OUTPUT that these readings follow */
+  uint64_t tick; /* of the newest HYDRO_OUTPUT before these readings */
   float analog_V[HYDRO_ANALOG_INPUTS];
   uint32_t counter[HYDRO_COUNTERS];
   float read_back_V; /* at the terminal; NaN: none */
@@ -215,10 +215,10 @@ struct hydro_converters {
 };
 
 struct hydro_frame {
-  uint8_t protocol;  /* as received; hydro_encode() writes HYDRO_PROTOCOL whatever it is */
+  uint8_t protocol;  /* as received; hydro_encode() writes HYDRO_PROTOCOL in any case */
   uint8_t kind;      /* enum hydro_kind */
   uint32_t session;  /* chosen by the computer with each HYDRO_HELLO, not 0 */
-  uint32_t sequence; /* of the sender: each frame's is one more than the last one's */
+  uint32_t sequence; /* of the sender: one more in each frame */
   union {
     struct hydro_settings settings;
     struct hydro_arm arm;
@@ -231,32 +231,33 @@ struct hydro_frame {
   } body;
 };
 
-/* Collects bytes until a frame is whole. Begin with all zeros. */
+/* Collects bytes until a frame is whole. Initialise it with zeros. */
 struct hydro_receiver {
   uint8_t bytes[HYDRO_FRAME_MAX + 1];
   size_t count;
   bool overflow;
-  uint32_t bad; /* pieces between delimiters that were no frame */
+  uint32_t bad; /* pieces between delimiters that were not frames */
 };
 
-/* Writes a frame as it goes over the wire, a delimiter before and after it; returns the number of bytes, or 0 for a
- * kind that does not exist. */
+/* Writes a frame in the form in which it goes over the wire, with a delimiter before and after it. Returns
+ * the number of bytes, or 0 for a kind that does not exist. */
 size_t hydro_encode(const struct hydro_frame* frame, uint8_t wire[HYDRO_WIRE_MAX]);
 
-/* Takes one byte. True: `frame` is a whole and undamaged frame; otherwise `frame` is left as it was. Frames of another
- * protocol are bad, except HYDRO_HELLO and HYDRO_IDENTITY: their protocol must be looked at. */
+/* Takes one byte. When it returns true, `frame` is a whole and undamaged frame; otherwise `frame` is
+ * unchanged. Frames of another protocol are bad, except HYDRO_HELLO and HYDRO_IDENTITY: the caller must
+ * check their protocol. */
 bool hydro_receive(struct hydro_receiver* receiver, uint8_t byte, struct hydro_frame* frame);
 
-/* Forgets a piece of a frame: a new connection, or the next datagram. */
+/* Forgets a piece of a frame, for a new connection or the next datagram. */
 void hydro_receive_anew(struct hydro_receiver* receiver);
 
 /* CRC-32 of IEEE 802.3 (as zlib's crc32). Begin with 0; the result of one part begins the next. */
 uint32_t hydro_crc32(uint32_t crc, const uint8_t* bytes, size_t count);
 
-/* CRC-32 of the protocol's number and of the settings as they go over the wire; never 0. */
+/* CRC-32 of the protocol's number and of the settings in the form in which they go over the wire; never 0. */
 uint32_t hydro_fingerprint(const struct hydro_settings* settings);
 
-/* True when sequence `next` is newer than `before`; they wrap at 2^32. */
+/* Returns true when sequence `next` is newer than `before`; sequences wrap at 2^32. */
 static inline bool hydro_is_newer(uint32_t next, uint32_t before) {
   const uint32_t ahead = next - before;
   return ahead != 0 && ahead < UINT32_C(0x80000000);

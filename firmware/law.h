@@ -1,5 +1,5 @@
-/* The pressure law, eq. (16), in single precision. The C++ law (pressure_ctrl/law/pressure_law.h) and this one give the
- * same voltages to rounding. Pure: no clock, no state but what is passed in. */
+/* The pressure law, eq. (16), in single precision. The C++ law (pressure_ctrl/law/pressure_law.h) gives
+ * the same voltages to rounding. Pure: no clock, and no state but what is passed in. */
 #ifndef HYDRO_FIRMWARE_LAW_H
 #define HYDRO_FIRMWARE_LAW_H
 
@@ -17,31 +17,31 @@ struct hydro_law_input {
   float arm_speed;   /* used only with arm_speed_ratio */
 };
 
-/* A change of gains without a jump. Begin with all zeros. */
+/* Makes a change of gains without a jump. Initialise it with zeros. */
 struct hydro_transfer {
-  float offset;   /* V, what the laws before and after the change differ by */
-  uint32_t left;  /* ticks until it has passed */
-  uint32_t total; /* ticks; 0: nothing is passing */
+  float offset;   /* V, the difference between the laws before and after the change */
+  uint32_t left;  /* ticks until it has faded out */
+  uint32_t total; /* ticks; 0: no change is in progress */
 };
 
 /* V, without a limit:
  *   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref */
 float hydro_law(const struct hydro_gains* gains, const struct hydro_law_input* input);
 
-/* From now on, `before` is what the law in force gives, `after` what the new one gives for the same input; the
- * difference passes within `ticks`. 0: at once. */
+/* From now on the law is a new one: `before` is the voltage of the law in force, `after` that of the new
+ * one for the same input. The difference fades out within `ticks`; 0: at once. */
 void hydro_transfer_begin(struct hydro_transfer* transfer, float before, float after, uint32_t ticks);
 
-/* V, to be added to the new law's voltage. */
+/* The voltage, V, to add to that of the new law. */
 float hydro_transfer_now(const struct hydro_transfer* transfer);
 
-/* Ticks have passed. */
+/* Lets ticks pass. */
 void hydro_transfer_pass(struct hydro_transfer* transfer, uint32_t ticks);
 
 bool hydro_same_gains(const struct hydro_gains* a, const struct hydro_gains* b);
 bool hydro_finite_gains(const struct hydro_gains* gains);
 
-/* Not NaN and not infinite; without math.h, which a freestanding compiler lacks. */
+/* False for NaN and infinite values. It does without math.h, which a freestanding compiler lacks. */
 static inline bool hydro_is_finite(float value) { return value - value == 0.0f; }
 
 static inline float hydro_clamp(float value, float low, float high) {

@@ -1,4 +1,4 @@
-/* The program of every board: in each tick receive, read, judge, write, send. */
+/* The program of every board: in each tick it receives, reads, judges, writes and sends. */
 #include "firmware/board.h"
 #include "firmware/device.h"
 
@@ -6,7 +6,8 @@ enum { CHUNK_BYTES = 512, CHUNKS_A_TICK = 8 };
 
 static struct hydro_device device;
 
-/* Takes what has arrived: a bounded amount, so that a flood delays no tick. What is left waits for the next one. */
+/* Takes a bounded amount of what has arrived, so that a flood delays no tick. The rest waits for the next
+ * tick. */
 static void receive(void) {
   static uint8_t bytes[CHUNK_BYTES];
   for (size_t chunk = 0; chunk < CHUNKS_A_TICK; ++chunk) {
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
   if (code != 0) return code;
   hydro_device_begin(&device, &facts);
   struct hydro_readings readings = {0};
-  while (hydro_board_wait(&readings)) { /* the one loop without a bound: the program itself */
+  while (hydro_board_wait(&readings)) { /* the only loop without a bound: the program itself */
     if (hydro_board_was_reset(&facts)) hydro_device_begin(&device, &facts);
     receive();
     hydro_board_read(&readings);

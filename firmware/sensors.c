@@ -12,13 +12,14 @@ void hydro_sensors_unknown(struct hydro_sensors* sensors, uint32_t elapsed_ticks
   for (size_t i = 0; i < HYDRO_SENSORS; ++i) sensors->sensor[i].value = HYDRO_NOT_A_NUMBER;
 }
 
-/* Follows a counter of up to 32 bits that wraps. Its first reading counts as signed: just below the wrap means just below
- * zero. After a move of a quarter of its range or more the direction is uncertain. */
+/* Follows a counter of up to 32 bits that wraps. Its first reading counts as signed: a reading just below
+ * the wrap means just below zero. After a move of a quarter of its range or more, the direction is
+ * uncertain. */
 static void follow(struct hydro_sensor* sensor, uint8_t bits, uint32_t reading) {
   const uint32_t half = UINT32_C(1) << (bits - 1);
   const uint32_t mask = half - 1 + half;
   const uint32_t ahead = (reading - (uint32_t)sensor->count) & mask;
-  /* Sign extension by hand: a shift of a negative number is the compiler's choice in C. */
+  /* This extends the sign by hand: C leaves a shift of a negative number to the compiler. */
   const int64_t moved = ahead >= half ? (int64_t)ahead - (int64_t)mask - 1 : (int64_t)ahead;
   sensor->moved = sensor->started ? (int32_t)moved : 0;
   const uint32_t count = (uint32_t)sensor->count + (uint32_t)(moved & INT64_C(0xffffffff));
@@ -40,7 +41,8 @@ static bool analog_is_credible(const struct hydro_sensor_settings* settings,
   return hydro_is_finite(volts) && !low && !high;
 }
 
-/* Takes the reading of an analog input or a counter into `unfiltered` and `rate`; false: it is not credible. */
+/* Takes the reading of an analog input or a counter into `unfiltered` and `rate`; returns false when it is
+ * not credible. */
 static bool read_channel(struct hydro_sensor* sensor, const struct hydro_sensor_settings* settings,
                          const struct hydro_board_facts* facts, const struct hydro_readings* readings,
                          float per_second) {
@@ -74,14 +76,14 @@ static void read_sensor(struct hydro_sensor* sensor, const struct hydro_sensor* 
   if (settings->kind == HYDRO_SENSOR_NONE) return;
   bool good = false;
   if (settings->kind == HYDRO_SENSOR_RATE) {
-    good = hydro_is_finite(angle->value); /* the angle has the fault, if there is one */
+    good = hydro_is_finite(angle->value); /* a fault, if there is one, belongs to the angle */
     sensor->unfiltered = angle->rate;
   } else {
     good = read_channel(sensor, settings, facts, readings, per_second);
     judge(sensor, good);
     sensor->started = good;
   }
-  /* The low pass starts again at the first reading after one that was not credible. */
+  /* After a reading that was not credible, the low pass starts again at the first credible one. */
   if (!good) {
     sensor->value = HYDRO_NOT_A_NUMBER;
   } else if (hydro_is_finite(sensor->value) && settings->low_pass_share < 1.0f) {

@@ -1,4 +1,4 @@
-/* From the converters' readings to signals in the model's units, and whether they are credible. */
+/* Turns the converters' readings into signals in the model's units, and judges whether they are credible. */
 #ifndef HYDRO_FIRMWARE_SENSORS_H
 #define HYDRO_FIRMWARE_SENSORS_H
 
@@ -14,7 +14,7 @@ enum {
   HYDRO_GOOD_READINGS = 10
 }; /* in a row end the fault of a sensor: a loose contact must not switch the motor */
 
-/* What a board is; it does not change while it runs. */
+/* Facts about a board, which do not change while it runs. */
 struct hydro_board_facts {
   const char* name;      /* up to 16 characters */
   uint32_t tick_rate_hz; /* 1 or more */
@@ -28,20 +28,20 @@ struct hydro_board_facts {
   float output_max_V;
 };
 
-/* What a board read in one tick. */
+/* The readings of a board in one tick. */
 struct hydro_readings {
   uint32_t elapsed_ticks; /* since the last reading: 1, or more after an overrun */
   bool answered;          /* false: the converters did not answer, and the rest means nothing */
-  bool overrun;           /* the last tick was not finished when this one was due */
+  bool overrun;           /* this tick was due before the last one was finished */
   bool interlock_closed;  /* the motor may move */
   float analog_V[HYDRO_ANALOG_INPUTS];
   uint32_t counter[HYDRO_COUNTERS];
   float read_back_V; /* at the output's terminal; NaN: cannot be read */
 };
 
-/* Of one sensor, from reading to reading. */
+/* The state of one sensor from reading to reading. */
 struct hydro_sensor {
-  bool started; /* there is a reading before this one */
+  bool started; /* there was a reading before this one */
   bool lost;    /* a counter moved too far to be followed */
   bool fault;
   uint8_t good_readings;
@@ -63,10 +63,10 @@ void hydro_sensors_begin(struct hydro_sensors* sensors);
 void hydro_sensors_read(struct hydro_sensors* sensors, const struct hydro_settings* settings,
                         const struct hydro_board_facts* facts, const struct hydro_readings* readings);
 
-/* The converters did not answer: no signal is known. */
+/* Call it when the converters did not answer: no signal is known. */
 void hydro_sensors_unknown(struct hydro_sensors* sensors, uint32_t elapsed_ticks);
 
-/* A bit for each sensor that is not credible. */
+/* One bit for each sensor that is not credible. */
 uint8_t hydro_sensors_faults(const struct hydro_sensors* sensors);
 
 #ifdef __cplusplus

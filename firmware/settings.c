@@ -24,7 +24,7 @@ static bool sensor_is_good(const struct hydro_settings* settings, size_t index,
   const struct hydro_sensor_settings* sensor = &settings->sensors[index];
   const bool scaled = hydro_is_finite(sensor->scale) && hydro_is_finite(sensor->offset);
   const bool filtered = sensor->low_pass_share > 0.0f && sensor->low_pass_share <= 1.0f;
-  /* Infinite ends are allowed, NaN is not, and neither are ends the wrong way round. */
+  /* Infinite ends are allowed; NaN is not, and neither are ends in the wrong order. */
   const bool ranged = sensor->minimum_V < sensor->maximum_V;
   switch (sensor->kind) {
     case HYDRO_SENSOR_NONE:
@@ -45,7 +45,7 @@ static bool measured(const struct hydro_settings* settings, enum hydro_sensor_in
   return settings->sensors[index].kind != HYDRO_SENSOR_NONE;
 }
 
-/* What the limits judge and the law needs is measured. */
+/* Whether every signal that the limits judge or the law needs is measured. */
 static bool sensors_suffice(const struct hydro_settings* settings) {
   const bool loop = settings->mode == HYDRO_LOOP_ON_DEVICE;
   const bool pressures = measured(settings, HYDRO_P1) && measured(settings, HYDRO_P2);

@@ -1,4 +1,4 @@
-/* Whether a device can act by the settings it was sent. */
+/* Checks whether a device can act by the settings it was sent. */
 #ifndef HYDRO_FIRMWARE_SETTINGS_H
 #define HYDRO_FIRMWARE_SETTINGS_H
 
@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-/* HYDRO_TAKEN, or the first thing that is wrong; `part` is then the sensor's index for HYDRO_REFUSED_SENSOR, else 0. */
+/* Returns HYDRO_TAKEN, or the first thing that is wrong; `part` is the sensor's index for
+ * HYDRO_REFUSED_SENSOR, otherwise 0. */
 enum hydro_refusal hydro_check_settings(const struct hydro_settings* settings,
                                         const struct hydro_board_facts* facts, uint8_t* part);
 

@@ -53,7 +53,8 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   request.out = out.write;
   request.err = err.write;
   if (spec_.own) {
-    // A loop would take the beats for what it is to read. A driver must notice when its launcher hangs.
+    // A loop that reads its standard input would read the heartbeats. A driver must notice when its launcher
+    // hangs.
     if (!process::IsPlant(spec_.own->role)) request.in = -1;
     request.environment = spec_.own->environment;
     request.folder = spec_.own->folder;
@@ -83,7 +84,7 @@ bool ChildProcess::TryReap() {
     if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
         info.si_pid != pid_)
       return false;
-    kill(-pid_, SIGKILL);  // what it started and left; until it is reaped the group is its own
+    kill(-pid_, SIGKILL);  // what the program started and left; until it is reaped, the group is its own
   }
   int status = 0;
   if (waitpid(pid_, &status, WNOHANG) != pid_) return false;

@@ -1,4 +1,4 @@
-// A process that the launcher started: its two output pipes and how it ended.
+// A process that the launcher has started, with its two output pipes and the way in which it ended.
 #pragma once
 
 #include <sys/types.h>
@@ -12,12 +12,12 @@
 
 namespace hydro::launch {
 
-// Owns a started process until it has been reaped. Nobody else reaps it, so its pid cannot be reused before
-// TryReap() has succeeded, and Signal() can reach no other process.
+// Owns a started process until it has been reaped. Nothing else reaps the process, so its pid cannot be
+// reused before TryReap() has succeeded, and Signal() can reach no other process.
 class ChildProcess : public Stoppable {
  public:
-  // Starts the program (process/spawn.h); one of ours, or a driver, has a socket for Beat() as stdin. Throws
-  // StartError.
+  // Starts the program (process/spawn.h). One of our programs, or a driver, has a socket for Beat() as its
+  // stdin. Throws StartError.
   explicit ChildProcess(ChildSpec spec);
   ~ChildProcess() override;
   ChildProcess(const ChildProcess&) = delete;
@@ -28,17 +28,18 @@ class ChildProcess : public Stoppable {
   bool running() const override { return !end_; }
   bool last() const override { return spec_.last; }
   const std::optional<ProcessEnd>& end() const { return end_; }
-  // What the system refused it, a line each.
+  // What the system refused to the process, one line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // Checks whether it has ended. True when this call is the first to find so. What a program of the user's own has
-  // started is killed then: a loop must not go on unwatched.
+  // Checks whether the process has ended. Returns true when this call is the first to find that it has. It
+  // then also kills what a program of the user's own has started: a loop must not go on unwatched.
   bool TryReap();
 
   // Sends a heartbeat (process/supervision.h). Never waits; what the program does not read is lost.
   void Beat();
 
-  // Sends a signal unless it has been reaped; to a program of the user's own and all that it started.
+  // Sends a signal to the process unless it has been reaped; for a program of the user's own, also to all
+  // processes that it started.
   void Signal(int signal_number) override;
 
   // The launcher's ends of its stdout and stderr, non-blocking; -1 once closed.

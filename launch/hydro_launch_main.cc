@@ -1,5 +1,5 @@
-// hydro-launch CONFIG: starts, supervises and stops the processes of a stack; or asks something of one that
-// runs.
+// hydro-launch CONFIG: starts, supervises and stops the processes of a stack, or sends a request to a running
+// one.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -25,7 +25,7 @@ namespace {
 struct Options {
   hydro::settings::CommonOptions common;
   hydro::launch::LaunchRequest request;
-  // Instead of starting anything; at most one.
+  // Requests that replace a start; at most one may be given.
   bool stop = false;
   bool rearm = false;
   bool make_key = false;
@@ -71,7 +71,8 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "stack with both, NAME/NAME.toml; starts nothing. Also: hydro-launch new-driver NAME");
 }
 
-// The one flag given of those that start nothing; empty when none is. Throws InputError when two are.
+// The one flag given among those that start nothing; empty when there is none. Throws InputError when there
+// are two.
 std::string FlagInstead(const Options& options) {
   const std::vector<std::pair<std::string, bool>> flags = {
       {"--stop", options.stop},
@@ -91,8 +92,8 @@ std::string FlagInstead(const Options& options) {
   return first;
 }
 
-// Refuses options that `flag` would ignore, because they cannot be what was meant: --stop --log X records
-// nothing. --set and its like say which stack it is, as they did on the command line that started it.
+// Refuses options that `flag` would ignore, because the user cannot have meant them: --stop --log X records
+// nothing. --set and similar options identify the stack, as they did on the command line that started it.
 void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
   std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed", "--joint"};
   if (flag == "--doctor") allowed.emplace_back("--host");
@@ -119,7 +120,7 @@ int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop,
     std::printf("%s\n", hydro::launch::RearmJson(result).c_str());
     return result.exit_code;
   }
-  // Names and reasons come from the network.
+  // Names and reasons come from the network, so they may hold any characters.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());
   return result.exit_code;
@@ -155,8 +156,8 @@ constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
                                                           {"new-controller", "--new-controller"},
                                                           {"new-driver", "--new-driver"}};
 
-// `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`. Throws InputError for a word that is near a verb and no file:
-// `hydro-launch stopp CONFIG`.
+// Turns `hydro-launch stop CONFIG` into `hydro-launch --stop CONFIG`. Throws InputError for a word that is
+// close to a verb and does not name a file: `hydro-launch stopp CONFIG`.
 std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   std::vector<const char*> arguments(argv, argv + argc);
   if (argc < 2) return arguments;

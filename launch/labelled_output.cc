@@ -90,7 +90,8 @@ void LabelledOutput::WriteSome() {
       write(FdOf(chunk.stream), chunk.bytes.data() + chunk.written, std::min<std::size_t>(left, PIPE_BUF));
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return;
   // The reader has gone (EPIPE) or the disk is full: the stack matters more than its output, so the line is
-  // discarded. Nobody wants what goes to a reader that has gone or to a closed descriptor; a disk loses what somebody wants.
+  // discarded. Output to a reader that has gone, or to a closed descriptor, is of no use; what a full disk
+  // loses is missed.
   if (n < 0 && errno != EPIPE && errno != EBADF && chunk.stream == Stream::kOut && lost_ == 0) lost_ = errno;
   const std::size_t done = n < 0 ? left : static_cast<std::size_t>(n);
   chunk.written += done;

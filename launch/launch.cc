@@ -21,8 +21,8 @@
 namespace hydro::launch {
 namespace {
 
-// Checked before anything is started: a logger that fails later stops its stack, and with it any other stack
-// that runs on this port.
+// This is checked before anything is started: a logger that fails later stops its stack, and with it any
+// other stack that runs on this port.
 void CheckLog(const LaunchPlan& plan, const std::string& file) {
   const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
@@ -34,7 +34,7 @@ void CheckLog(const LaunchPlan& plan, const std::string& file) {
 
 int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const LaunchRequest& request,
            int out_fd, int err_fd, const LaunchTiming& timing) {
-  std::optional<LaunchLock> lock;  // until all is over
+  std::optional<LaunchLock> lock;  // held until the launch is over
   LabelledOutput output(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd));
   Supervisor supervisor(
       output, GraceFor(timing, plan));  // before the bus, whose threads must not receive its signals

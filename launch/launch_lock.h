@@ -1,5 +1,5 @@
-// One launch at a time starts a role of a stack on this machine, also where the bus cannot tell: two that start in the same instant, one whose
-// processes are stopped, one with another key.
+// Ensures that only one launch at a time starts a role of a stack on this machine, even when the bus cannot
+// tell: when two start in the same instant, when one's processes are stopped, or when one has another key.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace hydro::launch {
 
 class LaunchLock {
  public:
-  // Takes what the children of `plan` do, on the configuration's port and on the channels of the stack or of their joints, until this
-  // object or its process ends. Throws InputError where another launch does one of them. A spread stack's logger is not locked: each
-  // part may have one.
+  // Takes the roles of the children of `plan`, on the configuration's port and on the channels of the stack
+  // or of their joints, until this object or its process ends. Throws InputError when another launch has one
+  // of the roles. A spread stack's logger is not locked: each part may have one.
   LaunchLock(const settings::StackConfig& config, const LaunchPlan& plan);
   ~LaunchLock();
   LaunchLock(const LaunchLock&) = delete;

@@ -44,12 +44,12 @@ std::string RoleOf(const settings::ProcessSection& process) {
   return process.command.empty() ? process::RoleOf(process.program) : process.role;
 }
 
-// Waits for the logger before the run begins.
+// Whether the process waits for the logger before the run begins.
 bool AwaitsLogger(const settings::ProcessSection& process, const LaunchRequest& request) {
   return !request.log_file.empty() && process::IsPlant(RoleOf(process));
 }
 
-// Which joints a limb's process has, where it does not have them all.
+// The joints that a limb's process runs, when it does not run them all.
 std::vector<std::string> ChosenJoints(const settings::ProcessSection& process,
                                       const settings::StackConfig& config) {
   std::vector<std::string> joints = settings::JointsOf(process, config);
@@ -96,7 +96,7 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
       settings::CheckDriver(config, process.command.empty() ? process.program : settings::NameOf(process));
     const bool logger = process.program == kLogger;
     names_logger |= logger;
-    if (logger && !with_log) continue;  // such a section only says where and how a logger would run
+    if (logger && !with_log) continue;  // such a section only states where and how a logger would run
     if (Matches(process.host, request.host)) {
       here.push_back(process);
     } else if (IsHere(process.host)) {
@@ -110,7 +110,8 @@ std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig&
   return here;
 }
 
-// The joints of the limb that other processes run, here or on another host: a plant, a driver or a limb begins when they are there.
+// The joints of the limb that other processes run, here or on another host: a plant, a driver or a limb
+// begins when those joints are present.
 std::vector<std::string> JointsElsewhere(const settings::ProcessSection& process, const ChildSpec& child,
                                          const settings::StackConfig& config) {
   std::vector<std::string> elsewhere;
@@ -150,7 +151,7 @@ ChildSpec ChildFor(const settings::ProcessSection& process, const settings::Stac
   return child;
 }
 
-// It runs in the configuration's folder: every relative path in its command counts from there.
+// The program runs in the configuration's folder: every relative path in its command starts there.
 ChildSpec OwnChildFor(const settings::ProcessSection& section, const settings::StackConfig& config,
                       const LaunchRequest& request, const std::string& programs_folder) {
   const fs::path file = fs::absolute(request.config_file).lexically_normal();

@@ -23,11 +23,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kAnswer_ms = 500;
-constexpr auto kByThemselves = 500ms;  // how long the others may take to end because the plant has
+constexpr auto kByThemselves = 500ms;  // time for the others to end after the plant has ended
 
 bool HasEnded(int pid) { return kill(pid, 0) != 0 && errno == ESRCH; }
 
-// Whether that is a process of this user (or, for root, of anybody) whose program is one of this project's.
+// Whether the process belongs to this user (or, for root, to any user) and runs one of this project's
+// programs.
 bool IsOurs(int pid) {
   const std::string folder = "/proc/" + std::to_string(pid);
   struct stat status;
@@ -38,7 +39,7 @@ bool IsOurs(int pid) {
   return name.starts_with("hydro-");
 }
 
-// The names of all stop sockets of that stack: the kernel lists them with an @ for the leading zero.
+// The names of all stop sockets of that stack; the kernel lists each with an @ for the leading zero.
 std::set<std::string> NamesWith(const std::string& prefix) {
   std::set<std::string> names;
   std::ifstream table("/proc/net/unix");
@@ -67,8 +68,8 @@ void LocalStop::Connect(const std::string& prefix) {
     Process process;
     process.role = rest.substr(0, slash);
     process.pid = std::atoi(rest.c_str() + slash + 1);
-    if (!IsOurs(process.pid)) continue;  // anybody may listen under such a name
-    // Never waits: whoever listens may be stopped, or a stranger who means harm.
+    if (!IsOurs(process.pid)) continue;  // any process may listen under such a name
+    // Never waits: the listening process may be stopped, or belong to a stranger who means harm.
     process.connection = process::ConnectAbstract(SOCK_SEQPACKET | SOCK_NONBLOCK, name);
     process.deaf = process.connection < 0;
     processes_.push_back(process);
@@ -88,7 +89,8 @@ void LocalStop::Ask(Process& process) {
   pollfd waiting{process.connection, POLLIN, 0};
   char answer[8];
   if (poll(&waiting, 1, kAnswer_ms) > 0 && recv(process.connection, answer, sizeof answer, 0) <= 0) {
-    // Closed without an answer: it has ended already, or does not listen to this user.
+    // The connection was closed without an answer: the process has ended already, or does not listen to this
+    // user.
     process.ended = HasEnded(process.pid);
     process.refused = !process.ended;
   }

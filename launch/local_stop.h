@@ -20,10 +20,12 @@ class LocalStop : public LocalProcesses {
   LocalStop(const LocalStop&) = delete;
   LocalStop& operator=(const LocalStop&) = delete;
 
-  // Asks who drives the motor (plant or driver) to stop; the others usually hear of it over the bus.
+  // Asks the process that drives the motor (plant or driver) to stop; the others usually hear of that over
+  // the bus.
   void StopMotor();
 
-  // Asks all that are left, the logger last, and waits until they have ended, for at most `patience`.
+  // Asks all processes that are left, the logger last, and waits until they have ended, for at most
+  // `patience`.
   void StopRest(Duration patience);
 
   int found() const override { return static_cast<int>(processes_.size()); }
@@ -37,7 +39,7 @@ class LocalStop : public LocalProcesses {
     int pid = 0;
     int connection = -1;
     bool asked = false;
-    bool deaf = false;     // it does not take our connection: it is stopped, or hangs
+    bool deaf = false;     // does not accept our connection: the process is stopped, or hangs
     bool refused = false;  // it belongs to another user
     bool ended = false;
   };

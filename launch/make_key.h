@@ -1,4 +1,4 @@
-// hydro-launch CONFIG --make-key.
+// Implements hydro-launch CONFIG --make-key.
 #pragma once
 
 #include "settings/command_line.h"

@@ -31,7 +31,7 @@ void WriteNew(const NewFile& file) {
     throw InputError(file.path + ": cannot be written: " + std::strerror(errno) +
                      "; go to a folder that is yours");
   }
-  errno = ENOSPC;  // of a write that is shorter
+  errno = ENOSPC;  // the reason of a short write
   const bool written =
       write(fd, file.text.data(), file.text.size()) == static_cast<ssize_t>(file.text.size()) &&
       fsync(fd) == 0;

@@ -1,4 +1,5 @@
-// Files to begin with, which hydro-launch new-controller and new-driver make of the examples.
+// Writes the files that hydro-launch new-controller and new-driver make from the examples, as a start for the
+// user.
 #pragma once
 
 #include <sys/types.h>
@@ -8,8 +9,8 @@
 
 namespace hydro::launch {
 
-// Throws InputError, which begins with `option`, for a name that neither Python nor CMake nor a shell takes
-// as it is.
+// Throws InputError, which begins with `option`, for a name that Python, CMake or a shell would not take
+// unchanged.
 void CheckNewName(const std::string& option, const std::string& name);
 
 // Throws std::logic_error when `old` is not in `text`.
@@ -24,7 +25,7 @@ struct NewFile {
   mode_t mode = 0666;
 };
 
-// Writes all of them or none. Unlike other files, these never take the place of what is there: somebody may
+// Writes all of the files or none. Unlike other files, these never replace an existing file: somebody may
 // have worked on it. Throws InputError.
 void WriteNewFiles(const std::vector<NewFile>& files);
 

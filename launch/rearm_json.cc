@@ -1,5 +1,6 @@
 #include "launch/rearm_json.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.h"
@@ -13,7 +14,7 @@ using Json = nlohmann::ordered_json;
 Json ListOf(const OperatorResult& result) {
   Json list = Json::array();
   for (const auto& [joint, forecast] : result.forecasts) {
-    const auto& f = forecast;  // a lambda may not take a structured binding
+    const auto& f = forecast;  // a lambda cannot capture a structured binding
     Json json;
     if (!joint.empty()) json["joint"] = Printable(joint);
     json["text"] = Printable(f.text);
@@ -25,6 +26,10 @@ Json ListOf(const OperatorResult& result) {
     json["return_s"] = number(f.return_s);
     json["top_rate"] = number(f.top_rate);
     json["jumps"] = f.known ? Json(f.jumps) : Json();
+    json["turns"] = Json::array();
+    for (const tuning::ReferenceTurn& turn : f.turns)
+      json["turns"].push_back({{"after_s", turn.after_s}, {"at", turn.at}});
+    json["speed"] = f.known && std::isfinite(f.speed) ? Json(f.speed) : Json();
     json["lowest"] = number(f.lowest);
     json["highest"] = number(f.highest);
     list.push_back(std::move(json));

@@ -7,11 +7,11 @@
 
 namespace hydro::launch {
 
-// On one line: `rearmed`, `text`, and `forecasts`, what the machine does by it, of a limb one for each joint.
-// A forecast that is not known has null for its numbers.
+// One line with `rearmed`, `text`, and `forecasts`, which state what the machine does after the re-arm; a
+// limb has one for each joint. A forecast that is not known has null for its numbers.
 std::string RearmJson(const OperatorResult& result);
 
-// The forecasts alone, a list.
+// The forecasts alone, as a list.
 std::string ForecastsJson(const OperatorResult& result);
 
 }  // namespace hydro::launch

@@ -1,4 +1,4 @@
-// hydro-launch --stop.
+// Implements hydro-launch --stop.
 #pragma once
 
 #include "launch/logic/operator_request.h"
@@ -6,9 +6,10 @@
 
 namespace hydro::launch {
 
-// Asks the processes of this machine to stop over their local sockets, the one that drives the motor first. Then publishes
-// HYDRO_STOP until every process that is heard has announced its end. Exit code 0; 1 when nobody is there or a process does not
-// end. A bus that cannot work is no obstacle where processes are found on this machine.
+// Asks the processes of this machine to stop over their local sockets, the one that drives the motor first.
+// Then publishes HYDRO_STOP until every process that is heard has announced its end. The exit code is 0, or 1
+// when no process is found or one does not end. When processes are found on this machine, a bus that cannot
+// work is no obstacle.
 OperatorResult StopStack(const settings::StackConfig& config, const Asker& asker = kHydroLaunch,
                          const OperatorTiming& timing = {});
 

@@ -34,9 +34,9 @@ int PollTimeoutMs(Supervisor::TimePoint until) {
 Supervisor::Supervisor(LabelledOutput& output, Grace grace) : output_(output), stop_(grace) {
   const sigset_t set = WatchedSignals();
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  // A reader of this output that goes away must not end the launcher and leave the motor running.
+  // When the reader of this output goes away, that must not end the launcher and leave the motor running.
   signal(SIGPIPE, SIG_IGN);
-  // If the parent process ignored it, children would vanish without a status.
+  // If the parent process ignored SIGCHLD, children would vanish without a status.
   signal(SIGCHLD, SIG_DFL);
   signal_fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   if (signal_fd_ < 0) throw StartError(std::string("signalfd: ") + strerror(errno));
@@ -106,8 +106,8 @@ void Supervisor::Read(Child& child, Stream stream) {
   }
 }
 
-// Reads what an ended child left in the pipe. A pipe holds 64 KiB; more can only come from a process that the
-// child started and that inherited the pipe, and those are not waited for.
+// Reads what an ended child left in the pipe. A pipe holds 64 KiB. More can only come from a process that the
+// child started and that inherited the pipe; the supervisor does not wait for such processes.
 void Supervisor::ReadRest(Child& child, Stream stream) {
   const auto fd = [&] { return stream == Stream::kOut ? child.process.out_fd() : child.process.err_fd(); };
   for (int i = 0; i < 16 && fd() >= 0; ++i) {

@@ -23,8 +23,8 @@ class Supervisor : public Children {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Blocks SIGINT, SIGTERM and SIGHUP in this thread from now on; NextSignal() returns them. Create it before
-  // any other thread, so that those inherit the mask.
+  // From now on blocks SIGINT, SIGTERM and SIGHUP in this thread; NextSignal() returns them. Create it before
+  // any other thread, so that the other threads inherit the mask.
   Supervisor(LabelledOutput& output, Grace grace);
   ~Supervisor() override;
   Supervisor(const Supervisor&) = delete;

@@ -9,8 +9,8 @@
 namespace hydro::launch {
 namespace {
 
-// Whether anything moved: of a run that ended before, hydro-log summary has nothing to say. A log that has states begins with one soon, so
-// that little of it is read.
+// Whether the log has a state: without one, hydro-log summary has nothing to report. A log with states has
+// one near its beginning, so little of it is read.
 bool HasState(const std::string& file) {
   try {
     const MappedFile log(file);
@@ -63,7 +63,8 @@ void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
   output_.SetStatus(lines);
 }
 
-// A run that ends before its logger has begun leaves no log, and one on another host leaves it there.
+// A run that ends before its logger has begun leaves no log, and a logger on another host leaves the log
+// there.
 bool TerminalReport::LogWasWritten() const {
   const auto log = IdentityOfRegular(log_file_);
   return log && log != old_log_;

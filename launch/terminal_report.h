@@ -1,4 +1,4 @@
-// A launch's own lines, on a terminal among those of its children, and its timing files.
+// Prints a launch's own lines on a terminal, among those of its children, and writes its timing files.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,16 @@
 namespace hydro::launch {
 
 struct ReportStyle {
-  bool status = false;  // draws how the processes are doing below the other lines
+  bool status = false;  // draws the state of the processes below the other lines
   bool quiet = false;   // errors only
   bool json = false;    // a JSON object a line
 };
 
 class TerminalReport : public LaunchReport {
  public:
-  // `status`: draws how the processes are doing below the other lines. `log_file`: what the run is recorded in; empty: nothing. Announces
-  // the labels. All must outlive it. Throws InputError for a bad name of a timing file.
+  // With `status`, draws the state of the processes below the other lines. `log_file` records the run; empty:
+  // no file does. Announces the labels. All arguments must outlive this object. Throws InputError for a bad
+  // name of a timing file.
   TerminalReport(LabelledOutput& output, const settings::StackConfig& config, const LaunchPlan& plan,
                  const ReportStyle& style, const std::string& log_file);
 
@@ -43,7 +44,7 @@ class TerminalReport : public LaunchReport {
   const settings::StackConfig& config_;
   const ReportStyle style_;
   const std::string log_file_;
-  const std::optional<FileIdentity> old_log_;  // what had the log's name before the run
+  const std::optional<FileIdentity> old_log_;  // the file that had the log's name before the run
   bool logs_here_ = false;                     // this launch starts the logger
   std::optional<TimingFiles> timing_files_;
 };

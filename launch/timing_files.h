@@ -1,4 +1,4 @@
-// The files of hydro-launch --timing: REPORT.json and REPORT.html beside it.
+// Writes the files of hydro-launch --timing: REPORT.json and, beside it, REPORT.html.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace hydro::launch {
 
 class TimingFiles {
  public:
-  // `json`: "REPORT.json". Throws InputError when the name ends otherwise or the folder is not writable, so
-  // that this is known before the run starts.
+  // `json` is "REPORT.json". Throws InputError when the name has another ending or the folder is not
+  // writable, so that the error comes before the run starts.
   explicit TimingFiles(const std::string& json);
 
   // Writes both files, each whole or not at all. Throws WriteError or InputError.

@@ -19,7 +19,7 @@ struct Header {
 }  // namespace
 
 EventQueue::EventQueue(size_t limit) : limit_(std::max(limit, kChunkSize)) {
-  // So that the lists of chunks are never reallocated.
+  // Reserved so that the lists of chunks are never reallocated.
   waiting_chunks_.reserve(limit_ / kChunkSize + 1);
   free_.reserve(limit_ / kChunkSize + 1);
 }
@@ -45,7 +45,7 @@ int64_t EventQueue::Push(std::string_view channel, const void* data, size_t size
   return ++waiting_;
 }
 
-// Appends an empty chunk with room for `needed` bytes; false when the limit forbids it.
+// Appends an empty chunk with room for `needed` bytes; returns false when the limit forbids it.
 bool EventQueue::MakeRoom(size_t needed) {
   if (needed <= kChunkSize && !free_.empty()) {
     waiting_chunks_.push_back(std::move(free_.back()));

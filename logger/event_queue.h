@@ -11,11 +11,11 @@
 
 namespace hydro::logger {
 
-// Never holds more memory than its limit. When the disk is slower than the bus for longer than that lasts,
-// new events are refused and counted. Memory is allocated in chunks as needed and reused.
+// Never holds more memory than its limit. When the disk is slower than the bus for longer than that memory
+// lasts, new events are refused and counted. Memory is allocated in chunks as needed and reused.
 class EventQueue {
  public:
-  // `limit`: bytes, including what is being written; at least one chunk.
+  // `limit` is in bytes, including what is being written; at least one chunk.
   explicit EventQueue(size_t limit);
 
   struct Event {
@@ -23,14 +23,15 @@ class EventQueue {
     const uint8_t* data = nullptr;
     size_t size = 0;
     int64_t utime = 0;
-    bus::Clock::TimePoint arrived{};  // monotonic, whatever happens to utime's clock
+    bus::Clock::TimePoint arrived{};  // monotonic, unaffected by changes of utime's clock
   };
 
-  // Copies the event and returns how many now wait; 0: there was no room, and it was counted as dropped.
+  // Copies the event and returns the number of events that now wait; 0 when there was no room and the event
+  // was counted as dropped.
   int64_t Push(std::string_view channel, const void* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived = {});
 
-  int64_t waiting() const;  // events that were pushed and are not yet written
+  int64_t waiting() const;  // events that were pushed and not yet written
   int64_t dropped() const;
   size_t memory() const;  // bytes allocated now
 
@@ -43,7 +44,7 @@ class EventQueue {
     ~Batch();
 
     bool empty() const { return chunks_.empty(); }
-    // Calls `use(event)` for each.
+    // Calls `use(event)` for each event.
     template <class Use>
     void ForEach(Use&& use) const {
       for (const Chunk& chunk : chunks_) {

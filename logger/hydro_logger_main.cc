@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   command_line.AddOption("--rotate-mb", &rotate_mb,
                          "MB start a new file (FILE-001 ...) when one grows larger than this; 0: never");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  const std::string log = std::exchange(options.log, "");  // nothing but the logger itself records
+  const std::string log = std::exchange(options.log, "");  // only the logger itself records
   return hydro::process::RunProcess(
       "hydro-logger", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {

@@ -25,13 +25,14 @@ LogFiles::LogFiles(const std::string& file, int64_t rotate_bytes, std::string de
   watch_.Watch(file_);
 }
 
-// All of them before the first is begun: a recording must not end in the middle because of yesterday's.
+// Checks all names before the first file is begun: a recording must not end in the middle because of an older
+// file.
 const std::string& LogFiles::Checked(const std::string& file, int64_t rotate_bytes) {
   namespace fs = std::filesystem;
   if (rotate_bytes <= 0) return file;
   const fs::path path(file);
   const std::string begin = path.stem().string() + "-", end = path.extension().string();
-  std::error_code failed;  // LogWriter says why
+  std::error_code failed;  // LogWriter reports the reason
   for (const auto& entry :
        fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", failed)) {
     const std::string name = entry.path().filename();

@@ -1,4 +1,4 @@
-// The files of a recording: one, or with a limit of size one after the other.
+// The files of a recording: one file or, when the size is limited, several in succession.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +21,20 @@ std::string RotatedName(const std::string& file, int n);
 class LogFiles {
  public:
   // Opens the first file; throws InputError when it cannot be opened, or when later files of such a recording
-  // are there already and must be kept (new_file.h). `rotate_bytes`: a new file is started when one has grown
-  // beyond this; 0: never. Each file begins with the newest message of `description_channel`, so that it
+  // exist already and must be kept (new_file.h). When a file has grown beyond `rotate_bytes`, a new one is
+  // started; 0: never. Each file begins with the newest message of `description_channel`, so that it
   // describes itself.
   LogFiles(const std::string& file, int64_t rotate_bytes, std::string description_channel);
 
-  // Throw WriteError, and InputError when a further file cannot be opened.
+  // These throw WriteError, and InputError when a further file cannot be opened.
   void Append(const EventQueue::Event& event);
   void Flush() { writer_->Flush(); }
-  // Ends the recording, with remarks for the log on what was left out.
+  // End the recording, with remarks for the log on what was left out.
   void Remark(std::string_view text) { writer_->Remark(text); }
   void Finish() { writer_->Finish(); }
 
-  // Whether the present file is still where it was opened: looks once a second, with `at_once` now. Returns what
-  // is wrong, once for each file (file_watch.h).
+  // Checks whether the present file is still where it was opened: once a second, or now with `at_once`.
+  // Returns what is wrong, once for each file (file_watch.h).
   std::optional<std::string> Look(std::chrono::steady_clock::time_point now, bool at_once);
 
   int count() const { return count_; }
@@ -49,7 +49,7 @@ class LogFiles {
   std::string description_channel_;
   std::unique_ptr<log::LogWriter> writer_;
   FileWatch watch_;
-  std::optional<std::string> gone_;  // of a file that was left behind
+  std::optional<std::string> gone_;  // what became of a file that was left behind
   int count_ = 1;
   std::optional<log::RecordedMessage> description_;
 };

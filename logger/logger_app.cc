@@ -21,17 +21,18 @@ using namespace std::chrono_literals;
 
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
 constexpr int64_t kEndedTicks = 32;     // joints of a limb in lockstep are never so far apart
-constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's own last message to come back
+constexpr auto kEchoTime = 200ms;       // wait for this logger's own last message to come back
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
-constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
+constexpr auto kFarewellTime = 500ms;   // wait for the others' last messages after a stop
 
-constexpr size_t kMostSenders = 1024;  // of one kind of message that are followed: a flood is not
+constexpr size_t kMostSenders = 1024;  // senders followed for one kind of message; a flood has more
 
 }  // namespace
 
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
-    : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
+    // First, because subscribing to all channels after other subscriptions could lose messages.
+    : bus_(Tap(bus)),
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger", config.agreed),
       options_(options),
       plant_alive_(bus::FromSeconds(std::max(0.3, 5 / (config.plant.rate_hz * config.time.speed)))),
@@ -86,7 +87,8 @@ bus::Bus& LoggerApp::Tap(bus::Bus& bus) {
 }
 
 void LoggerApp::OnMessage(const bus::RawMessage& message) {
-  // LCM carries a message without a channel, but no log can hold it; and only the writer checks a log.
+  // LCM carries a message without a channel, but no log can hold it; and the check channel belongs to the
+  // writer of a log alone.
   if (message.channel.empty() || message.channel == log::kCheckChannel) return;
   if (RefusedQuota::IsRefused(message.channel) &&
       !refused_.Admit(static_cast<size_t>(message.size), participant_.clock().Now())) {
@@ -112,7 +114,7 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
   }
 }
 
-// In lockstep a limb waits for the slowest of its joints to be recorded; one that is far behind has ended.
+// In lockstep a limb waits until the slowest of its joints is recorded; a joint that is far behind has ended.
 int64_t LoggerApp::ProgressTick() const {
   int64_t newest = -1;
   for (const Stack& stack : stacks_) newest = std::max(newest, stack.state_tick);
@@ -129,12 +131,12 @@ void LoggerApp::OnState(Stack& stack, const bus::LoopNumbers& numbers) {
   state_tick_ = ProgressTick();
   participant_.set_tick(state_tick_);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  // A state that is sent again asks for the answer again; it may have been lost.
+  // A repeated state asks for a repeated answer, which may have been lost.
   const bool again = !limb_ && state_tick_ <= reported_tick_;
   if (state_tick_ >= SaturatingSum(reported_tick_, progress_ticks_) || again) ReportProgress();
 }
 
-// The logger records every plant on the bus, but takes part in one run: another's end is not its own.
+// The logger records every plant on the bus but takes part in one run: the end of another run is not its own.
 void LoggerApp::FollowPlant(int64_t session) {
   const auto now = participant_.clock().Now();
   if (session != participant_.run()) {
@@ -181,7 +183,7 @@ void LoggerApp::CheckOverflow() {
 }
 
 void LoggerApp::OnStatus(const process_status_t& status) {
-  if (status.role == process::kLaunchRole) return;  // it asks who is there, and never says that it has ended
+  if (status.role == process::kLaunchRole) return;  // it asks who is present, and never announces its end
   if (status.role != "logger") {
     if (others_.size() >= kMostSenders && !others_.contains(status.session)) return;
     others_[status.session] = process::HasLeft(status);
@@ -212,7 +214,7 @@ void LoggerApp::ReportProgress() {
 void LoggerApp::Poll() {
   if (order_ && order_->held_since() &&
       participant_.clock().Now() - *order_->held_since() > WritingThread::kPeriod) {
-    order_->Release();  // the message that it waits for was lost
+    order_->Release();  // the message for which the order waits was lost
   }
   CheckOverflow();
   participant_.statistics().set_lost_messages(lost_ + dropped_);
@@ -227,7 +229,7 @@ void LoggerApp::Poll() {
   if (participant_.stop() && !stop_time_) stop_time_ = participant_.clock().Now();
 }
 
-// In the place of the writing thread.
+// Replaces the writing thread.
 void LoggerApp::TakeTurn() {
   const auto now = participant_.clock().Now();
   if (now < next_turn_ || !options_.disk_is_ready()) return;
@@ -235,7 +237,8 @@ void LoggerApp::TakeTurn() {
   recording_.WriteWaiting(false);
 }
 
-// A signal that no stop has preceded, as when the launcher was killed, reaches all at once: the others' ends belong to the log.
+// A signal that no stop has preceded, as when the launcher was killed, reaches all processes at once: the
+// ends of the others belong in the log.
 void LoggerApp::AwaitFarewells() {
   if (stop_time_) return;
   stop_time_ = participant_.clock().Now();
@@ -257,8 +260,8 @@ bool LoggerApp::finished() const {
 int LoggerApp::Finish() {
   AwaitFarewells();
   int exit_code = participant_.Leave(recording_.FailureText());
-  // Handle what was sent already, up to this logger's own last message, which comes back from the bus like
-  // any other.
+  // Handles messages that were sent already, up to this logger's own last message, which comes back from the
+  // bus like any other.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
   if (order_) order_->Release();

@@ -1,10 +1,11 @@
 // The logger as an application: records every message on the bus.
 //
-// Messages go from the bus into a queue (event_queue.h); a separate thread writes them to the file (recording.h), so that a
-// slow disk delays nobody. The queue holds up to logger.memory_mb. Messages that find it full are left out of
-// the log and counted, and the fault log_overflow is raised. Received messages are handed to the kernel at
-// least every WritingThread::kPeriod. Of messages that a bus with a key refuses, a bounded part is recorded
-// (refused_quota.h). A log that is deleted while it is recorded is named at once, and ends the logger with 1.
+// Messages go from the bus into a queue (event_queue.h); a separate thread writes them to the file
+// (recording.h), so that a slow disk delays no process. The queue holds up to logger.memory_mb. Messages that
+// find it full are left out of the log and counted, and the fault log_overflow is raised. Received messages
+// are handed to the kernel at least every WritingThread::kPeriod. Of the messages that a bus with a key
+// refuses, a bounded part is recorded (refused_quota.h). If the log is deleted while it is recorded, the
+// logger reports that at once and ends with exit code 1.
 #pragma once
 
 #include <array>
@@ -29,7 +30,8 @@ namespace hydro::logger {
 struct LoggerOptions {
   std::string file;
   int64_t rotate_bytes = 0;  // a new file is started when one has grown beyond this; 0: never
-  // For a simulator, which has no second thread: whether the disk takes what waits now. None: a thread of its own writes.
+  // For a simulator, which has no second thread: whether the disk takes the waiting data now. None: a thread
+  // of its own writes.
   std::function<bool()> disk_is_ready = {};
 };
 
@@ -44,7 +46,7 @@ class LoggerApp : public process::App {
   int Finish() override;
 
  private:
-  // What is known of a stack, or of a joint's.
+  // What the logger knows of a stack, or of a joint's stack.
   struct Stack {
     bus::Channels channels;
     int64_t state_tick = -1;  // newest received
@@ -79,7 +81,8 @@ class LoggerApp : public process::App {
   std::optional<WritingThread> thread_;
   bus::Clock::TimePoint next_turn_;  // without a thread
 
-  std::optional<bus::Clock::TimePoint> followed_heard_;  // the last state of the plant whose run this is
+  // The time of the last state of the plant whose run this is.
+  std::optional<bus::Clock::TimePoint> followed_heard_;
   RefusedQuota refused_;
   int64_t received_ = 0;
   int64_t largest_queue_ = 0;  // since the last statistics report
@@ -91,13 +94,14 @@ class LoggerApp : public process::App {
   const int64_t progress_ticks_;
   int64_t state_tick_ = -1;  // newest tick received of every stack
   int64_t reported_tick_ = -1;
-  bus::Clock::TimePoint report_again_;  // from then on even fewer than kProgressTicks new ticks are reported
+  bus::Clock::TimePoint report_again_;  // from then on, fewer than kProgressTicks new ticks are also reported
   std::optional<log::CausalOrder> order_;  // lockstep: restores the order of the numbered messages
   bool left_ = false;                      // this logger's own DONE or FAILED has come back from the bus
   std::map<int64_t, bool> others_;         // whether each other process has left, by session
-  std::array<std::map<int64_t, int64_t>, bus::kLoopParts> next_sequence_;  // by part and session, for losses
+  // By part and session, to count losses.
+  std::array<std::map<int64_t, int64_t>, bus::kLoopParts> next_sequence_;
   int64_t lost_ = 0;
-  int64_t dropped_ = 0;                             // by the full queue, at the last check
+  int64_t dropped_ = 0;                             // by the full queue, as of the last check
   std::optional<bus::Clock::TimePoint> overflow_;   // during a fault: when the queue last dropped something
   std::optional<bus::Clock::TimePoint> stop_time_;  // when the stop was heard
 };

@@ -40,7 +40,7 @@ Recording::Write Recording::WriteBatch(const EventQueue::Batch& batch) {
   return {began, now - oldest.value_or(now)};
 }
 
-// Recording goes on: an open file takes what is written, and may still be copied from /proc.
+// Recording goes on: an open file still takes what is written, and may be copied from /proc.
 void Recording::ReportGone(const std::string& wrong) {
   spdlog::error("{}; recording goes on, and this logger will end with 1", wrong);
   const std::lock_guard lock(mutex_);

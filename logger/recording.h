@@ -1,4 +1,4 @@
-// The writing half of a logger: takes what waits in its queue to the files, turn by turn.
+// The writing half of a logger: writes the messages that wait in its queue to the files, turn by turn.
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ class Recording {
  public:
   struct Write {
     bus::Clock::TimePoint began;
-    bus::Clock::Duration latency;  // since the arrival of the oldest message in it
+    bus::Clock::Duration latency;  // since the arrival of the oldest message in the write
   };
 
   // Opens the file; throws InputError when it cannot be opened. `description_channel`: log_files.h.
@@ -36,20 +36,21 @@ class Recording {
 
   EventQueue& queue() { return queue_; }
 
-  // One turn: writes what waits, and looks after the file, in the `last` turn at once. What goes wrong is kept for
-  // failed() and Finish(), and nothing more is written then.
+  // Takes one turn: writes the messages that wait, and checks the file, in the `last` turn without delay. An
+  // error is kept for failed() and Finish(), and nothing more is written then.
   void WriteWaiting(bool last);
 
-  // After the last turn: remarks for the log on what was left out, and its end. Throws what a turn threw.
+  // Called after the last turn: writes remarks on what was left out, and ends the log. Throws what a turn
+  // threw.
   void Finish(const std::vector<std::string>& remarks);
 
-  // Any thread may ask, while another writes:
+  // Any thread may call these while another writes:
   std::vector<Write> TakeWrites();  // those completed since the last call
   bool failed() const { return failed_; }
   std::string FailureText();  // why writing failed, or what became of the file; empty while all is well
   std::string Gone();         // what became of a file that is no longer where it was recorded
 
-  // Those of the writing thread, or after it:
+  // Only the writing thread may call these, or any thread after it has ended:
   int files() const { return files_.count(); }
   int64_t bytes() const { return files_.bytes(); }  // of the present file
 
@@ -67,8 +68,8 @@ class Recording {
   std::atomic<bool> failed_ = false;
 };
 
-// Takes turns for a recording, one each kPeriod: a notification per message would cost the receiving thread a system
-// call each.
+// Takes turns for a recording, one each kPeriod: a notification per message would cost the receiving thread a
+// system call each.
 class WritingThread {
  public:
   static constexpr auto kPeriod = std::chrono::milliseconds(20);

@@ -1,4 +1,4 @@
-// How many refused messages (docs/security.md) are recorded: an intruder must not fill the disk.
+// Limits how many refused messages (docs/security.md) are recorded: an intruder must not fill the disk.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace hydro::logger {
 
-// The first messages of each second, and of the run, up to a number and a size; the rest are counted.
+// Admits the first messages of each second, and of the run, up to a number and a size; counts the rest.
 class RefusedQuota {
  public:
   static constexpr int64_t kMessagesPerSecond = 1000;
@@ -20,7 +20,7 @@ class RefusedQuota {
 
   static bool IsRefused(std::string_view channel) { return channel.starts_with("REFUSED_"); }
 
-  // Whether a refused message that came at `now` is to be recorded; counts it if not.
+  // Returns whether a refused message that came at `now` is to be recorded; counts it if not.
   bool Admit(size_t bytes, bus::Clock::TimePoint now);
 
   int64_t left_out() const { return left_out_; }

@@ -20,8 +20,8 @@ class Actuator {
   Actuator(Actuator&&) noexcept;
   Actuator& operator=(Actuator&&) noexcept;
 
-  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results depend on
-  // nothing but the sequence of calls: identical calls give identical bits. Throws ModelError.
+  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results depend only on
+  // the sequence of calls: identical calls give identical bits. Throws ModelError.
   void Advance(double voltage, double until);
 
   double time() const;

@@ -12,9 +12,10 @@ namespace hydro::model {
 
 namespace {
 
-// The states of effects change their own rates slowly, if at all: a Jacobian serves for so many samples.
+// The states of effects change their own rates slowly, if at all, so one Jacobian serves for this many
+// samples.
 constexpr int kSamplesOfAJacobian = 16;
-// Of a sample: a lag as short as the interval is met to a few per cent.
+// Steps in each sample: a lag as short as the interval is then accurate to a few per cent.
 constexpr int kSubsteps = 2;
 
 // Between two samples, values follow the cubic through both ends with their rates.
@@ -42,8 +43,8 @@ KnownMotion Between(const KnownMotion& from, const KnownMotion& to, double part)
   return at;
 }
 
-// h (1 - h A/2)^-1: what moves states by a step h of the trapezoidal rule, where their rates change as A says. A ramp is
-// followed exactly, however short a lag is against the step. By rows.
+// h (1 - h A/2)^-1, by rows. It moves states by a step h of the trapezoidal rule where A gives the change of
+// their rates. It follows a ramp exactly, however short a lag is compared with the step.
 std::vector<double> StepMatrix(std::vector<double> A, size_t n, double h) {
   std::vector<double> inverse(n * n, 0.0);
   for (size_t i = 0; i < n; ++i) {
@@ -73,7 +74,7 @@ std::vector<double> StepMatrix(std::vector<double> A, size_t n, double h) {
   return inverse;
 }
 
-// All named quantities where the motion is as given and switches stand as it and their margins say.
+// All named quantities for the given motion, with switches set as it and their margins require.
 template <class T>
 void EvaluateMotion(const EquationData& m, const NumbersOf<T>& n, const KnownMotion& at, const double* state,
                     int pump, int arm, T* rate, Terms<T>& x) {
@@ -97,7 +98,7 @@ void EvaluateMotion(const EquationData& m, const NumbersOf<T>& n, const KnownMot
     FindFreeRates<Form::kGeneral>(m, n, x);
   };
   if (m.switches > kFirstEffectSwitch) {
-    // First those that follow the direction of motion, then those that thresholds decide.
+    // Switches that follow the direction of motion come first, then those that depend on thresholds.
     read();
     x.mode = &mode;
     x.parameters = &n.parameters;
@@ -171,8 +172,9 @@ BalancesOf<T> Blended(const EquationData& m, const NumbersOf<T>& n, const KnownM
   return sum;
 }
 
-// What a side reads above the level at which an effect's one-way valve holds it. Open, such a valve passes a flow that is
-// linear in the pressure: two pressures far below p_3 show where it passes what the other flows need.
+// What a side reads above the level at which an effect's one-way valve holds it. An open valve of this kind
+// passes a flow that is linear in the pressure, so two pressures far below p_3 show the pressure at which it
+// passes what the other flows need.
 double AboveHeldLevel(const EquationData& m, const KnownMotion& at, const double* state,
                       double KnownMotion::*pressure, double BalancesOf<double>::*flow) {
   const Parameters& p = m.parameters;
@@ -190,8 +192,9 @@ double AboveHeldLevel(const EquationData& m, const KnownMotion& at, const double
   return at.*pressure - (first - flow_1 / slope);
 }
 
-// Whether an ideal one-way valve is open: a low pressure that falls less than it would with the valve closed. How far above p_3
-// low may be: what an accumulator's pressure moves by, and far below what a pump makes.
+// Whether an ideal one-way valve is open: the pressure is low and falls less than it would with the valve
+// closed. A pressure counts as low if it is above p_3 by no more than an accumulator's pressure changes,
+// which is far below what a pump produces.
 bool PassesOil(const EquationData& m, double pressure, double closed_rate, double rate) {
   constexpr double kLow = 0.1, kLess = 0.2;
   if (!m.ideal_valves || pressure > m.parameters.p_3 + kLow * m.parameters.T_pmax / m.parameters.D)
@@ -216,7 +219,7 @@ BalanceEquations::BalanceEquations(const ModelDescription& model, ActuatorOption
                                                            : numbers_.own.at(unknowns[u].index);
     seeded.SetDerivative(static_cast<int>(u), 1);
   }
-  // The equations skip the weight of an arm that has none, and with it the derivative.
+  // The equations skip the weight of an arm without weight, and with it the derivative.
   if (numbers_.parameters.mgl.a == 0) numbers_.parameters.mgl.a = std::numeric_limits<double>::min();
   CompleteNumbers<Jet>(data, &numbers_);
   first_state_ = data.shaft == Shaft::kFree ? 6 : 4;
@@ -297,7 +300,7 @@ void BalanceEquations::PassStops(const KnownMotion& from, const KnownMotion& to)
   const double step = to.time - from.time, end = to.time + 1e-6 * step;
   early_ = 0;
   drive_before_.reset();
-  // Those of effects alone: the breaks of an imposed motion are in the motion that is known.
+  // Only the effects' stops count: the breaks of an imposed motion are part of the known motion.
   const auto next = [&] {
     double stop = kUnbounded;
     for (const auto& effect : equations_.data().effects) stop = std::min(stop, effect->NextStop(from.time));

@@ -1,12 +1,12 @@
 // Each joint's actuator integrates its own equations, modes and events; the arm couples them. From one
 // exchange of loads, at t_0, to the next, joint i moves by
 //   m_i alpha_i'' = tau_i + W_i(t),   m_i = 1/(M^-1)_ii at t_0,
-// with its own torque tau_i exact at every instant. W_i is what the others do to it (arm/arm_coupling.h): it
-// continues as a parabola, from W and W' at t_0 and the change of W' since the exchange before. At the end W
-// and W' are known too, and the cubic through both ends says what the parabola has missed: angle and speed
-// are corrected by its integrals, and the fluid is compressed by the angle's. In smooth motion the method is
-// of fourth order. A jump in a rate (a valve, a pump that sticks) costs accuracy in the step in which it
-// lies.
+// with its own torque tau_i exact at every instant. W_i is the effect of the other joints
+// (arm/arm_coupling.h). It continues as a parabola, from W and W' at t_0 and the change of W' since the
+// previous exchange. At the end of the step W and W' are known too, and the cubic through both ends shows the
+// parabola's error. Its integrals correct angle and speed, and the angle's correction compresses the fluid.
+// In smooth motion the method is of fourth order. A jump in a rate (a valve, a pump that sticks) costs
+// accuracy in the step in which it lies.
 
 #include "model/coupled_arm.h"
 
@@ -20,10 +20,11 @@
 namespace hydro::model {
 namespace {
 
-// Exchanges of loads per second: those of an arm that oscillates at 4e6 rad/s. Beyond, its links have no weight.
+// Exchanges of loads per second, enough for an arm that oscillates at 4e6 rad/s. Beyond that, its links have
+// no weight.
 constexpr double kMostExchanges = 1e7;
 
-// Calls `act`, whose errors then say which joint's they are.
+// Calls `act`, and adds the joint's name to its errors.
 template <class Act>
 void Named(int joint, const Act& act) {
   const std::string name = "joint " + std::to_string(joint + 1) + ": ";
@@ -89,9 +90,9 @@ class CoupledArm::Impl {
   const JointCoupling& now() const { return now_; }
 
  private:
-  // The fastest oscillation of the arm on the fluid that it compresses, rad/s: the root of the largest
-  // eigenvalue of M^-1 K. One round of power iteration an exchange follows it. It is no slower than any joint
-  // is while the others' torques are held, which serves until the iteration has settled.
+  // The fastest oscillation of the arm on its compressible fluid, rad/s: the root of the largest eigenvalue
+  // of M^-1 K. One round of power iteration in each exchange follows it. The result is at least the frequency
+  // of each joint with the others' torques held, which suffices until the iteration has settled.
   void FindFastest() {
     double square = 0;
     double length = 0;
@@ -110,7 +111,7 @@ class CoupledArm::Impl {
     for (const double part : fastest_) grown = std::max(grown, std::abs(part));
     fastest_rate_ = std::sqrt(std::max(square, length > 0 ? grown / length : 0));
     for (int i = 0; i < n(); ++i) {
-      fastest_[i] = now_.held[i] || grown == 0 ? 0.1 : fastest_[i] / grown;  // what is held may be let go
+      fastest_[i] = now_.held[i] || grown == 0 ? 0.1 : fastest_[i] / grown;  // a held joint may be released
     }
   }
 
@@ -131,7 +132,8 @@ class CoupledArm::Impl {
     last_step_ = h;
   }
 
-  // Half of W'', from the rates now and at the exchange before (other_), both with the inertia of now.
+  // Half of W'', from the current rates and those at the previous exchange (other_), both with the current
+  // inertia.
   double Curve(int i) const {
     if (last_step_ == 0 || now_.held != other_.held) return 0;
     const double before =
@@ -139,7 +141,7 @@ class CoupledArm::Impl {
     return (now_.load_rate[i] - before) / (2 * last_step_);
   }
 
-  // With s = (t - t_0)/h the parabola has missed missed (3 s^2 - 2 s^3) + h missed_rate (s^3 - s^2).
+  // With s = (t - t_0)/h, the parabola's error is missed (3 s^2 - 2 s^3) + h missed_rate (s^3 - s^2).
   void Correct(int i, double h) {
     const auto& [m, torque, torque_rate, curve] = loads_[i];
     const double missed =
@@ -169,11 +171,11 @@ class CoupledArm::Impl {
   std::vector<bool> clamped_;
   std::vector<Parameters> parameters_;
   JointCoupling now_;
-  JointCoupling other_;          // at the exchange before, then at the next
+  JointCoupling other_;          // at the previous exchange, then at the next
   double last_step_ = 0;         // s
   std::vector<double> fastest_;  // the shape of the fastest oscillation
   double fastest_rate_ = 0;      // rad/s
-  std::vector<ArmLoad> loads_;   // as they were set last
+  std::vector<ArmLoad> loads_;   // as last set
 };
 
 CoupledArm::CoupledArm(const ArmDescription& arm, const std::vector<ArmJoint>& joints,

@@ -11,24 +11,24 @@
 
 namespace hydro::model {
 
-// What drives one joint. The arm takes the place of the model's J_a and mgl. `options.shaft` is kFree, or
-// kClamped for a joint that is locked at options.arm_angle.
+// The drive of one joint. The arm replaces the model's J_a and mgl. `options.shaft` is kFree, or kClamped for
+// a joint that is locked at options.arm_angle.
 struct ArmJoint {
   ModelDescription model;
-  // The exchange of loads leaves more than this tolerance does; a finer one costs time and gains nothing.
+  // The exchange of loads has a larger error than this tolerance; a finer one takes time and gains nothing.
   ActuatorOptions options = {.relative_tolerance = 1e-5};
 };
 
 struct CoupledArmOptions {
   double longest_step = 1e-3;  // s, from one exchange of loads to the next
-  // Exchanges per radian of the fastest oscillation that the arm can have on the fluid it compresses. More is
-  // more accurate (docs/model.md).
+  // Exchanges per radian of the fastest possible oscillation of the arm on its compressible fluid. More
+  // exchanges are more accurate (docs/model.md).
   double steps_per_radian = 2.5;
 };
 
 class CoupledArm {
  public:
-  // A joint for each link, from the base outwards. All start at rest at time 0, with arm angles
+  // One joint for each link, from the base outwards. All start at rest at time 0, with arm angles
   // `options.arm_angle`. Throws ModelError, which names the link or the joint.
   CoupledArm(const ArmDescription& arm, const std::vector<ArmJoint>& joints,
              const CoupledArmOptions& options = {});
@@ -43,15 +43,15 @@ class CoupledArm {
   double time() const;
   int joints() const;
 
-  // Joints count from 0. As Actuator::Measure.
+  // As Actuator::Measure. Joints count from 0.
   Measurement Measure(int joint) const;
 
-  // in-lbf: what the actuator gives its joint, k_2 dp and what effects make of it; friction of the arm's own
-  // included.
+  // in-lbf: the actuator's torque on its joint: k_2 dp as changed by effects, including the arm's own
+  // friction.
   double ActuatorTorque(int joint) const;
   double Acceleration(int joint) const;  // rad/s^2
 
-  // Of one joint's actuator: the arm enters as shaft_in, and in `kinetic` only the motor counts.
+  // The balance of one joint's actuator: the arm enters as shaft_in, and `kinetic` includes only the motor.
   Power PowerBalance(int joint) const;
 
  private:

@@ -1,5 +1,5 @@
-// What a model predicts for a recorded run, with exact derivatives: the simulation on which fits rest. It has
-// the equations, modes and effects of Actuator, integrated by a Runge-Kutta method whose steps also carry
+// What a model predicts for a recorded run, with exact derivatives. Fits rest on this simulation. It has the
+// equations, modes and effects of Actuator, integrated by a Runge-Kutta method whose steps also carry
 // derivatives. At an event the derivatives jump, because the event's time depends on the unknowns.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace hydro::model {
 
-// A number of one of the model's effects: a parameter, or one of a list.
+// A number of one of the model's effects: a parameter, or an entry of one that is a list.
 struct EffectParameter {
   size_t effect = 0;  // in ModelDescription::effects
   std::string name;
@@ -24,36 +24,39 @@ struct EffectParameter {
 
   // "speed", "values[3]"
   std::string Label() const;
-  // Its value in the model that has it.
+  // A reference to its value in the model.
   double& In(ModelDescription* model) const;
 };
 
-// All of a model's: effects in the order of their ids, each one's parameters in the catalogue's order. Throws
-// ModelError for an unknown effect.
+// All such numbers of a model: effects in the order of their ids, and the parameters of each in the
+// catalogue's order. Throws ModelError for an unknown effect.
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model);
 
-// What was done to the actuator in a run, and when it was sampled.
+// The inputs of the actuator in a run, and the times of its samples.
 struct Stimulus {
   Shaft shaft = Shaft::kFree;
   double arm_angle = 0;                            // rad, clamped
   const trajectory::Trajectory* motion = nullptr;  // rad over s, driven
   bool bypass = false;
-  double begin = 0;             // s, of the whole run: what effects call t counts from there
+  double begin = 0;             // s, of the whole run: the effects' t counts from here
   std::vector<double> time;     // s, increasing
   std::vector<double> voltage;  // V, each held from its time to the next
-  // What acts from outside, at each time and in a straight line to the next; empty: nothing, all the time.
+  // The outside influences at each time, interpolated linearly between them; empty: none at any time.
   std::vector<Surroundings> around = {};
 };
 
-// The base states at the first time, indexed as in model/state.h, then what no sensor shows. The arm's states are used with a free
-// shaft only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3. States of effects start from these.
+// The base states at the first time, indexed as in model/state.h, followed by what no sensor shows. The arm's
+// states are used with a free shaft only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3.
+// The states of effects start from these.
 using StartState = std::array<double, 12>;
-// rad: what repeats with the shaft (motor.cogging, pump.flow_ripple) sees this much more than the angle sensor.
+// rad: how much more than the angle sensor an effect that repeats with the shaft sees (motor.cogging,
+// pump.flow_ripple).
 inline constexpr size_t kTurn = 6;
-// psi, four numbers: waves that are under way in the lines of line.wave. Of each side the pump's pressure less the actuator's, and
-// the line's flow times its impedance I w.
+// psi, four numbers: the waves under way in the lines of line.wave. For each side: the pump's pressure less
+// the actuator's, and the line's flow times its impedance I w.
 inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
-// in^3: what the accumulator of accumulator.stiffness has taken in already, so that its pressure begins above p_3.
+// in^3: the volume that the accumulator of accumulator.stiffness has already taken in, so that its pressure
+// begins above p_3.
 inline constexpr size_t kReturned = 11;
 
 // The sensors, in the order of Measurement.
@@ -69,18 +72,20 @@ const T& ChannelOf(const MeasurementOf<T>& measured, size_t channel) {
 }
 
 struct Response {
-  // By channel, then sample; empty for channels that were not requested.
+  // By channel, then by sample; empty for channels that were not requested.
   std::array<std::vector<double>, kChannels> values;
-  // By unknown, then as values.
+  // By unknown, then as `values`.
   std::vector<std::array<std::vector<double>, kChannels>> derivatives;
 };
 
 struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
-  bool repeated_effects = false;      // as in ActuatorOptions
-  double most_steps_per_sample = 20;  // then ModelError: so that a far too stiff model does not take hours
-  size_t stride = 1;                  // every stride-th sample is read; the command changes at all of them
+  bool repeated_effects = false;  // as in ActuatorOptions
+  // A simulation with more steps throws ModelError, so that a far too stiff model does not take hours.
+  double most_steps_per_sample = 20;
+  // Every stride-th sample is read. The command still changes at all samples.
+  size_t stride = 1;
 };
 
 // Throws ModelError as Actuator does. Identical arguments give identical bits, and the values do not depend

@@ -1,5 +1,5 @@
-// One simulation of a response, with derivatives in up to kJetWidth directions. A template, for response.cc and
-// response_wide.cc only.
+// One simulation of a response, with derivatives in up to kJetWidth directions. A template, for response.cc
+// and response_wide.cc only.
 #pragma once
 
 #include <algorithm>
@@ -28,15 +28,15 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   return result;
 }
 
-// Held for a sample, the mean of both ends gives the arm the impulse of the straight line between them.
+// The mean of both ends, held for a sample, gives the arm the same impulse as the straight line between them.
 inline Surroundings OverASample(const Surroundings& from, const Surroundings& to) {
   return {0.5 * (from.arm_force + to.arm_force), 0.5 * (from.temperature + to.temperature)};
 }
 
-// How many steps a pass may take in all, so that a far too stiff model does not take hours.
+// The largest number of steps in a pass, so that a far too stiff model does not take hours.
 inline int64_t MostSteps(const Stimulus& stimulus, const ResponseOptions& options) {
   const double duration = stimulus.time.back() - stimulus.time.front();
-  // The step of a fourth-order method scales with the fourth root of its error.
+  // The step of a fourth-order method scales with the fourth root of the error.
   const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
   const double samples = static_cast<double>(stimulus.time.size());
   return static_cast<int64_t>(finer * (options.most_steps_per_sample * samples + 500 * duration)) + 1000;
@@ -106,8 +106,8 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   }
 }
 
-// Pass<Jet> in the widest vectors that the processor has: the same bits in half the time. Only where
-// HYDRO_WIDE_VECTORS is defined, and for processors with AVX-512.
+// Pass<Jet> in the processor's widest vectors: the same bits in half the time. Only where HYDRO_WIDE_VECTORS
+// is defined, and only for processors with AVX-512.
 void WidePass(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
               const std::vector<Unknown>& unknowns, size_t first, const ResponseOptions& options,
               Response* response);

@@ -25,7 +25,7 @@ Differences DifferencesOf(const ModelDescription& model) {
 Travel TravelOf(const ModelDescription& model) {
   const Parameters& p = model.parameters;
   const Differences differ = DifferencesOf(model);
-  // The bits of V_ms/c where the sides are equal.
+  // Where the sides are equal, these are the bits of V_ms/c.
   return {.least = -(p.V_ms * (1 + differ.volumes)) / (p.c * (1 + differ.areas)),
           .most = p.V_ms * (1 - differ.volumes) / (p.c * (1 - differ.areas))};
 }

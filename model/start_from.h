@@ -1,4 +1,4 @@
-// Where a simulation begins that does not begin at rest. A template, for .cc files of model/ only.
+// The initial state of a simulation that does not begin at rest. A template, for .cc files of model/ only.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   equations->PassStop(time);
   evaluate();
   FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
-  // The margins show whether an effect has valves of its own: an ideal valve's margin is p - p_3.
+  // The margins show whether an effect has its own valves: an ideal valve's margin is p - p_3.
   if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
   if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
   evaluate();

@@ -1,4 +1,5 @@
-// The simulated actuator from a state of motion, such as a measured one: what runs beside a rig and is set to it now and then.
+// The simulated actuator started from a state of motion, such as a measured one. It runs beside a rig and is
+// set to the rig's state from time to time.
 #pragma once
 
 #include <memory>
@@ -10,15 +11,15 @@ namespace hydro::model {
 
 class StartedActuator {
  public:
-  // At `time` (s; what effects call t begins at options.begin) in the state `start`, as Respond begins; of the options, the
-  // start's pressures and arm angle are not used. Throws ModelError as Actuator does.
+  // Begins at `time` (s) in the state `start`, as Respond does; the effects' t counts from options.begin. The
+  // pressures and the arm angle in `options` are not used. Throws ModelError as Actuator does.
   StartedActuator(const ModelDescription& description, const ActuatorOptions& options,
                   const StartState& start, double time);
   ~StartedActuator();
   StartedActuator(StartedActuator&&) noexcept;
   StartedActuator& operator=(StartedActuator&&) noexcept;
 
-  // As those of Actuator.
+  // As in Actuator.
   void Advance(double voltage, double until);
   double time() const;
   Measurement Measure() const;

@@ -1,11 +1,11 @@
-// What may be unknown of a model and of a run: the directions of derivatives.
+// What may be unknown in a model and in a run: the directions of derivatives.
 #pragma once
 
 #include <cstddef>
 
 namespace hydro::model {
 
-// What a response, or a balance, is differentiated with respect to.
+// A quantity by which a response or a balance is differentiated.
 struct Unknown {
   enum class Kind {
     kBase,    // a base parameter: `index` as in BaseParameters()

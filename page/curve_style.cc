@@ -11,8 +11,8 @@ struct Ink {
 };
 
 // One for each of chart.css's colours c0 to c5, whose hues stay distinct for colour-blind readers (after
-// Okabe and Ito). Neighbours differ in lightness too; those that print as a similar grey differ in their
-// dashes.
+// Okabe and Ito). Neighbours also differ in lightness, and colours that print as a similar grey differ in
+// their dashes.
 const std::array<Ink, 6>& Inks() {
   static const std::array<Ink, 6> inks = {{{{}, Marker::kDisc},
                                            {{}, Marker::kSquare},

@@ -11,7 +11,7 @@ namespace hydro::page {
 std::vector<size_t> ThinLine(std::span<const double> x, std::span<const double> y,
                              const std::function<double(double)>& column) {
   std::vector<size_t> kept;
-  // A logarithmic axis has no column for values of 0 and below.
+  // A logarithmic axis has no column for values of 0 or below.
   const auto finite = [&](size_t i) { return std::isfinite(column(x[i])) && std::isfinite(y[i]); };
   for (size_t begin = 0; begin < x.size();) {
     if (!finite(begin)) {

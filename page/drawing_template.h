@@ -7,7 +7,7 @@
 
 namespace hydro::page {
 
-// The drawing with each placeholder replaced by its text, escaped. Throws std::logic_error naming a
+// Returns the drawing with each placeholder replaced by its text, escaped. Throws std::logic_error naming a
 // placeholder without a text, or a text without a placeholder.
 std::string FillDrawing(std::string_view drawing, const std::map<std::string, std::string>& texts);
 

@@ -41,7 +41,7 @@ double PanelHeight(const Figure& figure) {
 struct Column {
   double left = 0;
   double width = 0;
-  double margin = 0;  // to the left of its frames
+  double margin = 0;  // pixels to the left of its frames
 
   double frame_left() const { return left + margin; }
   double frame_right() const { return left + width - kRight; }

@@ -48,13 +48,13 @@ std::string Hex(const Colour& colour) {
 }
 
 std::string Cell(const Box& box, double fraction) {
-  // A little wider than it is, so that no seam shows between cells.
+  // The rectangle is a little wider than the cell, so that no seam shows between cells.
   return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", Pixels(box.left),
                      Pixels(box.top), Pixels(box.right - box.left + 0.5), Pixels(box.bottom - box.top + 0.5),
                      Hex(ColourAt(fraction)));
 }
 
-// Text on a cell, dark on light and light on dark.
+// Text on a cell, dark on light cells and light on dark ones.
 std::string OnCell(const std::string& text, double x, double y, double fraction) {
   const Colour colour = ColourAt(fraction);
   const bool light = 0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2] > 130;
@@ -105,7 +105,7 @@ class Drawing {
     return out + SvgRectangle("frame", frame_);
   }
 
-  // Of many columns or rows every second, third, ...
+  // With many columns or rows, only every second, third, ... has its name.
   std::string Names() const {
     std::string out;
     const auto name = [](const std::vector<std::string>& names, size_t i) {

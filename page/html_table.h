@@ -6,12 +6,13 @@
 
 namespace hydro::page {
 
-// `text` is typeset as page/plot.h describes.
+// A cell whose `text` is typeset as page/plot.h describes.
 std::string Cell(const std::string& text);
-// With four digits.
+// A cell with a number of four digits.
 std::string NumberCell(double value);
 
-// `rows`: <tr> elements. Columns whose names begin with '#' hold numbers. `style`: classes of page.css.
+// `rows` holds <tr> elements. Columns whose names begin with '#' hold numbers. `style` holds classes of
+// page.css.
 std::string Table(const std::vector<std::string>& columns, const std::string& rows,
                   const std::string& style = "");
 

@@ -21,7 +21,7 @@ LabelPlacement::LabelPlacement(const Box& frame)
 void LabelPlacement::AddStroke(double x0, double y0, double x1, double y1) {
   const double length = std::hypot(x1 - x0, y1 - y0);
   if (!std::isfinite(length)) return;
-  // Follow a line far beyond the frame only for a sensible distance.
+  // Follow a line far beyond the frame only for a limited distance.
   const int steps = std::clamp(static_cast<int>(std::min(length / kCell, 2000.0)) + 1, 1, 2000);
   for (int i = 0; i <= steps; ++i) {
     const double column = (x0 + (x1 - x0) * i / steps - frame_.left) / kCell;

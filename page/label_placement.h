@@ -5,7 +5,7 @@
 
 namespace hydro::page {
 
-// In pixels, y downwards.
+// In pixels, with y downwards.
 struct Box {
   double left = 0;
   double top = 0;

@@ -26,12 +26,13 @@ constexpr double kAxisLabel = 20;
 constexpr double kNoteLine = 15;  // between the lines of a note
 constexpr double kAside = 7;      // from a point to its note
 constexpr double kTextSize = 12;
-// A reader's own sans-serif font over the one that TextWidth knows: labels beside an axis must not leave the picture.
+// The width of a reader's own sans-serif font relative to the font that TextWidth knows. Labels beside an
+// axis must not leave the picture.
 constexpr double kWidestFont = 1.12;
 constexpr double kLabelSize = 13;
 constexpr double kMinBarWidth = 0.8;
 
-// Along an axis, between numbers.
+// Space between the numbers along an axis.
 constexpr double kTickRoomX = 58;
 constexpr double kTickRoomY = 27;
 

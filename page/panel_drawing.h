@@ -22,8 +22,8 @@ class PanelDrawing {
   // The room that title and key need above the frame, with a key of that width.
   double HeadHeight(double key_width);
 
-  // The panel's SVG elements. Call HeadHeight() first. `left_margin`: LeftMargin() or more, so that the labels
-  // of panels one below the other are in line.
+  // The panel's SVG elements. Call HeadHeight() first. `left_margin` must be at least LeftMargin(), and may
+  // be larger so that the labels of panels below each other line up.
   std::string Draw(const Box& frame, double left_margin);
 
  private:

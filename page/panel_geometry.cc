@@ -23,7 +23,7 @@ class Extent {
   Range range_;
 };
 
-// The given bounds, else the data's range with `margin` (a fraction of it) on each side.
+// The given bounds, or else the data's range with `margin` (a fraction of it) added on each side.
 AxisRange Fit(const Axis& axis, const Range& data, double margin, const std::string& where) {
   AxisRange range{axis.min, axis.max, axis.logarithmic};
   const bool free_min = std::isnan(axis.min);

@@ -17,7 +17,7 @@ struct AxisRange {
   bool logarithmic = false;
 
   bool Holds(double value) const { return value >= min && value <= max; }
-  // 0 at min, 1 at max; not finite for a value that the axis cannot show.
+  // 0 at min and 1 at max; not finite for a value that the axis cannot show.
   double Fraction(double value) const;
 };
 
@@ -26,7 +26,7 @@ struct PanelGeometry {
   AxisRange x = {};
   AxisRange y = {};
 
-  // Clamped far outside the frame, because SVG readers stumble over huge coordinates.
+  // Clamped far outside the frame, because SVG readers fail on huge coordinates.
   double Column(double value) const {
     return frame.left + Bounded(x.Fraction(value)) * (frame.right - frame.left);
   }
@@ -42,8 +42,8 @@ struct PanelGeometry {
   }
 };
 
-// The ranges of a panel: as given, else wide enough for all curves, notes and rules. `where` is for messages.
-// Throws std::invalid_argument as FigureElement() does.
+// The ranges of a panel: the given ones, or else ranges wide enough for all curves, notes and rules. `where`
+// is for messages. Throws std::invalid_argument as FigureElement() does.
 PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
 
 }  // namespace hydro::page

@@ -17,11 +17,11 @@ namespace hydro::page {
 
 inline constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
 
-// kSteps holds each value until the next x. kBars does too, and fills the area below down to the panel's
+// kSteps holds each value until the next x. kBars does the same, and also fills the area down to the panel's
 // edge.
 enum class Stroke { kLine, kDashed, kDotted, kSteps, kBars, kPoints, kLinePoints };
 
-// How much a curve stands out. kBackdrop: wide and pale, a background for comparison.
+// How much a curve stands out. kBackdrop is wide and pale, a background for comparison.
 enum class Weight { kNormal, kFaint, kStrong, kBackdrop };
 
 struct Curve {
@@ -32,7 +32,7 @@ struct Curve {
   // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's
   // index in its panel.
   int colour = -1;
-  // Empty, or the bounds of each point, drawn as a vertical bar.
+  // The bounds of each point, drawn as a vertical bar; empty: none.
   std::vector<double> y_low = {};
   std::vector<double> y_high = {};
   Weight weight = Weight::kNormal;
@@ -57,8 +57,8 @@ struct Axis {
   bool numbers = true;           // false: no numbers at the ticks; the panel below shows them
 };
 
-// Text at a point of the panel (in axis units), marked by a dot and placed on the side of it where it hides
-// least. Notes, rules and bands outside a given range are not drawn.
+// Text at a point of the panel (in axis units). A dot marks the point, and the text is placed on the side of
+// it where it hides least. Notes, rules and bands outside a given range are not drawn.
 struct Note {
   std::string text;
   double x = 0;
@@ -88,21 +88,21 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Note> notes;
   std::vector<Rule> rules;
-  // One unit is as long on both axes (for a plane of poles): one of the two ranges is widened, even if it was
-  // given.
+  // One unit is equally long on both axes (for a plane of poles): one of the two ranges is widened, even if
+  // it was given.
   bool equal_scales = false;
   double height = 1;  // relative to the other panels
   double width = 1;   // relative to the panels in its row
   std::vector<Band> bands = {};
 };
 
-// Panels stand one below the other, or side by side in rows. A panel's key extends over panels beside it that
+// Panels stand below each other, or side by side in rows. A panel's key extends over panels beside it that
 // have none.
 struct Figure {
   std::string caption;  // what is shown, under which conditions; stands below the picture
   std::vector<Panel> panels;
-  // Instead of panels: a whole <svg> element drawn elsewhere. Its first tag has a viewBox="0 0 WIDTH HEIGHT";
-  // it must keep its ids unique.
+  // A whole <svg> element that replaces the panels. Its first tag has a viewBox="0 0 WIDTH HEIGHT". It must
+  // keep its ids unique.
   std::string drawing = {};
   size_t columns = 1;
   double width = 860;       // pixels

@@ -22,7 +22,7 @@ struct Range {
   void Include(const std::vector<double>& values) {
     for (const double value : values) Include(value);
   }
-  // Wider by an eighteenth on each side, and never empty.
+  // The range widened by an eighteenth on each side, and never empty.
   Range WithMargin() const {
     if (empty()) return {-1, 1};
     const double margin = high > low ? (high - low) / 18 : std::max(1e-6, std::abs(low) / 10);

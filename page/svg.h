@@ -25,7 +25,7 @@ std::string SvgPath(std::string_view look, std::string_view data, std::string_vi
 
 std::string SvgRectangle(std::string_view look, const Box& box);
 
-// `content` clipped to the box.
+// Clips `content` to the box.
 std::string SvgClipped(const Box& box, std::string_view content);
 
 }  // namespace hydro::page

@@ -33,14 +33,15 @@ std::vector<Tick> LinearTicks(const AxisRange& range, double pixels, double labe
   const double step = RoundStep((range.max - range.min) / most);
   if (!(step > 0) || !std::isfinite(step)) return {};
   const std::vector<Tick> ticks = Multiples(range, step);
-  // One number shows no scale. The next smaller round step fits at most five, which a short axis just holds.
+  // One number alone shows no scale. The next smaller round step gives at most five numbers, for which a
+  // short axis just has room.
   return ticks.size() > 1 ? ticks : Multiples(range, RoundStep(0.4 * step));
 }
 
 std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double label_pixels) {
   const double decade_pixels = pixels / std::log10(range.max / range.min);
-  // The digits that get a number: as many as there is room for. 5 to 10 takes 0.3 of a decade, 9 to 10 takes
-  // 0.05.
+  // The digits that get a number: as many as there is room for. From 5 to 10 is 0.3 of a decade, and from 9
+  // to 10 is 0.05.
   const auto numbered = [&](int digit, int power) {
     if (digit == 1) {
       const int every = std::max(1, static_cast<int>(std::ceil(label_pixels / decade_pixels)));
@@ -68,7 +69,7 @@ std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double
 std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixels) {
   if (!range.logarithmic) return LinearTicks(range, pixels, label_pixels);
   std::vector<Tick> ticks = LogarithmicTicks(range, pixels, label_pixels);
-  // An axis over less than a decade.
+  // For an axis over less than a decade.
   const auto has_number = [](const Tick& tick) { return !tick.text.empty(); };
   if (std::count_if(ticks.begin(), ticks.end(), has_number) < 2) {
     AxisRange linear = range;
@@ -80,7 +81,8 @@ std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixe
 
 std::string TickNumber(double value) {
   char text[40];
-  // As printf("%.6g") in the C locale; in others that writes decimal commas.
+  // Writes the number as printf("%.6g") does in the C locale. In other locales, printf would write decimal
+  // commas.
   std::string number(
       text, std::to_chars(text, text + sizeof text, std::abs(value), std::chars_format::general, 6).ptr);
   if (const size_t at = number.find('e'); at != std::string::npos) {

@@ -33,7 +33,7 @@ class Aside::Thread {
  private:
   void Run(const std::stop_token& stop) {
     pthread_setname_np(pthread_self(), "aside");
-    const sched_param ordinary{};  // it was started by a real-time thread
+    const sched_param ordinary{};  // this thread was started by a real-time thread
     pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
     while (!stop.stop_requested()) {
       std::unique_lock lock(mutex_);

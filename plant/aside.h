@@ -1,4 +1,5 @@
-// Work that takes longer than a loop may: done on a thread of its own, at ordinary priority, one piece at a time.
+// Does work that takes longer than a loop may wait: on a thread of its own, at ordinary priority, one piece
+// at a time.
 #pragma once
 
 #include <functional>
@@ -13,16 +14,16 @@ class Aside {
  public:
   using Work = std::function<tuning::PreparedChange()>;
 
-  // Without a `thread` the work is done at once, by whoever begins it: on simulated time nothing may depend on how
-  // long a thread takes.
+  // Without a `thread`, Begin() does the work at once: on simulated time, nothing may depend on how long a
+  // thread takes.
   explicit Aside(bool thread);
   ~Aside();
 
-  // Only when no other work is under way.
+  // Call it only when no other work is under way.
   void Begin(Work work);
   bool busy() const { return busy_; }
 
-  // The result, once; empty while the work goes on. Does not wait.
+  // Returns the result once, and nothing while the work goes on. Does not wait.
   std::optional<tuning::PreparedChange> Take();
 
  private:

@@ -10,7 +10,7 @@ namespace hydro::plant {
 namespace {
 
 constexpr char kCode[] = "logger_gone";
-constexpr size_t kMostLoggers = 64;  // a flood of made-up ones is not kept
+constexpr size_t kMostLoggers = 64;  // entries; more would only come from a flood of made-up loggers
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void LoggerWatch::Heard(int64_t session) {
 
 void LoggerWatch::Gone(int64_t session, const std::string& text, double silence) {
   loggers_.erase(session);
-  // The end of a run is announced before its logger leaves: no fault then.
+  // The end of a run is announced before its logger leaves, so its leaving is no fault then.
   if (participant_.stop()) return;
   participant_.Raise(kCode, fmt::format("{} no longer records: {}", participant_.NameOf(session), text),
                      silence, bus::ToSeconds(limit_), false);
@@ -61,7 +61,7 @@ void LoggerWatch::Poll(bus::Clock::TimePoint now) {
   if (away > limit_ / 4) {  // no state was sent, so loggers had nothing to report
     for (auto& [session, logger] : loggers_) logger.heard += away;
   }
-  // One that was heard once, of a flood of made-up ones say, has recorded nothing.
+  // A logger that was heard only once, for example one of a flood of made-up ones, has recorded nothing.
   std::erase_if(loggers_,
                 [&](const auto& entry) { return !entry.second.again && now - entry.second.heard > limit_; });
   for (const auto& [session, logger] : loggers_) {

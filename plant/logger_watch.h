@@ -12,11 +12,11 @@
 
 namespace hydro::plant {
 
-// For runs in real time; in lockstep the plant waits for its logger.
+// It serves runs in real time; in lockstep the plant waits for its logger.
 class LoggerWatch {
  public:
   // A logger counts as gone when it has been silent for longer than `limit` or has announced that it leaves.
-  // `channels`: on which loggers may be.
+  // `channels` are those on which loggers may report.
   LoggerWatch(process::Participant& participant, const std::vector<bus::Channels>& channels,
               bus::Clock::Duration limit);
 
@@ -32,8 +32,8 @@ class LoggerWatch {
   process::Participant& participant_;
   const bus::Clock::Duration limit_;
   struct Logger {
-    bus::Clock::TimePoint heard;  // last
-    bool again = false;           // more than once
+    bus::Clock::TimePoint heard;  // when it was last heard
+    bool again = false;           // heard more than once
   };
   std::map<int64_t, Logger> loggers_;  // by session
   std::optional<bus::Clock::TimePoint> polled_;

@@ -140,7 +140,7 @@ std::string OutputSafety::OwnCause() const {
   return "";
 }
 
-// Its own channels, on this group and port.
+// OutputSafety receives descriptions from its own channels, on this group and port.
 void OutputSafety::OnDescription(const run_description_t& description) {
   if (description.session == participant_.session()) return;
   other_stack_heard_ = participant_.clock().Now();
@@ -184,7 +184,8 @@ void OutputSafety::OnRearm(const rearm_t& request) {
                        participant_.tick(), kRearmAge_s));
     return;
   }
-  // Who asked before a fault began has not seen it; and a request that was recorded, or delivered twice, ends nothing new.
+  // Whoever sent the request before a fault began has not seen that fault; and a request that was recorded or
+  // delivered twice must not end a new one.
   if (request.tick < newest_cause_tick_) {
     Answer(request, rearm_t::REFUSED,
            fmt::format("the request names tick {}; a fault has begun since, at tick {}", request.tick,
@@ -206,7 +207,8 @@ void OutputSafety::OnRearm(const rearm_t& request) {
     participant_.Release(code);
     codes += (codes.empty() ? "" : ", ") + std::string(code);
   }
-  Answer(request, rearm_t::ACCEPTED, codes.empty() ? "no fault is latched" : "ended " + codes);
+  if (ended.empty()) return Answer(request, rearm_t::NOTHING_LATCHED, "no fault is latched");
+  Answer(request, rearm_t::ACCEPTED, "ended " + codes);
 }
 
 void OutputSafety::Answer(const rearm_t& request, int8_t kind, const std::string& text) {

@@ -52,8 +52,8 @@ class OutputSafety {
     changed_ = true;
   }
 
-  // Whether all these checks, on the same findings, would find nothing, and nothing that was found before is there still: then they
-  // need not be made. Nearly always so, and quick.
+  // Whether all these checks, on the same findings, would find nothing, and no earlier cause is still
+  // present. The checks can then be left out. The answer is nearly always yes, and quick to find.
   bool AllIsWell(const state_t& state, bool safe_command, const std::vector<RigFault>& faults) const {
     return !guard_.any_present() && Within(state.p1, limits_.pressure_psi) &&
            Within(state.p2, limits_.pressure_psi) && Within(state.motor_speed, limits_.motor_speed_rad_s) &&
@@ -64,17 +64,17 @@ class OutputSafety {
   // Checks the sensors' readings against [limits], independently of the pressure loop's own check.
   void CheckMeasured(const state_t& state);
 
-  // `why` says, as one line, why nothing may be re-armed now; empty: it may.
+  // `why` returns, as one line, the reason why nothing may be re-armed now; an empty line allows it.
   void RefuseRearmWhile(std::function<std::string()> why) { why_no_rearm_ = std::move(why); }
 
-  // The limits of pressure, motor speed and arm angle that hold from now on.
+  // Sets the limits of pressure, motor speed and arm angle that hold from now on.
   void set_limits(const settings::LimitsSection& limits) {
     limits_.pressure_psi = limits.pressure_psi;
     limits_.motor_speed_rad_s = limits.motor_speed_rad_s;
     limits_.arm_angle_rad = limits.arm_angle_rad;
   }
 
-  // Checks the machine's clocks, for a suspend.
+  // Compares the machine's clocks to find out whether the machine was suspended.
   void CheckSuspended(bus::Clock::TimePoint now) {
     const bool perhaps = participant_.clock().SuspendedAtMost(now) - suspended_ > kNoSuspend;
     if (perhaps || guard_.present(Cause::kSuspended)) CheckSuspended();
@@ -87,15 +87,16 @@ class OutputSafety {
   // fault of a loop that zeroes the voltage, holds the output at zero until a re-arm.
   void CheckController(bool safe_command, bus::Clock::TimePoint now);
 
-  // The rig's own faults zero the voltage while they last; with limits.rearm = "explicit" it stays at zero
-  // after them.
+  // The rig's own faults hold the voltage at zero while they last; with limits.rearm = "explicit" it stays at
+  // zero after they end.
   void CheckRig(const std::vector<RigFault>& faults);
 
   // The voltage that may reach the motor.
   double Voltage(double commanded) const { return guard_.Voltage(commanded); }
   bool holds() const { return guard_.any(); }
 
-  // Whether it holds for a fault of this rig's own, not only for one elsewhere in its limb; and that fault's code, empty without one.
+  // Whether the output is held at zero for a fault of this rig's own and not only for one elsewhere in its
+  // limb. OwnCause() returns that fault's code, empty when there is none.
   bool holds_by_itself() const { return guard_.any_but(Cause::kOtherJoint); }
   std::string OwnCause() const;
 
@@ -105,13 +106,14 @@ class OutputSafety {
     if (changed_) PublishChanges();
   }
 
-  // The codes of the latched faults, with which a run does not end well; empty when there are none.
+  // The codes of the latched faults; a run that has any does not end well. Empty when there are none.
   std::string Latched() const;
 
  private:
-  // False for what is not a number. Pressures have no lower limit, nor a need of one: none is below absolute zero.
+  // False for NaN. Pressures have no lower limit and need none: no pressure is below absolute zero.
   static bool Within(double value, double limit) { return std::fabs(value) <= limit; }
-  // What passes from the first reading of a tick to this check, and no machine sleeps for.
+  // Longer than the time from the first reading of a tick to this check; no machine is suspended for so short
+  // a time.
   static constexpr auto kNoSuspend = std::chrono::milliseconds(1);
   void CheckSuspended();
   [[gnu::cold]] void PublishChanges();
@@ -128,7 +130,7 @@ class OutputSafety {
   const UnitSystem units_;    // of the model, for texts
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
-  int64_t newest_cause_tick_ = -1;  // when one has begun last
+  int64_t newest_cause_tick_ = -1;  // tick at which the newest cause began
   bool changed_ = false;
   std::array<Finding, static_cast<size_t>(Cause::kCount)> findings_;
 
@@ -137,7 +139,7 @@ class OutputSafety {
   std::optional<bus::Clock::TimePoint> other_stack_heard_;
   process::RemoteFaults remote_{[](std::string_view, std::string_view code) {
     return process::ZeroesVoltage(code);
-  }};  // of the loops; kept for rearm = "explicit"
+  }};  // faults of the loops; kept for rearm = "explicit"
 };
 
 }  // namespace hydro::plant

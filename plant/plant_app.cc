@@ -15,11 +15,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// How long a participant may take to say what it runs with; a program of the user's own never does.
+// The time a participant may take to report its configuration; a program of the user's own never reports it.
 constexpr auto kConfigurationTime = 300ms;
-constexpr auto kDescriptionPeriod = 1s;  // often enough that logs and plots which start late get one too
+constexpr auto kDescriptionPeriod = 1s;  // often enough for logs and plots that start late
 
-// On whose channels loggers may be: a joint's logger may be that of its limb.
+// The channels on which loggers may report: a joint's logger may be that of its limb.
 std::vector<bus::Channels> LoggersChannels(const settings::BusSection& bus) {
   std::vector<bus::Channels> channels{bus::Channels(bus.channel_suffix)};
   if (bus.limb_suffix) channels.emplace_back(*bus.limb_suffix);
@@ -91,7 +91,8 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   for (const bus::Channels& loggers : LoggersChannels(config.bus)) {
     bus.Subscribe<log_progress_t>(loggers.Of<log_progress_t>(), [this](const log_progress_t& progress) {
-      // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
+      // Only loggers that were present when the run began count, so that a flood of made-up ones is not
+      // stored.
       const auto known = log_progress_.find(progress.session);
       if (known != log_progress_.end()) known->second = progress.tick;
     });
@@ -138,10 +139,11 @@ bool PlantApp::Begin() {
 }
 
 int PlantApp::End() {
+  rig_.set_when_late([this] { RequestStop(); });
   const OutputLeft left = rig_.Zero();
   const std::string failure = left.accepted ? "" : NotAtZero(left);
   if (!failure.empty()) {
-    if (participant_.stop()) spdlog::error("{}", failure);  // otherwise the request says it
+    if (participant_.stop()) spdlog::error("{}", failure);  // otherwise the stop request gives the reason
     participant_.RequestStop(failure, 1);
   }
   RequestStop();
@@ -150,12 +152,17 @@ int PlantApp::End() {
 }
 
 void PlantApp::OnRigError(const RigError& error) {
+  const auto explain = [&] {
+    participant_.Raise(error.code(), error.what(), NAN, NAN, true);
+    participant_.RequestStop(error.what(), 1);
+  };
+  rig_.set_when_late(explain);
   rig_.Zero();  // zero volts first, explanation second
-  participant_.Raise(error.code(), error.what(), NAN, NAN, true);
-  participant_.RequestStop(error.what(), 1);
+  rig_.set_when_late({});
+  explain();
 }
 
-// Ends the run for every process and gives the reason, unless somebody has done so already.
+// Ends the run for every process and gives the reason, unless another process has done so already.
 void PlantApp::RequestStop() {
   if (const process::StopRequest asked = process::StopReason(); !asked.reason.empty()) {
     participant_.RequestStop(asked.reason, 0, asked.role);
@@ -188,8 +195,8 @@ bool PlantApp::AllHaveSaidTheirConfiguration() const {
                      [&](int64_t session) { return participant_.HasSaidItsConfiguration(session); });
 }
 
-// A stack whose processes do not agree never starts; who joins a run later with another configuration is not obeyed and
-// leaves, and the run goes on.
+// A stack whose processes do not agree never starts. A process that joins a run later with another
+// configuration is not obeyed and leaves, and the run goes on.
 void PlantApp::OnRefusal(int64_t session, const std::string& text) {
   ForgetCommandsOf(session);
   const std::vector<int64_t>& own = took_part_;

@@ -1,14 +1,16 @@
 // A rig (the simulated actuator, or a board in front of a real one) as an application that sets the pace of a
 // run.
 //
-// Lockstep: it publishes the state of tick k, waits for each command that is due at tick k (and for a logger
-// that has fallen behind), then advances to tick k + 1. The result does not depend on how long anyone takes.
-// A participant that does not answer within time.stall_timeout_s ends the run with an error that names it.
+// Lockstep: the application publishes the state of tick k, waits for each command that is due at tick k (and
+// for a logger that has fallen behind), then advances to tick k + 1. The result does not depend on how long
+// any process takes. A participant that does not answer within time.stall_timeout_s ends the run with an
+// error that names it.
 //
-// Real time: it wakes at each tick of wall time, reads the rig (a simulated one advances under the voltage it
-// holds), publishes the state, and takes the newest command. When it wakes late, the time it missed has
-// passed under that voltage; it then publishes one state and counts the ticks it skipped. A rig with a clock
-// of its own (rig.h, Pacemaker) wakes it instead, and is sent each command as soon as it is there.
+// Real time: the application wakes at each tick of wall time, reads the rig (a simulated one advances under
+// the voltage it holds), publishes the state, and takes the newest command. When it wakes late, the time it
+// missed has passed under that voltage; it then publishes one state and counts the ticks it skipped. A rig
+// with a clock of its own (rig.h, Pacemaker) wakes the application instead, and receives each command as soon
+// as it arrives.
 //
 // In both modes OutputSafety holds the voltage at zero while anything is wrong (docs/safety.md), and the
 // command computed from tick k acts from tick k + plant.command_delay_ticks on.
@@ -43,73 +45,75 @@
 
 namespace hydro::plant {
 
-// A tick of wall time, as its pacer meets it (process/timing/fixed_rate_loop.h).
+// A tick of wall time as the loop that paces it reports it (process/timing/fixed_rate_loop.h).
 struct WakeUp {
   int64_t elapsed = 1;  // ticks since the last one
-  int64_t skipped = 0;  // ticks for which the pacer woke too late, in all
+  int64_t skipped = 0;  // ticks, in total, for which the loop woke too late
   bus::Clock::TimePoint at{};
   bus::Clock::Duration late{};
 };
 
 class PlantApp {
  public:
-  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger"),
-  // and joints of the same limb in other processes ("joint:knee"). `heartbeat`: whether one of the launcher's
-  // has come since it was asked last (process/supervision.h); from the first on, their absence is a fault.
-  // None: nobody is asked.
+  // `rig` must outlive this object. `expected` lists the roles to wait for besides pressure_ctrl and
+  // position_ctrl ("logger"), and joints of the same limb in other processes ("joint:knee"). `heartbeat`
+  // returns whether the launcher has sent a heartbeat since the last call (process/supervision.h); once one
+  // has come, their absence is a fault. When `heartbeat` is empty, no heartbeats are checked.
   PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
            const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant",
            std::function<bool()> heartbeat = {});
 
-  // The whole run. The rig is driven only within it and is at zero volts when it ends, also after an
-  // exception. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
+  // Does the whole run. The rig is driven only within it and is at zero volts when it ends, also after an
+  // exception. Returns the process's exit code: 0 when the run is complete or was stopped in order, 1 when it
+  // failed.
   int Run();
 
-  // The changes that were decided in another run, to be made again at the same ticks (TuningDesk). Before
-  // Run().
+  // Repeats changes that were decided in another run, at the same ticks (TuningDesk). Call it before Run().
   void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
-  // The run in steps, for who paces several rigs at once (sim/limb/). Run() takes the same ones, in the order of
-  // these lines:
+  // The run in steps, for a program that paces several rigs at once (sim/limb/). Run() takes the same steps,
+  // in the order of these lines:
 
-  // Waits until everyone who is expected is there. False: the run is over before it has begun.
+  // Waits until every expected participant is present. Returns false when the run is over before it has
+  // begun.
   bool Begin();
-  // Lockstep, each tick: true once all that is due at this tick has arrived.
+  // Lockstep, in each tick: returns true once everything that is due at this tick has arrived.
   bool AwaitAnswers();
-  // Both: the checks of the command in force and of what is measured; then the voltage that follows from
-  // them; then puts it out.
+  // Both modes: Check() checks the command in force and the measurements; ChooseVoltage() derives the voltage
+  // from them; Drive() puts it out.
   void Check(bus::Clock::TimePoint now);
   void ChooseVoltage();
   void Drive();
-  // Reads the rig at a later tick, to which a simulated one advances under the voltage that it holds, and
-  // publishes the state.
+  // Read the rig at a later tick, to which a simulated rig advances under the voltage that it holds, and
+  // publish the state.
   void Start();  // at tick 0
   void AdvanceTo(int64_t tick);
   void PublishState();
-  // Real time: both, as many ticks later as have elapsed. Returns when the state was sent, as far as that
-  // matters.
+  // Real time: advances by the ticks that have elapsed and publishes the state. Returns when the state was
+  // sent, or the time of the wake-up where the difference does not matter.
   bus::Clock::TimePoint Wake(const WakeUp& wake_up);
   void Poll(bus::Clock::TimePoint now);
-  // Whether somebody has asked for the end.
+  // Whether anybody has asked for the end of the run.
   bool Ended() const;
-  // Zero volts, and everyone is told. Returns the process's exit code.
+  // Puts out zero volts and tells every process. Returns the process's exit code.
   int End();
-  // Takes a step that touches the rig. When the rig fails: zero volts, a fault, the end of the run, and
-  // false.
+  // Takes a step that touches the rig. When the rig fails, it puts out zero volts, raises a fault, ends the
+  // run and returns false.
   template <class Step>
   bool Safely(Step&& step);
 
-  // Whether a fault of this joint zeroes its voltage, by the last Check(); and what, for people.
+  // Whether the last Check() found a fault of this joint that zeroes its voltage; OwnFault() names that fault
+  // for people.
   bool HasOwnFault() const;
   std::string OwnFault() const;
   // While `text` is not empty, a fault elsewhere in the limb holds this rig at zero volts (after Check()).
   void HoldForOthers(const std::string& text);
-  // The same while another joint, of another process, is no longer heard.
+  // Does the same while another joint, which runs in another process, is no longer heard.
   void HoldForSilence(const std::string& text);
 
   process::Participant& participant() { return participant_; }
 
-  // Why the run failed; empty when it did not.
+  // The reason why the run failed; empty when it did not.
   std::string failure() const;
   int64_t tick() const { return tick_; }
 
@@ -170,28 +174,29 @@ class PlantApp {
   const bus::Clock::Duration stall_time_;
   const bool realtime_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
-  Pacemaker* const pacemaker_;  // in real time, where the rig is one
-  const int64_t ticks_ahead_;   // what is driven at a tick acts so many ticks later
+  Pacemaker* const pacemaker_;  // only in real time, when the rig is a Pacemaker
+  const int64_t ticks_ahead_;   // a voltage driven at a tick acts this many ticks later
 
   int64_t tick_ = 0;
-  Multiples pressure_ticks_, position_ticks_;         // at which each loop answers
+  Multiples pressure_ticks_, position_ticks_;         // ticks at which each loop answers
   bool asks_pressure_ = true, asks_position_ = true;  // at tick_
   state_t state_;
-  std::vector<std::string> rig_faults_;  // codes of those that are active
+  std::vector<std::string> rig_faults_;  // codes of the active faults
   double voltage_ = 0;                   // V, held from tick_ on
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from
   bus::SequenceMonitor command_monitor_;
   process::CountedWarning repeated_commands_{"repeated_motor_command"};
-  bool future_command_ = false;         // the newest command is for a tick that has not been
-  std::optional<int64_t> awake_again_;  // real time: the tick at which this process went on after a stop
+  bool future_command_ = false;  // the newest command is for a tick that has not come yet
+  // Real time: the tick at which this process resumed after it was stopped.
+  std::optional<int64_t> awake_again_;
   timing::RoundTripMonitor round_trips_;
-  RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
+  RingQueue<motor_command_t> waiting_commands_;  // received but not yet in force, by tick
   std::optional<motor_command_t> command_;       // in force
   int64_t obeyed_from_ = 0;                      // only commands that answer this tick or a later one act
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
-  std::vector<int64_t> took_part_;           // sessions with which the run began
-  std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
+  std::vector<int64_t> took_part_;           // sessions that took part when the run began
+  std::map<int64_t, int64_t> log_progress_;  // tick by session, for the loggers present when the run began
   run_description_t description_;            // published once a second
   bus::Clock::TimePoint next_description_;
 };

@@ -15,12 +15,13 @@ constexpr auto kHeartbeatCheck = std::chrono::milliseconds(10);
 
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (participant_.Refuses(command.session)) return;
-  // Before the run there is no state that it could answer.
+  // Before the run there is no state that a command could answer.
   if (participant_.state() != process_status_t::RUNNING) return;
   const auto now = participant_.clock().Now();
-  // It answers nothing; but who sends such beside the one that is followed is a second sender.
+  // This command answers no state; but if another sender than the one that is followed sends it, there is a
+  // second sender.
   if (command.tick < 0 && !command_monitor_.FollowsAnother(command.session, now)) return;
-  // Never counted as the newest: it would make every later good one an old one.
+  // A command for a future tick never counts as the newest: it would make every later good command look old.
   if (command.tick > tick_ && !command_monitor_.FollowsAnother(command.session, now)) {
     RefuseFutureCommand(command);
     return;
@@ -30,36 +31,39 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckCommand() raises the fault
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
-    // Nothing of the one before acts, neither what waits nor, once more, what was in force: zero volts until its own do.
+    // No command of the previous sender acts any more, neither one that waits nor the one in force: the
+    // voltage is zero until the new sender's own commands act.
     waiting_commands_.clear();
     command_.reset();
   }
-  // While another is heard too, neither's act, even if he has long been silent when the tick comes (lockstep waits).
+  // While a second sender is heard too, neither sender's commands act, even if one of them has long been
+  // silent when the tick comes (lockstep waits).
   if (command_monitor_.SecondSenderAlive(now)) obeyed_from_ = std::max(obeyed_from_, command.tick + 1);
   future_command_ = false;
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
     participant_.statistics().RecordRoundTrip(*taken);
   }
   waiting_commands_.push_back(command);
-  // The answer to a state that was repeated may come after that to a newer one. A successor has answered
+  // The answer to a repeated state may come after the answer to a newer state. A successor has answered
   // nothing yet.
   const bool successor = verdict == bus::SequenceMonitor::Verdict::kRestarted;
   newest_command_tick_ = successor ? command.tick : std::max(newest_command_tick_, command.tick);
 }
 
-// The plant obeys the pressure loop alone; in lockstep it waits until the position loop of this run, and
-// nobody else, has answered.
+// The plant obeys the pressure loop alone; in lockstep it also waits for the answer of the position loop of
+// this run, and of no other.
 void PlantApp::OnPressureCommand(const pressure_command_t& command) {
   if (command.tick > tick_ || participant_.Refuses(command.session)) return;
   if (!roll_call_.Has("position_ctrl", command.session)) return;
   newest_pressure_command_tick_ = std::max(newest_pressure_command_tick_, command.tick);
 }
 
-// What a sender has commanded before it turned out to run with another configuration does not act either.
+// Commands that a sender sent before it turned out to run with another configuration do not act either.
 void PlantApp::ForgetCommandsOf(int64_t session) {
   waiting_commands_.erase_if([&](const motor_command_t& command) { return command.session == session; });
   if (command_ && command_->session == session) command_.reset();
-  if (command_monitor_.session() == session) newest_command_tick_ = -1;  // lockstep waits for another's
+  // Lockstep then waits for another sender's command.
+  if (command_monitor_.session() == session) newest_command_tick_ = -1;
 }
 
 void PlantApp::RefuseFutureCommand(const motor_command_t& command) {
@@ -72,9 +76,10 @@ void PlantApp::RefuseFutureCommand(const motor_command_t& command) {
   });
 }
 
-// How long the newest state that asks for a command has gone unanswered: the age, in ticks, of what answers, less the interval.
-// A loop that works through a backlog, or repeats itself, is not in control, however often it sends; and what this process
-// itself has slept through makes the command in force older too.
+// How long the newest state that asks for a command has gone unanswered: the age, in ticks, of the state that
+// the newest command answers, less the interval. A loop that works through a backlog, or repeats itself, is
+// not in control, however often it sends. Time for which this process itself was stopped also makes the
+// command in force older.
 bus::Clock::Duration PlantApp::AgeOfAnswer() const {
   const int64_t interval = config_.pressure_interval_ticks;
   const int64_t answered = !waiting_commands_.empty() ? waiting_commands_.back().tick
@@ -100,9 +105,10 @@ void PlantApp::Check(bus::Clock::TimePoint now) {
   if (const auto& stop = siblings_.stop()) participant_.RequestStop(stop->reason, stop->exit_code);
 }
 
-// The voltage of the command in force, or zero while any check fails. Drive() puts it out first and publishes the faults second.
+// Chooses the voltage of the command in force, or zero while any check fails. Drive() puts it out first and
+// publishes the faults second.
 void PlantApp::ChooseVoltage() {
-  // What was commanded before or while the voltage was held at zero does not come back.
+  // A command given before or while the voltage was held at zero does not come back into force.
   const bool held = safety_.holds() || !rig_.faults().empty();
   if (held) obeyed_from_ = tick_;
   // The run may have ended since this tick began.
@@ -112,7 +118,7 @@ void PlantApp::ChooseVoltage() {
   rig_.Obey(command_tick_);
 }
 
-// The pressure loop's faults are told by its commands.
+// The pressure loop reports its faults in its commands.
 bool PlantApp::HasOwnFault() const {
   return safety_.holds_by_itself() || !rig_.faults().empty() ||
          (command_ && command_->status == motor_command_t::SAFE);
@@ -165,7 +171,7 @@ void PlantApp::CheckCommand(bus::Clock::TimePoint now) {
                     voltage, voltage_limit_),
         voltage, voltage_limit_};
   });
-  // A sender that contradicts itself: the command before it is no better.
+  // The sender contradicts itself, so the command before this one is no more trustworthy.
   safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
   safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(now), [&] {
     return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
@@ -174,7 +180,7 @@ void PlantApp::CheckCommand(bus::Clock::TimePoint now) {
                    2, 1};
   });
   safety_.CheckController(command_ && command_->status == motor_command_t::SAFE, now);
-  // In lockstep the plant itself asks for repeats; in real time nobody does.
+  // In lockstep the plant itself asks for repeats; in real time no process does.
   if (realtime_) {
     repeated_commands_.Update(
         command_monitor_.duplicates(), now,
@@ -188,7 +194,7 @@ void PlantApp::CheckCommand(bus::Clock::TimePoint now) {
   }
 }
 
-// Whoever watches the terminal thinks that the launcher is in charge; while it is stopped it is not.
+// A person at the terminal believes that the launcher is in charge; while the launcher is stopped, it is not.
 void PlantApp::CheckSupervisor(bus::Clock::TimePoint now) {
   if (!heartbeat_ || now < next_heartbeat_check_) return;
   next_heartbeat_check_ = now + kHeartbeatCheck;
@@ -214,7 +220,7 @@ void PlantApp::CheckCommandIsFresh() {
                     tick_, 1e3 * bus::ToSeconds(age), 1e3 * bus::ToSeconds(stale_time_)),
         bus::ToSeconds(age), config_.limits.stale_input_s};
   });
-  // After this process itself was stopped, commands from before the stop do not count.
+  // After this process itself was stopped, commands that answer states from before the stop do not count.
   if (awake_again_ && command_ && command_->tick >= *awake_again_) awake_again_.reset();
   safety_.Set(Cause::kLatePlant, awake_again_.has_value(), [&] {
     const double slept =

@@ -46,7 +46,7 @@ inline void PlantApp::Advance(int64_t to_tick) {
   SetTick(to_tick);
 }
 
-// Returns when the state was sent, as far as anybody asks: `now` while that does not matter.
+// Returns when the state was sent, or `now` where the difference does not matter.
 inline bus::Clock::TimePoint PlantApp::Publish(int64_t skipped_ticks, bus::Clock::TimePoint now) {
   if (tick_ == 0) {
     state_.voltage = 0;
@@ -69,14 +69,14 @@ inline bus::Clock::TimePoint PlantApp::Publish(int64_t skipped_ticks, bus::Clock
   return now;
 }
 
-// The role that the plant still waits for at this tick; null when all have answered.
+// The role whose answer the plant still awaits at this tick; null when all have answered.
 inline const char* PlantApp::Unanswered() const {
   if (asks_position_ && newest_pressure_command_tick_ < tick_) return "position_ctrl";
   if (asks_pressure_ && newest_command_tick_ < tick_) return "pressure_ctrl";
   return log_progress_.empty() || LoggersKeepUp() ? nullptr : "logger";
 }
 
-// What is due, if anything is.
+// Polls everything that is due now.
 inline void PlantApp::PollIfDue(bus::Clock::TimePoint now) {
   const bool due = participant_.IsDue(now) || tuning_.IsDue(now) || now >= next_description_ ||
                    LostMessages() != participant_.statistics().lost_messages();
@@ -101,8 +101,8 @@ void PlantApp::RunLockstep() {
     if (participant_.stop()) break;  // a limit was exceeded
     Advance(tick_ + 1);
     if (simulated) {
-      // Nobody else advances simulated time. Each tick is computed from the start, so that rounding does not
-      // add up.
+      // No other process advances simulated time. The due time of each tick is computed from the start, so
+      // that rounding does not add up.
       const auto due = start + bus::FromSeconds(static_cast<double>(tick_) / rate);
       while (participant_.bus().HandleUntil(due) > 0) {
       }
@@ -115,7 +115,8 @@ void PlantApp::RunLockstep() {
   }
 }
 
-// Waits from `now` on, which is then when it went on. False: the run has ended.
+// Waits from `*now` on, and sets `*now` to the time at which it went on. Returns false when the run has
+// ended.
 bool PlantApp::AwaitAnswers(bus::Clock::TimePoint* now) {
   if (Unanswered() == nullptr) return true;
   const auto deadline = *now + stall_time_;
@@ -156,7 +157,7 @@ bus::Clock::TimePoint PlantApp::Wake(const WakeUp& wake_up) {
   const int64_t elapsed = wake_up.elapsed;
   participant_.statistics().set_missed_deadlines(wake_up.skipped);
   const double slept = static_cast<double>(elapsed - 1) / (config_.plant.rate_hz * config_.time.speed);
-  Advance(tick_ + elapsed);  // under the voltage that was held all that time
+  Advance(tick_ + elapsed);  // under the voltage that was held during all of these ticks
   if (bus::FromSeconds(slept) > stale_time_) awake_again_ = tick_;
   return Publish(elapsed - 1, wake_up.at);
 }
@@ -196,9 +197,9 @@ void PlantApp::RunAtThePaceOf(Pacemaker& device) {
   }
 }
 
-// What is driven goes out with the answer to this tick, or at once where none is waited for. Without an
-// answer the command in force is repeated when the next sample has come: the device hears of this process in
-// each tick.
+// The voltage goes out with the answer to this tick, or at once when no answer is awaited. Without an answer,
+// the command in force is repeated when the next sample has come, so that the device hears from this process
+// in each tick.
 int64_t PlantApp::AwaitSample(Pacemaker& device, timing::FollowedRateLoop& loop) {
   bus::Bus& bus = participant_.bus();
   int64_t elapsed = 0;
@@ -219,12 +220,12 @@ int64_t PlantApp::AwaitSample(Pacemaker& device, timing::FollowedRateLoop& loop)
   return elapsed;
 }
 
-// Not while something is wrong: zero volts go out first.
+// Awaits nothing while something is wrong: zero volts go out first.
 bool PlantApp::AwaitsAnswer() const {
   return asks_pressure_ && newest_command_tick_ < tick_ && !safety_.holds() && rig_.faults().empty();
 }
 
-// The same steps for others.
+// The same steps, for programs that pace the run themselves.
 void PlantApp::Start() {
   Measure(0);
   Publish(0, participant_.clock().Now());

@@ -7,7 +7,8 @@
 namespace hydro::plant {
 namespace {
 
-constexpr size_t kMostPresent = 256;  // a stack has five processes; a flood of made-up ones is not kept
+// A stack has five processes; more would come from a flood of made-up ones.
+constexpr size_t kMostPresent = 256;
 
 }  // namespace
 

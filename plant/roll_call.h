@@ -1,4 +1,4 @@
-// Who takes part in a run, from the processes' own announcements.
+// Keeps track of who takes part in a run, from the processes' own announcements.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace hydro::plant {
 
 class RollCall {
  public:
-  // `expected`: the roles that a run waits for before it starts.
+  // `expected` lists the roles that a run waits for before it starts.
   explicit RollCall(std::vector<std::string> expected) : expected_(std::move(expected)) {}
 
   void Observe(const process_status_t& status);
 
-  // Whether that session is present in this role.
+  // Whether the process with this session is present in this role.
   bool Has(const std::string& role, int64_t session) const { return present_.contains({role, session}); }
 
   // The expected roles that are not ready, in the order given.

@@ -10,10 +10,10 @@
 
 namespace hydro::plant {
 
-// A standard normal number for (seed, tick, channel), whatever is drawn besides.
+// A standard normal number that depends only on (seed, tick, channel), whatever else is drawn.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
 
-// Whether the sensors read what is: neither noise nor rounding.
+// Whether the sensors read exact values, with neither noise nor rounding.
 bool ReadsExactly(const settings::NoiseSection& noise);
 
 // `measurement` as the sensors read it at `tick`: with noise, then rounded to a multiple of the resolution.

@@ -79,7 +79,8 @@ void SiblingFaults::OnState(const state_t& state, Heard& heard) {
   heard.state_at = participant_.clock().Now();
 }
 
-// A plant's end at the run's last tick is none for the others, which end there themselves.
+// When another joint's plant ends at the run's last tick, this process takes no action: it ends at that tick
+// itself.
 void SiblingFaults::OnStop(const stop_t& stop, const Heard& heard) {
   if (stop.addressee != 0 && stop.addressee != heard.plant) return;
   if (stop.exit_code == 0 && options_.last_tick >= 0 && stop.tick >= options_.last_tick) return;

@@ -1,5 +1,6 @@
-// The other joints of the same limb, in other processes: whether they are there, and what of them matters here. Where a fault of one
-// concerns all, that is a fault that zeroes its voltage, its silence, and its end.
+// Watches the other joints of the same limb, which run in other processes. It reports whether they are
+// present and which of their faults matter here. Where a fault of one joint concerns all, these are a fault
+// that zeroes its voltage, its silence, and its end.
 #pragma once
 
 #include <cstdint>
@@ -19,43 +20,49 @@
 
 namespace hydro::plant {
 
-// Of what a run waits for (--expect): the joints, "joint:NAME", and the roles of its own processes.
+// Split what a run waits for (--expect) into the joints, written "joint:NAME", and the roles of this joint's
+// own processes.
 std::vector<std::string> ExpectedJoints(const std::vector<std::string>& expected);
 std::vector<std::string> ExpectedRoles(const std::vector<std::string>& expected);
 
 class SiblingFaults {
  public:
   struct Options {
-    bool follows = true;     // what happens to them concerns this process
-    int64_t last_tick = -1;  // of the run; -1: it has none. A sibling that ends there ends in order
+    bool follows = true;     // whether faults of other joints concern this process
+    int64_t last_tick = -1;  // of the run; -1: none. A sibling that ends there ends in order
     std::function<void()> on_newcomer =
         {};  // a sibling's plant is about to begin: it may not know our faults
   };
-  // Subscribes on the participant's bus; must outlive it.
+  // Subscribes on the participant's bus; `participant` must outlive this object.
   SiblingFaults(process::Participant& participant, const std::vector<settings::Sibling>& siblings,
                 Options options);
 
   bool follows() const { return options_.follows && !siblings_.empty(); }
 
-  // Those of these joints whose plants have not announced themselves: "joint knee".
+  // Those of these joints whose plants have not announced themselves, as "joint knee".
   std::vector<std::string> Missing(const std::vector<std::string>& joints) const;
 
-  // "joint knee has the fault pressure_limit (plant)"; empty when none has one. Both are cheap when all is well.
+  // "joint knee has the fault pressure_limit (plant)"; empty when no joint has a fault. Both this function
+  // and Silence() are cheap when all is well.
   std::string Fault(bus::Clock::TimePoint now);
-  // "joint knee has not been heard for 0.2 s, ..."; empty when each is heard, has not been yet, or has said that it leaves.
+  // "joint knee has not been heard for 0.2 s, ..."; empty when each joint is heard, has not been heard yet,
+  // or has said that it leaves.
   std::string Silence(bus::Clock::TimePoint now) const;
-  // The first stop or failure of one before the run was over, with the joint's name: it ends this run too.
+  // The first stop or failure of another joint before the run was over, with that joint's name; it ends this
+  // run too.
   const std::optional<stop_t>& stop() const { return stop_; }
 
  private:
   struct Heard {
     settings::Sibling sibling;
-    // That the others are at zero volts because one has a fault is no fault of theirs: they would hold each other for ever.
+    // "other_joint" does not count as a fault here. Joints that stand at zero volts because one joint has a
+    // fault would otherwise hold each other at zero for ever.
     process::RemoteFaults faults{[](std::string_view, std::string_view code) {
       return process::LeadsToZeroVolts(code) && code != "other_joint";
     }};
-    std::optional<bus::Clock::TimePoint> state_at = {};  // when the newest came, of a plant that has not left
-    std::optional<int64_t> plant = {};                   // the session of its plant
+    // The arrival of its newest state, while its plant has not left.
+    std::optional<bus::Clock::TimePoint> state_at = {};
+    std::optional<int64_t> plant = {};  // the session of its plant
     std::optional<int64_t> left =
         {};  // of one that has left: states of it that come later are no sign of life
   };

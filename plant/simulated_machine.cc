@@ -22,7 +22,7 @@ class ActuatorAlone final : public SimulatedMachine {
   }
 
   std::unique_ptr<trajectory::Trajectory>
-      motion_;  // of a driven shaft; declared first, actuator_ points to it
+      motion_;  // of a driven shaft; declared first because actuator_ points to it
   model::Actuator actuator_;
   double voltage_ = 0;
 };

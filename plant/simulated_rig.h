@@ -16,12 +16,12 @@ class SimulatedRig : public Rig {
  public:
   // Throws InputError when the configuration and the model contradict each other.
   explicit SimulatedRig(const settings::StackConfig& config);
-  // With another machine than the actuator alone.
+  // Uses another machine than the actuator alone.
   SimulatedRig(const settings::StackConfig& config, std::unique_ptr<SimulatedMachine> machine);
 
   std::string role() const override { return "plant"; }
-  // Throws RigError when the model cannot go on: "arm_angle_limit" when the arm had passed its limit before, in ticks that a late plant has
-  // skipped; else "model_error".
+  // Throws RigError when the model cannot go on: "arm_angle_limit" when the arm had already passed its limit,
+  // in ticks that a late plant has skipped; otherwise "model_error".
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override {
@@ -39,7 +39,7 @@ class SimulatedRig : public Rig {
   [[gnu::cold]] RigError Explained(const model::ModelError& error, int64_t tick, bool late) const;
 
   settings::NoiseSection noise_;
-  bool exact_;  // the sensors have none
+  bool exact_;  // neither noise nor rounding
   int64_t seed_;
   double rate_hz_;
   double largest_angle_;

@@ -14,10 +14,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kReportPeriod = 1s;
-constexpr auto kAnswerTime = 500ms;        // in which every controller says whether it can act by a proposal
-constexpr auto kWordsRepeatPeriod = 20ms;  // of what is proposed and decided, should a message be lost
+constexpr auto kAnswerTime = 500ms;        // for each controller to say whether it can act by a proposal
+constexpr auto kWordsRepeatPeriod = 20ms;  // for proposals and decisions, in case a message is lost
 constexpr double kOldRequest_s = 5;    // a request that names a tick older than this comes from a recording
-constexpr size_t kMostSessions = 64;   // whose last answer is kept, should they ask again
+constexpr size_t kMostSessions = 64;   // whose last answer is kept in case they ask again
 constexpr size_t kMostText = 1 << 16;  // bytes of a request
 
 }  // namespace
@@ -28,7 +28,8 @@ TuningDesk::TuningDesk(process::Participant& participant, const settings::StackC
       configured_(std::make_shared<settings::StackConfig>(config)),
       simulated_rig_(simulated_rig),
       hooks_(std::move(hooks)),
-      // Of many processes on one thread none may depend on how long another thread takes, either.
+      // Where many processes share one thread, none of them may depend on how long another thread takes,
+      // either.
       aside_(!participant.clock().simulated() && participant.bus().process() == nullptr),
       values_(tuning::ValuesOf(config)),
       in_force_{configured_, {}} {
@@ -41,7 +42,7 @@ TuningDesk::TuningDesk(process::Participant& participant, const settings::StackC
   bus.Subscribe<tuning_status_t>(channels.Of<tuning_status_t>(),
                                  [this](const tuning_status_t& status) { OnStatus(status); });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& status) {
-    // A controller that has just started needs to know by what to act.
+    // A controller that has just started needs to know the values in force.
     const bool controller = status.role == "pressure_ctrl" || status.role == "position_ctrl";
     if (controller && !process::HasLeft(status) && participant_.tick() >= 0) next_report_ = {};
   });
@@ -61,12 +62,13 @@ void TuningDesk::OnRequest(const tuning_request_t& request) {
   const auto answered = answers_.find(request.session);
   if (answered != answers_.end() && request.request <= answered->second.request) {
     if (request.request < answered->second.request) return;
-    answered->second.utime = participant_.clock().Utime();  // it asks again: the answer may have been lost
+    // The program asks again: the answer may have been lost.
+    answered->second.utime = participant_.clock().Utime();
     participant_.bus().Publish(participant_.channels().Of<tuning_answer_t>(), answered->second);
     return;
   }
-  if (pending_ || aside_.busy()) return;  // one at a time: the other asks again
-  // So does who asks before the loops have said that they take part.
+  if (pending_ || aside_.busy()) return;  // one change at a time: the other program asks again
+  // A program that asks before the loops have said that they take part asks again, too.
   if (IsYoung() && !WhoIsMissing(request).empty()) return;
   Begin(request);
 }
@@ -111,7 +113,8 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   change.message.version = ++newest_version_;
   change.message.acts_at = -1;
   change.message.source = pending_->request.source;
-  // A reference that stays, or comes back, goes on; a new one begins when it takes effect.
+  // A reference that stays, or comes back, goes on from where it began; a new one begins when it takes
+  // effect.
   change.message.reference_from = pending_->request.kind == tuning_request_t::UNDO
                                       ? before_.back().message.reference_from
                                   : change.new_reference ? -1
@@ -162,7 +165,7 @@ void TuningDesk::PollDue(bus::Clock::TimePoint now) {
         Refuse(change->text);
       } else if (change->nothing_differs && pending_->request.kind == tuning_request_t::SET) {
         Accept(in_force_.message,
-               change->text);  // no version of its own, which an undo would have to take back
+               change->text);  // makes no version of its own, which an undo would have to take back
         pending_.reset();
       } else {
         Propose(std::move(*change));
@@ -183,7 +186,7 @@ void TuningDesk::PollDue(bus::Clock::TimePoint now) {
   }
 }
 
-// No copy: it is published once a second, and the loop takes no memory.
+// Makes no copy: this is published once a second, and the loop allocates no memory.
 void TuningDesk::Publish(tuned_settings_t* settings, int8_t stage) {
   settings->utime = participant_.clock().Utime();
   settings->tick = participant_.tick();

@@ -1,5 +1,6 @@
-// The plant's side of a change of values while the stack runs. It holds what is in force, and decides: a request is checked
-// (tune/live/change_check.h), proposed to the controllers, and, when each of them can act by it, decided for one tick; else nothing has changed.
+// The plant's side of a change of values while the stack runs. It holds the values in force, and decides on
+// changes. A request is checked (tune/live/change_check.h) and proposed to the controllers; when each of them
+// can act by it, the change is decided for one tick. Otherwise nothing changes.
 //
 //   asked -> checked -> proposed -> decided -> in force
 //              |            |
@@ -31,35 +32,39 @@ namespace hydro::plant {
 
 class TuningDesk {
  public:
-  // What the plant itself does by new values; `held`: whether the voltage is held at zero until a re-arm.
+  // `apply` is what the plant itself does with new values. `held` returns whether the voltage is held at zero
+  // until a re-arm.
   struct Hooks {
     std::function<void(const tuning::TunedValues&)> apply;
     std::function<bool()> held;
   };
 
-  // Subscribes; `participant` must outlive it and the bus.
+  // Subscribes; `participant` must outlive this object and the bus.
   TuningDesk(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
              Hooks hooks);
 
-  // Changes that were decided in another run (its log): they take effect at the same ticks. In the order of ticks.
+  // Repeats changes that were decided in another run (from its log): they take effect at the same ticks.
+  // `decided` is in the order of ticks.
   void Follow(std::vector<tuned_settings_t> decided);
 
-  // Before the state of `tick` is published: what is decided for it takes effect. Cheap when nothing is.
+  // Puts into effect what is decided for `tick`. Call it before the state of that tick is published. Cheap
+  // when nothing is decided.
   void OnTick(int64_t tick) {
     if (pending_ || !followed_.empty() || !begun_) OnTickWithWork(tick);
   }
 
-  // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
+  // Checks, proposes, decides, and reports what is due. Cheap when nothing is due.
   void Poll(bus::Clock::TimePoint now) {
     if (IsDue(now)) PollDue(now);
   }
   bool IsDue(bus::Clock::TimePoint now) const { return pending_ || now >= next_report_ || aside_.busy(); }
 
-  // Whether a change is being made. Until it is in force or refused nothing is re-armed: it may loosen a limit, because all is held.
+  // Whether a change is being made. Until it is in force or refused, nothing is re-armed: the change may
+  // loosen a limit because the output is held.
   bool changing() const { return pending_.has_value(); }
 
  private:
-  // Values, and the configuration that they come from.
+  // Values, and the configuration from which they come.
   struct Version {
     std::shared_ptr<const settings::StackConfig> config;
     tuned_settings_t message;
@@ -67,7 +72,7 @@ class TuningDesk {
   // The change that is being made.
   struct Pending {
     tuning_request_t request;
-    std::optional<Version> version;  // proposed, or decided when its acts_at is not -1
+    std::optional<Version> version;  // proposed; decided once its acts_at is not -1
     std::string text;
     bus::Clock::TimePoint deadline;
     bus::Clock::TimePoint next_repeat;
@@ -107,13 +112,13 @@ class TuningDesk {
   Aside aside_;
   tuning::TunedValues values_;  // in force
   Version in_force_;
-  std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
-  int64_t newest_version_ = 0;   // that was ever proposed
+  std::vector<Version> before_;  // earlier versions, newest last, for UNDO
+  int64_t newest_version_ = 0;   // newest version ever proposed
   std::optional<Pending> pending_;
   std::map<std::pair<std::string, int64_t>, Controller>
-      controllers_;                             // by role and session; those that were heard lately
-  std::map<int64_t, tuning_answer_t> answers_;  // the last to each session that asked
-  std::vector<int64_t> asked_;                  // these sessions, oldest first
+      controllers_;                             // by role and session; those heard lately
+  std::map<int64_t, tuning_answer_t> answers_;  // the last answer to each session that asked
+  std::vector<int64_t> asked_;                  // the sessions that asked, oldest first
   std::vector<tuned_settings_t> followed_;      // reversed: the next one last
   bus::Clock::TimePoint next_report_;
   std::optional<bus::Clock::TimePoint> begun_;  // the first tick

@@ -1,4 +1,5 @@
-// TuningDesk's way from a proposal to its effect: who must be able to act by it, at which tick, and what the plant itself does then.
+// TuningDesk's way from a proposal to its effect: which controllers must be able to act by it, at which tick
+// it acts, and what the plant itself does then.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -13,15 +14,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kAlive = 2500ms;  // a controller reports once a second
-constexpr auto kYoung =
-    1500ms;  // of a run: a loop reports once a second, and soon after it has heard the plant
-constexpr double kLead_s = 0.02;  // from the decision to its effect: several repeats
+// After the start of a run: a loop reports once a second, and soon after it first hears the plant.
+constexpr auto kYoung = 1500ms;
+constexpr double kLead_s = 0.02;  // from the decision to its effect: long enough for several repeats
 constexpr size_t kMostUndo = 100;
 constexpr size_t kMostControllers = 16;
 
 }  // namespace
 
-// Who cannot act by the proposal, or has not said so yet; empty: all can.
+// Names the controllers that cannot act by the proposal or have not answered yet; empty when all can.
 std::string TuningDesk::NotReady(bool* impossible) const {
   const int64_t version = pending_->version->message.version;
   for (const auto& [key, controller] : controllers_) {
@@ -35,7 +36,7 @@ std::string TuningDesk::NotReady(bool* impossible) const {
   return "";
 }
 
-// Both loops act on multiples of the position loop's interval, or at their next tick after it.
+// Both loops act on multiples of the position loop's interval, or at their next tick after such a multiple.
 int64_t TuningDesk::TickOfEffect() const {
   const int64_t interval = configured_->position_interval_ticks;
   const auto lead =
@@ -91,7 +92,7 @@ void TuningDesk::TakeEffect(Version version) {
   next_report_ = {};
 }
 
-// The controllers hear of it in the tick before.
+// The controllers hear of the change in the tick before.
 void TuningDesk::FollowAt(int64_t tick) {
   while (!followed_.empty() && followed_.back().acts_at - 1 <= tick) {
     tuned_settings_t& next = followed_.back();
@@ -121,7 +122,7 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
                        .heard = now};
 }
 
-// A controller of the user's own may know nothing of this: what concerns it cannot be changed.
+// A user's own controller may know nothing of live tuning; values that concern it cannot be changed then.
 std::string TuningDesk::WhoIsMissing(const tuning_request_t& request) const {
   if (request.kind != tuning_request_t::SET) return "";
   std::vector<std::string> changes;

@@ -1,5 +1,5 @@
-// Which faults force zero volts, and until when. Pure: it takes each tick's findings and voltages and knows
-// no clock, message or file. The plant and the hardware driver share it.
+// Decides which faults force zero volts, and until when. Pure: it takes each tick's findings and voltages and
+// knows no clock, message or file. The plant and the hardware driver share it.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ class VoltageGuard {
   // Causes that latch in either rearm mode: a good next input does not undo an exceeded limit or a suspend.
   static bool Trips(Cause cause) { return cause >= Cause::kSuspended; }
 
-  // Records whether this tick's check found the cause. One that latches stays active after it has gone. kOtherJoint never latches: the
-  // joint that has the fault does.
+  // Records whether this tick's check found the cause. A cause that latches stays active after it has gone.
+  // kOtherJoint never latches here: it latches in the joint that has the fault.
   void Set(Cause cause, bool present);
 
   bool present(Cause cause) const { return (present_ & Bit(cause)) != 0; }
@@ -52,11 +52,12 @@ class VoltageGuard {
   bool any_present() const { return present_ != 0; }
   bool any_latched() const { return latched_ != 0; }
 
-  // The part of the commanded voltage that may reach the motor: all or nothing.
+  // The voltage that may reach the motor: all of the commanded voltage, or zero.
   double Voltage(double commanded) const { return any() ? 0 : commanded; }
 
-  // Ends all latched causes and returns them, unless any cause but kOtherJoint is still present (two joints would wait for each other):
-  // then it ends nothing, returns nothing and fills `present`.
+  // Ends all latched causes and returns them. If any cause but kOtherJoint is still present, it ends nothing,
+  // returns nothing and fills `present`. kOtherJoint is excepted because two joints would otherwise wait for
+  // each other.
   std::vector<Cause> Release(std::vector<Cause>* present);
 
  private:

@@ -13,8 +13,8 @@ constexpr int32_t kMostPoints = 256;
 constexpr int64_t kMostWaiting = 64;  // plans, and one or two more
 
 constexpr double kLargestNumber =
-    1e9;  // s, rad/s and in-lbf: beyond any machine, and far from where doubles overflow
-constexpr double kAhead_s = 1;  // so far may a plan's tick be ahead of this loop's
+    1e9;  // s, rad/s and in-lbf: beyond any machine, and far below the overflow of doubles
+constexpr double kAhead_s = 1;  // how far a plan's tick may be ahead of this loop's
 
 // The cubic from point i to the next, with their speeds (Hermite), over s = 0 to 1.
 struct Cubic {
@@ -30,13 +30,13 @@ Cubic Behind(const arm_plan_t& plan, size_t i) {
 
 double AngleAt(const Cubic& c, double s) { return c.a0 + s * (c.v0 + s * (c.c2 + s * c.c3)); }
 
-// rad: |alpha| where the cubic goes farthest.
+// rad: the largest |alpha| of the cubic.
 double Farthest(const Cubic& c) {
   double farthest = std::fmax(std::fabs(c.a0), std::fabs(AngleAt(c, 1)));
   const auto look = [&](double s) {
     if (s > 0 && s < 1) farthest = std::fmax(farthest, std::fabs(AngleAt(c, s)));
   };
-  // Where its speed v0 + 2 c2 s + 3 c3 s^2 is 0, in the form that loses no digits.
+  // The speed v0 + 2 c2 s + 3 c3 s^2 is 0 here, in the form that loses no digits.
   const double root = std::sqrt(std::fmax(0, c.c2 * c.c2 - 3 * c.c3 * c.v0));
   const double q = -(c.c2 + std::copysign(root, c.c2));
   if (c.c3 != 0) look(q / (3 * c.c3));
@@ -49,7 +49,7 @@ std::string TooFar(const std::string& where, double angle, double largest_angle,
          unit + ", allowed |alpha| <= " + ShortNumber(largest_angle) + " " + unit + " (limits.arm_angle)";
 }
 
-// Why a plan cannot be followed; empty: it can.
+// The reason why a plan cannot be followed; empty when it can.
 std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle, const std::string& unit) {
   if (plan.count < 1 || plan.count > kMostPoints) {
     return "found " + std::to_string(plan.count) + " points, allowed 1 to " + std::to_string(kMostPoints);
@@ -75,7 +75,7 @@ std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle, const std:
   return "";
 }
 
-// Whether it was made after the other.
+// Whether `plan` was made after `other`.
 bool IsLater(const arm_plan_t& plan, const arm_plan_t& other) {
   return plan.tick > other.tick ||
          (!plan.time.empty() && !other.time.empty() && plan.time.back() > other.time.back());
@@ -118,7 +118,8 @@ const PlanFollower::Current* PlanFollower::newest() const {
 std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
   if (const Current* last = newest(); last != nullptr) {
     if (plan.session == last->plan.session) {
-      // Repeated, or overtaken: the newer one stays. A planner that goes on behind its newest number has not sent that one.
+      // A repeated or overtaken plan changes nothing: the newer one stays. If a planner goes on behind its
+      // newest number, the plan with that number was not its own.
       const bool goes_on = silent(tick) && IsLater(plan, last->plan);
       if (plan.sequence <= last->plan.sequence && !goes_on) return "";
     } else if (!silent(tick)) {
@@ -134,7 +135,7 @@ std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
   const auto delay = static_cast<int64_t>(std::llround(limits_.delay_s * rate_hz_));
   const int64_t from = std::max(tick, plan.tick < 0 ? tick : plan.tick + delay);
   while (!next_.empty() && next_.back().from >= from) next_.pop_back();
-  // A planner that floods is followed at evenly spaced plans.
+  // When a planner floods this loop, the loop follows plans at even spacing.
   const auto before = static_cast<ptrdiff_t>(next_.size()) - 2;
   if (before >= 0 && from - next_[static_cast<size_t>(before)].from < delay / kMostWaiting) next_.pop_back();
   next_.push_back({plan, from});
@@ -146,7 +147,8 @@ bool PlanFollower::silent(int64_t tick) const {
   return last != nullptr && Seconds(tick - last->from) > limits_.timeout_s;
 }
 
-// What the plan says, without limits. Before its first point it is on its way from where the reference is.
+// The point that the plan asks for, without limits. Before the plan's first point, it lies on the way there
+// from the present reference.
 PlannedPoint PlanFollower::Wanted(int64_t tick) const {
   if (!current_) return {.angle = reference_};
   const arm_plan_t& plan = current_->plan;
@@ -162,12 +164,12 @@ PlannedPoint PlanFollower::At(int64_t tick) {
   PlannedPoint point = Wanted(tick);
   if (silent(tick)) point = {.angle = reference_, .torque = point.torque};
   point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);
-  // Ticks that go back, as after a restart of the plant, are no time for the reference to move in.
+  // Ticks that go back, as after a restart of the plant, give the reference no time to move.
   const double step =
       limits_.largest_speed * Seconds(last_tick_ ? std::max<int64_t>(0, tick - *last_tick_) : 0);
   if (last_tick_ && std::isfinite(step))
     point.angle = std::clamp(point.angle, reference_ - step, reference_ + step);
-  // Last, whatever the reference was before.
+  // The limits come last, wherever the reference was before.
   point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);
   point.speed = std::clamp(point.speed, -limits_.largest_speed, limits_.largest_speed);
   reference_ = point.angle;

@@ -1,5 +1,5 @@
-// What a planner of the user's wants (arm_plan_t), as a reference for eq. (17): limited in angle and speed, held when the planner
-// falls silent. Depends on ticks and contents only.
+// Turns a user's planner's plans (arm_plan_t) into a reference for eq. (17). The reference is limited in
+// angle and speed, and held when the planner falls silent. It depends on ticks and contents only.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 namespace hydro::position_ctrl {
 
 struct PlanLimits {
-  double timeout_s = 0.2;  // of plant time: a plan older than this is followed no further
-  double delay_s =
-      0.01;  // of plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay
-  double largest_speed = 0;  // of the reference, per s; infinity: none
+  double timeout_s = 0.2;  // s, plant time: a plan older than this is followed no further
+  // s, plant time: a plan made from tick k acts from k + this on, if it comes in time; so does its replay.
+  double delay_s = 0.01;
+  double largest_speed = 0;  // largest speed of the reference, per s; infinity: no limit
   double largest_angle = 0;  // |alpha|; the reference never leaves it
   std::string unit = "rad";  // of both, as in messages
 };
@@ -28,19 +28,21 @@ struct PlannedPoint {
 
 class PlanFollower {
  public:
-  // `initial`: rad, the reference before the first plan.
+  // `initial` is the reference before the first plan, rad.
   PlanFollower(double initial, const PlanLimits& limits, double rate_hz);
 
-  // Takes a plan that has come at `tick`. Returns why it is not followed, as one line; empty: it is.
+  // Takes a plan that has come at `tick`. Returns the reason why it is not followed, as one line; empty when
+  // it is followed.
   std::string Take(const arm_plan_t& plan, int64_t tick);
 
-  // At a sample, in increasing order of ticks.
+  // The reference at a sample. Call it in increasing order of ticks.
   PlannedPoint At(int64_t tick);
 
-  // Another largest angle from now on. Plans that go beyond it are followed no further: the reference holds, until the next plan.
+  // Sets the largest angle from now on. A plan that goes beyond it is followed no further: the reference
+  // holds until the next plan.
   void SetLargestAngle(double largest_angle);
 
-  // Another run begins: no plan is known.
+  // Begins another run: no plan is known.
   void Reset();
 
   // Whether the planner has been silent for too long, after a first plan.
@@ -61,7 +63,7 @@ class PlanFollower {
   double rate_hz_;
   double initial_;
   std::optional<Current> current_;
-  std::deque<Current> next_;  // taken, not in force yet, in the order in which they will be
+  std::deque<Current> next_;  // plans taken but not yet in force, in the order in which they will act
   double reference_;          // rad, at the last sample
   std::optional<int64_t> last_tick_;
 };

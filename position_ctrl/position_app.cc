@@ -75,9 +75,10 @@ void PositionApp::BeginAnew() {
   if (planner_) planner_->Reset();
 }
 
-// In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
+// In lockstep no process is late, and the pressure loop's own reports may come at any tick.
 void PositionApp::Observe(const state_t& state) {
-  // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
+  // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there
+  // before.
   const bool joins = answered() < 0 && state.tick > tuning::kJoiningSamples * interval().of();
   if (!lockstep() && joins && !participant().clock().simulated()) return_.Join();
   const bool safe = !lockstep() && pressure_faults_.any(participant().clock().Now());
@@ -109,7 +110,8 @@ bool PositionApp::Answer(const state_t& state, bus::Clock::TimePoint /*arrival*/
             AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
         if (participant().any_fault()) participant().Clear("nonfinite_arm_angle");
       } else {
-        pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
+        // At zero volts, because without the arm's angle no pressure is safe.
+        pressure_command_.open_loop = true;
         law_.Reset();
         transfer_.Forget();
         participant().Raise(
@@ -136,7 +138,7 @@ bool PositionApp::Answer(const state_t& state, bus::Clock::TimePoint /*arrival*/
   return true;
 }
 
-// What the reference refers to, as it is now.
+// The present value of the quantity to which the reference refers.
 inline double PositionApp::Present(const state_t& state) const {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:

@@ -1,7 +1,8 @@
 // The sampled position loop as an application: on each tick that is a multiple of its sample interval it
 // publishes the reference and the pressure command that follows from it. A reference of the arm's angle goes
 // through eq. (17); pressure, torque and open-loop voltage references pass through. All pressures are limited
-// and quantised the same way. After zero volts the reference comes back without a jump (reference_return.h).
+// and quantised in the same way. After zero volts the reference comes back without a jump
+// (reference_return.h).
 #pragma once
 
 #include <cstdint>
@@ -57,15 +58,16 @@ class PositionApp : public process::ControlLoop {
   const std::string reference_text_;  // as configured
   std::unique_ptr<trajectory::Trajectory> reference_;
   std::optional<PlanFollower> planner_;  // reference.kind = "planner"
-  double farthest_ = 0;  // rad, of where the arm starts and the reference before the first plan
+  // rad, the larger magnitude of the arm's start angle and the reference before the first plan.
+  double farthest_ = 0;
   process::CountedWarning refused_plans_{"refused_arm_plan"};
   int64_t plans_refused_ = 0;
-  std::string plan_refused_;  // why the newest was
+  std::string plan_refused_;  // why the newest plan was refused
   std::string reference_in_force_;
-  double reference_from_ = 0;         // s, plant time at which it begins
+  double reference_from_ = 0;         // s, plant time at which the reference begins
   const double torque_per_pressure_;  // k_2
   const double stop_;                 // rad: the nearer end of the stroke
-  const double areas_;                // model::Differences: the two sides' areas
+  const double areas_;                // model::Differences: of the two sides' areas
   const settings::PositionSection section_;
   const model::Parameters parameters_;
   const UnitSystem units_;
@@ -76,12 +78,12 @@ class PositionApp : public process::ControlLoop {
   std::optional<BrakingCurve> curve_;
   tuning::TuningFollower tuning_;
   tuning::BumplessTransfer transfer_;
-  // A change begins with the next sample.
+  // These hold the settings before a change, which begins with the next sample.
   std::optional<PositionLawSettings> law_before_;
   std::optional<BrakingCurve> curve_before_;
-  std::optional<double> reference_before_;  // where the reference before would be now
+  std::optional<double> reference_before_;  // where the previous reference would be now
   ReferenceReturn return_;
-  // Real time: while one lasts, the pressure loop's commands move nothing.
+  // Real time: while one of these faults lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {
     return role == "pressure_ctrl" && !process::IsWarning(code);
   }};

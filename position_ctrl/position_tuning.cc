@@ -1,4 +1,4 @@
-// PositionApp's changes while it runs: values that are tuned, other references, and a planner's plans.
+// PositionApp's changes while it runs: tuned values, other references, and a planner's plans.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace hydro::position_ctrl {
 
-// Why this loop cannot act by the settings; empty: it can.
+// The reason why this loop cannot act by the settings; empty when it can.
 std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
   try {
     if (!settings.reference.empty() && settings::ParseReference(settings.reference).signal != signal_) {
@@ -73,7 +73,7 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
     law_before_ = values_.position;
     curve_before_ = curve_;
   }
-  tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
+  tuning::Read(*settings, torque_per_pressure_, &values_);  // valid, because it was prepared
   law_.Retune(values_.position);
   curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s,
                                    parameters_);
@@ -81,7 +81,7 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
   const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
   const double from = static_cast<double>(settings->reference_from) / rate_hz_;
   if (text == reference_in_force_ && from == reference_from_) return;
-  // A planner's goes no further.
+  // A planner's reference goes no further.
   const double wanted = planner_ ? arm_reference_.value
                                  : reference_->Value(static_cast<double>(tick) / rate_hz_ - reference_from_);
   reference_before_ = return_.Reference(wanted, tick);
@@ -107,7 +107,8 @@ double PositionApp::AskedByLaw(const state_t& state, double reference, const Pla
     transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, now, intervals), state.tick);
   }
   double asked = law_.UpdateUnlimited(state.arm_angle, now, intervals);
-  // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
+  // Adds what a planner knows in advance. Eq. (17) differentiates the measured angle alone, or the error,
+  // which already contains the reference's speed.
   if (ahead.torque != 0) asked += ahead.torque / torque_per_pressure_;
   if (ahead.speed != 0 && !values_.position.derivative_on_error) asked += values_.position.c2 * ahead.speed;
   const double left = transfer_.Offset(state.tick);

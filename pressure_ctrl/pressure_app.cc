@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
-// psi: with room for rounding and half a D/A step.
+// psi, with room for rounding and half a D/A step.
 double LargestPressureReference(const tuning::TunedValues& values, double half_dac_step) {
   return (1 + 1e-9) * values.position.pressure_limit + half_dac_step;
 }
@@ -66,8 +66,8 @@ void PressureApp::BeginAnew() {
   pending_state_.reset();
 }
 
-// Before the first state nobody can tell which ticks lie far in the future. One such command at the head of the queue would hold up
-// all others for good.
+// Before the first state, this loop cannot tell which ticks lie far in the future. One such command at the
+// head of the queue would hold up all others for good.
 void PressureApp::Observe(const state_t& state) {
   if (participant().tick() >= 0) return;
   waiting_commands_.erase_if([&](const pressure_command_t& command) {
@@ -86,11 +86,12 @@ bool PressureApp::Answer(const state_t& state, bus::Clock::TimePoint arrival) {
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   if (participant().Refuses(command.session)) return;
-  // Before the run there is no state that it could answer; of what comes before the first one reaches here, little is kept.
+  // Before the run there is no state that a command could answer. Only a few of the commands that arrive
+  // before the first state are kept.
   if (command.tick < 0 || (participant().tick() < 0 && waiting_commands_.size() >= kMostBeforeTheRun)) return;
   const auto now = participant().clock().Now();
-  // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
-  // that follow it in the queue, and counted as the newest it would make them old.
+  // A command a few ticks ahead only took a faster route through the network. One far ahead would hold up all
+  // that follow it in the queue, and if it counted as the newest, it would make them old.
   const bool future =
       participant().tick() >= 0 && command.tick > SaturatingSum(participant().tick(), stale_ticks_);
   if (future && !command_monitor_.FollowsAnother(command.session, now)) {
@@ -111,8 +112,8 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   }
 }
 
-// In lockstep every pressure command that is due arrives sooner or later; which one is in force must not
-// depend on when it does.
+// In lockstep every pressure command that is due arrives sooner or later; the time of its arrival must not
+// determine which command is in force.
 inline bool PressureApp::AwaitsPressureCommand(int64_t state_tick) {
   const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep() || newest_allowed < 0) return false;
@@ -140,19 +141,19 @@ void PressureApp::TakeSettingsAt(int64_t tick) {
   const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
   if (settings == nullptr) return;
   if (!law_before_) law_before_ = values_.pressure;
-  tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
+  tuning::Read(*settings, k_2_, &values_);  // valid, because it was prepared
   const double limit = LargestPressureReference(values_, half_dac_step_);
   limit_before_ = std::max(LargestReference(), limit);
   limit_from_ = tick;
   pressure_limit_ = limit;
 }
 
-// A command from before a tighter limit was in force is none the worse for it.
+// A command from before a tighter limit came into force is judged by the earlier limit.
 double PressureApp::LargestReference() const {
   return pressure_command_ && pressure_command_->tick < limit_from_ ? limit_before_ : pressure_limit_;
 }
 
-// The gains have changed: the voltage shall not jump.
+// The gains have changed, and the voltage must not jump.
 void PressureApp::BeginTransfer(const PressureLawInput& input, int64_t tick) {
   const double left = transfer_.Offset(tick);
   if (answered() >= 0 && acted_by_law_) {
@@ -184,7 +185,7 @@ inline void PressureApp::Compute(const state_t& state, bus::Clock::TimePoint now
   Send();
 }
 
-// The next command begins as this one.
+// The next command starts as a copy of this one.
 inline motor_command_t& PressureApp::ZeroVolts(int64_t tick, int8_t status) {
   command_.tick = tick;
   command_.voltage = command_.pressure_ref = 0;
@@ -217,16 +218,17 @@ PressureLawOutput PressureApp::OwnLaw(const state_t& state, double pressure_ref)
 
 inline void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
   const PressureLawOutput output = Law(state, command->pressure_ref);
-  if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);  // it stays SAFE
+  // The status stays SAFE.
+  if (!std::isfinite(output.voltage)) return RaiseNonfinite(*command, output.voltage);
   command->status = motor_command_t::LAW;
   command->voltage = output.voltage;
   command->saturated = output.saturated;
   if (participant().any_fault()) participant().Clear("nonfinite_motor_command");
 }
 
-// What the log shows is the device's own answer to this state: the one that it has put out.
+// The log shows the device's own answer to this state: the voltage that it has put out.
 void PressureApp::FollowOnDevice(const state_t& state, motor_command_t* command) {
-  law_before_.reset();  // the change passes on the device
+  law_before_.reset();  // the transition takes place on the device
   follows_ = true;
   const DeviceLoop::Answer answer = device_->Follow(state, command->pressure_ref, values_.pressure);
   command->status = answer.by_law ? motor_command_t::LAW : motor_command_t::OPEN_LOOP;
@@ -235,7 +237,7 @@ void PressureApp::FollowOnDevice(const state_t& state, motor_command_t* command)
   if (answer.by_law) command->pressure_ref = answer.pressure_ref;
 }
 
-// The inputs are finite, but a product of gains and reference overflows.
+// The inputs are finite, but a product of gains and reference overflowed.
 void PressureApp::RaiseNonfinite(const motor_command_t& command, double voltage) {
   participant().Raise("nonfinite_motor_command",
                       fmt::format("tick {}: {} gives {} V for a reference of {} {}, must be finite",

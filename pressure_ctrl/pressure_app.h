@@ -1,4 +1,5 @@
-// The fast pressure loop as an application: a motor command for each plant tick (or each n-th), eq. (16).
+// The fast pressure loop as an application: a motor command for each plant tick (or each n-th), from eq.
+// (16).
 //
 // A state that is stale, not finite, beyond a limit or from a second sender gives zero volts and a named
 // fault (docs/safety.md). A stale pressure reference is ramped to zero over limits.pressure_ramp_s before the
@@ -25,36 +26,37 @@
 
 namespace hydro::pressure_ctrl {
 
-// The voltage that a law of the user's own asks for at a state, V; `pressure_ref`: the reference in force for p2 - p1, psi.
+// The voltage that a law of the user's own asks for at a state, V. `pressure_ref` is the reference in force
+// for p2 - p1, psi.
 using OwnPressureLaw = std::function<double(const state_t& state, double pressure_ref)>;
 
-// A pressure loop beside the machine, that of a front end (docs/front_end.md), which this application leads: it gets the reference
-// and the gains, and says what it has put out.
+// A pressure loop beside the machine, on a front end (docs/front_end.md), which this application leads: the
+// device gets the reference and the gains, and reports what it has put out.
 class DeviceLoop {
  public:
   struct Answer {
     bool by_law = false;      // the device acts by eq. (16); false: its output is zero
     double voltage = 0;       // V, computed by the device from this state
-    double pressure_ref = 0;  // psi, that it computed this with
+    double pressure_ref = 0;  // psi, the reference from which it computed this
     bool saturated = false;
   };
 
   virtual ~DeviceLoop() = default;
 
-  // From now on it follows this reference with these gains; its answer to `state`.
+  // From now on the device follows this reference with these gains. Returns its answer to `state`.
   virtual Answer Follow(const state_t& state, double pressure_ref, const PressureLawSettings& law) = 0;
 
-  // It follows no reference any more: what the motor command of the plant says acts.
+  // The device follows no reference any more: the voltage of the plant's motor command acts.
   virtual void Release() = 0;
 };
 
 class PressureApp : public process::ControlLoop {
  public:
-  // With `own` that law is in the place of eq. (16): all else, the limit on its voltage too, is the same, and hydro-set, which knows
-  // no gains of it, is told so.
+  // With `own`, that law takes the place of eq. (16). All else is the same, including the limit on its
+  // voltage; hydro-set is told that the law has no gains that it knows.
   PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, OwnPressureLaw own = {});
-  // With the law on a device: all checks stay here; eq. (16), the limit on its voltage and the passing of a change of gains are there.
-  // `loop` must outlive it.
+  // With the law on a device, all checks stay here; eq. (16), the limit on its voltage and the transition
+  // after a change of gains are on the device. `loop` must outlive this object.
   PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, DeviceLoop& loop);
 
   int Finish() override;
@@ -97,7 +99,7 @@ class PressureApp : public process::ControlLoop {
 
   const OwnPressureLaw own_;  // may be empty
   DeviceLoop* device_ = nullptr;
-  bool follows_ = false;  // the command that is being made is the device's answer
+  bool follows_ = false;  // the command being made is the device's answer
   bus::Publisher<motor_command_t> publisher_;
   Multiples position_interval_;  // ticks between two pressure commands
   const int64_t delay_;          // ticks from a command's tick to the tick at which it acts
@@ -109,7 +111,7 @@ class PressureApp : public process::ControlLoop {
   const bus::Clock::Duration stale_time_;
   tuning::TunedValues values_;  // in force
   double pressure_limit_;       // psi, largest |pressure reference| of commands from limit_from_ on
-  double limit_before_;         // of those before
+  double limit_before_;         // psi, of commands before limit_from_
   int64_t limit_from_ = 0;      // tick
   tuning::TuningFollower tuning_;
   tuning::BumplessTransfer transfer_;
@@ -118,9 +120,10 @@ class PressureApp : public process::ControlLoop {
   bus::SequenceMonitor command_monitor_;
   RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, in order of their ticks
   std::optional<pressure_command_t> pressure_command_;  // in force
-  std::optional<int64_t> future_command_;               // tick of a refused one, until a plausible one comes
+  // Tick of a refused command, until a plausible one comes.
+  std::optional<int64_t> future_command_;
   std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
-  motor_command_t command_{};             // the last one, or the one that is being made
+  motor_command_t command_{};             // the last command, or the one being made
   bool acted_by_law_ = false;             // it came from the law
   int64_t sequence_ = 0;
 };

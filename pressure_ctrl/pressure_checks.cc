@@ -20,7 +20,7 @@ constexpr double kLimitEndsBelow = 0.95;  // the noise of usable sensors is far 
 
 }  // namespace
 
-// Raises the fault while `good` is false and clears it otherwise; returns `good`.
+// Raises the fault while `good` is false, and clears it otherwise; returns `good`.
 template <class Describe>
 bool PressureApp::Check(bool good, const char* code, double value, double limit, Describe&& describe) {
   if (!good) {
@@ -31,9 +31,10 @@ bool PressureApp::Check(bool good, const char* code, double value, double limit,
   return good;
 }
 
-// The same for a limit that ends the run when it is exceeded. With limits.rearm = "explicit" the run goes on,
-// and the plant holds the voltage at zero from the first SAFE command. The fault then ends below kLimitEndsBelow of
-// the limit only: a noisy signal that comes back through its limit would raise and end it at every tick.
+// Does the same for a limit that ends the run when it is exceeded. With limits.rearm = "explicit" the run
+// goes on, and the plant holds the voltage at zero from the first SAFE command on. The fault then ends only
+// below kLimitEndsBelow of the limit: a noisy signal that comes back through its limit would otherwise raise
+// and end it at every tick.
 template <class Describe>
 bool PressureApp::CheckLimit(const char* code, double value, double limit, Describe&& describe) {
   const bool good = !(value > limit);
@@ -47,7 +48,8 @@ bool PressureApp::CheckLimit(const char* code, double value, double limit, Descr
   return good;
 }
 
-// The conditions of CheckInputs(), all at once: nearly always they hold, and there is nothing to raise or clear.
+// Checks the conditions of CheckInputs() all at once: nearly always they hold, and there is nothing to raise
+// or clear.
 bool PressureApp::AllIsWell(const state_t& state, int64_t ticks_stale, bus::Clock::TimePoint now) const {
   const settings::LimitsSection& limits = values_.limits;
   if (participant().any_fault() || !pressure_command_ || ticks_stale != 0 || future_command_) return false;
@@ -140,13 +142,13 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state, int64_t ticks_stal
   return safe;
 }
 
-// For how many ticks the pressure command in force has been stale; 0 while it is fresh.
+// The number of ticks for which the pressure command in force has been stale; 0 while it is fresh.
 int64_t PressureApp::TicksStale(int64_t tick) const {
   const int64_t age = SaturatingDifference(tick, pressure_command_ ? pressure_command_->tick : 0);
   return std::max<int64_t>(0, SaturatingDifference(age, stale_ticks_));
 }
 
-// The reference in force: held until it is stale, then ramped to zero.
+// The reference in force. It is held until it is stale, then ramped to zero.
 double PressureApp::PressureReference(int64_t ticks_stale) const {
   const double reference = pressure_command_->pressure_ref;
   if (ticks_stale == 0) return reference;

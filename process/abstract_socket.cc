@@ -11,7 +11,7 @@
 namespace hydro::process {
 namespace {
 
-// `attach`: bind or connect.
+// `attach` is bind or connect.
 int Attached(int kind, const std::string& name, int (*attach)(int, const sockaddr*, socklen_t)) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -5,11 +5,11 @@
 
 namespace hydro::process {
 
-// A socket of that kind (SOCK_DGRAM, SOCK_SEQPACKET | SOCK_NONBLOCK ...) that is bound to the name; -1 with errno where the
-// name is taken, or too long (ENAMETOOLONG).
+// A socket of `kind` (SOCK_DGRAM, SOCK_SEQPACKET | SOCK_NONBLOCK ...) that is bound to the name; -1 with
+// errno when the name is taken or too long (ENAMETOOLONG).
 int BindAbstract(int kind, const std::string& name);
 
-// The same, connected to who listens under the name.
+// The same kind of socket, connected to the process that listens under the name.
 int ConnectAbstract(int kind, const std::string& name);
 
 }  // namespace hydro::process

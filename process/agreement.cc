@@ -7,7 +7,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr size_t kMostRefused = 4096;  // a flood of made-up ones is not kept
+constexpr size_t kMostRefused = 4096;  // more would come from a flood of made-up senders
 constexpr size_t kMostHeard = 256;
 constexpr size_t kMostKeys = 6;  // that one line can name
 constexpr size_t kLongestValue = 60;
@@ -56,7 +56,8 @@ std::string DescribeDifferences(const std::string& here, const std::string& ther
 bool Agreement::Observe(const configuration_t& announced) {
   if (own_.empty() || announced.text.empty()) return false;
   if (agreed_.contains(announced.session)) return false;
-  if (heard_.size() >= kMostHeard) heard_.clear();  // a flood: who is still there says it again
+  // In a flood: senders that are still there announce themselves again.
+  if (heard_.size() >= kMostHeard) heard_.clear();
   heard_.insert(announced.session);
   const std::string differences = DescribeDifferences(own_, announced.text);
   if (differences.empty()) {
@@ -66,7 +67,8 @@ bool Agreement::Observe(const configuration_t& announced) {
     return false;
   }
   if (refused_.size() >= kMostRefused && !refused_.contains(announced.session)) {
-    // Those that were first refused have most likely gone; one that has not is refused again when it says so again.
+    // The senders that were refused first have most likely gone; one that has not is refused again at its
+    // next announcement.
     refused_.erase(order_.front());
     order_.pop_front();
   }

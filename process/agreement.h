@@ -1,4 +1,4 @@
-// Whether the processes of a stack run with the same configuration, model and version.
+// Checks whether the processes of a stack run with the same configuration, model and version.
 #pragma once
 
 #include <cstdint>
@@ -11,25 +11,26 @@
 
 namespace hydro::process {
 
-// Pure: it is told what others announce (HYDRO_CONFIGURATION).
+// Pure: the caller passes in what others announce (HYDRO_CONFIGURATION).
 class Agreement {
  public:
-  // `own`: lines "key = value", sorted (settings/agreed_entries.h). Empty: this process agrees with everybody.
+  // `own` holds sorted lines "key = value" (settings/agreed_entries.h). With an empty text, this process
+  // agrees with every other.
   explicit Agreement(std::string own) : own_(std::move(own)) {}
 
-  // True when the sender does not agree and was not known to. Who has once agreed does so as long as it lives: a message that
-  // says otherwise was changed on its way, or made up.
+  // Returns true when the sender does not agree and this was not known. A sender that has once agreed does so
+  // as long as it lives: a message that says otherwise was changed on its way, or made up.
   bool Observe(const configuration_t& announced);
 
-  // Whether messages of that sender are not to be obeyed. A sender that has announced nothing is not refused: it may be
-  // a program of the user's own.
+  // Whether messages of that sender must not be obeyed. A sender that has announced nothing is not refused:
+  // it may be a program of the user's own.
   bool Refuses(int64_t session) const { return !refused_.empty() && refused_.contains(session); }
 
-  // In what that sender differs: "pressure.k_p is 3 there, 0.3 here; ...". Empty when it is not refused.
+  // The differences of that sender: "pressure.k_p is 3 there, 0.3 here; ...". Empty when it is not refused.
   std::string Differences(int64_t session) const;
 
   bool any() const { return !refused_.empty(); }
-  // Whether that sender has announced what it runs with.
+  // Whether that sender has announced its configuration.
   bool Heard(int64_t session) const { return heard_.contains(session); }
 
   void Forget(int64_t session);
@@ -41,7 +42,7 @@ class Agreement {
   std::set<int64_t> heard_;
   std::set<int64_t> agreed_;
   std::map<int64_t, std::string> refused_;  // differences, by session
-  std::deque<int64_t> order_;               // in which they were first refused
+  std::deque<int64_t> order_;               // the order in which they were first refused
 };
 
 // The keys in which two such texts differ, with both values; empty when they are equal.

@@ -11,7 +11,7 @@ class App {
  public:
   virtual ~App() = default;
 
-  // Runs watchdogs, statistics and announcements. Called at least every kPollPeriod.
+  // Runs watchdogs, statistics and announcements. Called at least once every kPollPeriod.
   virtual void Poll() = 0;
 
   // `messages` (at least one) were handled in one pass; when there are several, some had been waiting.
@@ -20,8 +20,8 @@ class App {
   // Whether this application is done: it heard a stop or cannot go on.
   virtual bool finished() const = 0;
 
-  // Makes the output safe, announces the end on the bus, and returns the process's exit code. Called once, as
-  // the last call.
+  // Makes the output safe, announces the end on the bus, and returns the process's exit code. It is the last
+  // call, and made once.
   virtual int Finish() = 0;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kTurn = 50ms;  // a stop signal is noticed within it
+constexpr auto kTurn = 50ms;  // a stop signal is noticed within this time
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The lines that a child says on a pipe, for who waits for one of them: never for longer, and never for more,
-// than it says here.
+// Reads the lines that a child writes to a pipe, for a caller that waits for one of them. It never waits
+// longer, and never reads more, than it states here.
 #pragma once
 
 #include <chrono>
@@ -13,25 +13,25 @@ class ChildLines {
   using TimePoint = std::chrono::steady_clock::time_point;
   enum class Got { kLine, kNothing, kEnd, kTooLong };
 
-  // What waits for a word needs no longer line; one that never ends would fill the memory.
+  // A caller that waits for a word needs no longer line, and a line that never ends would fill the memory.
   static constexpr std::size_t kLongest = 4096;
 
-  // `descriptor` stays the caller's.
+  // The caller keeps `descriptor`.
   explicit ChildLines(int descriptor) : descriptor_(descriptor) {}
 
-  // The next line, without its end. kNothing: none came until `deadline`, or a stop signal did
-  // (stop_signal.h); kEnd: the child has closed the pipe; kTooLong: its line is longer than kLongest.
+  // Reads the next line, without its end. kNothing: no line came before `deadline`, or a stop signal came
+  // (stop_signal.h); kEnd: the child has closed the pipe; kTooLong: the line is longer than kLongest.
   Got Next(TimePoint deadline, std::string* line);
 
-  // Passes over lines until one is `word`. Returns nothing, or what came instead, as the end of a sentence:
-  // "ended before".
+  // Skips lines until one is `word`. Returns nothing then; otherwise what came instead, as the end of a
+  // sentence: "ended before".
   std::string Await(const std::string& word, TimePoint deadline);
 
  private:
   bool Readable(TimePoint deadline) const;
 
   const int descriptor_;
-  std::string begun_;  // what has come of the lines that are not taken yet
+  std::string begun_;  // the bytes received for lines that are not taken yet
 };
 
 }  // namespace hydro::process

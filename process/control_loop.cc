@@ -11,8 +11,8 @@ ControlLoop::ControlLoop(bus::Bus& bus, bus::Clock& clock, const settings::Stack
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), role, config.agreed),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(interval),
-      // The plant itself waits stall_timeout_s for a late participant and then names it; only a longer
-      // silence is the plant's own.
+      // The plant itself waits stall_timeout_s for a late participant and then names it; only when the
+      // silence is longer is the plant itself at fault.
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
@@ -31,8 +31,8 @@ void ControlLoop::OnState(const state_t& state) {
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (answered_ >= 0 && state.tick == answered_) AnswerAgain();  // the plant asks again
-      // Later states that were not due have overtaken it in the network: it is still the newest that is due. One beyond all that
-      // was seen is none of these.
+      // Later states that were not due have overtaken this one in the network: it is still the newest that is
+      // due. A state beyond all that were seen is not such a case.
       if (state.tick > answered_ && state.tick < participant_.tick() && interval_.Contains(state.tick)) {
         Due(state, now);
       }
@@ -51,7 +51,7 @@ void ControlLoop::OnState(const state_t& state) {
 }
 
 void ControlLoop::Due(const state_t& state, bus::Clock::TimePoint arrival) {
-  // Simulated time stands still meanwhile.
+  // Simulated time stands still during the answer.
   if (Answer(state, arrival) && !participant_.simulated()) {
     participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
   }

@@ -1,6 +1,6 @@
-// What every loop of a stack does with the states of its plant, written once: whom it follows, which states are new, which are asked
-// for again, which begin a run anew, when a state is due for an answer, and what a silent plant means. A loop fills in what it
-// computes.
+// What every loop of a stack does with the states of its plant, written once. It decides which plant to
+// follow, which states are new, which are repeated requests, which begin a run anew and when a state is due
+// for an answer, and it notices a silent plant. A loop adds what it computes.
 #pragma once
 
 #include <cstdint>
@@ -22,26 +22,28 @@ class ControlLoop : public App {
   int64_t session() const { return participant_.session(); }  // its identity on the bus
 
  protected:
-  // Subscribes to the plant's states. `interval`: ticks between two answers. The loop announces that it is READY itself, once it has
-  // subscribed to all that it needs.
+  // Subscribes to the plant's states. `interval` is the number of ticks between two answers. The derived loop
+  // itself announces READY, once it has subscribed to all that it needs.
   ControlLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, const std::string& role,
               int64_t interval);
 
-  // Nothing has been answered yet: another plant, or the same record from its beginning.
+  // Called when nothing has been answered yet: another plant has come, or the same record plays from its
+  // beginning.
   virtual void BeginAnew() {}
   // Whether the state must wait for the answer to a proposed change of settings.
   virtual bool MustWait(const state_t&) { return false; }
-  // Each new state, before participant().tick() is its tick.
+  // Called for each new state, before participant().tick() is its tick.
   virtual void Observe(const state_t&) {}
-  // A state that is due. False: the answer has to wait for another message, and comes with that one.
+  // Answers a state that is due. Returns false when the answer has to wait for another message; it then comes
+  // with that message.
   virtual bool Answer(const state_t& state, bus::Clock::TimePoint arrival) = 0;
-  // The last answer once more: it may have been lost.
+  // Sends the last answer once more, because it may have been lost.
   virtual void AnswerAgain() = 0;
-  // Whatever else is due at a time.
+  // Does anything else that is due at a given time.
   virtual void PollOthers(bus::Clock::TimePoint) {}
-  // In real time: no state for so long. Called at each Poll() while the run goes on.
+  // In real time: no state has come for this duration. Called at each Poll() while the run goes on.
   virtual void OnSilence(bus::Clock::Duration) {}
-  // Messages that were lost on the way to it.
+  // The number of messages that were lost on the way to this loop.
   virtual int64_t lost() const { return state_monitor_.lost(); }
 
   Participant& participant() { return participant_; }
@@ -54,7 +56,8 @@ class ControlLoop : public App {
   int64_t answered() const { return answered_; }
   void set_answered(int64_t tick) { answered_ = tick; }
   void ForgetAnswers();
-  // Intervals from the newest answer to this tick, 1 at the first; those between were missed.
+  // Counts the intervals from the newest answer to this tick; 1 for the first answer. Those in between were
+  // missed.
   int64_t CountIntervals(int64_t tick);
 
  private:

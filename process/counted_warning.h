@@ -29,7 +29,7 @@ class CountedWarning {
       faults.Raise(code_, describe(count), static_cast<double>(count), 0, false);
     } else if (now - grew_ > kQuiet) {
       active_ = false;
-      // The first message of a flood began it; the end says how many there were.
+      // The first message of a flood began the episode; its end reports how many there were.
       faults.Clear(code_, describe(count_), static_cast<double>(count_));
     }
   }
@@ -37,7 +37,7 @@ class CountedWarning {
   // Whether Update() with that count would do nothing.
   bool IsQuiet(int64_t count) const { return count == count_ && !active_; }
 
-  // Whether an episode lasts: only then time alone changes something.
+  // Whether an episode lasts; only then does the passing of time alone change something.
   bool active() const { return active_; }
 
  private:

@@ -1,5 +1,5 @@
 // Every fault that a process of the stack can raise, and its effect on the voltage. docs/faults.md explains
-// them, and process/safety says when they occur; tests keep these and this list in step.
+// the faults, and process/safety lists when they occur; tests keep both and this list in step.
 #pragma once
 
 #include <span>
@@ -23,7 +23,8 @@ std::span<const FaultCode> FaultCodes();
 // True unless `code` is known not to zero the voltage at once; an unknown code counts as one that does.
 bool ZeroesVoltage(std::string_view code);
 
-// The same, or in the end: a reference that is ramped to zero counts too.
+// Like ZeroesVoltage(), but also true for a fault that zeroes the voltage in the end, by ramping the
+// reference to zero.
 bool LeadsToZeroVolts(std::string_view code);
 
 // True when `code` is known to be a warning only.

@@ -92,8 +92,9 @@ std::vector<std::string> OwnEnvironment(const settings::StackConfig& config, con
     std::string& path = variables["PYTHONPATH"];
     path = python.string() + (path.empty() ? "" : ":" + path);
   }
-  variables.emplace("PYTHONUNBUFFERED", "1");         // its lines come when it prints them, not at its end
-  variables.emplace("PYTHONDONTWRITEBYTECODE", "1");  // an installation stays as it was installed
+  // Its lines arrive when it prints them, not when it ends.
+  variables.emplace("PYTHONUNBUFFERED", "1");
+  variables.emplace("PYTHONDONTWRITEBYTECODE", "1");  // keeps an installation unchanged
   std::vector<std::string> environment;
   environment.reserve(variables.size());
   for (const auto& [name, value] : variables) {

@@ -18,15 +18,16 @@ namespace {
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
 constexpr auto kConfigurationPeriod = std::chrono::milliseconds(500);
 constexpr auto kAnswerPeriod =
-    std::chrono::milliseconds(50);  // at most so often to who is new: one may be a flood
-// Who has missed it, or was told wrongly, is told again.
+    std::chrono::milliseconds(50);  // the shortest time between answers to new processes: they may be a flood
+// A process that has missed the configuration, or was told wrongly, is told again.
 constexpr auto kConfigurationAgain = std::chrono::seconds(2);
 constexpr char kOtherConfiguration[] = "other_configuration";
 constexpr auto kActiveFaultsPeriod = std::chrono::seconds(1);
-constexpr int kFarewells = 3;       // lists that are empty, after the last fault has ended
-constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
+constexpr int kFarewells = 3;  // number of empty lists sent after the last fault has ended
+// A stack has five processes; more would come from a flood of made-up ones.
+constexpr size_t kMostNames = 256;
 
-// " (knee)" for the channels of the joint knee: a process may have several.
+// " (knee)" for the channels of the joint knee: one process may serve several joints.
 std::string Where(const bus::Channels& channels) {
   const std::string suffix = channels.suffix();
   return suffix.empty() ? "" : " (" + suffix.substr(suffix.front() == '_' ? 1 : 0) + ")";
@@ -51,7 +52,7 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
     const bool meant = stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_;
     if (meant && !stop_) stop_ = stop;
     if (!meant && run_ == 0)
-      early_stop_ = stop;  // of a run that this process has just missed, or of another stack
+      early_stop_ = stop;  // belongs to a run that this process has just missed, or to another stack
   });
   bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(),
                                    [this](const process_status_t& status) { OnStatus(status); });
@@ -64,7 +65,7 @@ void Participant::OnStatus(const process_status_t& status) {
     names_[status.session] = ProcessName(status);
   }
   if (status.session == session()) return;
-  // The plant of that run says that it has left: it was the run for which this process has waited.
+  // The plant of that run announces that it has left, so it was the run for which this process had waited.
   if (run_ == 0 && !stop_ && early_stop_ && IsPlant(status.role) &&
       status.session == early_stop_->addressee) {
     stop_ = early_stop_;
@@ -73,8 +74,9 @@ void Participant::OnStatus(const process_status_t& status) {
     if (IsPlant(status.role) && run_ == 0) run_ = status.session;
     const bool asks =
         status.state == process_status_t::READY && (IsPlant(status.role) || status.role == kLaunchRole);
-    // Whoever is new is told at once what we run with: a plant starts only when it knows.
-    if (answered_.size() >= kMostNames) answered_.clear();  // saying it once more does no harm
+    // Each new process is told our configuration at once: a plant starts only when it knows the
+    // configurations.
+    if (answered_.size() >= kMostNames) answered_.clear();  // sending it once more does no harm
     const bool is_new = answered_.insert(status.session).second;
     if (is_new) configuration_asked_ = true;
     PollSoon();
@@ -86,13 +88,13 @@ void Participant::OnStatus(const process_status_t& status) {
   }
 }
 
-// Zero volts need no help here: who is not obeyed becomes stale like a dead sender.
+// Zero volts need no help here: the commands of a refused sender become stale, like those of a dead one.
 void Participant::OnConfiguration(const configuration_t& announced) {
   if (announced.session == session() || !agreement_.Observe(announced)) return;
   const std::string who = ProcessName(announced.role, announced.host, announced.pid);
   const std::string text =
       fmt::format("{} has another configuration: {}", who, agreement_.Differences(announced.session));
-  // The plant is right: it holds the rig, and its configuration is in the log.
+  // The plant decides: it holds the rig, and its configuration is in the log.
   const bool our_plant = IsPlant(announced.role) && (run_ == 0 || announced.session == run_);
   if (our_plant && !IsPlant(role_)) {
     LeaveAlone(text);
@@ -102,10 +104,10 @@ void Participant::OnConfiguration(const configuration_t& announced) {
   if (on_refusal_) on_refusal_(announced.session, text);
 }
 
-// Ends this process and nobody else.
+// Ends this process and no other.
 void Participant::LeaveAlone(const std::string& reason) {
   if (stop_) return;
-  PublishConfiguration({});  // so that the plant can say the same
+  PublishConfiguration({});  // so that the plant can state the same difference
   Stop(session(), role_, reason, 1);
 }
 
@@ -114,7 +116,7 @@ void Participant::AnswerWithConfiguration() {
   if (configuration_asked_ && there) configuration_asked_ = !PublishConfiguration(kAnswerPeriod);
 }
 
-// Unless it was sent within `period`: then false.
+// Publishes the configuration; returns false if it was already sent within `period`.
 bool Participant::PublishConfiguration(bus::Clock::Duration period) {
   if (agreement_.own().empty()) return true;
   const auto now = clock_.Now();
@@ -136,7 +138,8 @@ void Participant::Announce(int8_t state, const std::string& text) {
   state_ = state;
   status_text_ = text;
   PollSoon();
-  // Before the status, so that nobody counts on a process whose configuration he has not seen.
+  // The configuration goes out before the status, so that no process counts on one whose configuration it has
+  // not seen.
   if (state == process_status_t::READY || state == process_status_t::RUNNING) {
     PublishConfiguration(kConfigurationPeriod);
   }
@@ -181,7 +184,7 @@ void Participant::PollDue(bus::Clock::TimePoint now) {
   next_poll_ = NextPoll();
 }
 
-// When something of PollDue() is due, as things stand.
+// The time at which PollDue() next has work, as things stand.
 bus::Clock::TimePoint Participant::NextPoll() const {
   constexpr auto kAtOnce = bus::Clock::TimePoint::min();
   if (configuration_asked_ || unsent_.active() || undecodable_.active() || refusals_.active()) return kAtOnce;

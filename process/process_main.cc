@@ -47,7 +47,8 @@ void WarnOfOpenNetwork(const std::string& program, const settings::BusSection& b
       ttl);
 }
 
-// --log of a process whose main work is another: when the log can no longer be written, that work goes on.
+// The --log option of a process whose main work is something else: that work goes on when the log can no
+// longer be written.
 class Recording {
  public:
   void Open(const std::string& file) {
@@ -68,7 +69,7 @@ class Recording {
     });
   }
 
-  // Returns false when anything could not be written, or the file is no longer where it was.
+  // Returns false when some of the log could not be written, or when the file is no longer where it was.
   bool Close() {
     if (writer_) Try([&] { writer_->Finish(); });
     if (const auto wrong = watch_.LookNow()) ReportGone(*wrong);
@@ -78,7 +79,7 @@ class Recording {
  private:
   static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
 
-  // Recording goes on: an open file takes what is written.
+  // Recording goes on: an open file still takes what is written.
   void ReportGone(const std::string& wrong) {
     failed_ = true;
     spdlog::error("{}; this program will end with 1", wrong);

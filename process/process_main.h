@@ -1,4 +1,4 @@
-// What the processes' main() functions share: bus, real-time setup, errors and exit codes.
+// Code that the processes' main() functions share: bus, real-time setup, errors and exit codes.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace hydro::process {
 
-// A process's work, given its bus and configuration; returns the exit code.
+// A process's work. It gets its bus and configuration and returns the exit code.
 using ProcessBody = std::function<int(bus::Bus&, bus::Clock&, const settings::StackConfig&)>;
 
-// How a program reads its configuration: as settings::LoadStackConfig, which it is unless a limb is meant.
+// How a program reads its configuration: with settings::LoadStackConfig, except for a limb.
 using ConfigLoader =
     std::function<settings::StackConfig(const std::string& file, const std::vector<std::string>& overrides)>;
 

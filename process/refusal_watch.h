@@ -10,8 +10,8 @@
 
 namespace hydro::process {
 
-// Pure: counts and time are passed in. It is a warning only: nothing that an intruder sends changes what the
-// stack does.
+// Pure: counts and time are passed in. It only warns: nothing that an intruder sends changes what the stack
+// does.
 class RefusalWatch {
  public:
   static constexpr const char* kCode = "unauthenticated_command";
@@ -27,13 +27,13 @@ class RefusalWatch {
   // Messages refused in this episode, or in the last one once it has ended.
   int64_t count() const { return count_; }
 
-  // One line: how many, why, the channel of the last one, the setting concerned.
+  // One line: how many messages were refused, why, the channel of the last one, and the setting concerned.
   std::string Text() const;
 
  private:
   bus::RefusedMessages before_;  // when the episode began
   bus::RefusedMessages newest_;
-  std::optional<bus::Clock::TimePoint> last_;  // in an episode: when the newest was refused
+  std::optional<bus::Clock::TimePoint> last_;  // during an episode: when the newest message was refused
   int64_t count_ = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr size_t kMost = 64;  // a stack has fewer; a flood of made-up ones is not kept
+constexpr size_t kMost = 64;  // a stack has fewer; more would come from a flood of made-up faults
 
 }  // namespace
 
@@ -17,7 +17,8 @@ void RemoteFaults::Observe(const fault_t& fault, bus::Clock::TimePoint now) {
     faults_.erase(key);
     return;
   }
-  // In the place of the one heard longest ago: what its sender lists again is soon back, and until then the others count.
+  // The new fault replaces the one heard longest ago. A fault that its sender lists again is soon back, and
+  // until then the others count.
   if (faults_.size() >= kMost && !faults_.contains(key)) {
     faults_.erase(std::min_element(faults_.begin(), faults_.end(),
                                    [](const auto& a, const auto& b) { return a.second.at < b.second.at; }));
@@ -25,7 +26,8 @@ void RemoteFaults::Observe(const fault_t& fault, bus::Clock::TimePoint now) {
   faults_.emplace(key, Heard{fault, now});
 }
 
-// What its sender no longer has is gone, and what it has is there, though the message that said so may be lost.
+// A fault that its sender no longer lists is over, and one that it lists is present, even if the message that
+// announced the change was lost.
 void RemoteFaults::Observe(const active_faults_t& active, bus::Clock::TimePoint now) {
   std::erase_if(faults_, [&](const auto& entry) {
     const std::string& code = entry.first.second;
@@ -58,7 +60,7 @@ void RemoteFaults::ForgetOthersOfRole(const std::string& role, int64_t session) 
   });
 }
 
-// A fault of a process that never was (wrong bits) or is silent must not last for ever.
+// A fault of a process that never existed (wrong bits) or is silent must not last for ever.
 bool RemoteFaults::any(bus::Clock::TimePoint now) {
   if (faults_.empty()) return false;
   std::erase_if(faults_, [&](const auto& entry) { return now - entry.second.at > kAlive; });

@@ -1,4 +1,5 @@
-// The faults of the other processes of a run that take the voltage to zero: which last, by what is heard of them.
+// Keeps track of the other processes' faults that take the voltage to zero, and finds out from their messages
+// which faults last.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +14,28 @@
 
 namespace hydro::process {
 
-// Pure: the caller passes messages and the time in. Bounded, whatever is heard.
+// Pure: the caller passes messages and the time in. Memory is bounded, whatever messages come.
 class RemoteFaults {
  public:
-  // A fault that nobody claims for this long is no more: a process lists its own once a second.
+  // A fault that no process lists for this long has ended: a process lists its own faults once a second.
   static constexpr auto kAlive = std::chrono::milliseconds(2500);
 
-  // `counts`: which faults matter, by the role that has it and its code; the others are not kept.
+  // `counts` decides which faults matter, from the role that has the fault and its code; other faults are not
+  // stored.
   using Counts = bool (*)(std::string_view role, std::string_view code);
   explicit RemoteFaults(Counts counts) : counts_(counts) {}
 
   void Observe(const fault_t& fault, bus::Clock::TimePoint now);
   void Observe(const active_faults_t& active, bus::Clock::TimePoint now);
 
-  // The faults of a process that has left, or was replaced by another of its role, no longer count.
+  // The faults of a process that has left, or that another process of its role has replaced, no longer count.
   void ForgetSession(int64_t session);
   void ForgetOthersOfRole(const std::string& role, int64_t session);
 
-  // Whether none was heard that may last.
+  // Whether no fault is known that may still last.
   bool empty() const { return faults_.empty(); }
 
-  // Whether any lasts; forgets those that nobody claims any more.
+  // Whether any fault lasts. Forgets the faults that no process lists any more.
   bool any(bus::Clock::TimePoint now);
   const fault_t& first() const { return faults_.begin()->second.fault; }  // while any() is true
 

@@ -1,4 +1,4 @@
-// The roles that programs announce themselves under.
+// The roles under which programs announce themselves.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ inline std::string RoleOf(const std::string& program) {
   return role;
 }
 
-// Whether that role holds the rig, or the rigs of a limb, and sets the pace of a run.
+// Whether a process of that role holds the rig, or the rigs of a limb, and sets the pace of a run.
 inline bool IsPlant(const std::string& role) { return role == "plant" || role == "driver" || role == "limb"; }
 
 }  // namespace hydro::process

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,13 +18,13 @@
 namespace hydro::process {
 namespace {
 
-// What the child could not do, for the parent.
+// Tells the parent what the child could not do.
 struct Trouble {
   enum What { kFolder, kCpu, kPriority, kProgram } what;
   int error;
 };
 
-// Everything that the child needs, made before the fork: afterwards it must not allocate.
+// Everything that the child needs, made before the fork, because the child must not allocate.
 struct Prepared {
   std::vector<char*> argv, environment;
   int nothing = -1;  // /dev/null
@@ -73,7 +74,7 @@ bool Become(int fd, int standard) { return fd < 0 || dup2(fd, standard) >= 0; }
 // Runs in the child between fork and exec: only async-signal-safe calls, no allocation.
 [[noreturn]] void BecomeProgram(const SpawnRequest& request, const Prepared& prepared, pid_t parent) {
   setpgid(0, 0);
-  // When the parent died before that request, the signal would never come.
+  // If the parent died before that request, the signal would never come.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);
   ResetSignals();
@@ -105,13 +106,13 @@ std::string Describe(const Trouble& trouble, const SpawnRequest& request) {
       break;
   }
   std::string text = request.argv[0] + ": cannot be started: " + why;
-  // A script's first line is what the kernel runs.
+  // The kernel runs the interpreter that a script's first line names.
   const bool no_such_interpreter = trouble.error == ENOENT && std::filesystem::exists(request.argv[0]);
   if (trouble.error != ENOEXEC && !no_such_interpreter) return text;
   return text + "; a script needs a first line such as #!/usr/bin/env python3 that names a program here";
 }
 
-// Reads what the child could not do, until its exec closes the pipe. Throws StartError.
+// Reads reports of what the child could not do, until its exec closes the pipe. Throws StartError.
 std::vector<std::string> Troubles(int fd, pid_t pid, const SpawnRequest& request) {
   std::vector<std::string> warnings;
   Trouble trouble{};
@@ -134,7 +135,7 @@ class Descriptors {
     std::array<int, 2> fds{};
     prepared->nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (prepared->nothing < 0 || pipe2(fds.data(), O_CLOEXEC) != 0) {
-      throw StartError(std::string("cannot prepare a child: ") + strerror(errno));
+      throw StartError("cannot prepare a child: " + ReasonOf(errno));
     }
     prepared->report_read = fds[0];
     prepared->report_write = fds[1];
@@ -167,13 +168,28 @@ Spawned Spawn(const SpawnRequest& request) {
   Spawned spawned;
   const pid_t parent = getpid();
   spawned.pid = fork();
-  if (spawned.pid < 0) throw StartError(request.argv[0] + ": cannot be started: " + strerror(errno));
+  if (spawned.pid < 0) throw StartError(request.argv[0] + ": cannot be started: " + ReasonOf(errno));
   if (spawned.pid == 0) BecomeProgram(request, prepared, parent);
 
-  setpgid(spawned.pid, spawned.pid);  // also here, so that it is done whichever process runs first
+  setpgid(spawned.pid, spawned.pid);  // also set here, so that it is done whichever process runs first
   descriptors.CloseWrite();
   spawned.warnings = Troubles(prepared.report_read, spawned.pid, request);
   return spawned;
+}
+
+std::string ReasonOf(int error) {
+  std::string text = strerror(error);
+  const auto limited = [&](int resource, const char* of_what, const char* option) {
+    rlimit limit{};
+    if (getrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+      return;
+    text += ": " + std::to_string(limit.rlim_cur) + of_what + " are allowed, allow more with `ulimit " +
+            option + "`";
+  };
+  if (error == EMFILE) limited(RLIMIT_NOFILE, "", "-n");
+  if (error == EAGAIN) limited(RLIMIT_NPROC, " processes of this user", "-u");
+  if (error == ENOMEM) limited(RLIMIT_AS, " bytes of memory", "-v");
+  return text;
 }
 
 }  // namespace hydro::process

@@ -6,7 +6,8 @@
 namespace hydro::process {
 
 std::unique_ptr<bus::UdpmBus> OpenStackBus(const settings::BusSection& section) {
-  // All processes of a limb introduce themselves on one channel, the limb's own, and hear each other's sealed.
+  // All processes of a limb introduce themselves on the limb's own channel, and so can read each other's
+  // sealed messages.
   std::vector<bus::Channels> channels;
   if (section.limb_suffix) channels.emplace_back(*section.limb_suffix);
   channels.emplace_back(section.channel_suffix);

@@ -8,8 +8,8 @@
 
 namespace hydro::process {
 
-// With the configuration's key, if it has one. Throws InputError for a bad URL or key file, and BusError with the cure
-// where multicast does not work.
+// Opens the bus with the configuration's key, if it has one. Throws InputError for a bad URL or key file, and
+// BusError with the cure when multicast does not work.
 std::unique_ptr<bus::UdpmBus> OpenStackBus(const settings::BusSection& section);
 
 }  // namespace hydro::process

@@ -1,4 +1,4 @@
-// What a process says of itself in HYDRO_PROCESS_STATUS.
+// What a process states about itself in HYDRO_PROCESS_STATUS.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ inline std::string ProcessName(const process_status_t& status) {
   return ProcessName(status.role, status.host, status.pid);
 }
 
-// It takes part, or will.
+// Whether the process takes part, or will.
 inline bool IsThere(const process_status_t& status) {
   return status.state == process_status_t::READY || status.state == process_status_t::RUNNING;
 }
-// It sends nothing more.
+// Whether the process sends nothing more.
 inline bool HasLeft(const process_status_t& status) {
   return status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
 }

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 constexpr size_t kMostLines = 256;
 constexpr auto kFinalWriteTime = 1s;
-constexpr int kRetryPeriod_ms = 50;  // a thread that cannot write checks this often whether to give up
+constexpr int kRetryPeriod_ms = 50;  // how often a thread that cannot write checks whether to give up
 
 void OnThreadStart() {
   sigset_t all;
@@ -36,7 +36,7 @@ void OnThreadStart() {
 
 }  // namespace
 
-// Unlike spdlog's own sinks it can give up, and it escapes control characters.
+// Unlike spdlog's own sinks, this one can give up, and it escapes control characters.
 class StderrLog::Sink : public spdlog::sinks::base_sink<std::mutex> {
  public:
   void GiveUpAt(std::chrono::steady_clock::time_point time) { give_up_ = time; }

@@ -1,5 +1,5 @@
-// A process's messages for people, written to stderr by a thread of their own so that no loop ever waits for
-// the reader.
+// Writes a process's messages for people to stderr, on a thread of its own so that no loop ever waits for the
+// reader.
 #pragma once
 
 #include <memory>
@@ -7,11 +7,11 @@
 
 namespace hydro::process {
 
-// While it exists, spdlog's default logger writes to stderr from its own thread: a stopped terminal or a full
-// pipe blocks that thread, not the loop. At most 256 lines wait; beyond that the oldest are dropped. The
-// destructor writes what still waits, but gives up on a reader that takes nothing for a second, so that it
-// cannot keep the process from ending. Control characters are escaped, because some of the text comes over
-// the network.
+// While this object exists, spdlog's default logger writes to stderr from its own thread: a stopped terminal
+// or a full pipe blocks that thread, not the loop. At most 256 lines wait; beyond that the oldest are
+// dropped. The destructor writes the lines that still wait, but gives up on a reader that takes nothing for a
+// second, so that it cannot keep the process from ending. Control characters are escaped because some of the
+// text comes over the network.
 class StderrLog {
  public:
   // `name` precedes each line. The thread blocks all signals and does not inherit the real-time priority that

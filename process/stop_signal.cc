@@ -23,7 +23,7 @@ void Remember(int signal) { caught_signal = signal; }
 
 void CatchStopSignals() {
   struct sigaction action = {};
-  action.sa_handler = Remember;  // without SA_RESTART: a waiting poll returns
+  action.sa_handler = Remember;  // without SA_RESTART, so that a waiting poll returns
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
 }
@@ -33,7 +33,7 @@ void StopBecause(const StopRequest& request) {
     const std::lock_guard lock(reason_mutex);
     if (stop_request.reason.empty()) stop_request = request;
   }
-  kill(getpid(), SIGTERM);  // not only the flag: it interrupts a wait
+  kill(getpid(), SIGTERM);  // not only sets the flag but also interrupts a wait
 }
 
 StopRequest StopReason() {

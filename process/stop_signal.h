@@ -19,22 +19,23 @@ extern volatile std::sig_atomic_t caught_signal;
 // The caught signal; 0 when there was none.
 inline int StopSignal() { return internal::caught_signal; }
 
-// The same for the process that `bus` belongs to, which may be a simulated one.
+// The same for the process to which `bus` belongs, which may be a simulated one.
 inline int StopSignal(const bus::Bus& bus) {
   const bus::HostedProcess* const hosted = bus.process();
   return hosted != nullptr ? hosted->stop_signal : StopSignal();
 }
 
-// Who wants the end, and why, in a line.
+// One line each: who wants the end, and why.
 struct StopRequest {
   std::string role;
   std::string reason;
 };
 
-// Sets the flag as SIGTERM does, for a reason that is told with the end of the run. Any thread may call it.
+// Sets the flag as SIGTERM does, for a reason that is announced at the end of the run. Any thread may call
+// it.
 void StopBecause(const StopRequest& request);
 
-// Why the flag was set; empty when a signal came from elsewhere.
+// The reason why the flag was set; empty when a signal came from elsewhere.
 StopRequest StopReason();
 
 }  // namespace hydro::process

@@ -21,8 +21,8 @@ namespace {
 constexpr std::string_view kStop = "stop ";
 constexpr char kBetween[] = ": ";
 constexpr size_t kMostConnections = 8;
-constexpr int kPause_ms = 100;  // before it tries again what the system refused
-constexpr int kBacklog = 64;    // requests that were given up wait too, while the process is stopped
+constexpr int kPause_ms = 100;  // before retrying what the system refused
+constexpr int kBacklog = 64;    // requesters that gave up also wait while the process is stopped
 
 bool MayStopUs(int connection) {
   ucred peer{};
@@ -31,7 +31,7 @@ bool MayStopUs(int connection) {
   return peer.uid == geteuid() || peer.uid == 0;
 }
 
-// Signals must reach the process's own thread.
+// Blocks signals in the listening thread: they must reach the process's own thread.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -104,7 +104,7 @@ void StopSocket::Accept() {
   const auto accept = [this] { return accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); };
   int connection = accept();
   if (connection < 0 && (errno == EMFILE || errno == ENFILE) && spare_ >= 0) {
-    close(std::exchange(spare_, -1));  // a process without descriptors can still be stopped
+    close(std::exchange(spare_, -1));  // lets a process without free descriptors still be stopped
     connection = accept();
   }
   if (connection < 0) {

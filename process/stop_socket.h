@@ -1,7 +1,8 @@
-// A way to stop a process that needs no network: a local socket on which it listens.
+// A way to stop a process without a network: the process listens on a local socket.
 //
-// The socket is in Linux's abstract namespace, so it leaves no file behind, and ends with its process. Only the same user and root
-// are heard. hydro-launch --stop uses it before it uses the bus.
+// The socket is in Linux's abstract namespace, so it leaves no file behind and ends with its process. Only
+// requests from the same user and from root are heard. hydro-launch --stop uses the socket before it uses the
+// bus.
 #pragma once
 
 #include <string>
@@ -10,18 +11,19 @@
 
 namespace hydro::process {
 
-// The beginning of the names of all stop sockets of a stack, which its port and channel suffix tell from others:
-// "hydro-stop/7667//". A name goes on with role, slash and process id.
+// The beginning of the names of a stack's stop sockets; port and channel suffix distinguish it from other
+// stacks: "hydro-stop/7667//". The rest of a name is the role, a slash and the process id.
 std::string StopSocketPrefix(int port, const std::string& channel_suffix);
 
-// What such a socket is sent: who asks, and why, one line.
+// The text that is sent to such a socket: who asks, and why, in one line.
 std::string StopRequestText(const std::string& role, const std::string& reason);
 
 class StopSocket {
  public:
-  // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with
-  // the requester's role and reason. Where no socket can be had there is none: a run does not depend on it.
-  // The thread inherits the process's priority and processor: it sleeps until it is asked.
+  // Listens on a thread of its own, for as long as the object lives. A request sets the flag of stop_signal.h
+  // with the requester's role and reason. When the system provides no socket, the process runs without one: a
+  // run does not depend on it. The thread inherits the process's priority and processor, which does no harm
+  // because it sleeps until a request comes.
   StopSocket(const std::string& prefix, const std::string& role);
   ~StopSocket();
   StopSocket(const StopSocket&) = delete;
@@ -30,13 +32,14 @@ class StopSocket {
  private:
   void Listen();
   void Accept();
-  bool Answer(int connection);  // false: the connection is of no more use
+  bool Answer(int connection);  // false: the connection is no longer of use
 
   int listener_ = -1;
-  int wake_ = -1;                 // an eventfd: ends Listen()
-  int spare_ = -1;                // given up for a requester when the process has no descriptor left
-  bool deaf_ = false;             // the last one could not be accepted
-  std::vector<int> connections_;  // kept open: their end tells the requester that this process has ended
+  int wake_ = -1;      // an eventfd: ends Listen()
+  int spare_ = -1;     // closed to accept a requester when the process has no descriptor left
+  bool deaf_ = false;  // the last requester could not be accepted
+  // Kept open: when they close, the requester knows that this process has ended.
+  std::vector<int> connections_;
   std::thread thread_;
 };
 

@@ -22,7 +22,7 @@ std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
   return suffixes;
 }
 
-// Anybody on the network can make up channels: of very many, the first are named.
+// Anybody on the network can forge channels, so of very many only the first are listed.
 std::string ListOf(const std::set<std::string>& suffixes) {
   constexpr size_t kListed = 20;
   std::string list;
@@ -34,8 +34,8 @@ std::string ListOf(const std::set<std::string>& suffixes) {
   return list;
 }
 
-// The stack whose run the log is of, where the rest are strays: a packet on another state channel must not make
-// a log unreadable.
+// The stack whose run the log holds when the other channels are strays: a packet on another state channel
+// must not make a log unreadable.
 std::optional<std::string> OwnSuffix(const RunLog& log, const std::set<std::string>& suffixes) {
   std::unordered_map<std::string_view, int64_t> events;
   for (const ChannelSummary& channel : log.channels) events[channel.channel] = channel.events;
@@ -64,7 +64,7 @@ std::string NamesOf(const std::vector<JointChannels>& joints) {
   return QuotedList(names);
 }
 
-// What the channels of the limb with this joint end in: of those that the log has, the longest.
+// The suffix of the own channels of the limb that has this joint: the longest match among those in the log.
 std::optional<std::string> LimbOf(const std::string& suffix, const std::set<std::string>& limbs) {
   if (suffix.size() < 2) return std::nullopt;
   for (size_t end = suffix.rfind('_', suffix.size() - 2); end != std::string::npos;
@@ -75,7 +75,8 @@ std::optional<std::string> LimbOf(const std::string& suffix, const std::set<std:
   return std::nullopt;
 }
 
-// The suffix of the joint that `choice` names. A name may be the end of another, so the limb's own channels count too.
+// The suffix of the joint that `choice` names. One name may be the end of another, so the limb's own channels
+// count too.
 std::string SuffixOfJoint(const RunLog& log, const StackChoice& choice) {
   std::string end = "_" + *choice.joint;
   const std::set<std::string> all = SuffixesOf(log, false);
@@ -110,7 +111,7 @@ std::vector<JointChannels> JointsIn(const RunLog& log) {
   const std::set<std::string> with_states = StateSuffixes(log);
   std::set<std::string> limbs = SuffixesOf(log, false);
   for (const std::string& suffix : with_states) limbs.erase(suffix);
-  if (!with_states.contains("")) limbs.insert("");  // a simulated limb has no channels beside its joints'
+  if (!with_states.contains("")) limbs.insert("");  // a simulated limb has no channels besides its joints'
   std::vector<JointChannels> joints;
   for (const std::string& suffix : with_states) {
     if (const auto limb = LimbOf(suffix, limbs)) {

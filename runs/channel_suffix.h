@@ -1,4 +1,4 @@
-// Which stack's channels of a log are read, where it holds several.
+// Chooses the stack whose channels are read from a log that holds several stacks.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace hydro::runs {
 
-// A joint of a limb in a log: its channels end in "_" and its name, behind what the limb's own channels end in.
+// A joint of a limb in a log. The names of its channels end in the suffix of the limb's own channels,
+// followed by "_" and the joint's name.
 struct JointChannels {
   std::string name;
   std::string suffix;  // of its channels
@@ -21,16 +22,17 @@ struct JointChannels {
 // The suffixes of the state channels that a log holds.
 std::set<std::string> StateSuffixes(const RunLog& log);
 
-// The joints whose states a log holds, by suffix; empty: it is not of a limb. `log` has its list of channels.
+// The joints whose states a log holds, by suffix; empty: the log is not of a limb. `log` must have its list
+// of channels.
 std::vector<JointChannels> JointsIn(const RunLog& log);
 
-// More joints than that are no limb but made-up channels: whoever wants one names it.
+// More joints than this are forged channels rather than a limb. A caller that wants one of them names it.
 inline constexpr size_t kMostJoints = 1000;
 
-// Whether `choice` leaves open which of several joints is meant.
+// Whether `choice` leaves open which of several joints to read.
 bool IsWholeLimb(const RunLog& log, const StackChoice& choice);
 
-// The suffix to read, by the rule of ReadRunLog(). `log` has its list of channels. Throws InputError.
+// The suffix to read, by the rule of ReadRunLog(). `log` must have its list of channels. Throws InputError.
 std::string ChooseSuffix(const RunLog& log, const StackChoice& choice);
 
 }  // namespace hydro::runs

@@ -3,8 +3,8 @@
 namespace hydro::runs {
 namespace {
 
-constexpr double kSilence = 1;  // s beyond what plant time takes
-constexpr double kBack = 0.01;  // s; messages of several senders are out of order by less
+constexpr double kSilence = 1;  // s by which a silence exceeds what plant time takes
+constexpr double kBack = 0.01;  // s; messages of several senders are out of order by less than this
 
 }  // namespace
 

@@ -20,8 +20,8 @@ namespace hydro::runs {
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
                                            const RunMessages& b, const std::string& name_b);
 
-// The same of two limbs, joint by joint: "joint knee: differ at tick ...", or which joint is missing from which; of two single stacks
-// as above.
+// The same for two limbs, joint by joint: "joint knee: differ at tick ...", or which joint is missing from
+// which limb. For two single stacks, as above.
 std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& name_a, const LimbLog& b,
                                            const std::string& name_b);
 

@@ -12,7 +12,8 @@
 namespace hydro::runs {
 namespace {
 
-// The largest number of which all values are multiples, as decimals in a table have one; empty where there is none.
+// The largest number of which all values are multiples, which exists when a table rounds to decimals; empty
+// where there is none.
 std::optional<double> CommonStep(const std::vector<double>& values) {
   constexpr int kMostDecimals = 6;
   constexpr double kExact = 1e15;
@@ -31,7 +32,8 @@ std::optional<double> CommonStep(const std::vector<double>& values) {
   return std::nullopt;
 }
 
-// Whether values in one period of a counter jump by nearly all of it, and by no more than a quarter otherwise.
+// Whether values within one period of a counter jump by nearly the whole period, and otherwise by no more
+// than a quarter of it.
 bool RollsOver(const std::vector<double>& values, double period) {
   size_t jumps = 0;
   double before = NAN;

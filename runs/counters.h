@@ -1,4 +1,4 @@
-// Numbers of few bits in the columns of a table: angles that roll over.
+// Finds angles that roll over in the columns of a table because their numbers have few bits.
 #pragma once
 
 #include <string>
@@ -9,8 +9,9 @@
 
 namespace hydro::runs {
 
-// Counts an angle on where a counter of 8 to 32 bits, or one of a revolution, rolls over; the table's layout says so. `source.column`
-// is in the table, in which its values change. `revolution`: one of it in the signal's unit; 0: it has none.
+// Unwraps an angle where a counter of 8 to 32 bits, or of one revolution, rolls over, and notes this in the
+// table's layout. `source.column` lies in the table, whose values this changes. `revolution` is one
+// revolution in the signal's unit; 0: there is none.
 void CountAngleOn(const SignalColumn& source, const std::string& signal, double revolution,
                   tables::Table* table);
 

@@ -81,13 +81,14 @@ TickInfo TicksOf(const RunMessages& messages) {
                    (info.last_time_s - info.first_time_s);
   }
   info.sampled = SampleTicks(messages);
-  const int64_t left_out = info.sampled - 1;  // on purpose, from one sample to the next
+  const int64_t left_out = info.sampled - 1;  // ticks left out on purpose between two samples
   int64_t previous = info.first;
   for (const auto& [tick, state] : by_tick) {
     const int64_t between =
         std::max<int64_t>(0, SaturatingDifference(SaturatingDifference(tick, previous), 1));
     const int64_t announced = std::clamp<int64_t>(state->skipped_ticks, 0, between);
-    // A sample of a late tick is late: only what is missing for a whole interval more is a gap.
+    // A sample of a late tick is itself late, so there is a gap only where at least one further interval is
+    // missing as a whole.
     const bool gap = SaturatingDifference(between, left_out) > left_out;
     const int64_t missing = gap ? std::max(announced, SaturatingDifference(between, left_out)) : announced;
     info.gaps += gap ? 1 : 0;
@@ -113,7 +114,7 @@ void AddSignal(const std::string& name, const std::string& unit, double scale,
   if (!messages.empty()) signals.push_back(std::move(info));
 }
 
-// A unit of the paper in the model's system, or in SI.
+// A unit of the paper, converted to the model's system or to SI.
 SiUnit ShownUnit(const UnitSystem& units, const std::string& paper, int arm, bool si) {
   const std::string own = units.UnitFor(paper, arm);
   const std::optional<SiUnit> shown = si ? FindSiUnit(own, 0) : std::nullopt;
@@ -154,7 +155,7 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
   for (const loop_statistics_t& report : statistics) {
     LoopInfo& loop = loops[{report.role, report.host}];
     loop.last = report;
-    if (report.whole_run) {  // the process's own total, with what came after its last periodic report
+    if (report.whole_run) {  // the process's own total, up to its end
       loop.cycles = report.cycles;
       loop.missed_deadlines = report.missed_deadlines;
       loop.lost_messages = report.lost_messages;
@@ -194,7 +195,7 @@ std::vector<run_description_t> DistinctDescriptions(const std::vector<run_descri
   return distinct;
 }
 
-// Each plant's or driver's last word; of a process that has sent no state it means nothing.
+// The last message of each plant or driver. From a process that has sent no state, it means nothing.
 std::vector<output_left_t> OutputsLeft(const RunMessages& messages) {
   std::set<int64_t> plants;
   for (const state_t& state : messages.Of<state_t>()) plants.insert(state.session);
@@ -209,14 +210,15 @@ std::vector<output_left_t> OutputsLeft(const RunMessages& messages) {
   return all;
 }
 
-// One stop: said again in case the network loses it, or handed on by a process that was asked over its local socket, which
-// knows the tick that its asker (tick -1) does not.
+// Whether two messages report the same stop. A stop is sent again in case the network loses it. A process
+// that was asked over its local socket also passes it on, and it knows the tick, which its asker (tick -1)
+// does not.
 bool IsSameStop(const stop_t& a, const stop_t& b) {
   const bool handed_on = a.source == b.source && (a.tick < 0) != (b.tick < 0);
   return (a.session == b.session || handed_on) && a.reason == b.reason && a.exit_code == b.exit_code;
 }
 
-// Each stop once, with its tick where anybody knew it.
+// Each stop once, with its tick if any message has it.
 std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   std::vector<stop_t> distinct;
   for (const stop_t& stop : all) {
@@ -230,7 +232,7 @@ std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   return distinct;
 }
 
-// What each of several runs has.
+// The details of each of several runs.
 std::vector<SenderInfo> SendersOf(const RunLog& log, const UnitSystem& units, bool si) {
   std::vector<SenderInfo> senders;
   for (const SenderMessages& run : RunsIn(log.messages)) {
@@ -248,8 +250,8 @@ std::vector<SenderInfo> SendersOf(const RunLog& log, const UnitSystem& units, bo
   return senders;
 }
 
-// By the clock that stamped the messages, without its steps; a clock that goes back at the joint of two recordings leaves the
-// time between the earliest and the latest.
+// The duration by the clock that stamped the messages, without its steps. A clock that goes back where two
+// recordings join leaves the time between the earliest and the latest message.
 double DurationOf(const RunLog& log) {
   const double whole = Seconds(log.first_utime, log.last_utime);
   if (log.clock_steps.empty()) return whole;

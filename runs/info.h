@@ -15,25 +15,25 @@ namespace hydro::runs {
 struct ChannelInfo {
   ChannelSummary summary;
   double rate_hz =
-      0;  // events per second of receive time without its clock's steps; 0: fewer than two, or no time passed
+      0;  // events per second of receive time without the clock's steps; 0: fewer than two, or no time passed
   bool numbered = false;     // its messages have sequence numbers; otherwise the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
-  int64_t missing = 0;       // from the log: numbers missing between each sender's first and last
+  int64_t missing = 0;       // in the log: numbers absent between each sender's first and last
   int64_t repeated = 0;      // messages whose number had already been seen
-  int64_t before_first = 0;  // messages that its senders sent before the log began
+  int64_t before_first = 0;  // messages that its senders had sent before the log began
 };
 
 struct TickInfo {
   int64_t states = 0;  // distinct ticks
   int64_t first = 0;   // ticks of the first and the last state
   int64_t last = 0;
-  double first_time_s = 0;  // plant time of those
+  double first_time_s = 0;  // plant time of those two
   double last_time_s = 0;
-  double rate_hz = 0;     // ticks per second of plant time; 0: fewer than two
-  int64_t sampled = 1;    // ticks from one state to the next, where a limb sends only some (sampling.h)
-  int64_t gaps = 0;       // places where ticks have no state; between the sampled ones is none
-  int64_t missing = 0;    // ticks without a state, in them
-  int64_t announced = 0;  // how many of those the plant reports as skipped (a late wake-up)
+  double rate_hz = 0;   // ticks per second of plant time; 0: fewer than two
+  int64_t sampled = 1;  // ticks from one state to the next; above 1 where a limb sends only some (sampling.h)
+  int64_t gaps = 0;     // places where ticks have no state; the intervals between sampled states are not gaps
+  int64_t missing = 0;  // ticks without a state in these gaps
+  int64_t announced = 0;  // those of them that the plant reports as skipped (a late wake-up)
 };
 
 // Smallest and largest value of a signal, without missing values (NaN).
@@ -73,7 +73,7 @@ struct LogInfo {
   log::LogVerdict verdict;
   std::string suffix;
   std::string joint;                        // as RunLog::joint
-  std::vector<std::string> other_suffixes;  // of state channels, not read
+  std::vector<std::string> other_suffixes;  // suffixes of state channels that were not read
   int64_t bytes = 0;
   int64_t events = 0;
   double duration_s = 0;  // receive time from the first event to the last, without the steps of its clock
@@ -82,23 +82,23 @@ struct LogInfo {
   std::vector<ChannelInfo> channels;
   TickInfo ticks;  // states = 0: the log has none, or several runs
   std::vector<SignalInfo> signals;
-  bool several_runs = false;          // in the place of ticks and signals, `senders` has those of each
-  std::vector<SenderInfo> senders;    // empty: they cannot be told apart
+  bool several_runs = false;          // `senders` replaces ticks and signals, and has those of each run
+  std::vector<SenderInfo> senders;    // empty: the runs cannot be told apart
   std::vector<LoopInfo> loops;        // by role and host
-  std::vector<ProgramInfo> programs;  // those that introduced themselves
+  std::vector<ProgramInfo> programs;  // the programs that introduced themselves
   std::vector<fault_t> faults;
-  std::vector<stop_t> stops;                                // each once, however often it was sent
-  std::vector<TuningStep> tunings;                          // changes of values while the run went on
-  std::vector<output_left_t> outputs_left;                  // what plants or drivers left at their ends
-  std::vector<run_description_t> descriptions;              // distinct ones
-  std::string model_name;                                   // of the first description
+  std::vector<stop_t> stops;                    // each once, however often it was sent
+  std::vector<TuningStep> tunings;              // changes of values while the run went on
+  std::vector<output_left_t> outputs_left;      // the outputs that plants or drivers left when they ended
+  std::vector<run_description_t> descriptions;  // each distinct one once
+  std::string model_name;                       // of the first description
   std::vector<std::pair<std::string, std::string>> config;  // of the first description
 };
 
 // Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
 
-// Messages that are missing from the log, on all channels.
+// The number of messages that are missing from the log, over all channels.
 int64_t MissingMessages(const LogInfo& info);
 
 // Several lines for people to read.

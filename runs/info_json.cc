@@ -57,7 +57,7 @@ Json LoopJson(const LoopInfo& loop) {
             {"queue_depth", last.queue_depth}}}};
 }
 
-// The list `items` as JSON, each by `json_of`.
+// Writes the list `items` as JSON, each item by `json_of`.
 template <class Items, class JsonOf>
 Json ListJson(const Items& items, JsonOf json_of) {
   Json json = Json::array();

@@ -13,7 +13,8 @@
 namespace hydro::runs {
 namespace {
 
-// Text from a log may hold anything: a line's end in it must not look like a line of this program's, nor fill the screen.
+// Text from a log may hold anything. A line break in it must not forge a line of this program's output, and
+// the text must not fill the screen.
 std::string Shown(const std::string& text) {
   constexpr size_t kLongest = 500;
   return Printable(text.size() <= kLongest ? text : std::string(FirstBytes(text, kLongest)) + "...");
@@ -83,7 +84,7 @@ void AppendTicks(const TickInfo& ticks, std::string& text) {
          ticks.gaps, ticks.missing, ticks.announced, ticks.missing - ticks.announced);
 }
 
-// Where the clock that stamped the messages did not go as plant time did.
+// Lists where the clock that stamped the messages differs from plant time.
 void AppendClockSteps(const LogInfo& info, std::string& text) {
   constexpr size_t kListed = 20;
   for (const ClockStep& step : info.clock_steps) {
@@ -118,7 +119,7 @@ void AppendSignals(const std::vector<SignalInfo>& signals, std::string& text) {
   }
 }
 
-// Of each run its own: a table over several would be of none.
+// Gives each run its own table, because one table over several runs would describe none of them.
 void AppendRuns(const LogInfo& info, std::string& text) {
   AppendTicks(info.ticks, text);
   AppendClockSteps(info, text);
@@ -148,7 +149,7 @@ void AppendLoops(const LogInfo& info, std::string& text) {
   }
 }
 
-// Of a sender that knew of no tick, nothing.
+// Empty for a sender that did not know the tick.
 std::string TickText(int64_t tick) { return tick >= 0 ? "tick " + std::to_string(tick) + ": " : ""; }
 
 void AppendEnds(const LogInfo& info, std::string& text) {

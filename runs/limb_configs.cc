@@ -13,7 +13,7 @@ namespace {
 
 using settings::TomlNode;
 
-// What cannot be read says nothing: others need the rest of the log.
+// A text that cannot be read counts as empty, because others need the rest of the log.
 TomlNode Parsed(const std::string& text) {
   try {
     return settings::ParseToml(text, "");

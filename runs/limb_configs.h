@@ -1,4 +1,4 @@
-// The configurations of the limbs that a log is of, as the limbs describe themselves in it.
+// The configurations of the limbs in a log, as the limbs describe themselves there.
 #pragma once
 
 #include <map>
@@ -12,13 +12,15 @@ namespace hydro::runs {
 
 class LimbConfigs {
  public:
-  // Takes the first event of a channel, whatever it is.
+  // Takes the first event of a channel, whichever channel it is.
   void TakeFirst(const log::LogEvent& event);
 
-  // The configuration of the limb whose own channels end in this, as TOML; empty where the log has none.
+  // The configuration, as TOML, of the limb whose own channels have this suffix; empty where the log has
+  // none.
   std::string Of(const std::string& limb) const;
 
-  // Sorts the joints of each limb into the order of its configuration. Those that it does not have come last, by suffix.
+  // Sorts the joints of each limb into the order of its configuration. Joints that are not in it come last,
+  // by suffix.
   void Order(std::vector<JointChannels>* joints) const;
 
  private:

@@ -9,10 +9,10 @@
 namespace hydro::runs {
 namespace {
 
-// The launcher's form of it too.
+// Joins the two in the same form as the launcher.
 std::string Named(const std::string& joint, const std::string& source) { return joint + " " + source; }
 
-// What happened to a joint happened to the limb.
+// Whatever happened to a joint also happened to its limb.
 void AddEvents(const JointInfo& joint, LogInfo* limb) {
   for (fault_t fault : joint.info.faults) {
     fault.source = Named(joint.name, fault.source);
@@ -40,17 +40,17 @@ LimbInfo SummariseLimb(const LimbLog& log, bool si) {
   std::unordered_map<std::string_view, int> named;
   for (const RunLog& joint : log.joints) ++named[joint.joint];
   for (const RunLog& joint : log.joints) {
-    // A joint of the same name in another limb is told apart by its channels.
+    // Where another limb has a joint of the same name, the channels' suffix tells the two apart.
     const std::string& name = named[joint.joint] == 1 ? joint.joint : joint.suffix;
     LogInfo info = Summarise(joint, si);
-    // A mean over several runs would be of none.
+    // A mean over several runs would describe none of them.
     Tracking tracking = info.several_runs ? Tracking{} : TrackArm(joint);
     all.joints.push_back({name, std::move(info), std::move(tracking)});
     AddEvents(all.joints.back(), &all.limb);
   }
   const auto by_tick = [](const auto& a, const auto& b) { return a.tick < b.tick; };
   std::stable_sort(all.limb.faults.begin(), all.limb.faults.end(), by_tick);
-  // Each joint has its own rows; a limb with many would fill the screen with channels.
+  // Each joint has its own rows. The channels of a limb with many joints would fill the screen.
   std::unordered_set<std::string_view> of_joints;
   for (const JointInfo& joint : all.joints) {
     for (const ChannelInfo& channel : joint.info.channels) of_joints.insert(channel.summary.channel);

@@ -1,4 +1,4 @@
-// hydro-log info and summary of a log with all joints of a limb.
+// hydro-log info and summary for a log with all joints of a limb.
 #pragma once
 
 #include <string>
@@ -17,18 +17,19 @@ struct JointInfo {
 };
 
 struct LimbInfo {
-  LogInfo limb;  // of its own channels; faults, stops, changes and outputs are those of all joints, named
+  LogInfo limb;  // its own channels; faults, stops, changes and outputs are those of all joints
   std::vector<JointInfo> joints;
 };
 
-// `log` has joints. Units as Summarise().
+// `log` must have joints. The units are those of Summarise().
 LimbInfo SummariseLimb(const LimbLog& log, bool si);
 
-// As InfoText() and SummaryText(), with a row for each joint.
+// The limb's counterparts of InfoText() and SummaryText(), with a row for each joint.
 std::string LimbInfoText(const LimbInfo& info);
 std::string LimbSummaryText(const LimbInfo& info);
 
-// As InfoJson() and SummaryJson() of the limb, with `joints`: by name, the same of each, and its `tracking`.
+// The limb's counterparts of InfoJson() and SummaryJson(). `joints` has the same for each joint, by name,
+// together with its `tracking`.
 std::string LimbInfoJson(const LimbInfo& info);
 std::string LimbSummaryJson(const LimbInfo& info);
 

@@ -17,9 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kListed = 40;  // of faults and outputs; the rest is counted
+constexpr size_t kListed = 40;  // faults and outputs that are listed; the rest are only counted
 
-// The codes of its faults, each once.
+// The codes of the joint's faults, each once.
 std::string Faults(const JointInfo& joint) {
   std::string codes;
   std::set<std::string> seen;
@@ -35,7 +35,7 @@ std::string Target(const Tracking& tracking) {
   return *tracking.at_target ? "reached" : "NOT reached";
 }
 
-// Joints may turn or move along a line.
+// Writes a value with its unit. Joints may turn or move along a line.
 std::string WithUnit(const Tracking& tracking, double value, int decimals) {
   const std::string unit = " " + tracking.units.UnitFor("rad", 1);
   return (tracking.units.linear_arm ? ShortNumber(value, decimals)
@@ -67,7 +67,7 @@ std::string RowsOf(const LimbInfo& info) {
   return text;
 }
 
-// Joints whose rows stay empty, because a mean over several runs would be of none.
+// The joints whose rows stay empty because a mean over several runs would describe none of them.
 std::string SeveralRunsOf(const LimbInfo& info) {
   std::string text;
   for (const JointInfo& joint : info.joints) {

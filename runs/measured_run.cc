@@ -22,7 +22,7 @@
 namespace hydro::runs {
 namespace {
 
-// What the simulated sensors are said to add, rounding included.
+// The noise that the simulated sensors add according to the configuration, rounding included.
 std::optional<double> SensorNoise(settings::SectionReader& noise, const SignalName& name) {
   if (name.standard_deviation == nullptr) return std::nullopt;
   double standard_deviation = 0, resolution = 0;
@@ -32,7 +32,7 @@ std::optional<double> SensorNoise(settings::SectionReader& noise, const SignalNa
   return sum > 0 ? std::optional<double>(sum) : std::nullopt;
 }
 
-// A log is in the units of the model that it describes.
+// Converts a log's values, which are in the units of the model that the log describes.
 void Convert(const UnitSystem& units, MeasuredRun* run) {
   if (run->units == units) return;
   for (const SignalName& name : kSignals) {
@@ -75,7 +75,7 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
   const std::string place = table.file + " (configuration)";
   settings::TomlNode root = settings::ParseToml(config_text, place);
   root.place = place;
-  settings::SectionReader document(root, "");  // not finished: only what concerns the measurement is read
+  settings::SectionReader document(root, "");  // not finished: only some keys are read
   if (!document.Has("model")) {
     throw document.Error("model", "nothing",
                          "a description of how the shaft was held; give a table (csv, mat) with a sidecar");

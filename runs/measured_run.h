@@ -1,5 +1,5 @@
-// A run as measured: the data to which a model is fitted. Read from a log, or from another recorder's table
-// with a sidecar that explains its columns (docs/measured_runs.md).
+// A run as measured: the data to which a model is fitted. It is read from a log, or from another recorder's
+// table with a sidecar that explains its columns (docs/measured_runs.md).
 #pragma once
 
 #include <cstddef>
@@ -15,53 +15,53 @@
 
 namespace hydro::runs {
 
-// A value that is not there.
+// Stands for a missing value.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Where values come from: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
+// The source of values: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
 struct ColumnSource {
   std::string column;                       // its name in the table; "" for logs
-  double scale = 1, offset = 0, delay = 0;  // a unit that the sidecar states is part of the first two
+  double scale = 1, offset = 0, delay = 0;  // scale and offset include any unit that the sidecar states
 };
 
 struct MeasuredSignal {
   std::vector<double> values;   // one per sample, in our units; NaN: missing there. Empty: not measured
   std::optional<double> noise;  // standard deviation, if known; above 0
-  ColumnSource source = {};     // what the sidecar says of it
+  ColumnSource source = {};     // what the sidecar says about it
 
   bool measured() const { return !values.empty(); }
 };
 
 struct MeasuredRun {
-  std::string name;           // its own name; a log: the file's stem
+  std::string name;           // its own name; for a log, the file's stem
   std::string file;           // as given
-  std::string sidecar;        // of a table: the file that describes it; "" for logs
-  std::vector<size_t> lines;  // of a CSV: the line of each row; empty: messages count rows, from 1
+  std::string sidecar;        // for a table, the file that describes it; "" for logs
+  std::vector<size_t> lines;  // for a CSV, the line of each row; empty: messages count rows from 1
 
   model::Shaft shaft = model::Shaft::kFree;
-  double arm_angle_rad = 0;  // kClamped: where the arm is held
+  double arm_angle_rad = 0;  // kClamped: the angle at which the arm is held
   bool bypass = false;       // the valve between the two sides is open: p1 = p2
 
-  // A joint of a limb with an [arm], which loads it in the place of its model's J_a and mgl.
+  // The joint belongs to a limb with an [arm], whose load replaces J_a and mgl of the joint's model.
   bool in_an_arm = false;
 
-  // How its table was read, where that was not the plain way: "semicolons between cells, decimal commas".
+  // How its table was read, if not in the plain way: "semicolons between cells, decimal commas".
   std::string layout;
 
-  // What a result from it cannot say, because its log is incomplete, repaired or holds another stack too, as one
-  // line (runs/run_log.h); empty when there is nothing.
+  // One line that says which conclusions the run does not support because its log is incomplete, repaired or
+  // holds another stack too (runs/run_log.h); empty when there is nothing to say.
   std::string caution;
 
-  UnitSystem units;  // of all values, beside s and V
+  UnitSystem units;  // of all values except time (s) and voltage (V)
 
-  std::string model_text;  // the model with which a log says it was run (TOML); "" for tables
+  std::string model_text;  // the model with which the log says the run was made (TOML); "" for tables
 
   size_t first_row = 0;  // rows of the file cut off before the first sample
 
   std::vector<double> time;     // s, finite and increasing, not always evenly; at least two samples
-  std::optional<double> begun;  // s, the run's first sample, where that is cut off
-  ColumnSource time_source;     // what the sidecar says of it
-  MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; none is missing
+  std::optional<double> begun;  // s, time of the run's first sample, where that was cut off
+  ColumnSource time_source;     // what the sidecar says about it
+  MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; no value is missing
   MeasuredSignal pressure_ref;  // of p2 - p1
   MeasuredSignal motor_speed;
   MeasuredSignal motor_angle;
@@ -69,54 +69,55 @@ struct MeasuredRun {
   MeasuredSignal arm_speed;
   MeasuredSignal p1;
   MeasuredSignal p2;
-  // What was measured beside them.
-  MeasuredSignal arm_force;    // on the arm, in the direction of its angle, beside its weight: a load cell's
-  MeasuredSignal temperature;  // degC, of the oil
+  // Other quantities that were measured.
+  MeasuredSignal arm_force;       // on the arm, in the direction of its angle, besides its weight (load cell)
+  MeasuredSignal temperature;     // degC, of the oil
   MeasuredSignal motor_voltage;   // V, at the motor's terminals, where the command is a current
   MeasuredSignal bypass_valve;    // open above 0.5
-  bool current_commands = false;  // `voltage` is a current in A, and the motor's torque k_1 times it
+  bool current_commands = false;  // `voltage` is a current in A, and the motor's torque is k_1 times it
 
   size_t samples() const { return time.size(); }
-  // The time of the run's first sample, cut off or not.
+  // The time of the run's first sample, whether or not it was cut off.
   double Begin() const { return begun.value_or(time.front()); }
   // Cuts off the samples before `first` and those from `last` on.
   void Keep(size_t first, size_t last);
-  // Where a sample is, for messages: "run.csv: line 17".
+  // The place of a sample, for messages: "run.csv: line 17".
   std::string Place(size_t sample) const;
 };
 
-// What stands for a run on a command line: a file, or "LOG#NAME".
+// The name of a run on a command line: a file, or "LOG#NAME".
 struct RunName {
   std::string file;
-  std::optional<std::string> joint = {};  // of the limb that the log is of
+  std::optional<std::string> joint = {};  // of the limb in the log
 };
 
-// A file whose own name has a # is a file.
+// Parses the name. If a file has that whole name, including the #, it is the file.
 RunName ParseRunName(const std::string& text);
 
-// Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h); any other name as a log. Its values
-// are then in `units`, those of a model; without them a table is in the paper's, a log in its own model's.
-// Throws InputError naming file, line or key, what was found and what is allowed, for
+// Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h), any other name as a log. "LOG#NAME"
+// is the joint of that name in the log of a limb. A sidecar may make several runs of a table (run_parts.h).
+// The values are in `units`, those of a model. Without `units`, a table is in the paper's units, and a log in
+// those of its own model. Throws InputError naming file, line or key, what was found and what is allowed, for
 // - a sidecar that is missing, or has unknown keys, a unit that is unknown or another signal's, no shaft, no
 //   column for time or voltage, an angle of a shaft that is not clamped, a driven shaft without arm_angle, or
 //   noise of a signal without a column;
 // - a table with columns that are absent or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, or no command in the first row;
-// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, a limb's telemetry of
-//   some states only, no description of how the shaft
-//   was held, or an arm whose coordinate is not that of `units`.
-// "LOG#NAME" is the joint of that name in the log of a limb. A sidecar may make several runs of a table (run_parts.h).
+// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be
+//   decoded, more than one run, a limb's telemetry of only some states, no description of how the shaft was
+//   held, or an arm whose coordinate is not that of `units`.
 std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& file,
                                           const std::optional<UnitSystem>& units = std::nullopt);
-// The same of a file that is one run; InputError where it is several.
+// The same for a file that is one run. Throws InputError when it is several.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
-// The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run:
-// it gives shaft, bypass and the stated noise of the sensors; `model_text`, if any, its units.
+// The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run,
+// which gives the shaft, the bypass and the stated noise of the sensors. `model_text`, if any, gives the
+// units.
 MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
                         const std::string& model_text);
 
-// Its name in quotation marks, with its caution in brackets: for texts beside results.
+// The run's name in quotation marks, with its caution in brackets, for texts beside results.
 std::string NameWithCaution(const MeasuredRun& run);
 
 }  // namespace hydro::runs

@@ -14,10 +14,10 @@ struct SignalName {
   MeasuredSignal MeasuredRun::*signal;
   const char* ours;      // in a sidecar
   const char* exported;  // in a table of ExportRun(), with the paper's unit; null: no log has it
-  // In [noise] of a configuration; null: not a sensor's.
+  // In [noise] of a configuration; null: the signal has no sensor.
   const char* standard_deviation;
   const char* resolution;
-  const char* unit;  // of the paper
+  const char* unit;  // in the paper
   int arm = 0;       // power of the arm's coordinate in it
 };
 
@@ -39,8 +39,8 @@ inline constexpr std::array<SignalName, 12> kSignals = {{
     {&MeasuredRun::bypass_valve, "bypass", nullptr, nullptr, nullptr, "1"},
 }};
 
-// Its key in the sidecar of the run, in whose words texts speak of it: where a current commands, `current` is the command and `voltage`
-// what was measured at the motor. Null: it has none there.
+// Its key in the sidecar of the run, which texts use as its name. Where a current is commanded, `current` is
+// the command and `voltage` was measured at the motor. Null: the sidecar has no key for it.
 inline const char* KeyIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::voltage && run.current_commands) return "current";
   if (name.signal == &MeasuredRun::motor_voltage) return run.current_commands ? "voltage" : nullptr;

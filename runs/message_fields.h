@@ -1,5 +1,5 @@
-// The fields of the messages that are compared between runs, without utime and session, which differ from run
-// to run.
+// The fields of messages that are compared between runs. utime and session are left out, because they differ
+// from run to run.
 #pragma once
 
 #include <tuple>
@@ -16,8 +16,8 @@ struct MessageField {
 template <class Message, class Value>
 MessageField(const char*, Value Message::*) -> MessageField<Message, Value>;
 
-// FieldsOf(message), one for each message that is compared, is a tuple of MessageField, in the order by which messages are sorted and differences
-// reported.
+// FieldsOf(message) exists for each message that is compared. It returns a tuple of MessageField, in the
+// order in which messages are sorted and differences reported.
 constexpr auto FieldsOf(const state_t*) {
   return std::tuple{
       MessageField{"tick", &state_t::tick},
@@ -76,7 +76,8 @@ constexpr auto FieldsOf(const fault_t*) {
   };
 }
 
-// What the loops compute at a tick, and faults: these must be the same whenever a run is repeated.
+// The messages that the loops compute at a tick, and faults. They must be the same whenever a run is
+// repeated.
 template <class Message>
 concept ComparedMessage = requires(const Message* message) {
   FieldsOf(message);

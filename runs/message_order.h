@@ -12,7 +12,8 @@
 
 namespace hydro::runs {
 
-// Integers and strings by value, doubles by bits: a total order in which only identical bits are equal.
+// Compares integers and strings by value, and doubles by bits: a total order in which only identical bits are
+// equal.
 inline std::strong_ordering CompareField(double a, double b) {
   return std::bit_cast<uint64_t>(a) <=> std::bit_cast<uint64_t>(b);
 }
@@ -21,7 +22,7 @@ std::strong_ordering CompareField(const Value& a, const Value& b) {
   return a <=> b;
 }
 
-// Field by field in the order of FieldsOf(): by tick first.
+// Compares field by field in the order of FieldsOf(), so by tick first.
 template <class Message>
 std::strong_ordering CompareMessages(const Message& a, const Message& b) {
   return std::apply(
@@ -35,7 +36,8 @@ std::strong_ordering CompareMessages(const Message& a, const Message& b) {
       FieldsOf(static_cast<const Message*>(nullptr)));
 }
 
-// The messages in order; those that agree in every field of FieldsOf() appear once. Points into `messages`.
+// The messages in order; those that agree in every field of FieldsOf() appear once. The result points into
+// `messages`.
 template <class Message>
 std::vector<const Message*> InOrder(const std::vector<Message>& messages) {
   std::vector<const Message*> ordered;

@@ -13,7 +13,7 @@ namespace {
 
 using settings::TomlNode;
 
-// A log is untrusted input: its text goes through the only reader of TOML.
+// A log is untrusted input, so its text goes through the only reader of TOML.
 TomlNode Parse(const std::string& text, const std::string& file, const std::string& what) {
   return settings::ParseToml(text, file + ": run description: " + what);
 }
@@ -23,7 +23,7 @@ TomlNode Parse(const std::string& text, const std::string& file, const std::stri
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file) {
   TomlNode root = Parse(description.config_text, file, "configuration");
-  // Of a limb, the joints' own sections by name.
+  // For a limb, also the joints' own sections, by name.
   std::vector<settings::TomlEntry> entries;
   if (const TomlNode* joints = root.Find("joint"); joints != nullptr && joints->is(TomlNode::Kind::kArray)) {
     for (const TomlNode& joint : joints->items) {

@@ -1,4 +1,5 @@
-// Facts of a run from its log's description, which this version need not accept as a configuration.
+// Facts about a run from its log's description, even if this version does not accept that description as a
+// configuration.
 #pragma once
 
 #include <optional>
@@ -11,8 +12,8 @@
 
 namespace hydro::runs {
 
-// The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when it has
-// none. `file` names the log in messages. Throws InputError when the text is not TOML.
+// The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when there
+// is no configuration. `file` names the log in messages. Throws InputError when the text is not TOML.
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file);
 
@@ -23,7 +24,7 @@ int CommandDelayTicks(const run_description_t& description, const std::string& f
 // The model's name; empty when its text has none.
 std::string ModelName(const run_description_t& description, const std::string& file);
 
-// The units of the run's model; the paper's where it has no model.
+// The units of the run's model; the paper's where there is no model.
 UnitSystem ModelUnits(const run_description_t& description, const std::string& file);
 
 }  // namespace hydro::runs

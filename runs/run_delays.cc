@@ -23,7 +23,7 @@ bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run) {
     latest = std::max(latest, delay);
     earliest = std::min(earliest, delay);
   }
-  // Half a millionth: the times in a table are rounded.
+  // A margin of half a millionth, because the times in a table are rounded.
   const double margin = 5e-7 * (time.back() - time.front());
   const auto first = static_cast<size_t>(
       std::lower_bound(time.begin(), time.end(), time.front() - earliest - margin) - time.begin());

@@ -52,7 +52,8 @@ std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {
   return references;
 }
 
-// The commands without those that only end the run: they may share the last tick with a command meant to act.
+// The commands without those that only end the run, which may share the last tick with a command that is
+// meant to act.
 std::vector<motor_command_t> ActingCommands(const RunLog& log) {
   std::vector<motor_command_t> commands;
   for (const motor_command_t& command : log.messages.Of<motor_command_t>()) {
@@ -61,7 +62,8 @@ std::vector<motor_command_t> ActingCommands(const RunLog& log) {
   return commands;
 }
 
-// Whether the log has lost states between the two: what acted at the end of the gap did not act at its beginning.
+// Whether the log lacks states between the two. If it does, the voltage that acted at the end of the gap did
+// not act at its beginning.
 bool LacksStates(const state_t& state, const state_t& next) {
   return next.sequence > SaturatingSum(state.sequence, 1);
 }
@@ -111,12 +113,12 @@ tables::Table ExportRun(const RunLog& log) {
     const state_t* const next = k + 1 < states.size() ? states[k + 1] : nullptr;
     double voltage = kMissing;
     if (sampled) {
-      voltage = state.voltage;  // what acted from this tick on is in no sample; this acted up to it
+      voltage = state.voltage;  // no sample tells what acted from this tick on; this acted up to it
     } else if (next != nullptr && !LacksStates(state, *next)) {
       voltage = next->voltage;
     } else if (const motor_command_t* command = acting.At(commanding_tick);
                command != nullptr && next == nullptr && (k == 0 || state.command_tick >= 0)) {
-      voltage = command->voltage;  // unless the plant holds zero; before a gap it may have come too late
+      voltage = command->voltage;  // unless the plant holds zero; before a gap it may be late
     }
     const arm_reference_t* arm = reference.LastUpTo(state.tick);
     // Like any command, a pressure command of tick k is in force from tick k + delay on.

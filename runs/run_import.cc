@@ -15,10 +15,10 @@
 namespace hydro::runs {
 namespace {
 
-constexpr double kLatestTime = 1e12;              // s; in us it still fits the log's 64 bits
-constexpr double kLastTick = 9007199254740992.0;  // 2^53: above, a double does not hold every whole number
+constexpr double kLatestTime = 1e12;              // s; in us it still fits into the log's 64 bits
+constexpr double kLastTick = 9007199254740992.0;  // 2^53: above it, a double cannot hold every whole number
 
-// Whether a run in these units would be exported with columns of these names.
+// Whether the export of a run in these units would have columns of these names.
 bool NamesAllOf(const UnitSystem& units, const tables::Table& table) {
   std::vector<std::string> names;
   names.reserve(kRunColumns.size());
@@ -28,7 +28,7 @@ bool NamesAllOf(const UnitSystem& units, const tables::Table& table) {
   });
 }
 
-// The usual systems, and then all others.
+// The usual systems first, and then all others.
 std::vector<UnitSystem> Systems() {
   std::vector<UnitSystem> systems = {UnitSystem{}, kSiUnits, {"mm", "N"}, {"cm", "daN"}};
   for (const std::string_view length : UnitNames()) {
@@ -59,7 +59,7 @@ UnitSystem UnitsOfColumns(const tables::Table& table) {
   return {};
 }
 
-// The table with the paper's names; throws InputError for columns that no exported table has.
+// The table with the paper's names. Throws InputError for columns that no exported table has.
 tables::Table WithPaperNames(const tables::Table& table, const UnitSystem& units) {
   tables::Table named = table;
   for (tables::Column& column : named.columns) {
@@ -110,7 +110,7 @@ std::vector<int64_t> Ticks(const tables::Table& table) {
   return ticks;
 }
 
-// Ticks per second if the times are even within the rounding of their text; else 0.
+// Ticks per second if the times are even to within the rounding of their text; otherwise 0.
 double Rate(const std::vector<double>& times, const std::vector<int64_t>& ticks) {
   if (times.size() < 2) return 0;
   double rate = static_cast<double>(ticks.back() - ticks.front()) / (times.back() - times.front());
@@ -136,7 +136,7 @@ run_description_t Describe(const tables::Table& table, const std::string& versio
   description.version = version;
   description.host = HostName();
   description.rate_hz = rate_hz;
-  // Of the model nothing but its units is known.
+  // Nothing is known about the model except its units.
   description.model_text = settings::UnitsText(units);
   return description;
 }
@@ -176,7 +176,7 @@ class Import {
 
   void AppendRow(size_t row) {
     AppendState(row);
-    // A reference holds until the next one; a missing value after one is a reference of its own.
+    // A reference holds until the next one, so a missing value after a reference is a change of its own.
     if (!SameBits(arm_ref_[row], last_reference_)) AppendReference(row);
     AppendCommands(row);
   }
@@ -194,7 +194,7 @@ class Import {
     state.arm_speed = arm_speed_[row];
     state.p1 = p1_[row];
     state.p2 = p2_[row];
-    // A table does not tell what acted before its first row; the actuator is taken to have been at rest.
+    // A table does not tell what acted before its first row, so the actuator is assumed to have been at rest.
     state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : kMissing;
     state.command_tick = row > 0 && voltage_.present() ? ticks_[row] - 1 : -1;
     log_.AppendMessage(channels_.Of<state_t>(), state, state.utime);

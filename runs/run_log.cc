@@ -23,7 +23,7 @@ namespace {
 
 std::string Hex(uint64_t value) { return HexNumber(value, 16); }
 
-// Where the event is, what was found and what is allowed.
+// Says where the event is, what was found and what is allowed.
 std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& kind) {
   const std::string place = "byte " + std::to_string(event.offset) + ", event " +
                             std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
@@ -35,10 +35,11 @@ std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& k
   return place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type;
 }
 
-// Counts events by channel; this pass detects a damaged log before anything else is decoded than what limbs say of themselves.
+// Counts events by channel. This pass detects a damaged log before anything is decoded except the limbs'
+// descriptions of themselves.
 LimbConfigs Summarise(log::LogReader& reader, RunLog& log) {
   LimbConfigs configs;
-  std::map<std::string_view, ChannelSummary> channels;  // the names lie in the reader's file
+  std::map<std::string_view, ChannelSummary> channels;  // the names point into the reader's file
   log::LogEvent event;
   while (reader.Next(event)) {
     const auto [place, is_new] = channels.try_emplace(event.channel);
@@ -76,7 +77,7 @@ class Decoder {
     const auto found = by_channel_.find(event.channel);
     if (found == by_channel_.end()) return;
     Stack& stack = *found->second;
-    // True when the event is a `Message`; it is then in its list or left out.
+    // Returns true when the event is a `Message`, which is then in its list or was left out.
     bus::AnyMessage([&]<class Message>(const bus::MessageRow<Message>&) {
       if (event.channel != stack.channels.Of<Message>()) return false;
       std::vector<Message>& messages = stack.log->messages.template Of<Message>();
@@ -115,10 +116,11 @@ class Decoder {
   Undecodable undecodable_;
   std::optional<double> newest_time_;
   std::vector<Stack> stacks_;
-  std::unordered_map<std::string_view, Stack*> by_channel_;  // the names lie in `stacks_`
+  std::unordered_map<std::string_view, Stack*> by_channel_;  // the names point into `stacks_`
 };
 
-// Those of state channels that are neither read nor of a joint of the same limb; and what is said of this limb.
+// Finds the suffixes of state channels that are neither read nor belong to a joint of the same limb, and the
+// description of this limb.
 void FindOthers(const LimbConfigs& configs, RunLog* log) {
   const std::vector<JointChannels> joints = JointsIn(*log);
   const auto self = std::ranges::find(joints, log->suffix, &JointChannels::suffix);
@@ -133,7 +135,7 @@ void FindOthers(const LimbConfigs& configs, RunLog* log) {
   }
 }
 
-// A log of each joint, with nothing but what concerns its own channels.
+// A log for each joint, which holds only what concerns that joint's own channels.
 std::vector<RunLog> LogsOfJoints(const LimbConfigs& configs, const RunLog& limb) {
   std::vector<RunLog> logs;
   RunLog without_channels = limb;
@@ -158,7 +160,7 @@ std::vector<RunLog> LogsOfJoints(const LimbConfigs& configs, const RunLog& limb)
   return logs;
 }
 
-// `with_joints`: whether all joints of a limb are wanted where none is chosen.
+// `with_joints` says whether all joints of a limb are read when none is chosen.
 LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable undecodable,
              log::OnDamage on_damage, bool with_joints) {
   LimbLog all;

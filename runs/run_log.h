@@ -12,14 +12,14 @@
 
 namespace hydro::runs {
 
-// What a channel of a log holds, whether it is this stack's or not.
+// The contents of a log's channel, whether or not it belongs to this stack.
 struct ChannelSummary {
   std::string channel;
   int64_t events = 0;
   int64_t bytes = 0;        // of data
   int64_t first_utime = 0;  // us, when its first and last event were received
   int64_t last_utime = 0;
-  int64_t first_event = 0;  // those, counted as LogEvent::index
+  int64_t first_event = 0;  // the same two events, counted as LogEvent::index
   int64_t last_event = 0;
   int64_t undecodable = 0;  // not of this stack's type and version: left out
 };
@@ -29,56 +29,57 @@ struct RunLog {
   std::string file;
   log::LogVerdict verdict;
   std::string suffix;  // of the channels read
-  std::string joint;   // of a limb: its name; empty: it is not one of several
+  std::string joint;   // the joint's name if it belongs to a limb; empty: it is not one of several
   std::string
-      limb_config;  // of a joint: its limb's configuration as TOML, where the log has the limb's description
+      limb_config;  // for a joint: its limb's configuration as TOML, if the log has the limb's description
   std::vector<std::string>
       other_suffixes;  // of state channels that were not read, and are not joints of the same limb
   RunMessages messages;
-  std::vector<ChannelSummary> channels;  // by name, all that the log holds
+  std::vector<ChannelSummary> channels;  // by name, all channels in the log
   int64_t events = 0;                    // on all channels
   int64_t bytes = 0;                     // length of the file
   int64_t first_utime = 0;               // us, earliest and latest event received; 0 without events
   int64_t last_utime = 0;
   std::vector<ClockStep> clock_steps;
-  std::string first_undecodable;  // where the first left-out message is, and why; empty: none was
+  std::string first_undecodable;  // where the first left-out message is, and why; empty: none was left out
 };
 
 // What to do with a message on this stack's channels that is of another type or version, or torn.
 enum class Undecodable {
-  kRefused,  // LogError: for callers that need the whole run
-  kLeftOut,  // counted and left out, as the processes of the run left it out
+  kRefused,  // throws LogError: for callers that need the whole run
+  kLeftOut,  // counted and left out, as the processes of the run did
 };
 
-// Reads `file`. Without a choice, finds the suffix of the log's state channel. If there are several, it is that
-// of the only stack that describes its run, or in a log without any description that of nine states in ten;
-// otherwise the caller must choose one (InputError names them). A log without any of this stack's channels is
-// not an error here. Throws LogError if the file is damaged, because what else is missing is then unknown; with
-// OnDamage::kStop, reads what precedes the damage. An incomplete log is read to its last whole event.
+// Reads `file`. Without a choice, finds the suffix of the log's state channel. If there are several, chooses
+// the only stack that describes its run or, in a log without any description, the stack with nine states in
+// ten; otherwise the caller must choose one (InputError names them). A log without any of this stack's
+// channels is not an error here. Throws LogError if the file is damaged, because it is then unknown what else
+// is missing; with OnDamage::kStop, reads what precedes the damage. An incomplete log is read to its last
+// whole event.
 RunLog ReadRunLog(const std::string& file, const StackChoice& choice = {},
                   Undecodable undecodable = Undecodable::kRefused,
                   log::OnDamage on_damage = log::OnDamage::kThrow);
 
-// The joints of a limb, out of one log.
+// The joints of a limb, from one log.
 struct LimbLog {
   RunLog limb;  // its own channels, and `channels` of the whole log
-  // In the order of the limb's configuration, by suffix without one; their `channels` are their own.
+  // In the order of the limb's configuration, or by suffix without one. Their `channels` are their own.
   std::vector<RunLog> joints;
 
   bool whole() const { return !joints.empty(); }
 };
 
-// As ReadRunLog(), but where `choice` leaves open which of several joints is meant, all of them; otherwise `limb` is the stack
-// that is chosen, and there are no joints.
+// Does what ReadRunLog() does, but reads all joints where `choice` leaves open which of several is meant.
+// Otherwise `limb` is the chosen stack, and there are no joints.
 LimbLog ReadLimbLog(const std::string& file, const StackChoice& choice,
                     Undecodable undecodable = Undecodable::kRefused,
                     log::OnDamage on_damage = log::OnDamage::kThrow);
 
-// One line for people about what a result from this log cannot say: that it is incomplete or repaired, or holds
-// another stack too; empty when there is nothing.
+// One line for people about the limits of a result from this log: that the log is incomplete or repaired, or
+// holds another stack too; empty when there is nothing to say.
 std::string DescribeCaution(const RunLog& log);
 
-// One line for people about the messages left out; empty when none was.
+// One line for people about the messages left out; empty when none were.
 std::string DescribeUndecodable(const RunLog& log);
 
 }  // namespace hydro::runs

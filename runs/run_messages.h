@@ -1,4 +1,4 @@
-// The messages of a run, a list for each row of the table of messages.
+// The messages of a run, with a list for each row of the table of messages.
 #pragma once
 
 #include <tuple>

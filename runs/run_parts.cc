@@ -30,7 +30,7 @@ const char kWindowsAllowed[] =
     "windows in s, each [from, to] with from below to and none before the end of the one before: [[1.0, "
     "5.2], [6, 8]]";
 
-// The items of a list that changes with time: each calls read(item, from).
+// Calls read(item, from) for each item of a list that changes with time.
 template <class Read>
 void ReadChanges(SectionReader& document, const std::string& key, const TomlNode& list,
                  const std::string& allowed, Read read) {
@@ -52,7 +52,7 @@ void ReadChanges(SectionReader& document, const std::string& key, const TomlNode
   }
 }
 
-// The angle of a clamped shaft, which has one by the name that the model's unit allows.
+// Reads the angle of a clamped shaft, under the name that the model's unit allows.
 void ReadAngle(SectionReader& section, const UnitSystem& units, model::Shaft shaft, double* angle) {
   const bool present = section.Number("arm_angle", angle);
   const bool in_rad = section.Number("arm_angle_rad", angle);
@@ -74,7 +74,7 @@ void ReadShafts(SectionReader& document, const UnitSystem& units, RunPlan* plan)
     RunPlan::ShaftFrom one{.from = kFromTheBeginning};
     if (node != nullptr && !node->is(Kind::kString))
       throw document.Error("shaft", node->Shown(), kShaftsAllowed);
-    if (!document.Choice("shaft", kShafts, &one.shaft)) one.shaft = model::Shaft::kClamped;  // Finish says so
+    if (!document.Choice("shaft", kShafts, &one.shaft)) one.shaft = model::Shaft::kClamped;  // Finish reports
     ReadAngle(document, units, one.shaft, &one.arm_angle);
     plan->shafts.push_back(one);
     return;
@@ -132,7 +132,7 @@ const RunPlan::Window* Holding(const std::vector<RunPlan::Window>& windows, doub
   return nullptr;
 }
 
-// What holds at a time.
+// The entry that holds at a time.
 template <class Change>
 const Change& At(const std::vector<Change>& changes, double time) {
   size_t place = 0;

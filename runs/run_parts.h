@@ -1,4 +1,5 @@
-// Which parts of a table are runs, and how the shaft and the bypass were in each: [use], [skip], and what changes within a recording.
+// Finds the parts of a table that are runs, and how the shaft and the bypass were in each: [use], [skip], and
+// what changes within a recording.
 #pragma once
 
 #include <string>
@@ -10,10 +11,10 @@
 
 namespace hydro::runs {
 
-// A part of fewer samples is no run.
+// A part with fewer samples is not a run.
 inline constexpr size_t kFewestOfAPart = 100;
 
-// What a sidecar says of times: each holds from its time to the next one's.
+// What a sidecar states over time. Each entry holds from its time to that of the next one.
 struct RunPlan {
   struct ShaftFrom {
     double from = 0;  // s
@@ -27,19 +28,19 @@ struct RunPlan {
   struct Window {
     double from = 0, to = 0;
   };
-  std::vector<ShaftFrom> shafts;     // in the order of their times; the first from the beginning on
-  std::vector<BypassFrom> bypasses;  // the same; empty: the table has a column of it
-  std::vector<Window> use, skip;     // no `use`: all
+  std::vector<ShaftFrom> shafts;     // in the order of their times; the first holds from the beginning
+  std::vector<BypassFrom> bypasses;  // the same; empty: the table has a column for it
+  std::vector<Window> use, skip;     // an empty `use`: the whole table
 };
 
-// Reads shaft, arm_angle, bypass, use and skip. `angle_unit`: the arm's. Throws InputError.
+// Reads shaft, arm_angle, bypass, use and skip. The angle is in the unit of the arm. Throws InputError.
 RunPlan ReadPlan(settings::SectionReader& document, const UnitSystem& units);
 
-// The arm's angles in a list of shafts, as texts with a unit or as numbers.
+// Finds the arm's angles in a list of shafts, which are texts with a unit or numbers.
 std::vector<settings::TomlNode*> AnglesIn(settings::TomlNode* sidecar);
 
-// The run, or its parts, each with a name of its own. Throws InputError for a window that holds too little, and for a driven shaft without
-// the arm's angle.
+// Returns the run, or its parts, each with a name of its own. Throws InputError for a window that holds too
+// little, and for a driven shaft without the arm's angle.
 std::vector<MeasuredRun> PartsOf(const MeasuredRun& whole, const RunPlan& plan,
                                  const settings::SectionReader& document);
 

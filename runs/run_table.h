@@ -34,15 +34,15 @@ inline constexpr std::array<const char*, 11> kRunColumns = {"time_s",
 // Throws InputError when the log has no state, or states of more than one run.
 tables::Table ExportRun(const RunLog& log);
 
-// The name that exported tables of a run in these units have for a column of kRunColumns: "p1_Pa" for "p1_psi".
+// The name of a column of kRunColumns in exported tables of a run in these units: "p1_Pa" for "p1_psi".
 std::string RunColumnIn(const UnitSystem& units, const std::string& column);
 
 // Writes a log that ExportRun() turns back into the same table. The table may hold any subset of kRunColumns
-// that includes time_s, or the same in other units of one system, which the log then says: the given columns come back bit by bit, the others empty (tick: the row number from
-// 0). `program_version` goes into the log's description. Events are stamped with time_s, so lcm-logplayer
-// plays the log at the pace of the measurement. Throws InputError with file, row and column for unknown
-// columns, a missing time_s, times that do not increase and ticks that are not increasing whole numbers;
-// throws WriteError.
+// that includes time_s. It may also be in other units of one system, which the log then states. The given
+// columns come back bit by bit, the others empty (tick: the row number from 0). `program_version` goes into
+// the log's description. Events are stamped with time_s, so lcm-logplayer plays the log at the pace of the
+// measurement. Throws InputError with file, row and column for unknown columns, a missing time_s, times that
+// do not increase and ticks that are not increasing whole numbers; throws WriteError.
 void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file);
 
 }  // namespace hydro::runs

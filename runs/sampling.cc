@@ -25,7 +25,7 @@ int64_t Median(std::vector<int64_t> values) {
 
 }  // namespace
 
-// A limb numbers what it sends, so what it left out does not count as lost.
+// A limb numbers only the states that it sends, so those that it left out do not count as lost.
 int64_t SampleTicks(const RunMessages& messages) {
   if (!IsOfALimb(messages)) return 1;
   const auto& states = messages.Of<state_t>();

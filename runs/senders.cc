@@ -20,7 +20,7 @@ std::set<int64_t> SessionsOf(const std::vector<state_t>& states) {
   return sessions;
 }
 
-// A tick with two states that are not the same one twice.
+// Finds a tick with two different states, rather than one state sent twice.
 std::optional<int64_t> ContradictedTick(const std::vector<state_t>& states) {
   const std::vector<const state_t*> ordered = InOrder(states);
   for (size_t k = 1; k < ordered.size(); ++k) {
@@ -29,7 +29,7 @@ std::optional<int64_t> ContradictedTick(const std::vector<state_t>& states) {
   return std::nullopt;
 }
 
-// The runs of states of one session whose numbers begin again.
+// Splits the states of one session into runs, where their numbers begin again.
 std::vector<std::vector<state_t>> PartsOf(const std::vector<state_t>& states) {
   std::vector<std::vector<state_t>> parts;
   for (const state_t& state : states) {
@@ -39,7 +39,7 @@ std::vector<std::vector<state_t>> PartsOf(const std::vector<state_t>& states) {
   return parts;
 }
 
-// When a run was recorded, by its states.
+// The time at which a run was recorded, from its states.
 struct Span {
   int64_t first = 0, last = 0;
   int64_t DistanceOf(int64_t utime) const {
@@ -102,7 +102,7 @@ std::vector<SenderMessages> RunsIn(const RunMessages& messages) {
       runs.back().messages.Of<state_t>() = std::move(part);
     }
   }
-  // Where two runs have one session, nothing tells whose the other messages are.
+  // Where two runs have the same session, nothing tells to which of them the other messages belong.
   if (!alone) return runs;
   bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>&) {
     if constexpr (!std::is_same_v<Message, state_t> && requires(const Message& one) {

@@ -1,4 +1,4 @@
-// Whose states a log holds: those of one run, or of several that were joined, merged or recorded together.
+// Finds the runs whose states a log holds: one, or several that were joined, merged or recorded together.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,13 @@ struct SenderMessages {
 // Whether there are states of several senders, or two different states of one tick.
 bool HoldsSeveralRuns(const RunMessages& messages);
 
-// The runs, in the order of their first states. One, as it is, where there is one. A message of another process belongs to the run
-// of its session, else to the one that was recorded around its time. Empty where runs of one session are mixed and cannot be
-// told apart.
+// The runs, in the order of their first states. A single run is returned as it is. A message of another
+// process belongs to the run of its session, or else to the run that was recorded around its time. Empty
+// where runs of one session are mixed and cannot be told apart.
 std::vector<SenderMessages> RunsIn(const RunMessages& messages);
 
-// Throws InputError where a log, or a joint's part of it, holds several runs: every figure would be a mean over both.
+// Throws InputError where a log, or a joint's part of it, holds several runs, because every figure would be a
+// mean over all of them.
 void RequireOneRun(const RunLog& log);
 void RequireOneRun(const LimbLog& log);
 

@@ -32,7 +32,7 @@ void ReadNoise(settings::SectionReader noise, MeasuredRun* run) {
   }
 }
 
-// A text of a number and a unit becomes a number in the model's.
+// Converts a text of a number and a unit to a number in the model's unit.
 void ReadText(const std::string& key, const std::string& unit, settings::TomlNode* node) {
   if (node == nullptr || !node->is(settings::TomlNode::Kind::kString)) return;
   const std::string place = node->place;
@@ -49,7 +49,7 @@ void ReadTexts(const UnitSystem& units, settings::TomlNode* root) {
   }
 }
 
-// What the sidecar states about the text of a CSV; the rest is found.
+// Reads what the sidecar states about the text of a CSV; the rest is detected.
 tables::CsvSettings ReadLayout(settings::SectionReader& document, const std::string& file) {
   tables::CsvSettings layout;
   char separator = 0, decimal = 0;
@@ -70,7 +70,7 @@ tables::CsvSettings ReadLayout(settings::SectionReader& document, const std::str
   return layout;
 }
 
-// A name of its own for each table of a shared sidecar.
+// Names each table of a shared sidecar.
 void ReadName(settings::SectionReader& document, bool shared, MeasuredRun* run) {
   const std::string stem = std::filesystem::path(run->file).stem().string();
   run->name = stem;
@@ -80,7 +80,7 @@ void ReadName(settings::SectionReader& document, bool shared, MeasuredRun* run) 
 }  // namespace
 
 std::vector<MeasuredRun> ReadTableRuns(const std::string& file, const UnitSystem& units) {
-  if (!std::filesystem::exists(file)) tables::ReadTable(file);  // says so, before a sidecar is looked for
+  if (!std::filesystem::exists(file)) tables::ReadTable(file);  // reports this before a sidecar is sought
   const SidecarFile sidecar = FindSidecar(file);
   settings::TomlNode root = settings::ParseToml(ReadTextFile(sidecar.file), sidecar.file);
   root.place = sidecar.file;
@@ -94,7 +94,7 @@ std::vector<MeasuredRun> ReadTableRuns(const std::string& file, const UnitSystem
   run.units = units;
   ReadName(document, sidecar.shared, &run);
   std::string pattern;
-  document.Text("tables", &pattern);  // FindSidecar has used it
+  document.Text("tables", &pattern);  // FindSidecar has already used it
   const RunPlan plan = ReadPlan(document, units);
   settings::SectionReader columns = document.Section("columns");
   settings::SectionReader noise = document.Section("noise");

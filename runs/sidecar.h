@@ -1,4 +1,4 @@
-// A table of another recorder, read through the sidecar that describes it (docs/measured_runs.md).
+// Reads a table of another recorder through the sidecar that describes it (docs/measured_runs.md).
 #pragma once
 
 #include <string>

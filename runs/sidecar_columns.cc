@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kLongestStep = 86400;  // s from row to row
 
-// What a key of [columns] may name.
+// Lists what a key of [columns] may name.
 std::string ColumnsOf(const tables::Table& table) {
   return "a column of " + table.file + ": " + QuotedList(table.names);
 }
@@ -47,14 +47,14 @@ double ReadUnit(settings::SectionReader& section, const std::string& key, const 
                       allowed);
 }
 
-// Where a temperature's unit has its zero, in its own degrees, against degC.
+// The zero of a temperature's unit relative to that of degC, in the unit's own degrees.
 double ZeroOf(const std::string& unit) { return unit == "K" ? -273.15 : unit == "degF" ? -32 : 0; }
 
 bool StatesUnit(const tables::Column& column) {
   return !column.unit.empty() && column.unit != "-" && column.unit != "1";
 }
 
-// The factor to `ours` of the unit that the table's row of units has; 1 where it has none.
+// The factor to `ours` for the unit in the table's row of units; 1 where it has none.
 double UnitOfRow(const settings::SectionReader& columns, const std::string& key, const std::string& ours,
                  const tables::Column& column) {
   if (!StatesUnit(column)) return 1;
@@ -65,7 +65,7 @@ double UnitOfRow(const settings::SectionReader& columns, const std::string& key,
                           ", ... } with a unit or a scale (scale = 1 for numbers in " + ours + ")");
 }
 
-// The column of that name; `key` is what asks for it.
+// The column of that name. `key` is the key that requires it.
 const tables::Column* FindColumn(const settings::SectionReader& columns, const std::string& key,
                                  const std::string& name, const tables::Table& table) {
   const tables::Column* column = table.Find(name);
@@ -79,11 +79,11 @@ const tables::Column* FindColumn(const settings::SectionReader& columns, const s
 struct Entry {
   SignalColumn source;
   std::string column;
-  bool converts = false;  // what the sidecar states wins over the row of units
+  bool converts = false;  // a unit stated in the sidecar overrides the row of units
 };
 
-// One entry of [columns]: a name, or { column, scale, offset, unit, delay }. `ours` is the signal's unit in
-// the model.
+// Reads one entry of [columns]: a name, or { column, scale, offset, unit, delay }. `ours` is the signal's
+// unit in the model.
 std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::string& key,
                                const std::string& ours, const tables::Table& table) {
   const settings::TomlNode* node = columns.Take(key);
@@ -135,7 +135,7 @@ std::optional<SignalColumn> ReadSource(settings::SectionReader& columns, const s
   return source;
 }
 
-// Times of the clock are in s, whatever the sidecar or the row of units would make of numbers.
+// Clock times are in s, no matter how the sidecar or the row of units would convert numbers.
 void RequireSeconds(const settings::SectionReader& columns, const tables::Table& table, SignalColumn* time) {
   const bool numbers =
       table.time_kind == tables::TimeKind::kNumbers || table.time_kind == tables::TimeKind::kWholeNumbers;
@@ -146,7 +146,7 @@ void RequireSeconds(const settings::SectionReader& columns, const tables::Table&
   time->by_row = false;
 }
 
-// { every = S }: no column, S seconds from row to row.
+// Reads { every = S }: there is no column, and rows are S seconds apart.
 std::optional<double> ReadEvery(settings::SectionReader& columns) {
   const settings::TomlNode* node = columns.Take("time");
   if (node == nullptr || !node->is(settings::TomlNode::Kind::kTable) || node->Find("every") == nullptr)
@@ -160,7 +160,7 @@ std::optional<double> ReadEvery(settings::SectionReader& columns) {
 
 using Sources = std::array<std::optional<SignalColumn>, kSignals.size()>;
 
-// Adds to the run's layout which units of the row were used.
+// Adds the units that were used from the row of units to the run's layout.
 void NoteUnits(const tables::Table& table, const std::optional<SignalColumn>& time, const Sources& sources,
                MeasuredRun* run) {
   const bool row = std::any_of(table.columns.begin(), table.columns.end(),
@@ -175,7 +175,7 @@ void NoteUnits(const tables::Table& table, const std::optional<SignalColumn>& ti
   run->layout += used.empty() ? ", whose units the sidecar replaces" : " (" + Joined(used) + ")";
 }
 
-// What few bits have done to the angles.
+// Unwraps the angles that rolled over because of few bits.
 void CountAnglesOn(const Sources& sources, tables::Table* table, const MeasuredRun& run) {
   for (size_t i = 0; i < kSignals.size(); ++i) {
     if (!sources[i].has_value()) continue;
@@ -187,7 +187,7 @@ void CountAnglesOn(const Sources& sources, tables::Table* table, const MeasuredR
   }
 }
 
-// The run's times by the number of the row.
+// Computes the run's times from the row numbers.
 void CountRows(double every, tables::Table* table, MeasuredRun* run) {
   for (size_t row = 0; row < table->rows(); ++row) run->time.push_back(every * static_cast<double>(row));
   run->time_source = {"(" + ShortestNumber(every) + " s a row)"};

@@ -9,11 +9,11 @@
 
 namespace hydro::runs {
 
-// The columns that a sidecar names, right or wrong: nothing else of the table is judged.
+// The columns that a sidecar names, rightly or wrongly. No other part of the table is checked.
 tables::AskedColumns AskedBy(const settings::TomlNode& sidecar);
 
-// Reads them into the run, with its times, lines and layout. May leave out rows of the table (table_times.h). Throws
-// InputError.
+// Reads them into the run, with its times, lines and layout. May leave out rows of the table (table_times.h).
+// Throws InputError.
 void ReadColumns(settings::SectionReader columns, tables::Table* table, MeasuredRun* run);
 
 }  // namespace hydro::runs

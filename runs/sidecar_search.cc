@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uintmax_t kLargest = 1u << 20;  // bytes: no sidecar is larger
+constexpr uintmax_t kLargest = 1u << 20;  // bytes; no sidecar is larger
 
-// The folder's TOML files by name, whatever they are.
+// The folder's TOML files by name, whatever they contain.
 std::vector<std::string> TomlFiles(const fs::path& folder) {
   std::vector<std::string> files;
   std::error_code error;
@@ -31,7 +31,8 @@ std::vector<std::string> TomlFiles(const fs::path& folder) {
   return files;
 }
 
-// Whether the file has a pattern of this name. What is not TOML, or cannot be read, is no sidecar.
+// Whether the file has a pattern that matches this name. A file that is not TOML, or cannot be read, is not a
+// sidecar.
 bool Serves(const std::string& file, const std::string& name) {
   try {
     const settings::TomlNode root = settings::ParseToml(ReadTextFile(file), file);

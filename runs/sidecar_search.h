@@ -1,4 +1,4 @@
-// Which sidecar describes a table.
+// Finds the sidecar that describes a table.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ struct SidecarFile {
   bool shared = false;  // it serves this table by its pattern
 };
 
-// run.toml for run.csv, if there is one; else the sidecar in the same folder whose `tables` is a pattern of
-// the table's name ("run*.csv"). Throws InputError where there is none, and where there are two.
+// run.toml for run.csv, if it exists; otherwise the sidecar in the same folder whose `tables` is a pattern
+// that matches the table's name ("run*.csv"). Throws InputError where there is none, and where there are two.
 SidecarFile FindSidecar(const std::string& table);
 
 }  // namespace hydro::runs

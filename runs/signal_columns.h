@@ -1,4 +1,4 @@
-// Columns of a table as a run's signals.
+// Reads columns of a table as a run's signals.
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ struct SignalColumn {
   double scale = 1;
   double offset = 0;
   double unit = 1;
-  bool by_row = false;  // the unit is the table's own
-  double delay = 0;     // s, by which it is late
+  bool by_row = false;  // the unit comes from the table's row of units
+  double delay = 0;     // s by which it is late
 
-  // As scale and offset alone, without a unit.
+  // The scale and offset with the unit multiplied in.
   ColumnSource Described() const { return {column->name, unit * scale, unit * offset, delay}; }
 };
 
@@ -28,10 +28,11 @@ bool AllMissing(const std::vector<double>& values);
 // The values in our units. Throws InputError for an infinite one.
 std::vector<double> SignalValues(const tables::Table& table, const SignalColumn& source);
 
-// The times. Throws InputError for one that is missing or not above the one before, and for a single row.
+// The times. Throws InputError for a time that is missing or not above the one before, and for a single row.
 std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& source);
 
-// The command, held where a value is missing. Throws InputError for a first row without one. `what`: its key.
+// The command, held where a value is missing. Throws InputError when the first row has no value. `what` is
+// the command's key.
 std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source,
                                   const std::string& what = "voltage");
 

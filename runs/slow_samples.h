@@ -1,4 +1,5 @@
-// Samples so far apart that they show nothing of an actuator: mostly times in another unit than is said.
+// Detects samples that are too far apart to show anything of an actuator. Usually the times are in another
+// unit than stated.
 #pragma once
 
 #include <string>
@@ -7,11 +8,11 @@
 
 namespace hydro::runs {
 
-// s between samples: slower recorders do not show the motion of such a machine.
+// s between samples. Slower recorders do not show the motion of such a machine.
 inline constexpr double kSlowestSamples = 0.25;
 
-// What a time column whose samples are that many s apart may be in, for a person: " (is the column in us? unit =
-// \"us\")"; empty where no unit makes them those of such a machine.
+// The unit in which a time column may be whose samples are that many s apart, as a text for people: " (is the
+// column in us? unit = \"us\")". Empty where no unit makes the samples fit such a machine.
 std::string TimeUnitHint(double interval);
 
 // Throws InputError, with that hint, when half of the run's samples are farther apart than kSlowestSamples.

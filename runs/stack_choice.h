@@ -1,4 +1,4 @@
-// Which stack of a log is read, where it holds several.
+// Which stack is read from a log that holds several.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace hydro::runs {
 
-// Without either, the only stack that the log is of.
+// Without either, the only stack in the log is read.
 struct StackChoice {
-  std::optional<std::string> suffix = {};  // of its channels; with a joint, of the limb's that it belongs to
+  std::optional<std::string> suffix = {};  // of its channels; with a joint, the suffix of its limb's channels
   std::optional<std::string> joint = {};   // of a limb, by its name
 
   bool given() const { return suffix.has_value() || joint.has_value(); }

@@ -20,11 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// How many ticks went by from the first state to the last.
+// The number of ticks from the first state to the last.
 int64_t TicksPassed(const LogInfo& info) { return SaturatingDifference(info.ticks.last, info.ticks.first); }
 
-// How values of the arm are shown: an angle in rad, with `si` in degrees too; a linear arm's position in its
-// model's unit of length, with `si` in m.
+// How values of the arm are shown: an angle in rad, and with `si` also in degrees; a linear arm's position in
+// its model's unit of length, or with `si` in m.
 class ArmText {
  public:
   ArmText(const UnitSystem& units, bool si) : units_(units), si_(si), unit_(units.UnitFor("rad", 1)) {
@@ -42,7 +42,7 @@ class ArmText {
   std::string Size(double value) const { return Number(value, 4); }
 
  private:
-  // Of an angle that many decimals; a length may be in um or ft.
+  // Writes an angle with that many decimals. A length may be in um or ft, so it is written in a short form.
   std::string Number(double value, int decimals) const {
     return units_.linear_arm ? ShortNumber(factor_ * value, decimals) + " " + unit_
                              : fmt::format("{:.{}f} {}", value, decimals, unit_);
@@ -54,7 +54,7 @@ class ArmText {
   double factor_ = 1;
 };
 
-// The stop that ended the run early: one that failed it, else one before its duration.
+// The stop that ended the run early: one that failed it, or else one before its full duration.
 const stop_t* EarlyEnd(const LogInfo& info) {
   const stop_t* first = nullptr;
   for (const stop_t& stop : info.stops) {
@@ -94,7 +94,7 @@ std::string TrackingText(const Tracking& tracking, const LogInfo& info, bool si)
 std::string EarlyEndText(const LogInfo& info) {
   const stop_t* const end = EarlyEnd(info);
   if (end == nullptr) return {};
-  // hydro-launch, which hears no state, knows no tick.
+  // hydro-launch does not hear states, so it does not know the tick.
   const std::string when = end->tick >= 0          ? fmt::format(" at tick {}", end->tick)
                            : info.ticks.states > 0 ? fmt::format(" after tick {}", info.ticks.last)
                                                    : "";
@@ -144,7 +144,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
   if (!caution.empty()) line("log: {}", caution);
   if (tracking.has_reference) {
     const ArmText arm(tracking.units, si);
-    // In a run that ended at its first tick nothing was followed.
+    // A run that ended at its first tick followed no reference.
     if (info.ticks.states > 1 || EarlyEnd(info) == nullptr) text += TrackingText(tracking, info, si);
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {}", step.time_s,
@@ -184,7 +184,7 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
                            {"failed", end->exit_code != 0}};
   }
   if (tracking.has_reference) {
-    // "_rad", or of a linear arm "_mm"
+    // "_rad", or "_mm" for a linear arm
     const std::string unit = "_" + UnitInName(tracking.units.UnitFor("rad", 1));
     Json steps = Json::array();
     for (const StepResponse& step : tracking.steps) {

@@ -21,7 +21,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// The usual distance of two rows in time; 0 where none is above the other.
+// The usual time between two rows; 0 where no row is later than the one before.
 double UsualStep(const std::vector<double>& times) {
   std::vector<double> steps;
   for (size_t i = 1; i < times.size(); ++i) {
@@ -71,7 +71,8 @@ struct RollOver {
   std::string of;     // "a counter of 32 bits"
 };
 
-// A counter of that many steps of 10^-k, from 0 or from minus half of it: whether it may stand at `from` and then at `to`.
+// Whether a counter of that many steps of 10^-k, which starts at 0 or at minus half its period, may stand at
+// `from` and then at `to`.
 bool MayRoll(double from, double to, double period, double slack) {
   const bool unsigned_one = from > period - slack && from < period + slack && to > -slack && to < slack;
   const bool signed_one = from > period / 2 - slack && from < period / 2 + slack &&
@@ -79,10 +80,10 @@ bool MayRoll(double from, double to, double period, double slack) {
   return unsigned_one || signed_one;
 }
 
-// What rolled over between two rows of which the second is below the first.
+// Finds what rolled over between two rows when the second is below the first.
 std::optional<RollOver> FindRollOver(double from, double to, double step, double to_seconds,
                                      tables::TimeKind kind) {
-  const double period = from - to + step;  // as it would be with the usual step
+  const double period = from - to + step;  // with the usual step between the two rows
   const double slack = 3 * step;           // a few rows may be missing
   const auto is = [&](double one) { return std::abs(period - one) < slack; };
   for (const int bits : {16, 24, 32}) {
@@ -113,7 +114,7 @@ void CountOn(const SignalColumn& source, std::vector<double>& times, tables::Tab
   std::string of;
   for (size_t row = 1; row < times.size(); ++row) {
     const double now = times[row];
-    if (std::isnan(now) || std::isnan(before)) return;  // SampleTimes says so
+    if (std::isnan(now) || std::isnan(before)) return;  // SampleTimes reports this
     const double change = now - before;
     if (change < 0) {
       if (const auto roll = FindRollOver(before, now, step, to_seconds, table->time_kind)) {
@@ -135,8 +136,8 @@ void CountOn(const SignalColumn& source, std::vector<double>& times, tables::Tab
   if (set > 0) table->Note(Counted("the clock was set by an hour", set, *table, first_set, "summer time"));
 }
 
-// Throws where times do not increase, with the first such row, their number and what helps. The first row and missing
-// times are SampleTimes' matter.
+// Throws where times do not increase. The error has the first such row, the number of such rows and a remedy.
+// SampleTimes handles the first row and missing times.
 void RequireIncreasing(const SignalColumn& source, const tables::Table& table) {
   const std::vector<double>& times = source.column->values;
   const double to_seconds = source.unit * source.scale;
@@ -170,15 +171,16 @@ void RequireIncreasing(const SignalColumn& source, const tables::Table& table) {
   throw InputError(error);
 }
 
-// Rows that come in bursts: how many in each, and how far their beginnings are apart.
+// Rows that come in bursts: how many rows each has, and how far apart the bursts begin.
 struct Bursts {
   size_t count = 0;
   double rows = 0;      // median
-  double duration = 0;  // median, of those rows
+  double duration = 0;  // median time from the first to the last of those rows
   double period = 0;    // median
 };
 
-// Bursts are far shorter than the time between them, and nearly all of the table is such bursts.
+// Finds bursts that are far shorter than the time between them, in a table that consists almost entirely of
+// such bursts.
 std::optional<Bursts> FindBursts(const std::vector<double>& times) {
   constexpr double kShort = 0.02;  // of the period
   constexpr size_t kFewest = 8;
@@ -227,7 +229,8 @@ void RequireNoBursts(const SignalColumn& source, const tables::Table& table) {
                    " } in the sidecar");
 }
 
-// Whether several rows have the time of the row before and other values: their times are rounded.
+// Whether several rows have the same time as the row before but other values, which means that their times
+// are rounded.
 bool SharesTimes(const tables::Column& time, const tables::Table& table) {
   size_t equal = 0, changed = 0;
   for (size_t row = 1; row < time.values.size(); ++row) {
@@ -247,7 +250,7 @@ void MendTimes(const SignalColumn& source, tables::Table* table) {
   std::vector<double> times = column->values;
   CountOn(source, times, table);
   column->values = std::move(times);
-  // Where other rows share a time and differ, those that happen to be equal are samples too.
+  // Where other rows share a time but differ, rows that happen to be equal are samples too.
   if (!SharesTimes(*column, *table)) LeaveOutRepeated(*column, table);
   RequireIncreasing(source, *table);
   RequireNoBursts(source, *table);

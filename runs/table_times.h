@@ -1,4 +1,4 @@
-// The times of a table, made to increase where it is certain how, before they are a run's.
+// Corrects the times of a table before a run uses them, where it is certain how they should increase.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@
 
 namespace hydro::runs {
 
-// Changes the table where its recorder is known to have done what it shows, and says so in its layout:
-// - rows that repeat the one before, time and all, are left out;
-// - a counter of 16, 24 or 32 bits that rolls over is counted on, as is a time of day over midnight, and a clock
-//   without a zone that was set by an hour.
-// `source.column` is the time, in the table. Throws InputError for times that do not increase after that, with how many rows
-// are like that and what helps; and for times of arrival: many rows at once, again and again.
+// Corrects the table where it shows what its recorder is known to have done, and notes this in its layout:
+// - rows that repeat the row before, including its time, are left out;
+// - a counter of 16, 24 or 32 bits that rolls over is unwrapped, as is a time of day across midnight, and a
+//   clock without a time zone that was set by an hour.
+// `source.column` is the time, and lies in the table. Throws InputError for times that still do not increase,
+// with the number of such rows and a remedy, and for times of arrival, where many rows come at once, again
+// and again.
 void MendTimes(const SignalColumn& source, tables::Table* table);
 
 }  // namespace hydro::runs

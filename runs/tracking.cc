@@ -9,20 +9,20 @@
 namespace hydro::runs {
 namespace {
 
-constexpr double kShortestRest = 0.2;       // s
-constexpr double kEndTime = 0.1;            // s
-constexpr int kRestingReferences = 3;       // of one value at the end: a step that was just made is no motion
-constexpr double kSmallestAngle = 0.001;    // rad: a smaller error is none
-constexpr double kSmallestDistance = 1e-4;  // m, of a linear arm
-constexpr double kLeastStep = 10;           // of those, of a step that begins with the run
+constexpr double kShortestRest = 0.2;  // s
+constexpr double kEndTime = 0.1;       // s
+constexpr int kRestingReferences = 3;  // with one value at the end: a step that was just made is not motion
+constexpr double kSmallestAngle = 0.001;    // rad; a smaller error counts as none
+constexpr double kSmallestDistance = 1e-4;  // m, the same for a linear arm
+constexpr double kLeastStep = 10;           // multiple of those for a step with which the run begins
 constexpr size_t kMostSteps = 100;
 
 struct Samples {
   std::vector<double> times;
   std::vector<double> references;
   std::vector<double> angles;
-  int resting = 0;          // references of the last value at the end
-  bool follow_arm = false;  // the last reference is where the arm was measured then
+  int resting = 0;          // number of references with the last value at the end
+  bool follow_arm = false;  // the last reference is the arm's position measured then
   size_t size() const { return times.size(); }
 };
 
@@ -35,7 +35,7 @@ double SmallestTolerance(const UnitSystem& units) {
   return units.linear_arm ? kSmallestDistance / ParseUnit(units.length)->size : kSmallestAngle;
 }
 
-// Reference (held since its tick) and angle at each state that has both.
+// The reference (held since its tick) and the angle at each state that has both.
 Samples ReadSamples(const RunLog& log) {
   std::vector<const arm_reference_t*> references;
   for (const arm_reference_t& reference : log.messages.Of<arm_reference_t>()) {
@@ -65,7 +65,8 @@ Samples ReadSamples(const RunLog& log) {
   return samples;
 }
 
-// Of the last 0.1 s; where the reference has rested at its last value for less, since then.
+// The mean over the last 0.1 s, or, if the reference has rested at its last value for less than that, over
+// the time since then.
 double MeanErrorAtEnd(const Samples& samples, bool at_rest) {
   double sum = 0;
   int count = 0;
@@ -78,7 +79,8 @@ double MeanErrorAtEnd(const Samples& samples, bool at_rest) {
   return sum / count;
 }
 
-// Whether the reference has a target at the end: not one that moved within the last 0.1 s, but for a step.
+// Whether the reference has a target at the end. It has none if it moved within the last 0.1 s, unless that
+// was a step.
 bool RestsAtEnd(const Samples& samples) {
   if (samples.resting >= kRestingReferences) return true;
   for (size_t i = samples.size(); i-- > 0;) {
@@ -88,9 +90,10 @@ bool RestsAtEnd(const Samples& samples) {
   return true;
 }
 
-// Between two changes at least kShortestRest apart it rests; elsewhere it moves: a ramp, a curve, or the way back after a hold.
+// The reference rests between two changes that are at least kShortestRest apart. Elsewhere it moves: a ramp,
+// a curve, or the way back after a hold.
 std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* left_out) {
-  std::vector<size_t> changes{0};  // and both ends
+  std::vector<size_t> changes{0};  // including both ends
   for (size_t i = 1; i < samples.size(); ++i) {
     if (samples.references[i] != samples.references[i - 1]) changes.push_back(i);
   }
@@ -101,7 +104,8 @@ std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* l
   const size_t last = changes.size() - 2;
   const auto is_step = [&](size_t k) { return k > 0 && k <= last && (k == 1 || rests(k - 1)) && rests(k); };
   std::vector<StepResponse> steps;
-  // A reference that never changes, away from where the arm was: a step with which the run began.
+  // A reference that never changes, but differs from the arm's first position, is a step with which the run
+  // began.
   if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep * tolerance &&
       rests(0)) {
     steps.push_back(MeasureStep(samples.times, samples.angles, 0, samples.size(), samples.angles[0],
@@ -126,8 +130,9 @@ auto NewestOf(const std::vector<Message>& messages) {
                           [](const Message& a, const Message& b) { return a.tick < b.tick; });
 }
 
-// Whether the voltage is held at zero at the end of a run that had begun: by the plant, or by the pressure loop's safe commands, which a
-// position loop in lockstep does not hear of and then does not follow the arm.
+// Whether the voltage is held at zero at the end of a run that had begun. The plant may hold it, or the
+// pressure loop with its safe commands. A position loop in lockstep does not hear of those, and then does not
+// follow the arm.
 bool IsHeldAtEnd(const RunMessages& messages, bool follow_arm) {
   const std::vector<state_t>& states = messages.Of<state_t>();
   const bool begun =

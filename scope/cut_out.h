@@ -1,4 +1,4 @@
-// A window of a run as a file.
+// Writes a window of a run as a file.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace hydro::scope {
 
-// What is needed of a run to cut a window out of it on another thread.
+// The parts of a run that are needed to cut a window out of it on another thread.
 struct CutSource {
-  std::optional<MessageStore::Snapshot> messages;  // of a live run; else the log
+  std::optional<MessageStore::Snapshot> messages;  // of a live run; otherwise the log is the source
   std::string log_file;
   std::string name;
   std::string suffix;
@@ -19,11 +19,12 @@ struct CutSource {
 
 CutSource CutSourceOf(const Run& run);
 
-// Writes the messages of [t0, t1] (s of plant time) as a log, with its description. Throws InputError when no state lies
-// there.
+// Writes the messages of [t0, t1] (s of plant time) as a log, with its description. Throws InputError when no
+// state lies there.
 void CutLog(const CutSource& source, double t0, double t1, const std::string& file);
 
-// The same as the table that hydro-log export writes; `si`: in SI units, with their names in the columns.
+// Writes the same window as the table that hydro-log export writes. With `si`, the table is in SI units, and
+// its column names say so.
 void CutTable(const CutSource& source, double t0, double t1, bool si, const std::string& log_file,
               const std::string& table_file);
 

@@ -26,19 +26,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kTimeLimit = 300s;  // its own limit is 60 s of search
+constexpr auto kTimeLimit = 300s;  // the program's own limit is 60 s of search
 constexpr char kReports[] = "/api/reports/";
-constexpr size_t kMostJobs = 8;  // kept
+constexpr size_t kMostJobs = 8;  // that are kept
 constexpr size_t kLongestLine = 500;
 
-// Beside this program, as all of them are installed.
+// All programs are installed in one folder, so hydro-diagnose is beside this one.
 std::string Program() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   return (self.parent_path() / "hydro-diagnose").string();
 }
 
-// Starts hydro-diagnose on the window in the folder. What it prints can be read from ends[0].
+// Starts hydro-diagnose on the window in the folder. Its output can be read from ends[0].
 pid_t StartProgram(const std::string& folder, int ends[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw InputError("no pipe: errno " + std::to_string(errno));
   std::vector<std::string> arguments = {
@@ -80,7 +80,7 @@ int DiagnoseJobs::Start(const CutSource& source, const std::string& model_text, 
   if (!std::filesystem::exists(Program())) {
     throw InputError(Program() + ": found nothing, it comes with hydro-scope (scripts/build programs)");
   }
-  if (thread_.joinable()) thread_.join();  // it has posted its end
+  if (thread_.joinable()) thread_.join();  // the thread has posted its end
   if (jobs_.size() >= kMostJobs) {
     std::error_code ignored;
     std::filesystem::remove_all(jobs_.begin()->second.folder, ignored);

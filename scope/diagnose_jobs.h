@@ -1,4 +1,4 @@
-// hydro-diagnose on windows of runs, as child processes with a limit of time, one at a time.
+// Runs hydro-diagnose on windows of runs, as child processes with a time limit, one at a time.
 #pragma once
 
 #include <atomic>
@@ -14,24 +14,24 @@ namespace hydro::scope {
 
 class DiagnoseJobs {
  public:
-  // `folder`: for their files, of this process's own. `post` runs work on the server's thread, on which everything here is
-  // called.
+  // `folder` receives their files and belongs to this process alone. `post` runs work on the server's thread,
+  // which also makes every call to this class.
   DiagnoseJobs(std::string folder, std::function<void(std::function<void()>)> post);
-  // Ends a child that still runs.
+  // Ends a child that is still running.
   ~DiagnoseJobs();
   DiagnoseJobs(const DiagnoseJobs&) = delete;
   DiagnoseJobs& operator=(const DiagnoseJobs&) = delete;
 
-  // Cuts the window out and begins. Returns the job's number. Throws InputError when one runs already, or the run has not
-  // described its model.
+  // Cuts the window out and starts the job. Returns the job's number. Throws InputError when a job is already
+  // running, or when the run has not described its model.
   int Start(const CutSource& source, const std::string& model_text, double t0, double t1);
 
-  // {"state": "running" | "done" | "failed", "text": ..., and when it is done "sentence", "verdict", "report"}; empty: no
-  // such job.
+  // {"state": "running" | "done" | "failed", "text": ..., and, when it is done, "sentence", "verdict",
+  // "report"}; empty: there is no such job.
   std::string Status(int job) const;
 
-  // The page of a job that is done, under a path that nobody can guess: the report has scripts, and is shown without the
-  // token.
+  // The page of a finished job, under a path that cannot be guessed: the report has scripts and is shown
+  // without the token.
   Response Report(const std::string& path) const;
   static bool IsReport(const std::string& path);
 
@@ -42,7 +42,7 @@ class DiagnoseJobs {
     std::string verdict;
     std::string sentence;
     std::string folder;
-    std::string report;  // its path
+    std::string report;  // path of the report
   };
   void Work(int job, const CutSource& source, const std::string& model_text, double t0, double t1,
             const std::string& folder);

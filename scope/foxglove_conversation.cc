@@ -23,7 +23,7 @@ std::string Reply(const json& object) { return JsonText(object); }
 template <class T>
 void Put(std::string& bytes, T value) {
   char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);  // little endian, as everything here
+  std::memcpy(raw, &value, sizeof value);  // little endian, like every number here
   bytes.append(raw, sizeof value);
 }
 
@@ -110,7 +110,7 @@ bool FoxgloveConversation::Next(Message* message) {
   }
   if (ready_.empty() && runs_.live() != nullptr) {
     const MessageStore& store = *runs_.live()->messages;
-    if (store_ != &store) place_ = store.End();  // another run
+    if (store_ != &store) place_ = store.End();  // the store of another run
     store_ = &store;
     skipped_ += store.CatchUp(&place_, kMostBehind);
     for (MessageStore::Message found; ready_.empty() && store.Read(&place_, &found);) {

@@ -1,4 +1,5 @@
-// The conversation with Foxglove, Lichtblick or PlotJuggler: their web-socket protocol, version 1, read-only.
+// The conversation with Foxglove, Lichtblick or PlotJuggler: version 1 of their web-socket protocol,
+// read-only.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +13,16 @@
 
 namespace hydro::scope {
 
-// Sends the messages of the running stack on the topics that the client subscribes to. They are read out of the run's store
-// when the client is ready for them: one that is more than kMostBehind messages late goes on with the newest.
+// Sends the messages of the running stack on the topics to which the client subscribes. It reads them from
+// the run's store when the client is ready for them: a client that is more than kMostBehind messages late
+// continues with the newest.
 class FoxgloveConversation : public Conversation {
  public:
   static constexpr uint64_t kMostBehind = 20000;
 
   explicit FoxgloveConversation(RunTable* runs);
 
-  // Whether a subprotocol is one of those.
+  // Whether a subprotocol is one of theirs.
   static bool Speaks(const std::string& subprotocol);
 
   void Hear(std::string_view message, bool binary) override;
@@ -34,11 +36,11 @@ class FoxgloveConversation : public Conversation {
   void Complain(const std::string& text);
 
   RunTable& runs_;
-  const MessageStore* store_ = nullptr;  // that the place is in
+  const MessageStore* store_ = nullptr;  // the store that the place is in
   MessageStore::Place place_{};
   std::deque<std::string> replies_;
   std::map<std::string, std::map<uint32_t, size_t>, std::less<>> subscriptions_;  // by channel: id, topic
-  std::deque<Message> ready_;  // of one message, to several subscriptions
+  std::deque<Message> ready_;  // one message, for several subscriptions
   std::string cdr_;
   uint64_t skipped_ = 0;
   int wrong_ = 0;

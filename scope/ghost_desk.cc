@@ -21,14 +21,14 @@ namespace {
 
 constexpr size_t kMostGhosts = 4;
 constexpr size_t kBatch = 16384;   // samples given to a thread at a time
-constexpr double kFirstLive = 10;  // s of history that a live ghost begins with
-constexpr int kNiceThread = 15;    // below the server's own, but not so low that it could not be ended
-constexpr double kMostBehind = 2;  // s of plant time, then it leaves samples out
+constexpr double kFirstLive = 10;  // s of history with which a live ghost begins
+constexpr int kNiceThread = 15;    // below the server's own, but not too low to be ended
+constexpr double kMostBehind = 2;  // s of plant time; a ghost further behind leaves samples out
 
 }  // namespace
 
-// A thread with a ghost. One batch goes in, one comes out. The server's side never waits for the mutex: the thread may have
-// lost the processor while it holds it.
+// A thread with a ghost. One batch goes in, and one comes out. The server's side never waits for the mutex,
+// because the thread may have lost the processor while it holds it.
 class GhostDesk::Worker {
  public:
   struct Result {
@@ -41,7 +41,7 @@ class GhostDesk::Worker {
   ~Worker() {
     ended_ = true;
     {
-      const std::lock_guard lock(mutex_);  // it either waits, or has not looked yet
+      const std::lock_guard lock(mutex_);  // the thread either waits, or has not looked yet
     }
     changed_.notify_all();
     thread_.join();
@@ -49,7 +49,8 @@ class GhostDesk::Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Takes what is ready; then, with `*next` not empty, hands it over if the thread is idle, and empties it.
+  // Takes the results that are ready. Then, if the thread is idle and `*next` is not empty, hands `*next`
+  // over and empties it.
   std::vector<Result> Exchange(std::vector<GhostSample>* next, std::string* problem) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock.owns_lock()) return {};
@@ -97,17 +98,17 @@ class GhostDesk::Worker {
   std::atomic<bool> sync_ = false;
   std::atomic<bool> ended_ = false;
   bool busy_ = false;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, because it uses all of the above
 };
 
 struct GhostDesk::Beside {
   const Run* run = nullptr;
   std::unique_ptr<Worker> worker;
   double resync_s = 0;
-  History::Row fed = 0;  // rows before it have been given to the worker, or are in `next`
+  History::Row fed = 0;  // rows before this one have been given to the worker, or are in `next`
   std::vector<GhostSample> next;
-  bool gap = false;       // some were left out before it
-  bool complete = false;  // of a log: told
+  bool gap = false;       // some rows were left out before the next one
+  bool complete = false;  // a log's run is over, and the worker has been told
   std::string problem;
 };
 
@@ -176,12 +177,12 @@ void GhostDesk::Collect(Run& run, Beside& beside) {
   const bool all_given = beside.fed == run.ticks.end() && beside.next.empty() && !had_next;
   if (all_given && !results.empty() && run.kind != Run::Kind::kLive && !beside.complete) {
     beside.complete = true;
-    ++run.revision;  // whoever shows the run asks again
+    ++run.revision;  // makes the page ask again
   }
 }
 
 void GhostDesk::Feed(Run& run, Beside& beside) {
-  if (!beside.next.empty()) return;  // the thread is still busy with the batch before
+  if (!beside.next.empty()) return;  // the thread is still busy with the batch before this one
   const History& ticks = run.ticks;
   if (beside.fed < ticks.begin()) {
     skipped_ += static_cast<int64_t>(ticks.begin() - beside.fed);
@@ -205,7 +206,7 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
     sample.measured = {value(TickColumn::kMotorAngle), value(TickColumn::kMotorSpeed),
                        value(TickColumn::kArmAngle),   value(TickColumn::kArmSpeed),
                        value(TickColumn::kP1),         value(TickColumn::kP2)};
-    // Ticks that the plant skipped are no gap: its voltage acted on.
+    // Ticks that the plant skipped are not a gap, because its voltage continued to act.
     const double expected = run.spacing() * (value(TickColumn::kSkipped) + 1.5);
     const bool lost = beside.fed > ticks.begin() && run.spacing() > 0 &&
                       sample.time - ticks.time(beside.fed - 1) > expected;

@@ -1,4 +1,5 @@
-// The ghosts beside runs, each computed on a thread of its own at a lower priority: they delay nobody.
+// The ghosts beside runs. Each is computed on a thread of its own at a lower priority, so that none delays
+// the server.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +13,21 @@ namespace hydro::scope {
 
 class GhostDesk : public GhostSwitch {
  public:
-  // A ghost beside a live run has the model of the configuration that the scope was started with (Run::listened), whatever the plant says
-  // that it runs with: a simulated one names its own model, beside which there is no gap. A log's ghost has the model that the log names.
+  // A ghost beside a live run has the model of the configuration with which the scope was started
+  // (Run::listened), no matter which model the plant reports: a simulated plant names its own model, and
+  // beside that model there is no gap. A log's ghost has the model that the log names.
   explicit GhostDesk(RunTable* runs);
   ~GhostDesk() override;
 
-  // For any run whose model is known; at most 4 at a time. A live one begins with the newest 10 s.
+  // Works for any run whose model is known, for at most 4 at a time. A live ghost begins with the newest 10
+  // s.
   Outcome Switch(uint32_t run, bool on, double resync_s) override;
   Outcome Sync(uint32_t run) override;
 
-  // Hands new samples to the threads and takes what they have made. Never waits.
+  // Hands new samples to the threads and takes their results. Never waits.
   void Poll();
 
-  // Samples of live runs that were left out because the machine was too slow.
+  // The number of samples of live runs that were left out because the machine was too slow.
   int64_t skipped() const { return skipped_; }
 
  private:

@@ -1,4 +1,4 @@
-// hydro-scope CONFIG | LOG: a running stack, or a log, in the browser.
+// hydro-scope CONFIG | LOG: shows a running stack, or a log, in the browser.
 #include <string>
 
 #include "base/input_error.h"

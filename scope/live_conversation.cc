@@ -13,7 +13,7 @@
 namespace hydro::scope {
 namespace {
 
-constexpr int kMostWrong = 20;  // in a row, then it is no page of ours
+constexpr int kMostWrong = 20;  // wrong messages in a row after which the client cannot be our page
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void LiveConversation::Reply(uint32_t id, bool ok, const std::string& text, cons
   replies_->push_back(ReplyMessage(id, ok, text, data));
 }
 
-// An answer may come when this conversation is over.
+// An answer may come after this conversation has ended.
 Done LiveConversation::ReplyTo(uint32_t id) {
   return [id, replies = std::weak_ptr(replies_)](const Outcome& outcome) {
     if (const auto here = replies.lock())
@@ -90,7 +90,7 @@ void LiveConversation::Arm(uint32_t id) {
 
 void LiveConversation::Mark(const LiveRequest& request) {
   Run& run = RunOf(request);
-  // Marks must not push out what the run itself has to tell.
+  // Marks must not push out the events of the run itself.
   if (run.events.last() >= EventList::kMost / 2) throw InputError("mark: the run has 10000 events already");
   run.events.Add({0, request.t, "mark", "", "", Printable(request.text)});
   Reply(request.id, true, "marked");
@@ -206,7 +206,8 @@ bool LiveConversation::NextEvent(Message* message) {
   for (const Run* run : context_.runs.All()) {
     Heard& heard = heard_[run->id];
     if (heard.run != run || heard.session != run->session) {
-      // A run is known by its address and session; a new one has no session before its first state, nor events.
+      // A run is identified by its address and session. Before its first state, a new run has neither a
+      // session nor events.
       heard = {run, run->session, heard.run == run && heard.session == 0 ? heard.n : 0};
     }
     heard.n = std::max(heard.n + 1, run->events.first()) - 1;
@@ -270,7 +271,7 @@ bool LiveConversation::NextStatus(Message* message) {
   return true;
 }
 
-// The views in turn, so that one that is always ready leaves room for the others.
+// Takes the views in turn, so that a view that is always ready leaves room for the others.
 bool LiveConversation::NextFrame(Message* message) {
   const TimePoint now = context_.now();
   auto view = views_.upper_bound(last_view_);

@@ -23,12 +23,12 @@ namespace hydro::scope {
 class GhostSwitch {
  public:
   virtual ~GhostSwitch() = default;
-  // What became of it, for the page.
+  // What became of the request, for the page.
   virtual Outcome Switch(uint32_t run, bool on, double resync_s) = 0;
   virtual Outcome Sync(uint32_t run) = 0;
 };
 
-// What conversations share. All of it outlives them.
+// What conversations share. Everything in it outlives them.
 struct LiveContext {
   RunTable& runs;
   OperatorDesk& desk;
@@ -37,10 +37,11 @@ struct LiveContext {
   std::function<double(uint32_t run)> silent_s;
   std::function<std::chrono::steady_clock::time_point()> now;
   int64_t* frames = nullptr;   // binary messages sent, of all clients
-  int64_t* dropped = nullptr;  // frames not made for clients that were too slow
+  int64_t* dropped = nullptr;  // frames not made because a client was too slow
 };
 
-// Bounded: what waits are requests (at most kMostWaiting, then nothing more is read), never frames.
+// The memory is bounded: only requests wait, never frames. When kMostWaiting requests wait, nothing more is
+// read.
 class LiveConversation : public Conversation {
  public:
   explicit LiveConversation(const LiveContext& context);
@@ -56,7 +57,7 @@ class LiveConversation : public Conversation {
   static constexpr size_t kMostViews = 16;
   static constexpr size_t kMostTriggers = 8;
 
-  // What is due once in a while.
+  // Work that is due now and then.
   struct Due {
     std::chrono::milliseconds every;
     TimePoint next{};
@@ -87,11 +88,11 @@ class LiveConversation : public Conversation {
   LiveContext context_;
   bool greeted_ = false;
   bool over_ = false;
-  int wrong_ = 0;  // requests in a row that were no requests
+  int wrong_ = 0;  // messages in a row that were not requests
   uint64_t revision_ = 0;
-  std::shared_ptr<std::deque<std::string>> replies_;  // shared with answers that come later
-  std::deque<LiveRequest> waiting_;                   // get and values
-  // How far a run's events are sent.
+  std::shared_ptr<std::deque<std::string>> replies_;  // shared with answers that arrive later
+  std::deque<LiveRequest> waiting_;                   // requests of the kinds get and values
+  // How far a run's events have been sent.
   struct Heard {
     const Run* run = nullptr;
     int64_t session = 0;
@@ -100,14 +101,14 @@ class LiveConversation : public Conversation {
   std::map<uint32_t, Heard> heard_;
   std::map<uint32_t, View> views_;
   std::map<uint32_t, Trigger> triggers_;
-  std::string capture_;     // after its state
-  uint32_t last_view_ = 0;  // in turn
+  std::string capture_;     // sent after its state
+  uint32_t last_view_ = 0;  // the views take turns
   Due clock_{std::chrono::milliseconds(100)};
   Due processes_{std::chrono::milliseconds(1000)};
   Due runs_{std::chrono::milliseconds(200)};
   Due dropped_{std::chrono::milliseconds(1000)};
   std::map<uint32_t, std::string> tunings_;  // by run, the message that was sent last
-  std::deque<std::string> said_;             // of the live runs, to be sent
+  std::deque<std::string> said_;             // by the live runs, and still to be sent
   uint64_t told_bins_ = 0;
   uint64_t told_frames_ = 0;
   uint64_t past_bins_ = 0;  // of views that have ended

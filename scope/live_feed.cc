@@ -6,8 +6,8 @@
 namespace hydro::scope {
 namespace {
 
-constexpr int kMostTurns = 4;         // of up to 4096 messages: a flood must not keep the browsers waiting
-constexpr double kQuietAfter = 0.05;  // s without a state: no answers are coming
+constexpr int kMostTurns = 4;  // each of up to 4096 messages: a flood must not keep the browsers waiting
+constexpr double kQuietAfter = 0.05;  // s without a state, after which no answers are to be expected
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The bus of a running stack, listened to. It sends nothing: the stack does not know that a scope is there.
+// Listens to the bus of a running stack. It sends nothing, so the stack does not know that a scope exists.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,9 @@ namespace hydro::scope {
 
 class LiveFeed {
  public:
-  // Listens to the stack of each live run of `runs`: one, or the joints of a limb. `limb`: what the limb's own channels end in; those of
-  // a stack by itself. `history_s`: how much of each run is kept.
+  // Listens to the stack of each live run of `runs`: one stack, or the joints of a limb. `limb` is the suffix
+  // of the limb's own channels, or of the channels of a single stack. `history_s` is how much of each run is
+  // kept.
   LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& limb, double history_s, RunTable* runs);
 
   // Takes what has arrived. Never waits.
@@ -30,13 +31,13 @@ class LiveFeed {
   double silent_s(uint32_t run) const;
 
   int64_t messages() const { return messages_; }
-  // Of all stacks: states, messages that are none of this version's, states of a second plant.
+  // Totals over all stacks: states, messages that are not of this version, states of a second plant.
   int64_t states() const;
   int64_t undecodable() const;
   int64_t foreign() const;
 
  private:
-  // One that is listened to.
+  // A stack to which the feed listens.
   struct Stack {
     Stack(const Run& first, RunTable* runs);
 
@@ -58,7 +59,7 @@ class LiveFeed {
   RunTable& runs_;
   std::vector<std::unique_ptr<Stack>> stacks_;
   std::unordered_map<std::string, Stack*> by_channel_;
-  std::string channel_;  // looked up, reused
+  std::string channel_;  // a key for lookups, reused
   int64_t messages_ = 0;
 };
 

@@ -54,7 +54,7 @@ OrderedJson Noise(const Run& run) {
   return noise;
 }
 
-// Those of the run's model, with its units of time and angle: what `limits` and `noise` are in.
+// The units of the run's model, including those of time and angle, in which `limits` and `noise` are given.
 std::string Units(const UnitSystem& units) {
   return std::string(units.length) + ", " + std::string(units.force) + ", s, " + units.UnitFor("psi") +
          ", rad";
@@ -131,7 +131,7 @@ std::string ProcessesMessage(const Run& run) {
 }
 
 std::string ClockMessage(const Run& run, double silent_s) {
-  constexpr double kSilent = 0.5;  // s
+  constexpr double kSilent = 0.5;  // s without a state after which a run counts as silent
   const bool running = silent_s >= 0 && silent_s < kSilent;
   return Text({{"op", "clock"},
                {"run", run.id},

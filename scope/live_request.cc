@@ -21,7 +21,7 @@ InputError Wrong(const std::string& key, const json& found, const std::string& a
   return InputError(key + ": found " + Quoted(JsonText(found)) + ", allowed is " + allowed);
 }
 
-// The fields of a request, of which only known ones are read.
+// The fields of a request. Only known fields are read.
 class Fields {
  public:
   explicit Fields(const json& object) : object_(object) {}

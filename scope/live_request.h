@@ -1,4 +1,4 @@
-// What a page asks over its web socket, read and checked (docs/developers/scope_protocol.md).
+// Reads and checks the requests that a page sends over its web socket (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct LiveRequest {
   Op op = Op::kView;
   uint32_t id = 0;
   uint32_t run = 0;
-  ViewRequest view;        // kView; of kGet and kValues the channels and pixels
+  ViewRequest view;        // kView; kGet and kValues use its channels and pixels
   TriggerRequest trigger;  // kTrigger
   double t0 = 0;           // kGet
   double t1 = 0;
@@ -43,7 +43,8 @@ struct LiveRequest {
   std::vector<std::string> entries;  // kSet
 };
 
-// Throws InputError: what was found, what is allowed. `id` receives the request's number where it has one, also then.
+// Throws InputError: what was found, what is allowed. `id` receives the request's number if it has one, also
+// when this throws.
 LiveRequest ParseLiveRequest(std::string_view message, uint32_t* id);
 
 }  // namespace hydro::scope

@@ -95,7 +95,7 @@ void LiveTuning::Describe() {
                          {"acts_in", row.acts_in}});
     }
   } catch (const InputError&) {
-    // A stack of another version: nothing to show, and the plant refuses what this one asks.
+    // The stack has another version: there is nothing to show, and its plant refuses this version's requests.
   }
   const std::string text = in_force.version > 0 ? Printable(runs::DescribeInForce(in_force)) : std::string();
   message_ = JsonText(OrderedJson({{"op", "tuning"},

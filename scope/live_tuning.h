@@ -1,5 +1,5 @@
-// Tuning from the page: the values in force, and requests for others, over the scope's own bus. Without a request it only
-// listens.
+// Tuning from the page: shows the values in force and requests other values, over the scope's own bus.
+// Without a request it only listens.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ namespace hydro::scope {
 
 class LiveTuning : public Tuning {
  public:
-  // `run`: the live run whose values they are. `control`: whether the page may ask. Both are for the message.
+  // `run` is the live run to which the values belong, and `control` says whether the page may make requests.
+  // Both go into the message.
   LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, uint32_t run,
              bool control);
 
@@ -25,20 +26,20 @@ class LiveTuning : public Tuning {
   void Undo(Done done) override;
   const std::string& message() const override { return message_; }
 
-  // Follows what has been heard. Call it after each turn of the bus.
+  // Processes what has been heard. Call it after each turn of the bus.
   void Poll();
 
  private:
-  // Whether a request can be sent now; otherwise says why not.
+  // Whether a request can be sent now; otherwise calls `done` with the reason.
   bool Ready(const Done& done);
   void Describe();
 
   tuning::TuningClient client_;
   uint32_t run_;
   bool control_;
-  Done waiting_;  // for the answer; null: nothing is asked
+  Done waiting_;  // receives the answer; null: no request is pending
   std::string message_;
-  // Of the values in the message.
+  // Session of the values in the message.
   std::optional<int64_t> session_;
   int64_t version_ = -1;
 };

@@ -23,7 +23,7 @@ OperatorDesk::~OperatorDesk() {
 void OperatorDesk::Run(Errand* errand, Done done, std::function<launch::OperatorResult()> work) {
   errand->waiting.push_back(std::move(done));
   if (errand->waiting.size() > 1) return;
-  if (errand->thread.joinable()) errand->thread.join();  // it has ended: it posted its result last
+  if (errand->thread.joinable()) errand->thread.join();  // the thread has ended: it posted its result last
   errand->thread = std::thread([this, errand, work = std::move(work)] {
     launch::OperatorResult result;
     try {

@@ -1,5 +1,5 @@
-// What the page may ask of the stack: to stop always, the rest where [scope] control = true. Each request runs on a thread of
-// its own, so that nothing on the page waits for it.
+// What the page may ask of the stack. It may always stop it; the rest needs [scope] control = true. Each
+// request runs on a thread of its own, so that nothing on the page waits for it.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace hydro::scope {
 
-// How a request ended, for the page. `data`: JSON, or empty.
+// How a request ended, for the page. `data` is JSON, or empty.
 struct Outcome {
   bool ok = false;
   std::string text;
@@ -36,19 +36,21 @@ class Tuning {
 
 class OperatorDesk {
  public:
-  // `post` runs work on the server's thread. `tunings`: by live run; of one that has none nothing can be set. Without `config` (a log is
-  // shown) there is no stack. Of a limb it is what its joints have in common.
+  // `post` runs work on the server's thread. `tunings` is by live run; nothing can be set in a run that has
+  // none. Without `config` (a log is shown) there is no stack. For a limb, `config` is what its joints have
+  // in common.
   OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
                std::function<void(std::function<void()>)> post, std::map<uint32_t, Tuning*> tunings);
   ~OperatorDesk();
   OperatorDesk(const OperatorDesk&) = delete;
   OperatorDesk& operator=(const OperatorDesk&) = delete;
 
-  // As hydro-launch --stop: every process that drives the motor is asked first. A stop that is under way answers all who ask.
+  // Stops the stack as hydro-launch --stop does: every process that drives the motor is asked first. A stop
+  // that is already under way answers all requests.
   void Stop(Done done);
-  // As hydro-launch --rearm.
+  // Re-arms as hydro-launch --rearm does.
   void Rearm(Done done);
-  // What that would do now: a sentence, and as `data` the numbers.
+  // What re-arming would do now: a sentence, and the numbers in `data`.
   void ForecastRearm(Done done);
   void Set(uint32_t run, const std::vector<std::string>& entries, Done done);
   void Undo(uint32_t run, Done done);
@@ -57,14 +59,14 @@ class OperatorDesk {
   const std::map<uint32_t, Tuning*>& tunings() const { return tunings_; }
 
  private:
-  // A request of one kind: one thread at a time.
+  // A request of one kind. Only one thread at a time works on it.
   struct Errand {
     std::thread thread;
     std::vector<Done> waiting;
   };
   void Run(Errand* errand, Done done, std::function<launch::OperatorResult()> work);
   bool Refused(const Done& done) const;
-  // Null: nothing can be set of that run, and `done` has been told.
+  // Returns null after calling `done` when nothing can be set in that run.
   Tuning* TuningOf(uint32_t run, const Done& done) const;
 
   std::shared_ptr<const settings::StackConfig> config_;

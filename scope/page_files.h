@@ -10,8 +10,8 @@ namespace hydro::scope {
 
 class PageFiles {
  public:
-  // `folder`: that of the sources, with node_modules/uplot in it; empty: the files in the program. Throws InputError when the
-  // folder has no index.html.
+  // `folder`: that of the sources, with node_modules/uplot in it; empty: the files in the program. Throws
+  // InputError when the folder has no index.html.
   explicit PageFiles(std::string folder);
 
   // Whether a path is that of a file of the page, there or not: "/" and "/assets/...".

@@ -34,18 +34,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kNice = 5;             // a scope gives way to what drives a motor without a real-time priority
-constexpr auto kWatchedTurn = 16ms;  // with clients: 60 frames a second
-constexpr auto kLoneTurn = 20ms;     // without: often enough for the kernel's buffer
-constexpr auto kLogTurn = 50ms;      // a log does not change
-constexpr double kBytesPerTick = 600;     // of messages, generously
-constexpr size_t kLeastBytes = 16 << 20;  // of a run's messages
+constexpr int kNice = 5;  // a scope yields to processes that drive a motor without a real-time priority
+constexpr auto kWatchedTurn = 16ms;       // with clients: 60 frames per second
+constexpr auto kLoneTurn = 20ms;          // without clients: often enough for the kernel's buffer
+constexpr auto kLogTurn = 50ms;           // a log does not change
+constexpr double kBytesPerTick = 600;     // of messages, a generous estimate
+constexpr size_t kLeastBytes = 16 << 20;  // for a run's messages
 
 std::string FileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
 bool IsConfig(const std::string& file) { return file.ends_with(".toml"); }
 
-// A token from outside makes tests and scripts possible; a short one would be no secret.
+// A token from outside makes tests and scripts possible. A short one would not be secret.
 std::string Token() {
   const char* const given = std::getenv("HYDRO_SCOPE_TOKEN");
   if (given == nullptr) return FreshToken();
@@ -69,7 +69,7 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// What the kernel takes (sched_setattr(2)); Debian 12 has no header for it.
+// The argument of sched_setattr(2), for which Debian 12 has no header.
 struct SchedulingAttributes {
   uint32_t size = 48;
   uint32_t policy = SCHED_BATCH;
@@ -81,9 +81,10 @@ struct SchedulingAttributes {
   uint64_t period = 0;
 };
 
-// The loops of the stack must not notice that a scope runs beside them. As a batch process it interrupts nobody when it
-// wakes up, and with the longest of slices everybody who wakes up interrupts it (from Linux 6.12 on; before, sleepers did
-// anyway). A lower class yet (SCHED_IDLE) would leave the stop button without a processor on a busy machine.
+// The loops of the stack must not notice that a scope runs beside them. A batch process interrupts no other
+// process when it wakes up, and because this one has the longest slice, every process that wakes up
+// interrupts it (from Linux 6.12 on; before, sleepers did so anyway). An even lower class (SCHED_IDLE) would
+// leave the stop button without a processor on a busy machine.
 void GiveWay() {
   const SchedulingAttributes attributes;
   if (syscall(SYS_sched_setattr, 0, &attributes, 0) != 0) {
@@ -140,7 +141,7 @@ class ScopeApp {
   }
 
  private:
-  // A stack, one joint of a limb, or all of them.
+  // Loads a stack, one joint of a limb, or all joints.
   void LoadConfig(const ScopeRequest& request) {
     std::vector<std::string> overrides = request.overrides;
     if (request.joint) overrides.push_back("joint=" + *request.joint);
@@ -153,7 +154,7 @@ class ScopeApp {
     }
   }
 
-  // A limb in real time sends some of its states; all joints share what history may take.
+  // In real time, a limb sends only some of its states. All joints share the memory for history.
   void StartRun(const std::string& name, std::shared_ptr<const settings::StackConfig> config) {
     double ticks = section_.history_s * config->plant.rate_hz;
     if (!limb_.joints.empty()) {
@@ -231,9 +232,9 @@ class ScopeApp {
   }
 
   PageFiles page_;
-  // Null: a log is shown. Of a limb what its joints have in common.
+  // Null: a log is shown. For a limb, what its joints have in common.
   std::shared_ptr<const settings::StackConfig> config_;
-  settings::LimbConfig limb_;  // without joints: the stack of config_ alone
+  settings::LimbConfig limb_;  // without joints: there is only the stack of config_
   settings::ScopeSection section_;
   std::string token_;
   RunTable runs_;

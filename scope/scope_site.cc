@@ -52,7 +52,7 @@ uint32_t RunIdOf(const json& body) {
   return static_cast<uint32_t>(id);
 }
 
-// A name for a file that a browser saves or shows: no path, no quotes.
+// A file name that a browser can save or show: no path, no quotes.
 std::string PlainName(const std::string& name) {
   std::string plain;
   for (const char c : name.substr(name.find_last_of('/') + 1).substr(0, 100)) {
@@ -146,7 +146,7 @@ void ScopeSite::Open(const Request& request, const Reply& reply) {
   const auto given = request.query.find("name");
   const std::string name = PlainName(given == request.query.end() ? "run.lcmlog" : given->second);
   const std::string file = request.body_file;
-  std::set<std::string> files;  // a limb's log is one, with a run for each joint
+  std::set<std::string> files;  // a limb's log is one file with a run for each joint
   for (const Run* run : context_.runs.All()) files.insert(run->log_file);
   if (files.size() >= kMostRuns) {
     std::remove(file.c_str());
@@ -176,7 +176,7 @@ void ScopeSite::Open(const Request& request, const Reply& reply) {
       };
     } catch (const std::exception& error) {
       std::remove(file.c_str());
-      // The server's own name of the file says nothing to the user.
+      // The name that the server gave the file means nothing to the user.
       std::string text = error.what();
       for (size_t at = text.find(file); at != std::string::npos; at = text.find(file, at + name.size())) {
         text.replace(at, file.size(), name);

@@ -1,4 +1,5 @@
-// What hydro-scope serves: the page, its web sockets, and files in and out (docs/developers/scope_protocol.md).
+// What hydro-scope serves: the page, its web sockets, and uploaded and downloaded files
+// (docs/developers/scope_protocol.md).
 #pragma once
 
 #include <functional>
@@ -16,7 +17,7 @@ namespace hydro::scope {
 
 class ScopeSite : public Site {
  public:
-  // `upload_bytes`: of a log that is handed in.
+  // `upload_bytes` is the largest size of an uploaded log.
   ScopeSite(PageFiles page, LiveContext context, SideWork* work, DiagnoseJobs* jobs, int64_t upload_bytes);
 
   bool IsPublic(const std::string& path) const override;

@@ -21,9 +21,10 @@ namespace {
 constexpr size_t kMostWaiting = 8;
 
 constexpr std::string_view kName = "hydro-scope.";
-constexpr time_t kSurelyLocked_s = 60;  // a folder is locked as soon as it is made
+constexpr time_t kSurelyLocked_s = 60;  // s; a folder is locked right after it is made
 
-// Of scopes that were killed: their folders are there, are this user's, and nobody holds the lock.
+// Removes the folders of scopes that were killed: they exist, belong to this user, and nothing holds their
+// lock.
 void RemoveAbandoned(const std::filesystem::path& temporary) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(temporary, ignored)) {
@@ -49,7 +50,8 @@ std::string MakeFolder() {
   return name;
 }
 
-// The lock by which other scopes see that this one lives. It ends with the process, however that ends.
+// Takes the lock that shows other scopes that this one is alive. The lock ends with the process, however the
+// process ends.
 int LockFolder(const std::string& name) {
   const int folder = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) flock(folder, LOCK_SH | LOCK_NB);
@@ -67,7 +69,7 @@ SideWork::SideWork(std::function<void(std::function<void()>)> post)
 SideWork::~SideWork() {
   {
     const std::lock_guard lock(mutex_);
-    ended_ = true;  // also interrupts the work that is being done
+    ended_ = true;  // also interrupts the work in progress
   }
   changed_.notify_all();
   thread_.join();

@@ -1,4 +1,5 @@
-// Work that takes long, on a thread of its own, one piece after another: logs are opened and cut out there.
+// Work that takes long runs on a thread of its own, one piece after another. Logs are opened and cut out
+// there.
 #pragma once
 
 #include <atomic>
@@ -15,18 +16,19 @@ class SideWork {
  public:
   // `post` runs something on the server's thread.
   explicit SideWork(std::function<void(std::function<void()>)> post);
-  // What has not begun is left out, and who reads a log or a table is interrupted.
+  // Drops work that has not begun, and interrupts the reading of a log or a table.
   ~SideWork();
   SideWork(const SideWork&) = delete;
   SideWork& operator=(const SideWork&) = delete;
 
-  // Runs `work` there; then what it returned runs on the server's thread. False: too much waits already.
+  // Runs `work` on that thread, and then runs what it returned on the server's thread. Returns false when too
+  // much work is waiting.
   bool Do(std::function<std::function<void()>()> work);
 
-  // A folder of this process's own for its files, removed at the end; that of a killed process by the next
-  // scope.
+  // A folder for this process's files, removed at the end. The next scope removes the folder of a killed
+  // process.
   const std::string& folder() const { return folder_; }
-  // The name of a file in it that has not been given before.
+  // A name of a file in the folder that has not been given before.
   std::string FreshFile(const std::string& ending);
 
  private:
@@ -40,7 +42,7 @@ class SideWork {
   std::condition_variable changed_;
   std::deque<std::function<std::function<void()>()>> waiting_;
   std::atomic<bool> ended_ = false;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, because it uses all of the above
 };
 
 }  // namespace hydro::scope

@@ -7,10 +7,10 @@
 
 namespace hydro::settings {
 
-// One line "key = value" for each entry of the configuration and of its model on which more than one process acts,
-// and for the version of this program, sorted by key. Two processes may run together when their texts are equal.
-// Left out is what one process alone acts on (noise, driver, the length of the run) and what may differ by host (paths, bus,
-// processors).
+// One line "key = value", sorted by key, for each entry of the configuration and of its model on which more
+// than one process acts, and for the version of this program. Two processes may run together when their texts
+// are equal. The text leaves out what one process alone acts on (noise, driver, the length of the run) and
+// what may differ by host (paths, bus, processors).
 std::string AgreedEntries(const StackConfig& config);
 
 }  // namespace hydro::settings

@@ -26,7 +26,7 @@ bool IsMulticastGroup(std::string_view group) {
   if (std::count(group.begin(), group.end(), '.') != 3) return false;
   for (int i = 0; i < 4; ++i) {
     const std::string_view number = Take(&group, '.');
-    if (number.size() > 1 && number.front() == '0') return false;  // octal to some
+    if (number.size() > 1 && number.front() == '0') return false;  // some programs read it as octal
     if (!WholeNumber(number, i == 0 ? 224 : 0, i == 0 ? 239 : 255)) return false;
   }
   return true;

@@ -5,8 +5,8 @@
 
 namespace hydro::settings {
 
-// Empty when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES; otherwise what is allowed.
-// LCM itself silently misreads malformed addresses.
+// Returns an empty text when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES; otherwise
+// returns what is allowed. LCM itself silently misreads malformed addresses.
 std::string WhatIsWrongWithBusUrl(const std::string& url);
 
 }  // namespace hydro::settings

@@ -39,7 +39,7 @@ std::string Filled(const std::string& name, const std::string& text, const std::
   return text;
 }
 
-// The whole of `text` as a number; CLI11's own conversion would also accept "nan" and "0x10".
+// Reads the whole of `text` as a number. CLI11's own conversion would also accept "nan" and "0x10".
 double Number(const std::string& name, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -68,7 +68,7 @@ std::vector<std::string> OptionNames(const CLI::App& app) {
   return names;
 }
 
-// CLI11's messages in this project's form: what was found, what is allowed.
+// Words CLI11's messages in this project's form: what was found, what is allowed.
 std::string Message(const CLI::ParseError& error, const CLI::App& app) {
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -149,7 +149,7 @@ class CommandLine::Impl {
     return names;
   }
 
-  // The verb whose options were being read, else the program.
+  // The verb whose options were being read, or the program if there was none.
   const CLI::App& Current() const {
     const auto chosen = app_->get_subcommands();
     return chosen.empty() ? *app_ : *chosen.front();
@@ -179,7 +179,7 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
   AddPositional("CONFIG", &options->config, "FILE the stack's configuration, TOML", config_required);
   AddOption("--set", &options->overrides,
             "SECTION.KEY=VALUE changes one key of CONFIG, e.g. pressure.damping_ratio=0.7");
-  // The callbacks run in the order of declaration, so these have the last word over --set.
+  // The callbacks run in the order of declaration, so these options override --set.
   const auto add = [&](const std::string& name, const std::string& help, auto as_override) {
     impl_->Add(name, options, help, false, [=](const std::string& shown, const std::string& text) {
       CommonOptions changed = *options;
@@ -241,7 +241,7 @@ void CommandLine::AddOption(const std::string& names, int64_t* target, const std
 
 void CommandLine::AddOption(const std::string& names, std::vector<std::string>* target,
                             const std::string& help, bool required) {
-  // One value per occurrence: the next argument may be CONFIG.
+  // Each occurrence takes one value, because the next argument may be CONFIG.
   impl_->AddList(names, target, help, required)->allow_extra_args(false);
 }
 
@@ -303,7 +303,7 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
       return 2;
     }
   }
-  // CLI11 would take the argument after "--log=" for its value.
+  // CLI11 would take the argument after "--log=" as its value.
   for (int i = 1; i < argc; ++i) {
     const std::string found = argv[i];
     if (!found.starts_with("--") || found.find('=') != found.size() - 1) continue;

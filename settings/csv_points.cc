@@ -29,7 +29,7 @@ size_t ColumnOf(const CsvText& text, const std::string& name) {
   return static_cast<size_t>(found - names.begin());
 }
 
-// A file that is cut in its last number has another number there, and a machine would follow it.
+// A file that was cut off inside its last number ends with a different number, which a machine would follow.
 void CheckLastNumber(const CsvText& text, size_t time_column, size_t value_column) {
   const size_t last = text.names().size() - 1;
   if (!text.unended() || (last != time_column && last != value_column)) return;
@@ -43,8 +43,8 @@ double FiniteNumber(const CsvText& text, size_t column) {
   return *value;
 }
 
-// The plain layout, unless it does not have the column of times where another one does: semicolons or tabs between cells, decimal
-// commas.
+// Chooses the plain layout unless only the other layout (semicolons or tabs between cells, decimal commas)
+// has the column of times.
 CsvLayout LayoutOf(const std::string& text, const std::string& file, const std::string& column) {
   const CsvText plain(text, file);
   const auto is_time = [](const std::string& name) { return Trimmed(name) == "time_s"; };

@@ -13,7 +13,7 @@ namespace {
 using Source = SensorSection::Source;
 
 constexpr int kMostLines = 4095;
-constexpr int kLongestSettling = 99999;  // ns, what Comedi's wait instruction takes
+constexpr int kLongestSettling = 99999;  // ns, the longest that Comedi's wait instruction takes
 
 void ReadLine(SectionReader& section, BoardLine* line) {
   section.Integer("subdevice", &line->subdevice, 0, kMostLines);
@@ -32,7 +32,7 @@ void ReadAnalog(SectionReader& section, int* range, AnalogReference* reference) 
                                   reference);
 }
 
-// A scale of zero would make every reading the same; an infinite one, none.
+// With a scale of zero every reading would be the same; with an infinite scale there would be none.
 void ReadScale(SectionReader& section, double* scale, double* offset, const std::string& unit) {
   if (section.Number("scale", scale) && *scale == 0) {
     throw section.Error("scale", "0", "a finite number other than 0, in " + unit);
@@ -108,7 +108,7 @@ SensorSection ReadSensor(SectionReader section, DriverKind kind,
   return sensor;
 }
 
-// The rate of an angle needs the angle.
+// A rate derived from an angle needs that angle.
 void CheckDerivative(const SectionReader& section, const std::string& speed, const SensorSection& rate,
                      const std::string& angle, const SensorSection& of) {
   if (rate.source != Source::kDerivative || of.source != Source::kNone) return;
@@ -116,7 +116,7 @@ void CheckDerivative(const SectionReader& section, const std::string& speed, con
                       "[driver." + angle + "] beside it, or source = \"analog\"");
 }
 
-// What only a driver of the user's own has.
+// Reads the keys that only a driver of the user's own has.
 void ReadOwn(SectionReader& section, DriverSection* driver) {
   section.Require("device", "what the driver opens, e.g. \"can0\" or \"udp://192.168.1.7:5000\"");
   driver->own.place = section.place();
@@ -126,7 +126,7 @@ void ReadOwn(SectionReader& section, DriverSection* driver) {
   }
 }
 
-// What only a front end has.
+// Reads the keys that only a front end has.
 void ReadFrontEnd(SectionReader& section, FrontEndSection* front_end) {
   if (section.Text("url", &front_end->url)) {
     const std::string allowed = WhatIsWrongWithFrontEndUrl(front_end->url, &front_end->address);

@@ -54,7 +54,7 @@ std::string NameOf(const std::vector<std::pair<std::string, Value>>& names, Valu
   return found->first;
 }
 
-// A string, or a list of them.
+// Reads a string or a list of strings.
 std::vector<std::string> Texts(SectionReader& section, const std::string& key, const std::string& allowed) {
   const TomlNode* node = section.Take(key);
   if (node == nullptr) return {};
@@ -74,7 +74,7 @@ std::vector<std::string> Keys(const TomlNode& table, const std::string& key) {
   std::vector<std::string> keys;
   const TomlNode* inner = table.Find(key);
   if (inner == nullptr || !inner->is(TomlNode::Kind::kTable))
-    return keys;  // SectionReader says what is wrong
+    return keys;  // SectionReader reports what is wrong
   for (const TomlMember& member : inner->members) keys.push_back(member.first);
   return keys;
 }

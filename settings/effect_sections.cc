@@ -15,7 +15,7 @@
 namespace hydro::settings {
 namespace {
 
-// What is wrong with a list of numbers, as found; "" if nothing is.
+// What was found wrong in a list of numbers; "" if nothing is wrong.
 std::string FaultIn(const TomlNode& node, const model::ParameterInfo& info) {
   if (!node.is(TomlNode::Kind::kArray)) return node.Shown();
   const NumberRange range = RangeOf(info);
@@ -124,7 +124,7 @@ std::vector<model::EffectDescription> ReadEffects(SectionReader section, const T
       effects.back().formulas = formulas;
       continue;
     }
-    // [effects.pump.stribeck] without quotes is a table in a table.
+    // Without quotes, [effects.pump.stribeck] is a table in a table.
     if (const model::EffectInfo* info = model::FindEffect(member.first)) {
       SectionReader reader = section.Section(member.first);
       effects.push_back(ReadEffect(std::move(reader), *info, units));

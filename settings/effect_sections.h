@@ -9,8 +9,8 @@
 
 namespace hydro::settings {
 
-// The effects in the section `effects`, whose table is `table` (null: there is none). Throws InputError naming
-// place and key.
+// Reads the effects in the section `effects`, whose table is `table` (null: there is none). Throws InputError
+// naming place and key.
 std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table,
                                                   const UnitSystem& units);
 

@@ -18,7 +18,7 @@ constexpr Baud kBauds[] = {{9600, B9600},       {19200, B19200},     {38400, B38
                            {1500000, B1500000}, {2000000, B2000000}, {2500000, B2500000}, {3000000, B3000000},
                            {3500000, B3500000}, {4000000, B4000000}};
 constexpr char kAllowed[] = "serial:/dev/NAME?baud=RATE, udp://HOST:PORT or unix:/PATH";
-constexpr size_t kLongestSocketPath = 107;  // what a sockaddr_un holds
+constexpr size_t kLongestSocketPath = 107;  // the longest path that a sockaddr_un holds
 
 std::optional<int> WholeNumber(std::string_view text, int most) {
   int value = 0;

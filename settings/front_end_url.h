@@ -12,14 +12,14 @@ struct FrontEndUrl {
   Kind kind = Kind::kSerial;
   std::string path;  // kSerial: the device file; kUnix: the socket
   int baud = 0;  // kSerial: bits per second; 0: the port's speed is left as it is, which USB devices ignore
-  std::string host;  // kUdp: a name or an address; of IPv6 without its brackets
+  std::string host;  // kUdp: a name or an address; an IPv6 address without its brackets
   std::string port;  // kUdp: a number from 1 to 65535
 };
 
-// Empty, and `out` filled in, when `url` is one; otherwise what is allowed.
+// Returns an empty text and fills in `out` when `url` is such an address; otherwise returns what is allowed.
 std::string WhatIsWrongWithFrontEndUrl(const std::string& url, FrontEndUrl* out);
 
-// The termios constant of a rate of the list that Linux has (B115200); none for any other.
+// The termios constant of a baud rate that Linux lists (B115200); none for any other rate.
 std::optional<unsigned> BaudConstant(int baud);
 
 }  // namespace hydro::settings

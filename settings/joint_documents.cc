@@ -15,13 +15,14 @@ namespace hydro::settings {
 namespace {
 
 constexpr char kChoice[] = "joint=";
-// What a joint may have of its own. The others (bus, time, plant, logger) are the process's, which all its joints share.
+// The sections that a joint may have of its own. The others (bus, time, plant, logger) belong to the process,
+// and all its joints share them.
 constexpr std::array kOwnSections{"model", "pressure", "position", "reference", "limits", "noise", "driver"};
 constexpr std::array kOfTheWhole{"joint", "limb", "arm"};
-// What the limb has once, for all its joints.
+// The sections that the limb has once, for all its joints.
 constexpr std::array kShared{"bus", "time", "plant", "logger", "scope", "limb", "arm", "process"};
 
-// LCM's channel names end at 63 bytes; the longest of ours is HYDRO_TUNING_REQUEST.
+// LCM's channel names have at most 63 bytes, and this project's longest is HYDRO_TUNING_REQUEST.
 constexpr size_t kLongestName = 24;
 
 bool IsJointName(const std::string& name) {
@@ -70,7 +71,7 @@ bool Concerns(const std::string& override, const std::string& section) {
   return override.starts_with(section + ".") || override.starts_with(section + "=");
 }
 
-// The overrides that every joint's own document takes.
+// The overrides that apply to every joint's own document.
 std::vector<std::string> OfAStack(const std::vector<std::string>& overrides) {
   std::vector<std::string> kept;
   for (const std::string& one : overrides) {
@@ -96,7 +97,7 @@ void Put(TomlNode* section, const std::string& key, TomlNode value) {
   section->members.push_back({key, std::move(value)});
 }
 
-// The processes of a stack with this joint alone: those that name it.
+// Keeps the processes of a stack with this joint alone: those that name the joint.
 void KeepProcessesOf(const std::string& name, TomlNode* root) {
   TomlNode* processes = root->Find("process");
   if (processes == nullptr || !processes->is(TomlNode::Kind::kArray)) return;
@@ -113,7 +114,7 @@ void KeepProcessesOf(const std::string& name, TomlNode* root) {
 
 void CountSeedUp(size_t index, TomlNode* root) {
   TomlNode* noise = SectionOf(root, "noise");
-  if (!noise->is(TomlNode::Kind::kTable)) return;  // its reader says so
+  if (!noise->is(TomlNode::Kind::kTable)) return;  // the section's reader reports this
   const TomlNode* given = noise->Find("seed");
   TomlNode seed;
   seed.kind = TomlNode::Kind::kInteger;

@@ -1,5 +1,5 @@
-// A configuration with [[joint]] sections as one document for each joint: what the joints have in common, with what is the
-// joint's own over it.
+// Splits a configuration with [[joint]] sections into one document for each joint: the common settings,
+// overlaid with the joint's own.
 #pragma once
 
 #include <optional>
@@ -18,19 +18,21 @@ struct JointDocument {
 // Whether the document describes several joints: it has a [[joint]] section.
 bool HasJoints(const TomlNode& root);
 
-// The names of its joints, in the document's order. Throws InputError for a name that is missing, unfit for a channel's suffix, or
-// there twice.
+// The names of its joints, in the document's order. Throws InputError for a name that is missing, that does
+// not fit in a channel's suffix, or that occurs twice.
 std::vector<std::string> JointNames(const TomlNode& root);
 
-// What separates a joint's channels from the others': "_" and its name, behind the configuration's own suffix.
+// What tells a joint's channels from the others': the configuration's own suffix, followed by "_" and the
+// joint's name.
 std::string JointSuffix(const std::string& common_suffix, const std::string& joint);
 
-// The joint that `overrides` choose ("joint=NAME", which --joint is short for); takes the choice off them.
+// Returns the joint that `overrides` choose ("joint=NAME", for which --joint is short) and removes the choice
+// from them.
 std::optional<std::string> TakeJointChoice(std::vector<std::string>* overrides);
 
-// A document for each joint. `overrides` ("section.key=value") hold for every joint, also over what is its own; those that begin with
-// "joint.NAME." for that one. noise.seed counts up from joint to joint, so that their noise differs, unless a joint states its own.
-// Throws InputError.
+// Makes a document for each joint. `overrides` ("section.key=value") apply to every joint and override its
+// own values too; those that begin with "joint.NAME." apply to that joint alone. noise.seed counts up from
+// joint to joint, so that their noise differs, unless a joint states its own. Throws InputError.
 std::vector<JointDocument> SplitJoints(const TomlNode& root, const std::vector<std::string>& overrides);
 
 }  // namespace hydro::settings

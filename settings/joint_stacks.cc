@@ -17,7 +17,8 @@ std::string ErrorOf(const JointDocument& document, const std::string& file) {
   return "";
 }
 
-// The place in `node`, or in what is in it, that the message begins with; empty: it begins with another.
+// The place in `node`, or in a node inside it, with which the message begins; empty: the message begins with
+// some other place.
 std::string PlaceIn(const TomlNode& node, const std::string& message) {
   if (message.starts_with(node.place + ": ")) return node.place;
   for (const TomlMember& member : node.members) {
@@ -29,7 +30,7 @@ std::string PlaceIn(const TomlNode& node, const std::string& message) {
   return "";
 }
 
-// What a joint has from the sections that hold for all.
+// The values of a joint that come from the sections for all joints.
 TomlNode WithoutOwn(TomlNode document, const TomlNode& own) {
   for (const auto& [section, values] : own.members) {
     TomlNode* merged = document.Find(section);
@@ -54,7 +55,7 @@ void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
     const TomlNode& document = documents[i].root;
     try {
       if (i < as_written.size()) CheckUnitsOfOtherModel(as_written[i].root, document, file);
-      if (root.Find("arm") != nullptr) continue;  // whose joints all have the same units
+      if (root.Find("arm") != nullptr) continue;  // all joints of an arm have the same units
       CheckNumbersKeepTheirUnits(WithoutOwn(document, root.Find("joint")->items[i]), document, common,
                                  UnitsOfModelIn(document, file));
     } catch (const InputError& error) {

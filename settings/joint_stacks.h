@@ -1,4 +1,4 @@
-// The stacks of a limb's joints, and whose an error in one of them is.
+// Builds the stacks of a limb's joints, and tells to which joint an error in one of them belongs.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,16 @@
 
 namespace hydro::settings {
 
-// The configuration of the stack in `documents[index]`, of the limb that `root` describes. Throws InputError; it names the joint where what
-// is wrong stands in its own section or is wrong for this joint and not for all.
+// The configuration of the stack in `documents[index]`, of the limb that `root` describes. Throws InputError;
+// it names the joint when the error stands in the joint's own section, or concerns this joint and not all of
+// them.
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
                             const std::string& file);
 
-// Throws InputError where a number would change its meaning with the units of a joint's model: a number of the file when an option gives
-// a joint another model, and one of the sections that hold for all joints when a joint's own model is in other units than theirs.
-// `before` is the limb as in its file, `root` and `documents` are with the options.
+// Throws InputError where a number would change its meaning with the units of a joint's model. It may be a
+// number of the file, when an option gives a joint another model, or one in the sections for all joints, when
+// a joint's own model is in other units than these. `before` is the limb as in its file; `root` and
+// `documents` include the options.
 void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
                         const std::vector<JointDocument>& documents, const std::string& file);
 

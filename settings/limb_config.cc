@@ -61,7 +61,7 @@ std::string NamesOf(const UnitSystem& units) {
   return std::string(units.length) + " and " + std::string(units.force);
 }
 
-// A joint turns each link.
+// Each link has one joint that turns it.
 std::optional<model::ArmDescription> ArmOf(TomlNode root, const std::vector<JointConfig>& joints) {
   if (root.Find("arm") == nullptr) return std::nullopt;
   ReadQuantities(&root, joints.front().config.model.description.units, FormerNames::kAsMeant);
@@ -116,7 +116,7 @@ std::string SuffixOf(const JointDocument& document) {
   return document.root.Find("bus")->Find("channel_suffix")->text;
 }
 
-// Without [[process]] sections, one process has all joints.
+// Without [[process]] sections, one process runs all joints.
 void PutProcesses(const TomlNode& root, TomlNode* common) {
   common->Erase("process");
   TomlNode processes = ArrayNode({});
@@ -131,14 +131,14 @@ void PutProcesses(const TomlNode& root, TomlNode* common) {
   common->members.push_back({"process", std::move(processes)});
 }
 
-// What the parts of a limb must have in common: all of every joint.
+// What the parts of a limb must agree on: the agreed entries of every joint.
 std::string AgreedByAll(const std::vector<JointConfig>& joints) {
   std::string text;
   for (const JointConfig& joint : joints) text += "joint " + joint.name + "\n" + joint.config.agreed;
   return text;
 }
 
-// The whole limb as one document: each joint's effective sections in its own.
+// Writes the whole limb as one document, with each joint's effective sections inside its own.
 TomlNode WholeDocument(const TomlNode& root, const LimbConfig& limb) {
   TomlNode whole = root;
   TomlNode* joints = whole.Find("joint");

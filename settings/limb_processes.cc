@@ -15,7 +15,7 @@ void CheckJoint(const std::string& joint, const ProcessSection& process, const S
                  Quoted(joint), QuotedList(common.joints));
 }
 
-// `in_limbs`: the joints that a hydro-limb has.
+// `in_limbs` holds the joints that a hydro-limb runs.
 void CheckEachJointRuns(const StackConfig& common, const std::vector<std::string>& in_limbs) {
   for (const std::string& joint : common.joints) {
     const bool own =

@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kUnitsAllowed[] = "\"si\", or a table as { length = \"mm\", force = \"N\", arm = \"rad\" }";
 
-// The value of `key` in a table of units: a name of `allowed`, `absent` where there is none.
+// Reads `key` in a table of units: one of the names in `allowed`, or `absent` if the key is missing.
 std::string_view ReadUnit(SectionReader& section, const std::string& key,
                           const std::vector<std::string>& allowed, std::string_view absent) {
   std::vector<std::pair<std::string, std::string_view>> choices;
@@ -26,7 +26,8 @@ std::string_view ReadUnit(SectionReader& section, const std::string& key,
   return absent;
 }
 
-// units = "si", or a table of names; time, the motor's angle and the command are s, rad and V in all of them.
+// Reads units = "si", or a table of names. In every system, time, the motor's angle and the command are in s,
+// rad and V.
 UnitSystem ReadUnits(SectionReader& document) {
   UnitSystem units;
   const TomlNode* node = document.Take("units");
@@ -52,7 +53,7 @@ TomlNode UnitsNode(const UnitSystem& units) {
   return table;
 }
 
-// c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
+// Reads c itself, or r and d, which give it: c = r^2 d / 2, eqs. (6), (7).
 void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, const UnitSystem& units,
                       double* c) {
   double r = 0;
@@ -74,12 +75,12 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
 }
 
-// A base parameter that is the mean of two sides, and what its sides are called.
+// A base parameter that is the mean of two sides, and the names of those sides.
 struct SideNames {
   const char* mean;
   const char* first;
   const char* second;
-  const char* effect;  // has their difference
+  const char* effect;  // which holds their difference
 };
 
 constexpr SideNames kSides[] = {{"c", "c_1", "c_2", "actuator.unequal_areas"},
@@ -90,7 +91,7 @@ model::EffectDescription SideDifference(const SideNames& names, double differenc
   return {.id = names.effect, .parameters = {{"difference", difference}}, .names = {}};
 }
 
-// c_1 and c_2 in the place of c, and so on. False where the file has neither.
+// Reads c_1 and c_2 in place of c, and so on. Returns false where the file has neither.
 bool ReadSides(SectionReader& section, const SideNames& names, const model::ParameterInfo& info,
                const UnitSystem& units, double* mean, std::vector<model::EffectDescription>* effects) {
   double first = 0, second = 0;
@@ -110,7 +111,7 @@ bool ReadSides(SectionReader& section, const SideNames& names, const model::Para
   return true;
 }
 
-// c is the mean of the sides where there is an area_ratio, c_2 over c_1.
+// With an area_ratio, c_2 over c_1, c is the mean of the two sides.
 void ReadAreaRatio(SectionReader& section, bool has_sides, std::vector<model::EffectDescription>* effects) {
   double ratio = 1;
   if (!section.Number("area_ratio", &ratio, kPositive)) return;
@@ -119,7 +120,8 @@ void ReadAreaRatio(SectionReader& section, bool has_sides, std::vector<model::Ef
   if (ratio != 1) effects->push_back(SideDifference(kSides[0], (ratio - 1) / (ratio + 1)));
 }
 
-// [parameters]. What makes the two sides unequal becomes an effect, as which the equations have it.
+// Reads [parameters]. A difference between the two sides becomes an effect, because that is its form in the
+// equations.
 void ReadParameters(SectionReader& section, model::ModelDescription* model) {
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
     const model::ParameterInfo& info = parameter.info;
@@ -141,7 +143,7 @@ void ReadParameters(SectionReader& section, model::ModelDescription* model) {
   section.Finish();
 }
 
-// Throws InputError where [effects] has the difference of two sides that [parameters] has given too.
+// Throws InputError where [effects] gives the difference of two sides that [parameters] has already given.
 void CheckSides(const SectionReader& effects, const std::vector<model::EffectDescription>& sides) {
   for (const model::EffectDescription& side : sides) {
     if (!effects.Has(side.id)) continue;

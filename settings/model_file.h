@@ -12,18 +12,19 @@ namespace hydro::settings {
 model::ModelDescription LoadModelFile(const std::string& file);
 model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages);
 
-// A model file and its whole text: with the effects that it has from files of their own, so that the text says everything.
+// A model file and its whole text. The text includes the effects that the model takes from files of their
+// own, so that it is complete.
 struct ModelWithText {
   std::string text;
   model::ModelDescription description;
 };
 ModelWithText LoadModelWithText(const std::string& file);
 
-// The units that a model states, whatever else its text holds. Throws InputError for text that is not TOML or
-// units that are not known.
+// The units that a model states, whatever else its text holds. Throws InputError for text that is not TOML
+// and for unknown units.
 UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages);
 
-// A text that states these units alone; empty: the paper's, which need no words.
+// A text that states these units alone; empty for the paper's units, which need not be stated.
 std::string UnitsText(const UnitSystem& units);
 
 // The TOML text of a model; ParseModel gives the same description back, bit by bit.

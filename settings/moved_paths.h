@@ -1,4 +1,4 @@
-// The files that a configuration names, when it is saved in another folder.
+// Adjusts the paths in a configuration that is saved in another folder.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace hydro::settings {
 
-// The keys of `config` with a relative path (model.file, bus.key_file, reference.file), as they must be in a file `output` to lead to the
-// same files; those that stay as they are are left out.
+// The keys of `config` with a relative path (model.file, bus.key_file, reference.file), with the values that
+// they need in a file `output` to lead to the same files. Paths that stay the same are left out.
 std::vector<TomlEntry> MovedPaths(const StackConfig& config, const std::string& output);
 
 }  // namespace hydro::settings

@@ -47,7 +47,7 @@ TomlNode ParseValue(const std::string& value) {
     TomlNode table = ParseToml("value = " + value, "");
     if (table.members.size() == 1) return std::move(table.members[0].second);
   } catch (const InputError&) {
-    // Not TOML: a bare word such as lockstep or udpm://...
+    // The value is not TOML: a bare word such as lockstep or udpm://...
   }
   return StringNode(Trimmed(value));
 }
@@ -65,7 +65,7 @@ TomlNode* FindJoint(TomlNode* joints, const std::string& name, const std::string
                    (names.empty() ? "no joint: the configuration has none with a name" : QuotedList(names)));
 }
 
-// The same path with the key's present name, also behind "joint.NAME.".
+// The same path with the key's present name, also after "joint.NAME.".
 std::string PresentPath(const std::string& path) {
   size_t begin = 0;
   if (path.starts_with("joint.")) begin = std::min(path.find('.', 6), path.size() - 1) + 1;

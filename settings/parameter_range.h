@@ -8,8 +8,8 @@
 
 namespace hydro::settings {
 
-// Where 0 is a value, a number next to 0 is as good; where it is none, what is divided by it is no machine's. In no units
-// does a machine have a number of a size beyond these.
+// No machine has a number of a size beyond these, in any units. Where 0 is allowed, a number next to 0 is as
+// good as 0. Where it is not, a number that is too close to 0 gives quotients that no machine has.
 inline NumberRange RangeOf(const model::ParameterInfo& info) {
   constexpr double kLargest = 1e30;
   NumberRange range{.min = info.min,

@@ -10,7 +10,7 @@ namespace {
 constexpr char kPlant[] = "plant", kDriver[] = "driver", kLogger[] = "logger";
 constexpr char kPressure[] = "pressure_ctrl", kPosition[] = "position_ctrl", kLimb[] = "limb";
 
-// What our program for a role is called.
+// The name of our program for a role.
 struct OurProgram {
   const char* role;
   const char* program;
@@ -30,7 +30,8 @@ std::string OurProgramFor(const std::string& role) {
   return "";
 }
 
-// The log is the evidence of what happened, and the plant a part of this project: these stay ours.
+// The log is the evidence of what happened, and the plant is part of this project, so the user cannot replace
+// either of them.
 void ReadRole(SectionReader& section, std::string* role) {
   section.Text("role", role);
   section.Require("role",
@@ -107,7 +108,7 @@ void CheckBeside(const ProcessSection& process, const std::vector<ProcessSection
   const std::string key = process.command.empty() ? "process.program" : "process.command";
   const std::string twin = process.role == kDriver ? kPlant : process.role == kPlant ? kDriver : "";
   for (const ProcessSection& other : others) {
-    if (other.joint != process.joint) continue;  // each joint has a stack of its own
+    if (other.joint != process.joint) continue;  // each joint has its own stack
     if (other.role == twin) {
       throw KeyError(process.place, key, NameOf(process) + " beside " + NameOf(other),
                      "one of the two: both send states");

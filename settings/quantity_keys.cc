@@ -40,11 +40,11 @@ constexpr QuantityKey kQuantities[] = {
     {"arm.link", "inertia", "lbf-in-s^2"},
 };
 
-// Keys whose names have a unit that every system shares.
+// Keys whose unit is part of the name, the same in every system of units.
 constexpr std::pair<std::string_view, std::string_view> kSharedUnits[] = {
     {"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_hz", "Hz"}, {"_s", "s"}};
 
-// What a trajectory's values are.
+// Whether the key holds values of a trajectory.
 bool IsValue(std::string_view key) {
   return key == "initial" || key == "offset" || key == "amplitude" || key == "steps" || key == "points";
 }

@@ -14,7 +14,7 @@
 namespace hydro::settings {
 namespace {
 
-// The sections whose texts are read.
+// The sections whose texts are read as quantities.
 constexpr std::string_view kQuantitySections[] = {"model",    "model.motion", "time",      "plant",
                                                   "pressure", "position",     "reference", "limits",
                                                   "noise",    "limb",         "arm",       "arm.link"};
@@ -30,7 +30,7 @@ std::string_view NumberPart(std::string_view text) {
   };
   if (is("+-")) ++length;
   digits();
-  // "2e3 Pa" has an exponent; of "2 ..." a unit that begins with e there is none.
+  // "2e3 Pa" has an exponent. An "e" that begins a unit, as it might after "2 ", is not an exponent.
   if (length > 0 && is("eE")) {
     const size_t mantissa = length++;
     if (is("+-")) ++length;
@@ -41,7 +41,7 @@ std::string_view NumberPart(std::string_view text) {
   return text.substr(0, length);
 }
 
-// What a text of a number and a unit that cannot be read probably means.
+// The probable meaning of a text of a number and a unit that cannot be read.
 std::string MeaningOf(std::string_view number, std::string_view unit, const std::string& wanted) {
   if (unit.size() > 1 && unit[0] == ',' && unit[1] >= '0' && unit[1] <= '9')
     return "; decimals begin with a point, and thousands with nothing";
@@ -51,7 +51,7 @@ std::string MeaningOf(std::string_view number, std::string_view unit, const std:
 
 bool BeginsWithNumber(const std::string& text) { return ParseNumber(NumberPart(text)).has_value(); }
 
-// "Pa, kPa, MPa, bar, psi": what a person may choose from.
+// The units from which a person may choose: "Pa, kPa, MPa, bar, psi".
 std::string UnitsLike(const std::string& unit) {
   std::string names = unit;
   const auto si = FindSiUnit(unit, 1e12);
@@ -65,7 +65,7 @@ std::string UnitsLike(const std::string& unit) {
   return names;
 }
 
-// Calls `change(section, table)` for each section that is there; [[arm.link]] is a list of them.
+// Calls `change(section, table)` for each section that exists; [[arm.link]] is a list of sections.
 template <class Change>
 void ForEachSection(TomlNode* root, const Change& change) {
   using Kind = TomlNode::Kind;
@@ -99,7 +99,7 @@ void Rename(const QuantityKey& quantity, TomlNode* table) {
   found->second.former = old;
 }
 
-// A former name is in the paper's unit.
+// A value under a former name is in the paper's unit.
 void CheckFormerName(const std::string& section, const std::string& key, const TomlNode& node,
                      const UnitSystem& units) {
   const QuantityKey& quantity = *FindQuantity(section + "." + key);
@@ -114,7 +114,7 @@ void CheckFormerName(const std::string& section, const std::string& key, const T
                      shown + " " + std::string(quantity.unit) + "\"");
 }
 
-// Also in lists, whose pairs begin with a time.
+// Also converts lists, whose pairs begin with a time.
 void Convert(const std::string& dotted, const std::string& unit, TomlNode* node) {
   if (node->is(TomlNode::Kind::kArray)) {
     for (size_t i = 0; i < node->items.size(); ++i) {
@@ -125,7 +125,7 @@ void Convert(const std::string& dotted, const std::string& unit, TomlNode* node)
       Convert(name, unit, &node->items[i].items[1]);
     }
   }
-  // A word is for the key's reader: "every_tick", or a mistake of which it says what is allowed.
+  // The key's own reader handles a word: "every_tick", or a mistake, for which it reports what is allowed.
   if (!node->is(TomlNode::Kind::kString) || !BeginsWithNumber(node->text)) return;
   TomlNode number = NumberNode(NumberOf(node->text, unit, node->place, dotted));
   number.place = node->place;
@@ -169,7 +169,7 @@ double NumberOf(const std::string& text, const std::string& unit, const std::str
   const std::optional<hydro::Unit> wanted = ParseUnit(unit);
   const bool fits = number && own && wanted && own->powers == wanted->powers;
   const double factor = !fits || own->size == wanted->size ? 1 : own->size / wanted->size;
-  // What overflows would read as "no limit".
+  // A value that overflows would read as "no limit".
   if (!fits || !std::isfinite(factor * *number)) {
     throw KeyError(place, key, Quoted(text),
                    "a number (in " + unit + "), or a text of a number and a unit: " + UnitsLike(unit) +

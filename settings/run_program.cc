@@ -1,4 +1,5 @@
-// RunProgram() of command_line.h: what must hold for every process before it works, and how it ends.
+// RunProgram() of command_line.h: what must hold for every process before it starts its work, and how it
+// ends.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "base/input_error.h"
 #include "base/remarks.h"
@@ -19,7 +21,7 @@
 namespace hydro::settings {
 namespace {
 
-constexpr size_t kStack = size_t{512} << 10;  // bytes: more than any program's main thread uses
+constexpr size_t kStack = size_t{512} << 10;  // bytes, more than any program's main thread uses
 
 [[gnu::noinline]] void TouchStack() {
   constexpr size_t kPage = 4096;
@@ -27,7 +29,8 @@ constexpr size_t kStack = size_t{512} << 10;  // bytes: more than any program's 
   for (size_t i = 0; i < sizeof stack; i += kPage) stack[sizeof stack - 1 - i] = 0;
 }
 
-// Under a limit of memory (ulimit -v) a stack that cannot grow ends a process without a word. So it grows before the rest is used up.
+// Under a memory limit (ulimit -v), a process whose stack cannot grow ends without a message. So the stack
+// grows before the rest of the memory is used up.
 void ReserveStack() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -37,12 +40,13 @@ void ReserveStack() {
   TouchStack();
 }
 
-// Opens those of the descriptors 0 to 2 that were closed at the start (`1>&-`): no file, socket or signalfd may get a
-// number that printf() writes to. Each is opened for the opposite of its use, so that using it still fails with EBADF.
+// Opens those of the descriptors 0 to 2 that were closed at the start (`1>&-`), so that no file, socket or
+// signalfd can get a number to which printf() writes. Each is opened for the opposite of its use, so that
+// using it still fails with EBADF.
 void OpenStandardDescriptors() {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(standard, F_GETFD) >= 0 || errno != EBADF) continue;
-    // Gets the lowest free number, which is this one: those below it are open.
+    // open() returns the lowest free number, which is this one because those below it are open.
     if (open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
   }
 }
@@ -52,7 +56,7 @@ void OpenStandardDescriptors() {
 int RunProgram(const std::string& program, const std::function<int()>& body) {
   OpenStandardDescriptors();
   std::signal(SIGXFSZ,
-              SIG_IGN);  // a file at its size limit (ulimit -f) is an error of write(), like a full disk
+              SIG_IGN);  // makes a file at its size limit (ulimit -f) an error of write(), like a full disk
   try {
     ReserveStack();
     const int exit_code = body();
@@ -67,6 +71,14 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
         "%s: out of memory: it needs more than this process may have; a larger limit (ulimit -v) or a "
         "smaller input is needed\n",
         program.c_str());
+    return 1;
+  } catch (const std::system_error& error) {
+    // What a thread that could not be started says.
+    const bool resource = error.code() == std::errc::resource_unavailable_try_again;
+    std::fprintf(stderr, "%s: %s%s\n", program.c_str(), Printable(error.what()).c_str(),
+                 resource ? ": a process or thread that it needs was refused; larger limits (ulimit -v, "
+                            "ulimit -u) are needed"
+                          : "");
     return 1;
   } catch (const std::exception& error) {
     SayRemarks();

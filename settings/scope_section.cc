@@ -8,7 +8,8 @@
 namespace hydro::settings {
 namespace {
 
-// What a Host or Origin header may hold. No blanks or commas, so that a list in one string is noticed.
+// Whether a Host or Origin header may hold `text`. Blanks and commas are not allowed, so that a list in one
+// string is noticed.
 bool IsPlain(const std::string& text) {
   return !text.empty() && text.size() <= 255 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isgraph(c) && c < 0x80 && c != ',' && c != '"';

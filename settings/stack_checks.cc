@@ -22,14 +22,13 @@ void CheckPair(const TomlNode& root, const std::string& present, const std::stri
                  "k_p with k_v, or natural_frequency_rad_s with damping_ratio");
 }
 
-// "0.9 rad (51.6 deg)", "30 mm"; `number` is `value` as text.
+// Writes "0.9 rad (51.6 deg)" or "30 mm"; `number` is `value` as text.
 std::string ArmText(const std::string& number, double value, const UnitSystem& units) {
   const std::string text = number + " " + units.UnitFor("rad", 1);
   return units.linear_arm ? text : text + " (" + ShortNumber(Degrees(value)) + " deg)";
 }
 
-// The arm angle that `what` takes must leave V_1, V_2 > 0, eqs. (6), (7).
-// `allowed` is limits.arm_angle.
+// Checks that the arm angle given by `key` leaves V_1, V_2 > 0, eqs. (6), (7). `allowed` is limits.arm_angle.
 void CheckAngle(const TomlNode& root, const std::string& key, double angle,
                 const model::ModelDescription& model, double allowed) {
   const model::Travel travel = model::TravelOf(model);
@@ -65,7 +64,7 @@ void CheckAngles(const TomlNode& root, const std::string& section, const Traject
   }
 }
 
-// A trajectory that changes faster than it is looked at would be seen as another one. `highest` is in Hz.
+// A trajectory that changes faster than it is sampled would look like a different one. `highest` is in Hz.
 void CheckFrequency(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
                     double highest, const char* why) {
   const auto check = [&](const char* key, double frequency) {
@@ -82,7 +81,8 @@ void CheckFrequency(const TomlNode& root, const std::string& section, const Traj
 
 }  // namespace
 
-// Decimal fractions such as 0.005 are not exact in binary, hence the tolerance, far below any difference that anyone could mean.
+// Decimal fractions such as 0.005 are not exact in binary. Hence the tolerance, which is far below any
+// difference that a user could intend.
 int64_t WholeMultiple(double value, double unit) {
   const double ratio = value / unit;
   const double whole = std::round(ratio);
@@ -166,7 +166,7 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
                          config.driver->front_end.mode == FrontEndMode::kLoopOnDevice;
   for (const ProcessSection& process : config.processes) {
     if (!on_device || process.role != "pressure_ctrl" || process.place.empty())
-      continue;  // those that nobody named
+      continue;  // a process that the configuration does not name
     throw KeyError(process.place, process.command.empty() ? "process.program" : "process.command",
                    NameOf(process) + " with driver.mode = \"loop_on_device\"",
                    "a stack without it: the front end runs the pressure loop");
@@ -206,7 +206,7 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
     if (limits == nullptr || limits->Find("pressure") == nullptr) checked->limits.pressure_psi *= psi;
     if (position == nullptr || position->Find("dac_range") == nullptr) checked->position.dac_range_psi *= psi;
   }
-  // A shaft that something else holds or moves is not ours to stop.
+  // This program may not stop a shaft that something else holds or moves.
   if (!given && model.shaft == model::Shaft::kFree) {
     const double shorter = model::TravelOf(model.description).nearer() / (p.V_ms / p.c);
     checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c * shorter;
@@ -225,7 +225,8 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
         "at least p_3 = " + ShortestNumber(p.p_3) + " " + unit + ", below which the one-way valves open");
   }
   const double start = std::isnan(pressure) ? p.p_3 : pressure;
-  // Numbers for a model in other units: below the start, or where the oil would be a fraction of its volume.
+  // The numbers were written for a model in other units: they lie below the start, or where the oil would be
+  // compressed to a fraction of its volume.
   const double limit = config.limits.pressure_psi, most = 10 * p.beta;
   const bool low = limit <= start;
   if (low || (std::isfinite(limit) && limit > most)) {

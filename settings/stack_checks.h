@@ -8,13 +8,15 @@
 
 namespace hydro::settings {
 
-// How many whole `unit`s `value` is, but for rounding; 0 when it is not a whole number of at least one.
+// The whole number of `unit`s in `value`, apart from rounding; 0 when it is not a whole number of at least
+// one.
 int64_t WholeMultiple(double value, double unit);
 
-// Checks the times against the tick and fills in the intervals in ticks and the last tick. Throws InputError.
+// Checks that the times fit the tick, and fills in the intervals in ticks and the last tick. Throws
+// InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);
 
-// How much of V_ms/c, where V_1 or V_2 is 0, a free arm may use when limits.arm_angle is not given.
+// The share of V_ms/c, where V_1 or V_2 is 0, that a free arm may use when limits.arm_angle is not given.
 inline constexpr double kArmAngleShare = 0.98;
 
 // Checks pressures and arm angles against the model, once its description is known, and fills in the default

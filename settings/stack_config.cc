@@ -18,7 +18,7 @@
 namespace hydro::settings {
 namespace {
 
-// Everything except the model file.
+// Reads everything except the model file.
 StackConfig ReadDocument(TomlNode* root, const std::string& file) {
   root->place = file;
   StackConfig config;
@@ -46,15 +46,15 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   return config;
 }
 
-// What the model file is relative to is what people get wrong.
+// Users often mistake the folder to which the model file's path is relative, so the message names it.
 void RequireModelFile(const TomlNode& root, const std::string& named, const std::string& path) {
-  std::error_code unknown;  // a folder that cannot be looked into: the reader of the file tells of it
+  std::error_code unknown;  // for a folder that cannot be read, which the file's reader reports
   if (std::filesystem::exists(path, unknown) || unknown) return;
   throw KeyError(root, "model.file", Quoted(named) + ", and there is no " + Quoted(path),
                  "a path that counts from the configuration's folder");
 }
 
-// Empty where none is named, of which its reader tells.
+// Empty where no model is named, which the section's reader reports.
 std::string ModelNameIn(const TomlNode& root) {
   const TomlNode* model = root.Find("model");
   const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
@@ -70,13 +70,13 @@ std::string ModelFileOf(const TomlNode& root, const std::string& file) {
   return path;
 }
 
-// "in, lbf, psi", for people; of a linear arm also the arm's.
+// Lists units for people: "in, lbf, psi", and for a linear arm also the arm's unit.
 std::string Named(const UnitSystem& units) {
   return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi") +
          (units.linear_arm ? " and an arm in " + units.UnitFor("rad", 1) : "");
 }
 
-// A stack has one joint.
+// Checks that the configuration has no joints: a stack has only one.
 void CheckHasNoJoints(const StackConfig& config) {
   for (const ProcessSection& process : config.processes) {
     if (process.joint.empty() && process.program != "hydro-limb") continue;
@@ -109,7 +109,8 @@ UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
   return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
 }
 
-// Those of the model that another takes the place of; none where that cannot be read, because nothing asks for it.
+// The units of the model that another one replaces. None where that model cannot be read, because nothing
+// requires it.
 static std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
   try {
     return UnitsOfModelIn(root, file);
@@ -118,13 +119,13 @@ static std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, cons
   }
 }
 
-// Its numbers stay those of the model that it names itself.
+// The numbers of the configuration keep the units of the model that it names itself.
 void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
   if (ModelNameIn(root) == ModelNameIn(before)) return;
   const std::string path = ModelFileOf(root, file);
   if (path.empty()) return;
   const std::optional<UnitSystem> was = UnitsOfReplacedModel(before, file);
-  const UnitSystem is = LoadModelFile(path).units;  // a file that is no model has no units
+  const UnitSystem is = LoadModelFile(path).units;  // a file that is not a model has no units
   if (was) CheckNumbersKeepTheirUnits(root, root, *was, is);
 }
 
@@ -151,7 +152,7 @@ StackConfig StackOf(TomlNode* root, const std::string& file) {
   config.model.description = std::move(model.description);
   CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
-  RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does
+  RememberRead(config.bus.resolved_key_file);  // the code that opens the bus reads it
   return config;
 }
 

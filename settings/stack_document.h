@@ -1,4 +1,4 @@
-// A stack's configuration as a document that is being read: what stack_config.h and limb_config.h share.
+// A stack's configuration as a document that is being read; stack_config.h and limb_config.h share this.
 #pragma once
 
 #include <optional>
@@ -10,24 +10,27 @@
 
 namespace hydro::settings {
 
-// The document in `file`, as it is. Throws InputError, also for a model in the place of a configuration.
+// Reads the document in `file` without changes. Throws InputError, also for a model file in place of a
+// configuration.
 TomlNode ReadConfigDocument(const std::string& file);
 
-// The configuration of the stack that `root` describes: sections, checks, and the model file that it names. Throws InputError.
+// The configuration of the stack that `root` describes: sections, checks, and the model file that it names.
+// Throws InputError.
 StackConfig StackOf(TomlNode* root, const std::string& file);
 
-// Throws InputError where the command line has made `root` of `before` with a model in other units, so that a number of the configuration would
-// mean another value; or where the model cannot be read.
+// Throws InputError where the command line has turned `before` into `root` with a model in other units, so
+// that a number of the configuration would mean another value, and where the model cannot be read.
 void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file);
 
-// The same for the numbers of a part of `root`, which are meant in the units `was`, with a model in `is`.
+// The same for the numbers of a part of `root`, which are in the units `was`, with a model in the units `is`.
 void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, const UnitSystem& was,
                                 const UnitSystem& is);
 
-// The units of the model that the configuration names; the paper's where it names none. Throws InputError where there is no such file.
+// The units of the model that the configuration names; the paper's where it names none. Throws InputError
+// where there is no such file.
 UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file);
 
-// The stack of one joint of the limb that `root` describes; none chosen is an error too. Throws InputError.
+// The stack of one joint of the limb that `root` describes. Throws InputError, also when no joint is chosen.
 StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& overrides,
                          const std::optional<std::string>& joint);
 

@@ -13,7 +13,7 @@ namespace hydro::settings {
 namespace {
 
 constexpr NumberRange kPositiveOrNone{.min = 0, .min_allowed = false, .infinity_allowed = true};
-// s, of wall time; the largest is far within what 64 bits of ns hold.
+// s of wall time. The largest value is far below what 64 bits of ns hold.
 constexpr NumberRange kWait{.min = 0, .max = 1e6, .min_allowed = false};
 
 void ReadModel(SectionReader section, const std::string& config_file, ModelSection* model) {
@@ -51,7 +51,7 @@ void ReadBus(SectionReader section, const std::string& config_file, BusSection* 
   const bool plain = std::all_of(suffix.begin(), suffix.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c)) || c == '_' || c == '-' || c == '.';
   });
-  // LCM's channel names end at 63 bytes.
+  // LCM's channel names have at most 63 bytes.
   if (!plain || suffix.size() > 32) {
     throw section.Error("channel_suffix", Quoted(suffix),
                         "up to 32 letters, digits, underscores, hyphens and dots");
@@ -125,7 +125,7 @@ void ReadPosition(SectionReader section, PositionSection* position) {
   section.Finish();
 }
 
-// `hardware`: a motor that may hurt somebody does not start again unasked.
+// With `hardware`, a motor that may hurt somebody does not start again unless it is told to.
 void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
   if (hardware) limits->rearm = Rearm::kExplicit;
   section.Number("pressure", &limits->pressure_psi, kPositiveOrNone);
@@ -185,7 +185,7 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
 }
 
 void CheckKeysHaveSections(const TomlNode& root) {
-  // Each is tried in every section. Who has more of them did not forget a section.
+  // Each of these keys is tried in every section. A user with more stray keys did not just forget a section.
   constexpr int kMostTried = 20;
   int tried = 0;
   for (const auto& [key, node] : root.members) {
@@ -198,7 +198,7 @@ void CheckKeysHaveSections(const TomlNode& root) {
         meant.push_back(std::string(section) + "." + std::string(quantity->key));
         continue;
       }
-      // The readers know their keys: one that is unknown is the first thing they say.
+      // The readers know their keys, and an unknown key is the first error that they report.
       TomlNode alone, table;
       table.members.push_back({key, node});
       alone.members.push_back({section, std::move(table)});
@@ -211,7 +211,7 @@ void CheckKeysHaveSections(const TomlNode& root) {
           meant.push_back(std::string(section) + "." + key);
       }
     }
-    if (meant.empty()) continue;  // the reader of the document says what is wrong
+    if (meant.empty()) continue;  // the document's reader reports what is wrong
     throw InputError(node.place + ": " + Quoted(key) +
                      ": found a key outside of any section, allowed section.key, did you mean " +
                      QuotedList(meant) + "?");
@@ -247,7 +247,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadNoise(std::move(noise), &config->noise, &config->seed);
   if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
   ReadLogger(std::move(logger), &config->logger);
-  ReadScope(std::move(scope));  // hydro-scope takes it from the text: settings/scope_section.h
+  ReadScope(std::move(scope));  // hydro-scope reads it from the text: settings/scope_section.h
   ReadProcesses(document, &config->processes);
 }
 

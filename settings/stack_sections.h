@@ -1,5 +1,5 @@
-// Reads each section of the configuration: keys, types and ranges. Checks across several keys are in
-// stack_checks.h.
+// Reads each section of the configuration and checks keys, types and ranges. Checks across several keys are
+// in stack_checks.h.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace hydro::settings {
 
-// Throws InputError for a key that stands outside of any section, with the sections that have such a key.
+// Throws InputError for a key that stands outside any section, and names the sections that have such a key.
 void CheckKeysHaveSections(const TomlNode& root);
 
-// The section [reference]. Throws InputError.
+// Reads the section [reference]. Throws InputError.
 void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference);
 
 // Fills every section of `config` from the document, except the model's description, and notes in `asked`

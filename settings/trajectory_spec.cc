@@ -166,7 +166,7 @@ std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spe
     case Kind::kChirp:
       return trajectory::MakeChirp(spec.offset, spec.amplitude, spec.first_frequency_hz,
                                    spec.last_frequency_hz, spec.start_s, spec.duration_s);
-    case Kind::kPlanner:  // what a planner wants comes while the stack runs
+    case Kind::kPlanner:  // a planner's points arrive while the stack runs
       return trajectory::MakeSteps(spec.initial, {});
     case Kind::kCsv:
       break;

@@ -20,7 +20,7 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
 std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& spec,
                                                           const SectionReader& section);
 
-// Replaces the file of a CSV trajectory by its points, so that the text describes itself.
+// Replaces the file of a CSV trajectory by its points, so that the text is complete in itself.
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section);
 
 }  // namespace hydro::settings

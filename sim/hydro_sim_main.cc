@@ -23,12 +23,12 @@
 
 namespace {
 
-// A simulation on a simulated clock cannot wait for another process. What it runs instead is said, and stands in the log's
-// configuration.
+// A simulation on a simulated clock cannot wait for another process. A warning says what it runs instead, and
+// the log's configuration records it.
 hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig& config) {
   for (const hydro::settings::ProcessSection& process : config.processes) {
     if (process.command.empty()) continue;
-    const bool driver = process.role == "driver";  // the model stands for whatever machine
+    const bool driver = process.role == "driver";  // the model stands for any machine
     hydro::Remark("hydro-sim: warning: " + process.place + ": " + hydro::settings::NameOf(process) +
                   " is a program of your own; the simulation runs our " + (driver ? "model" : process.role) +
                   " in its place, `hydro-launch " + config.file + (driver ? "" : " --time lockstep") +
@@ -37,7 +37,8 @@ hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig&
   return hydro::settings::WithoutOwnPrograms(config);
 }
 
-// In the units of the model that the controllers know, which state and command.
+// Loads the simulated machine. It must be in the units of the model that the controllers know, because states
+// and commands are in those units.
 hydro::model::ModelDescription LoadMachine(const std::string& file,
                                            const hydro::settings::StackConfig& config) {
   hydro::model::ModelDescription machine = hydro::settings::LoadModelFile(file);
@@ -53,7 +54,7 @@ bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
   return !hydro::settings::TakeJointChoice(&overrides) && hydro::settings::IsLimbFile(options.config);
 }
 
-// What is simulated, given where its messages go.
+// A simulation that is given the destination of its messages.
 using Simulation = std::function<hydro::sim::SimulationResult(
     const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
 

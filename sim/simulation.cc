@@ -24,7 +24,7 @@ void CheckEnds(const settings::StackConfig& config) {
                    "--duration S)");
 }
 
-// What the limb says of itself; each joint speaks on channels of its own.
+// Sends the limb's own description; each joint speaks on its own channels.
 void DescribeLimb(const settings::LimbConfig& config,
                   const std::function<void(const bus::RawMessage&)>& tap) {
   bus::SimulatedClock clock;
@@ -38,7 +38,7 @@ void DescribeLimb(const settings::LimbConfig& config,
   bus.HandleUntil(clock.Now());
 }
 
-// All that takes part in a simulation.
+// Everything that takes part in a simulation.
 struct Stack {
   Stack(const settings::StackConfig& config, const std::function<void(const bus::RawMessage&)>& tap,
         const model::ModelDescription* machine)
@@ -68,7 +68,7 @@ struct Stack {
   bus::SimulatedClock clock;
   bus::InProcessBus bus;
   plant::SimulatedRig rig;
-  // A stack that cannot grow ends a process without a word; of memory that cannot be had it is said.
+  // A process whose stack cannot grow ends without a message, whereas a failed allocation is reported.
   std::unique_ptr<plant::PlantApp> plant;
   std::unique_ptr<pressure_ctrl::PressureApp> pressure;
   std::unique_ptr<position_ctrl::PositionApp> position;

@@ -1,5 +1,5 @@
-// The whole stack in one process on a simulated clock: the same plant, pressure loop and position loop
-// classes as in the separate processes, in lockstep, over an in-process bus.
+// The whole stack in one process on a simulated clock. The plant, pressure loop and position loop are the
+// classes of the separate processes, in lockstep, over an in-process bus.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ struct SimulationResult {
   std::string failure;  // why, empty when complete
 };
 
-// The session of a simulation of `config`, never 0: by it the states of a run are told from those of any other. It comes from
-// what is simulated, so that the same simulation has the same one.
+// The session of a simulation of `config`, never 0. It tells the states of a run from those of any other. It
+// is computed from what is simulated, so that the same simulation always has the same session.
 int64_t SessionOf(const settings::StackConfig& config);
 
 // Runs `config` to its end, in lockstep whatever time.mode says, and passes every message to `tap` (null:
-// nothing is even encoded). Throws InputError when the configuration has no duration or contradicts the
-// model. `tunings`: changes that were decided in another run, made again at the same ticks. `machine`: what
-// is simulated, where it is another machine than the model of `config`, which the controllers know. In that
-// model's units; null: the model itself.
+// messages are not even encoded). Throws InputError when the configuration has no duration or contradicts the
+// model. `tunings` are changes that were decided in another run and are repeated at the same ticks. `machine`
+// is the simulated machine, in the units of the model of `config`, where it differs from that model, which
+// the controllers know. Null: the model itself.
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap,
                           const std::vector<tuned_settings_t>& tunings = {},
@@ -38,7 +38,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
 // Throws what Simulate() would throw before its first tick.
 void CheckSimulates(const settings::StackConfig& config, const model::ModelDescription* machine = nullptr);
 
-// As Simulate(), for all joints of a limb, each on channels of its own suffix.
+// Does what Simulate() does for all joints of a limb, each on channels with its own suffix.
 SimulationResult SimulateLimb(const settings::LimbConfig& config,
                               const std::function<void(const bus::RawMessage&)>& tap);
 

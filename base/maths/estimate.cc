@@ -12,7 +12,7 @@ std::string PlusMinus(const Estimate& estimate) {
   if (!std::isfinite(half)) return "not told";
   if (!(half > 0)) return fmt::format("{:.5g} +/- {:.2g}", estimate.value, half);
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(half)));
-  // Small values in powers of ten: 6.502e-06 +/- 0.011e-06 is easier to read than ten decimals.
+  // Small values are written in powers of ten: 6.502e-06 +/- 0.011e-06 is easier to read than ten decimals.
   const int exponent =
       estimate.value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(estimate.value))));
   if (exponent >= -3) {

@@ -7,12 +7,12 @@ namespace hydro::maths {
 
 struct LinearFit {
   std::vector<double> coefficients;
-  std::vector<double> covariance;  // of the coefficients, row by row
+  std::vector<double> covariance;  // covariance of the coefficients, row by row
   double residual_deviation = 0;   // standard deviation of the measurements about the fit
-  int degrees_of_freedom = 0;      // measurements minus coefficients
+  int degrees_of_freedom = 0;      // number of measurements minus number of coefficients
 
-  // The sum of weights[i] * coefficients[i]: its value, its standard error, and half the width of its 95 %
-  // confidence interval (Student), which is infinite with no degrees of freedom.
+  // For the sum of weights[i] * coefficients[i]: its value, its standard error, and half the width of its 95
+  // % confidence interval (Student), which is infinite with no degrees of freedom.
   double Value(const std::vector<double>& weights) const;
   double StandardError(const std::vector<double>& weights) const;
   double HalfWidth95(const std::vector<double>& weights) const;
@@ -23,7 +23,7 @@ struct LinearFit {
 // there are fewer measurements than coefficients or the regressors depend on each other.
 LinearFit FitLinear(const std::vector<std::vector<double>>& regressors, const std::vector<double>& y);
 
-// The magnitude that Student's t stays below with a probability of 95 %; infinity for 0 degrees of freedom.
+// The magnitude below which Student's t stays with a probability of 95 %; infinity for 0 degrees of freedom.
 double StudentT95(int degrees_of_freedom);
 
 }  // namespace hydro::maths

@@ -7,7 +7,7 @@
 
 namespace hydro::maths {
 
-// The smallest and the largest of some values; low is above high where there are none.
+// The smallest and the largest of some values; low is above high when there are none.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -15,7 +15,7 @@ struct Range {
   double size() const { return high - low; }
 };
 
-// Of all values that are not NaN.
+// The range of all values that are not NaN.
 inline Range RangeOf(const std::vector<double>& values) {
   Range range;
   for (const double value : values) {

@@ -8,7 +8,7 @@
 namespace hydro::maths {
 namespace {
 
-// The indices of `x`, ordered by value; equal values in their order.
+// The indices of `x`, ordered by value; equal values keep their order.
 std::vector<size_t> OrderOf(const std::vector<double>& x) {
   std::vector<size_t> order(x.size());
   std::iota(order.begin(), order.end(), size_t{0});

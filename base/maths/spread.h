@@ -1,4 +1,4 @@
-// How numbers spread, and what they depend on. Infinite numbers are allowed, NaN is not.
+// How numbers spread, and on what they depend. Infinite numbers are allowed, NaN is not.
 #pragma once
 
 #include <vector>
@@ -7,21 +7,22 @@
 
 namespace hydro::maths {
 
-// The value that the share `share` (0 to 1) of `sorted` (increasing, not empty) does not exceed; straight
-// lines between its numbers.
+// The value that the share `share` (0 to 1) of `sorted` (increasing, not empty) does not exceed; between its
+// numbers, straight lines interpolate.
 double Quantile(const std::vector<double>& sorted, double share);
 
-// A share of which `hits` of `count` independent trials tell: Wilson's 95 % interval.
+// Estimates a share from `hits` of `count` independent trials: Wilson's 95 % interval.
 Estimate Share(int hits, int count);
 
-// Spearman's rank correlation of two lists of equal length, -1 to 1: how far y rises with x, in whatever
-// curve. Equal numbers share a rank. 0 where either list is constant.
+// Spearman's rank correlation of two lists of equal length, -1 to 1: how far y rises with x, along any curve.
+// Equal numbers share a rank. 0 when either list is constant.
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);
 
-// The part of y's variance that goes with x alone, in whatever curve, up or down: the variance of y's means
-// over `bins` ranges of x with equally many points each, over y's variance, less what chance gives as many
-// bins (Kelley's epsilon squared; it may come out slightly below 0). Where all of y's causes are independent,
-// these parts add up to at most 1 (the first-order indices of Sobol). 0 where y is constant.
+// The part of y's variance that goes with x alone, along any curve, up or down. It is the variance of y's
+// means over `bins` ranges of x with equally many points each, divided by y's variance, less the share that
+// chance gives this many bins (Kelley's epsilon squared; it may come out slightly below 0). When all of y's
+// causes are independent, these parts add up to at most 1 (the first-order indices of Sobol). 0 when y is
+// constant.
 double MainEffect(const std::vector<double>& x, const std::vector<double>& y, int bins);
 
 }  // namespace hydro::maths

@@ -17,19 +17,19 @@ namespace {
 
 constexpr size_t kMostHeaderLines = 10;  // below the names
 
-// A line that has names which are asked for.
+// A line that has names of asked columns.
 struct NamesLine {
   char separator = ',';
-  size_t at = 0;               // in Lines
+  size_t at = 0;               // index in Lines
   size_t names = 0;            // cells
-  std::vector<size_t> places;  // of the asked names, in its cells
+  std::vector<size_t> places;  // places of the asked names among its cells
 };
 
 bool HoldsValue(std::string_view cell) {
   return ParseNumber(cell).has_value() || ParseDecimalComma(cell).has_value() || ParseClock(cell).has_value();
 }
 
-// The cells of a line at the places that are asked for.
+// The cells of a line at the places of the asked columns.
 std::vector<std::string_view> AskedCells(const Line& line, const NamesLine& names) {
   const std::vector<std::string_view> cells = CellsOf(line, names.separator);
   std::vector<std::string_view> asked;
@@ -56,15 +56,16 @@ NamesLine NamesIn(const Lines& lines, size_t at, char separator, const AskedColu
   return names;
 }
 
-// The line below `from` that is no comment.
+// The next line below `from` that is not a comment.
 size_t Below(const Lines& lines, size_t from) {
   size_t at = from + 1;
   while (at < lines.size() && lines[at].comment) ++at;
   return at;
 }
 
-// Whether the first line that looks like a row numbers the columns or channels: 1, 2, 3, with times below that begin
-// before its own, or, below other lines that are no rows, with it.
+// Whether the first line that looks like a row only numbers the columns or channels: 1, 2, 3. That is so when
+// the times below it begin before its own number, or, if it stands below other lines that are no rows, also
+// when they begin with that number.
 bool NumbersColumns(const Lines& lines, size_t row, const NamesLine& names, size_t time_place,
                     bool below_others) {
   const std::vector<std::string_view> cells = CellsOf(lines[row], names.separator);
@@ -84,7 +85,7 @@ bool NumbersColumns(const Lines& lines, size_t row, const NamesLine& names, size
   return time && (*time < own || (below_others && *time == own));
 }
 
-// How many of the cells that say something are units.
+// Counts the cells that have content, and those of them that are units.
 struct UnitCount {
   size_t units = 0, texts = 0;
   bool all() const { return units > 0 && units == texts; }
@@ -100,14 +101,14 @@ UnitCount CountUnits(const std::vector<std::string_view>& cells) {
   return count;
 }
 
-// The line of units among those between the names and the first row; 0: there is none.
+// The line of units among the lines between the names and the first row; 0: there is none.
 size_t FindUnits(const Lines& lines, const std::vector<size_t>& between, const NamesLine& names,
                  const std::string& file, const CsvSettings& settings) {
   if (settings.units_row == false || between.empty()) return 0;
   if (settings.units_row == true) return lines[between.front()].number;
   bool perhaps = false;
   for (const size_t at : between) {
-    if (IsRow(lines[at], names)) continue;  // the numbers of columns: "1" is a unit too
+    if (IsRow(lines[at], names)) continue;  // the line numbers the columns: "1" is a unit too
     const UnitCount count = CountUnits(AskedCells(lines[at], names));
     if (count.all()) return lines[at].number;
     perhaps = perhaps || count.units > 0;
@@ -147,7 +148,7 @@ CsvLayout LayoutBelow(const Lines& lines, const NamesLine& names, const std::str
     row = Below(lines, row);
   }
   if (row >= lines.size() &&
-      between.size() > 1) {  // no row at all, or none that can be read: the reader says so
+      between.size() > 1) {  // no row at all, or none that can be read: the reader reports that
     row = between[settings.units_row == false ? 0 : 1];
     between.resize(settings.units_row == false ? 0 : 1);
   }
@@ -176,10 +177,10 @@ bool Fits(const Lines& lines, const NamesLine& names) {
 
 std::optional<CsvLayout> FindAskedLayout(const Lines& lines, const std::string& file,
                                          const CsvSettings& settings, const AskedColumns& asked) {
-  std::vector<NamesLine> best;  // one for each separator that finds as many
+  std::vector<NamesLine> best;  // one for each separator that finds equally many
   for (const char separator : kSeparators) {
     if (settings.separator.value_or(separator) != separator) continue;
-    // Blanks split what tabs split as well.
+    // Blanks also split what tabs split.
     if (separator == ' ' && !best.empty() && best.back().separator == '\t') continue;
     NamesLine most;
     for (size_t at = 0; at < lines.size() && most.places.size() < asked.names.size(); ++at) {

@@ -1,4 +1,4 @@
-// The layout of a CSV text, found by the names of the columns that are asked for.
+// Finds the layout of a CSV text from the names of the columns that are asked for.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,10 @@
 
 namespace hydro::tables {
 
-// The line that has most of the names tells what separates cells; between it and the first row may be a line of
-// units, and others that are passed over. Other columns may hold anything. Empty where no line has any of the names.
-// Throws InputError where two separators fit as well, and where only some of the asked columns have units.
+// The line that has most of the names determines the separator of cells. Between it and the first row there
+// may be a line of units, and others that are skipped. Other columns may hold anything. Empty when no line
+// has any of the names. Throws InputError when two separators fit equally well, and when only some of the
+// asked columns have units.
 std::optional<CsvLayout> FindAskedLayout(const Lines& lines, const std::string& file,
                                          const CsvSettings& settings, const AskedColumns& asked);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kDay = 86400;
 constexpr int64_t kBillion = 1'000'000'000;
 
-// Takes that many digits from the text; false when there are not as many.
+// Takes this many digits from the text; returns false when it has fewer.
 bool TakeDigits(std::string_view* text, size_t count, int* number) {
   if (text->size() < count) return false;
   *number = 0;
@@ -55,7 +55,7 @@ bool TakeDate(std::string_view* text, int64_t* seconds) {
   return true;
 }
 
-// "10:30:25" with or without a fraction of up to nine digits; what follows those is dropped.
+// Takes "10:30:25", with or without a fraction of up to nine digits; further digits are dropped.
 bool TakeTime(std::string_view* text, ClockTime* clock) {
   int hour = 0, minute = 0, second = 0;
   if (!TakeDigits(text, 2, &hour) || !TakeOneOf(text, ":") || !TakeDigits(text, 2, &minute) ||
@@ -73,7 +73,7 @@ bool TakeTime(std::string_view* text, ClockTime* clock) {
   return digits > 0;
 }
 
-// "Z", "+01:00", "+0100", "+01"; nothing is no zone.
+// Takes "Z", "+01:00", "+0100" or "+01"; an empty text has no zone.
 bool TakeZone(std::string_view* text, ClockTime* clock) {
   if (text->empty()) return true;
   clock->zone = true;

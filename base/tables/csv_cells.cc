@@ -14,7 +14,8 @@ size_t FindSeparator(std::string_view line, char separator, size_t from) {
   return separator == ' ' ? line.find_first_of(kBlanks, from) : line.find(separator, from);
 }
 
-// The quote that closes the one at `opening`: the first that is not one of two; npos where there is none.
+// The quote that closes the one at `opening`: the first that does not belong to a pair; npos when there is
+// none.
 size_t ClosingQuote(std::string_view text, size_t opening) {
   size_t quote = text.find('"', opening + 1);
   while (quote != std::string_view::npos && text.substr(quote + 1).starts_with('"')) {
@@ -23,7 +24,7 @@ size_t ClosingQuote(std::string_view text, size_t opening) {
   return quote;
 }
 
-// A cell that begins with a quote ends at the separator after the quote that closes it.
+// A cell that begins with a quote ends at the separator after its closing quote.
 size_t EndOfCell(std::string_view line, char separator) {
   const size_t first = line.find_first_not_of(kBlanks);
   if (first == std::string_view::npos || line[first] != '"') return FindSeparator(line, separator, 0);
@@ -31,7 +32,7 @@ size_t EndOfCell(std::string_view line, char separator) {
   return FindSeparator(line, separator, closing == std::string_view::npos ? 0 : closing);
 }
 
-// Whether a quote at this place may open a cell, whatever separates the cells.
+// Whether a quote at this place may open a cell, for any separator.
 bool MayOpen(std::string_view text, size_t quote) {
   const size_t before = text.substr(0, quote).find_last_not_of(' ');
   return before == std::string_view::npos ||
@@ -61,7 +62,7 @@ std::string_view WithoutEnd(std::string_view line, char separator) {
 
 size_t EndOfLine(std::string_view text) {
   constexpr std::ptrdiff_t kMostLines = 10;  // in a cell
-  constexpr size_t kLongestCell = 1u << 16;  // bounds what is looked through for each line
+  constexpr size_t kLongestCell = 1u << 16;  // limits the search in each line
   size_t end = text.find('\n');
   if (end < text.size() - std::min(text.size(), kLongestCell)) text = text.substr(0, end + kLongestCell);
   for (size_t quote = text.find('"'); quote < end; quote = text.find('"', quote + 1)) {

@@ -1,4 +1,4 @@
-// The cells of a line of CSV.
+// Splits a line of CSV into cells.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,25 @@
 
 namespace hydro::tables {
 
-// Without blanks and carriage returns at both ends.
+// The text without blanks and carriage returns at both ends.
 std::string_view Trimmed(std::string_view text);
 
-// Without the byte order mark of UTF-8.
+// The text without the byte order mark of UTF-8.
 std::string_view WithoutByteOrderMark(std::string_view text);
 
-// A line without its end. Tabs at its ends are cells where tabs separate them.
+// The line without its end. Tabs at its ends are cells when tabs separate cells.
 std::string_view WithoutEnd(std::string_view line, char separator);
 
-// Where the next line of a text ends: at its line feed, or at the end of the text. A line feed in a quoted cell is a
-// part of it (RFC 4180); a quote that is not closed within a few lines is an ordinary character.
+// The end of the first line of a text: its line feed, or the end of the text. A line feed in a quoted cell is
+// a part of it (RFC 4180); a quote that is not closed within a few lines is an ordinary character.
 size_t EndOfLine(std::string_view text);
 
-// Splits a line at each separator, or at runs of blanks and tabs where that is ' '. Quoted cells may contain
-// it, and lose their quotes unless there are more in them, which CellText() resolves; an unclosed quote is an
-// ordinary character.
+// Splits a line at each separator; ' ' stands for runs of blanks and tabs. Quoted cells may contain the
+// separator. They lose their quotes unless they contain further ones, which CellText() resolves. An unclosed
+// quote is an ordinary character.
 void SplitCells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
-// What a cell says: in a quoted one, two quotes are one (RFC 4180).
+// The text of a cell: in a quoted cell, two quotes stand for one (RFC 4180).
 std::string CellText(std::string_view cell);
 
 // A number with a decimal comma, and neither a point nor a second comma: "0,5".

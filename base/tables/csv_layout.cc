@@ -14,9 +14,9 @@ namespace hydro::tables {
 namespace {
 
 constexpr size_t kLookedLines = 500;  // lines from the top
-constexpr size_t kJudged = 20;        // lines of numbers that must fit for the most part
+constexpr size_t kJudged = 20;        // number of lines of which most must be numbers that fit
 
-// A way to read the top of a text: lines of numbers, with names above them.
+// One way to read the top of a text: lines of numbers, with names above them.
 struct Reading {
   char separator = ',';
   size_t columns = 0;
@@ -38,7 +38,7 @@ RowOfUnits Judge(const std::vector<std::string_view>& cells) {
   return units == texts ? RowOfUnits::kYes : RowOfUnits::kPerhaps;
 }
 
-// Whether most of the lines from `row` on are `columns` numbers.
+// Whether most of the lines from `row` on consist of `columns` numbers.
 bool MostlyNumbers(const Lines& lines, size_t row, char separator, size_t columns) {
   size_t judged = 0, good = 0;
   for (size_t i = row; i < lines.size() && judged < kJudged; ++i) {
@@ -50,7 +50,7 @@ bool MostlyNumbers(const Lines& lines, size_t row, char separator, size_t column
   return 2 * good >= judged;
 }
 
-// The nearest line above that is no comment; `row` itself if there is none.
+// The nearest line above that is not a comment; `row` itself if there is none.
 size_t Above(const Lines& lines, size_t row) {
   for (size_t i = row; i-- > 0;) {
     if (!lines[i].comment) return i;
@@ -58,7 +58,7 @@ size_t Above(const Lines& lines, size_t row) {
   return row;
 }
 
-// Finds the names above the first line of numbers; false when there are none.
+// Finds the names above the first line of numbers; returns false when there are none.
 bool FindNames(const Lines& lines, const std::string& file, const CsvSettings& settings, Reading* reading) {
   const auto fits = [&](size_t line) {
     const std::vector<std::string_view> cells = CellsOf(lines[line], reading->separator);
@@ -66,7 +66,7 @@ bool FindNames(const Lines& lines, const std::string& file, const CsvSettings& s
   };
   const size_t nearest = Above(lines, reading->rows);
   if (nearest == reading->rows) {
-    // No line but comments: the last of them may hold the names.
+    // There are only comments above: the last of them may hold the names.
     if (reading->rows == 0 || !fits(reading->rows - 1)) return false;
     reading->names = reading->rows - 1;
     return true;
@@ -105,7 +105,7 @@ std::optional<Reading> Read(const Lines& lines, const std::string& file, char se
   return std::nullopt;
 }
 
-// What separates cells in the first line, for messages where the numbers do not tell.
+// The separator in the first line, for messages when the numbers do not determine it.
 char SeparatorOfFirst(const Lines& lines) {
   for (const Line& line : lines) {
     if (line.comment) continue;
@@ -117,20 +117,20 @@ char SeparatorOfFirst(const Lines& lines) {
   return ',';
 }
 
-// The one reading of the text; empty where none fits.
+// The only way to read the text; empty when none fits.
 std::optional<Reading> FindReading(const Lines& lines, const std::string& file, const CsvSettings& settings,
                                    const AskedColumns& asked) {
   std::vector<Reading> readings;
   const Line* nameless = nullptr;
   for (const char separator : kSeparators) {
     if (settings.separator.value_or(separator) != separator) continue;
-    // Blanks split what tabs split as well.
+    // Blanks also split what tabs split.
     if (separator == ' ' && !readings.empty() && readings.back().separator == '\t') continue;
     const std::optional<Reading> reading = Read(lines, file, separator, settings, &nameless);
     if (!reading.has_value()) continue;
     if (separator == ',' && reading->columns == 1) {
       if (settings.separator.has_value()) return reading;
-      continue;  // every text is one column of something
+      continue;  // every text can be read as one column
     }
     readings.push_back(*reading);
   }
@@ -143,7 +143,8 @@ std::optional<Reading> FindReading(const Lines& lines, const std::string& file, 
                      ": found cells that may be separated by " + Joined(names, " or by ") +
                      ", allowed one separator: set separator in the sidecar");
   }
-  // Where no names are asked for, numbers with commas between them may be names: of years, or channels.
+  // When no names are asked for, numbers with commas between them may be names, for example of years or
+  // channels.
   if (nameless != nullptr && !(asked.all() && AllNumbers(CellsOf(*nameless, ',')))) {
     throw InputError(
         file + ": line " + std::to_string(nameless->number) +
@@ -160,7 +161,8 @@ CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSe
                      const AskedColumns& asked) {
   text = WithoutByteOrderMark(text);
   const size_t skipped = settings.skip_lines.value_or(0);
-  // Tabs at the ends of lines matter only between tabs, and leave the lines of the others as they are.
+  // Tabs at the ends of lines matter only when tabs separate cells; for other separators these lines serve as
+  // well.
   const Lines lines = LinesOf(text, '\t', skipped, kLookedLines);
   if (!asked.all()) {
     std::optional<CsvLayout> found = FindAskedLayout(lines, file, settings, asked);
@@ -184,7 +186,7 @@ CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSe
   layout.separator = reading->separator;
   layout.units_row = reading->units;
   if (!settings.skip_lines.has_value()) {
-    // Only what the plain reader would take for the names has to be skipped.
+    // Only lines that the plain reader would take for the names must be skipped.
     const size_t first =
         Above(lines, reading->names) == reading->names ? 0 : lines[reading->names].number - 1;
     layout.skip_lines = first;

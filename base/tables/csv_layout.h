@@ -1,4 +1,4 @@
-// How a CSV text is laid out: found from the text, or stated.
+// The layout of a CSV text: found from the text, or stated by the user.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,17 @@ struct CsvLayout {
   char decimal = '.';      // or ','
   size_t skip_lines = 0;   // before the line of names
   bool units_row = false;  // the line below the names holds units, or units_line
-  // Where they were found by the names that are asked for: lines of the file from 1; 0: by the rules of CsvText.
+  // When the layout was found by the names of the asked columns: the lines of the file, from 1. 0: found by
+  // the rules of CsvText.
   size_t names_line = 0;
   size_t units_line = 0;
   size_t first_row = 0;
-  std::vector<size_t> passed_over = {};  // lines between them that are neither
+  std::vector<size_t> passed_over = {};  // lines between the two that are neither names nor units
 
   bool operator==(const CsvLayout&) const = default;
 };
 
-// What is stated about a layout; the rest is found from the text.
+// The stated parts of a layout; the rest is found from the text.
 struct CsvSettings {
   std::optional<char> separator = {};
   std::optional<char> decimal = {};
@@ -34,11 +35,11 @@ struct CsvSettings {
   std::optional<bool> units_row = {};
 };
 
-// What is asked of a table: nothing else in it is judged.
+// The columns that are asked of a table; nothing else in it is judged.
 struct AskedColumns {
   std::vector<std::string> names = {};  // empty: all of the table
-  std::string time = {};                // the one that may hold dates and times of day
-  std::string date = {};                // one that has the dates of that
+  std::string time = {};                // the asked column that may hold dates and times of day
+  std::string date = {};                // the column that holds the dates for `time`
 
   bool all() const { return names.empty(); }
   bool Has(const std::string& name) const {
@@ -46,13 +47,13 @@ struct AskedColumns {
   }
 };
 
-// The layout of a text in UTF-8. Where columns are asked for, the line that has most of their names tells it. Else numbers
-// decide: a separator fits if it splits a line, and most of those that
+// Finds the layout of a text in UTF-8. When columns are asked for, the line that has most of their names
+// determines it. Otherwise numbers decide: a separator fits if it splits a line, and most of those that
 // follow, into numbers, as many as the line above them has names. A row of units is one whose every cell is a
-// unit, below a line of as many names. Where no separator fits, the layout is the plain one, whose reader
-// names the first cell that is wrong. Throws InputError, which says what to set, where the text can be read
+// unit, below a line of equally many names. When no separator fits, the layout is the plain one, whose reader
+// names the first cell that is wrong. Throws InputError, which states what to set, when the text can be read
 // in two ways: a comma that may mark decimals or thousands, decimal points and decimal commas in one text, or
-// a row of which only some cells are units; and where rows of numbers have no names.
+// a row of which only some cells are units. Also throws it when rows of numbers have no names.
 CsvLayout FindLayout(std::string_view text, const std::string& file, const CsvSettings& settings,
                      const AskedColumns& asked = {});
 

@@ -30,7 +30,7 @@ const char* NameOf(char separator) {
 Lines LinesOf(std::string_view text, char separator, size_t skip, size_t most) {
   Lines lines;
   for (size_t number = 1; !text.empty() && lines.size() < most; ++number) {
-    // What is skipped may be of any text, with any quotes.
+    // The skipped lines may hold any text, with any quotes.
     const size_t end = number <= skip ? text.find('\n') : EndOfLine(text);
     const std::string_view whole = text.substr(0, end);
     const std::string_view line = WithoutEnd(whole, separator);

@@ -1,4 +1,4 @@
-// The lines of a CSV text, for finding its layout.
+// Splits a CSV text into lines, for finding its layout.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace hydro::tables {
 
-// What may stand between cells; ' ' is any run of blanks and tabs.
+// The characters that may stand between cells; ' ' is any run of blanks and tabs.
 inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
 
 const char* NameOf(char separator);
@@ -20,12 +20,13 @@ struct Line {
 
 using Lines = std::vector<Line>;
 
-// The lines that are not blank, as the separator has their ends, up to `most`, after those that are skipped.
+// The lines that are not blank, each without its end (WithoutEnd() of csv_cells.h): at most `most`, after
+// those that are skipped.
 Lines LinesOf(std::string_view text, char separator, size_t skip, size_t most);
 
 std::vector<std::string_view> CellsOf(const Line& line, char separator);
 
-// Whether the cells are numbers, with points or commas, and empty ones, at least one of them a number.
+// Whether every cell is empty or a number, with a point or a comma, and at least one is a number.
 bool AllNumbers(const std::vector<std::string_view>& cells);
 
 }  // namespace hydro::tables

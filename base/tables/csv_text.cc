@@ -32,7 +32,7 @@ CsvText::CsvText(std::string_view text, std::string file, const CsvLayout& layou
 std::string_view CsvText::TakeLineOf(size_t line) {
   std::string_view text;
   do {
-    // What comes before the names may be of any text, with any quotes.
+    // The lines before the names may hold any text, with any quotes.
     any_quotes_ = taken_ + 1 < layout_.names_line;
     TakeRawLine(&text);
   } while (line_ < line && !text_.empty());

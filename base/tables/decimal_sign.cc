@@ -13,7 +13,7 @@ bool IsDigits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// "1,234" and "12,345,678": the commas may mark thousands.
+// In "1,234" and "12,345,678", the commas may mark thousands.
 bool MayBeThousands(std::string_view cell) {
   if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
   size_t comma = cell.find(',');
@@ -26,7 +26,7 @@ bool MayBeThousands(std::string_view cell) {
   return true;
 }
 
-// Which cells of a row are asked for; empty: all.
+// Which cells of a row are asked for; empty: all of them.
 std::vector<bool> AskedPlaces(std::string_view text, const CsvLayout& layout, const AskedColumns& asked) {
   if (asked.all() || layout.names_line == 0) return {};
   const Lines lines = LinesOf(text, layout.separator, layout.names_line - 1, 1);
@@ -42,9 +42,9 @@ std::vector<bool> AskedPlaces(std::string_view text, const CsvLayout& layout, co
 char FindDecimal(std::string_view text, const std::string& file, const CsvLayout& layout, size_t first,
                  const AskedColumns& asked) {
   const char separator = layout.separator;
-  // Between commas, only quotes can hold a decimal one.
+  // When commas separate cells, only quoted cells can hold a decimal comma.
   if (separator == ',' && text.find('"') == std::string_view::npos) return '.';
-  size_t with_point = 0, with_comma = 0;  // the first lines that have them
+  size_t with_point = 0, with_comma = 0;  // the first lines in which they occur
   bool thousands = true;
   const std::vector<bool> judged = AskedPlaces(text, layout, asked);
   std::vector<std::string_view> cells;
@@ -53,7 +53,7 @@ char FindDecimal(std::string_view text, const std::string& file, const CsvLayout
     SplitCells(line.text, separator, cells);
     for (size_t i = 0; i < cells.size(); ++i) {
       const std::string_view cell = cells[i];
-      // A time of day has a sign of its own: 10:30:25,005.
+      // The sign in a time of day does not count: 10:30:25,005.
       if ((!judged.empty() && (i >= judged.size() || !judged[i])) || cell.find(':') != std::string_view::npos)
         continue;
       if (cell.find(',') != std::string_view::npos) {

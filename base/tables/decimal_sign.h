@@ -1,4 +1,4 @@
-// The sign of decimals in a CSV text.
+// Finds the decimal sign of a CSV text.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace hydro::tables {
 
-// '.' or ',', from the asked cells of all rows from line `first` on. Throws InputError, which says what to set, where commas may
-// as well mark thousands, and where there are both signs.
+// '.' or ',', from the asked cells of all rows from line `first` on. Throws InputError, which states what to
+// set, when commas may also mark thousands, and when both signs occur.
 char FindDecimal(std::string_view text, const std::string& file, const CsvLayout& layout, size_t first,
                  const AskedColumns& asked = {});
 

@@ -19,7 +19,7 @@ namespace {
 using Bytes = std::span<const uint8_t>;
 
 constexpr size_t kHeaderSize = 128;
-constexpr size_t kTagSize = 8;     // of each element: its type and byte count
+constexpr size_t kTagSize = 8;     // of each element's tag: its type and byte count
 constexpr int kDeepestArray = 32;  // arrays within arrays
 constexpr size_t kMostDimensions = 64;
 constexpr uint32_t kComplex = 0x800;
@@ -27,7 +27,7 @@ constexpr uint32_t kComplex = 0x800;
 enum Type : uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed = 15, kUtf8 = 16 };
 enum Class : uint32_t { kCell = 1, kStruct = 2, kObject = 3, kSparse = 5, kFunction = 16, kOpaque = 17 };
 
-// Bytes of a number of that type; 0: it is none.
+// The number of bytes of a number of that type; 0 when the type is not a number.
 size_t SizeOf(uint32_t type) {
   constexpr size_t kSizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8, 0, 0, 1, 2, 4};
   return type < std::size(kSizes) ? kSizes[type] : 0;
@@ -38,18 +38,18 @@ struct Element {
   Bytes data;
 };
 
-// One top-level element of a file and all that is in it.
+// Checks one top-level element of a file and everything in it.
 class Walk {
  public:
   Walk(const std::string& file, size_t offset, bool swapped, size_t most_numbers)
       : file_(file), offset_(offset), swapped_(swapped), most_numbers_(most_numbers) {}
 
-  // Takes the element at the beginning of `rest` off it.
+  // Removes the element at the beginning of `rest`, and returns it.
   Element Take(Bytes* rest) const {
     if (rest->size() < kTagSize) Fail("ends within an element");
     const uint32_t first = Number(*rest, 0);
     Element element;
-    if (first >> 16 != 0) {  // a small one: the bytes are in the tag
+    if (first >> 16 != 0) {  // a small element: the bytes are in the tag
       if (first >> 16 > 4) Fail("has an element of more bytes than its tag holds");
       element = {first & 0xffff, rest->subspan(4, first >> 16)};
       *rest = rest->subspan(kTagSize);
@@ -60,7 +60,7 @@ class Walk {
       Fail(fmt::format("has an element of {} bytes where {} are left", size, rest->size() - kTagSize));
     }
     element = {first, rest->subspan(kTagSize, size)};
-    // Each begins at a multiple of 8; after the last nothing need follow.
+    // Each element begins at a multiple of 8; after the last one nothing need follow.
     *rest = rest->subspan(std::min(rest->size(), kTagSize + (size + 7) / 8 * 8));
     return element;
   }
@@ -75,7 +75,7 @@ class Walk {
     if (flags.type != kUint32 || flags.data.size() != 8) Fail("has no array flags");
     const uint32_t kind = Number(flags.data, 0) & 0xff;
     if (kind < kCell || kind > kOpaque) Fail(fmt::format("is of class {}", kind));
-    if (kind == kOpaque) return Rest(rest, depth);  // an object of MATLAB's: nothing of it is read
+    if (kind == kOpaque) return Rest(rest, depth);  // an object of MATLAB's, of which nothing is read
     const size_t count = Product(Take(&rest));
     const Element name = Take(&rest);
     if (name.type != kInt8 && name.type != kUtf8) Fail("has no name");
@@ -113,7 +113,7 @@ class Walk {
     return swapped_ ? __builtin_bswap32(number) : number;
   }
 
-  // Of dimensions; the largest size where it is beyond all.
+  // The product of dimensions; the largest size when the product overflows.
   size_t Product(const Element& dimensions) const {
     const size_t count = dimensions.data.size() / 4;
     if (dimensions.type != kInt32 || dimensions.data.size() % 4 != 0) Fail("has no dimensions");
@@ -142,7 +142,7 @@ class Walk {
     }
   }
 
-  // As many arrays as that; each has a tag at least, so that the count is no more than the bytes are.
+  // Checks `count` times `each` arrays. Each has at least a tag, so the bytes limit the count.
   void Arrays(Bytes rest, size_t count, size_t each, int depth) {
     size_t wanted = 0;
     if (__builtin_mul_overflow(count, each, &wanted) || wanted > rest.size() / kTagSize) {
@@ -165,7 +165,7 @@ class Walk {
     Arrays(rest, count, names.data.size() / each, depth);
   }
 
-  // Rows, where each column begins, and the numbers: matio reads on for what is not there.
+  // Checks rows, starts of columns, and numbers: matio would read beyond the end for missing ones.
   void Sparse(Bytes rest, bool complex) const {
     const Element rows = Take(&rest), columns = Take(&rest), numbers = Take(&rest);
     const bool indices = rows.type == kInt32 && columns.type == kInt32;
@@ -173,7 +173,7 @@ class Walk {
       Fail("is a sparse matrix without its numbers");
   }
 
-  // Elements of which only the sizes matter.
+  // Checks elements of which only the sizes matter.
   void Rest(Bytes rest, int depth) {
     while (!rest.empty()) {
       const Element element = Take(&rest);
@@ -193,7 +193,7 @@ struct FreeDecompressor {
   void operator()(libdeflate_decompressor* one) const { libdeflate_free_decompressor(one); }
 };
 
-// Empty when there are more than `most` bytes, or what is compressed is damaged.
+// Empty when there are more than `most` bytes, or when the compressed data are damaged.
 std::vector<uint8_t> Decompressed(Bytes compressed, size_t most) {
   const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
       libdeflate_alloc_decompressor());
@@ -236,7 +236,7 @@ void CheckMat5Sizes(const std::string& file) {
       const Element compressed = element;
       element = walk.Take(&inside);
       if (!inside.empty()) walk.Fail("ends before what was compressed does");  // matio would read on
-      // What is compressed is not padded, though its size need not be a multiple of 8.
+      // Compressed elements are not padded, although their size need not be a multiple of 8.
       rest = left.subspan(kTagSize + compressed.data.size());
     }
     walk.Array(element, 0);

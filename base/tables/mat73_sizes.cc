@@ -12,7 +12,7 @@
 namespace hydro::tables {
 namespace {
 
-// A handle of HDF5's, closed with its object; below 0: none.
+// A handle of HDF5, closed with its object; below 0: none.
 class Hdf5Id {
  public:
   Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -31,7 +31,7 @@ class Hdf5Id {
 struct NumbersSoFar {
   size_t numbers = 0;
   size_t most = 0;
-  std::string too_large;  // the dataset with which they became too many
+  std::string too_large;  // the dataset with which the numbers became too many
 };
 
 size_t NumbersOf(hid_t root, const char* name) {
@@ -49,7 +49,8 @@ size_t NumbersOf(hid_t root, const char* name) {
   return product;
 }
 
-// Numbers, and references to the parts of structs and cells: matio allocates for each. Not 0 ends the visit.
+// Counts numbers, and references to the parts of structs and cells, because matio allocates memory for each.
+// A result other than 0 ends the visit.
 herr_t AddDataset(hid_t root, const char* name, const H5O_info_t* info, void* to) {
   auto* const count = static_cast<NumbersSoFar*>(to);
   if (info->type != H5O_TYPE_DATASET) return 0;
@@ -66,7 +67,7 @@ herr_t AddDataset(hid_t root, const char* name, const H5O_info_t* info, void* to
 
 void CheckMat73Sizes(const std::string& file) {
   const size_t bytes = MappedFile(file).size();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what is wrong is said here
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // this program reports the errors
   const Hdf5Id root(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (root < 0) throw InputError(file + ": found damaged HDF5, allowed is a whole file: save it again");
   NumbersSoFar count;

@@ -1,4 +1,4 @@
-// What matio opens and reads, closed and freed by itself. For .cc files that use matio.
+// Closes and frees what matio opens and reads. For .cc files that use matio.
 #pragma once
 
 #include <matio.h>

@@ -30,7 +30,7 @@ std::string Dimensions(const matvar_t& variable) {
 
 using ToNumbers = std::vector<double> (*)(const matvar_t& variable, size_t count);
 
-// What reads the elements of a variable of this class; null where they are no numbers.
+// The function that reads the elements of a variable of this class; null when they are not numbers.
 ToNumbers ReaderOf(matio_classes type) {
   switch (type) {
     case MAT_C_DOUBLE:
@@ -58,7 +58,7 @@ ToNumbers ReaderOf(matio_classes type) {
   }
 }
 
-// `mat` is null for what has been read already, with the struct that it is in.
+// `mat` is null for a variable that has been read already, with the struct that contains it.
 MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
   MatVector vector{name, {}, {}};
   const ToNumbers to_numbers = ReaderOf(variable->class_type);
@@ -106,7 +106,8 @@ void AppendFields(matvar_t* variable, const std::string& name, int depth, std::v
   }
 }
 
-// Of a variable of which matio has told what it is: itself, or in a struct its fields, in their order.
+// Appends the vectors of a variable that matio has described: the variable itself, or the fields of a struct
+// in their order.
 void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vectors) {
   const std::string name = variable->name != nullptr ? variable->name : "";
   if (variable->class_type != MAT_C_STRUCT) {
@@ -129,8 +130,8 @@ MatContents ReadMatContents(const std::string& file) {
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
   }
-  // When a file is cut off, matio returns unfilled memory for the missing values; and it allocates what the
-  // dimensions say.
+  // When a file is cut off, matio returns unfilled memory for the missing values, and it allocates as much as
+  // the dimensions state.
   Mat_GetVersion(mat.get()) == MAT_FT_MAT5 ? CheckMat5Sizes(file) : CheckMat73Sizes(file);
   MatContents found;
   while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {

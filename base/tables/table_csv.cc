@@ -33,7 +33,7 @@ void CheckNames(const CsvText& text, const AskedColumns& asked, size_t columns) 
   }
 }
 
-// An export of several runs has a first column that names them (exports/csv_export.h).
+// An export of several runs has a first column that names the run (exports/csv_export.h).
 std::string AllowedIn(const std::string& column) {
   std::string allowed = "a number, nan or an empty cell";
   if (column != "run") return allowed;
@@ -41,7 +41,7 @@ std::string AllowedIn(const std::string& column) {
          ": this is a table of several runs; export one, a limb's joint with hydro-log export --joint NAME";
 }
 
-// Whether the last cell of a text without a line end is whole, by those above it.
+// Judges from the cells above whether the last cell of a text without a line end is whole.
 class LastCells {
  public:
   enum class Judgement { kWhole, kCut, kUnknown };
@@ -60,7 +60,7 @@ class LastCells {
   }
 
  private:
-  // 0 for numbers without a fraction or with an exponent, and for what is no number.
+  // 0 for numbers without a fraction or with an exponent, and for cells that are not numbers.
   static size_t DigitsAfterSign(std::string_view cell) {
     const size_t sign = cell.find_first_of(".,");
     if (sign == std::string_view::npos) return 0;
@@ -69,7 +69,7 @@ class LastCells {
   }
 
   bool any_ = false;
-  size_t fixed_ = 0;  // digits after the sign of decimals, where all cells have as many
+  size_t fixed_ = 0;  // digits after the decimal sign, if all cells have equally many
   size_t shortest_ = 0;
 };
 
@@ -78,7 +78,7 @@ class RowReader {
  public:
   RowReader(CsvText& text, const AskedColumns& asked, Table* table)
       : text_(text), asked_(asked), table_(*table) {
-    // A separator at the end of every line leaves a column that is none.
+    // A separator at the end of every line makes an extra column without a name, which does not count.
     const std::vector<std::string>& names = text.names();
     columns_ = names.size() - (names.size() > 1 && names.back().empty() ? 1 : 0);
     CheckNames(text, asked, columns_);
@@ -125,7 +125,7 @@ class RowReader {
     return *value;
   }
 
-  // Whether the last line, which has no end, was cut in a number that is asked for; notes it.
+  // Notes and returns whether the last line, which has no end, was cut within an asked number.
   bool IsCut() {
     const size_t last = columns_ - 1;
     if (columns_ < text_.names().size() || places_.empty() || places_.back() != last) return false;
@@ -153,7 +153,7 @@ class RowReader {
   const AskedColumns& asked_;
   Table& table_;
   size_t columns_ = 0;
-  std::vector<size_t> places_;  // of the table's columns in the text
+  std::vector<size_t> places_;  // places of the table's columns in the text
   std::optional<size_t> date_;
   TimeColumn time_;
   LastCells last_;
@@ -178,7 +178,7 @@ Table ReadCsv(const std::string& file, const CsvSettings& settings, const AskedC
   if (!table.not_utf8.empty()) table.not_utf8 = text.Place() + ": " + table.not_utf8;
   if (asked.all() && !table.not_utf8.empty()) throw InputError(table.not_utf8);
   RowReader reader(text, asked, &table);
-  // Whoever asked for what is not there says so.
+  // The caller that asked for a missing column reports it.
   if (!table.columns.empty()) reader.ReadRows();
   return table;
 }
@@ -195,7 +195,7 @@ void WriteCsv(const Table& table, const std::string& file) {
     for (size_t column = 0; column < table.columns.size(); ++column) {
       if (column > 0) text += ',';
       const double value = table.columns[column].values[row];
-      // A line with nothing but a missing value would be an empty line.
+      // A line with only a missing value would be an empty line.
       if (!std::isnan(value) || table.columns.size() == 1) AppendNumber(value, text);
     }
     text += '\n';

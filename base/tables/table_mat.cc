@@ -18,7 +18,7 @@ bool IsAsked(const MatVector& vector, const AskedColumns& asked) {
   return asked.all() || asked.Has(vector.name);
 }
 
-// As many as the asked vectors have that together hold most numbers: the signals.
+// The number of rows of the signals: the vector length under which the asked vectors hold most numbers.
 size_t RowsOfMost(const std::vector<MatVector>& vectors, const AskedColumns& asked) {
   std::map<size_t, size_t> numbers;
   for (const MatVector& vector : vectors) {
@@ -34,7 +34,7 @@ std::string RowsWrong(const MatVector& vector, size_t rows, const std::string& l
          " are needed, as many as " + like;
 }
 
-// A file of vectors is a table, and anything else in it an error.
+// In a file of vectors, all vectors form the table, and anything else is an error.
 void TakeAll(std::vector<MatVector>& vectors, Table* table) {
   for (MatVector& vector : vectors) {
     const std::string place = table->file + ": column '" + vector.name + "': ";
@@ -50,8 +50,9 @@ void TakeAll(std::vector<MatVector>& vectors, Table* table) {
   }
 }
 
-// A file with structs is what somebody had in mind: settings and texts beside the signals. What is no signal is left
-// out, here and where only some vectors are asked for, and why is kept for who asks for it.
+// In a file with structs, its author put settings and texts beside the signals. Whatever is not a signal is
+// left out, here and when only some vectors are asked for, and the reason is kept for a caller that asks for
+// it.
 void TakeSignals(std::vector<MatVector>& vectors, const AskedColumns& asked, Table* table) {
   const size_t rows = RowsOfMost(vectors, asked);
   for (MatVector& vector : vectors) {
@@ -86,7 +87,7 @@ Table ReadMat(const std::string& file, const AskedColumns& asked) {
 void WriteMat(const Table& table, const std::string& file) {
   Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the file
   NewFile out(file, Opening::kTemporary);
-  // Our own header: matio's holds the date, and the same table must give the same bytes.
+  // The header is our own: matio's contains the date, and the same table must give the same bytes.
   MatFile mat(Mat_CreateVer(out.path().c_str(), "MATLAB 5.0 MAT-file, written by hydro-log", MAT_FT_MAT5));
   bool written = mat != nullptr;
   for (const Column& column : table.columns) {
@@ -97,7 +98,7 @@ void WriteMat(const Table& table, const std::string& file) {
         written && variable != nullptr && Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) == 0;
   }
   mat.reset();
-  // matio does not report that its last buffer could not be written; the file's length does.
+  // matio does not report when its last buffer could not be written; the file's length shows it.
   struct stat status;
   written = written && stat(out.path().c_str(), &status) == 0 &&
             static_cast<size_t>(status.st_size) >= table.rows() * table.columns.size() * sizeof(double);

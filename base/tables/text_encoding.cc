@@ -52,7 +52,7 @@ std::optional<std::string> FromUtf16(std::string_view text, const std::string& f
   const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");
   if (!little && !big) {
     if (text.substr(0, kLookedBytes).find('\0') == std::string_view::npos) return std::nullopt;
-    // Every other byte is 0 where UTF-16 lost its mark. Single zero bytes are left to the reader's errors.
+    // In UTF-16 without a mark, every other byte is 0. Single zero bytes are left to the reader's errors.
     size_t zeros = 0;
     for (const char c : text.substr(0, kLookedBytes)) zeros += c == '\0';
     if (4 * zeros < text.substr(0, kLookedBytes).size()) return std::nullopt;

@@ -1,4 +1,5 @@
-// The cells of a table's time, whatever they are: numbers, whole numbers beyond what a double holds, dates, times of day.
+// Reads the cells of a table's time, in any form: numbers, integers beyond what a double holds, dates, times
+// of day.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +12,26 @@
 
 namespace hydro::tables {
 
-// What such a column turned out to hold.
+// The contents that such a column turned out to have.
 enum class TimeKind {
   kNumbers,
   kWholeNumbers,  // counted from the first: 19 digits of ns do not fit into a double
-  kClock,         // dates and times, in s from the first
-  kLocalClock,    // the same without a zone: whoever sets the clocks an hour on changes them
+  kClock,         // dates and times, in s from the first one
+  kLocalClock,    // the same without a zone; a change to summer time shifts them
   kTimeOfDay,     // in s of its day
 };
 
 class TimeColumn {
  public:
-  // A cell, with its value where it is a number, and with the cell of the column of dates, if there is one. The first
-  // that is not empty tells what the column holds. Empty when the cell is nothing of that kind.
+  // Takes a cell, with its value if it is a number, and with the cell of the column of dates, if there is
+  // one. The first cell that is not empty determines what the column holds. Empty when the cell does not have
+  // that kind.
   std::optional<double> Take(std::string_view cell, std::optional<double> number,
                              std::optional<std::string_view> date);
 
   TimeKind kind() const { return kind_.value_or(TimeKind::kNumbers); }
   const std::string& first() const { return first_; }  // as it stands in the table
-  // What the next cell may be.
+  // What the next cell may hold, for messages.
   std::string Allowed() const;
 
  private:

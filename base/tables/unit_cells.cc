@@ -10,7 +10,7 @@
 namespace hydro::tables {
 namespace {
 
-// Units of what no signal measures, and of pressures that count from elsewhere.
+// Units of quantities that no signal measures, and of pressures that count from another zero.
 constexpr std::string_view kOthers[] = {"A",      "mA",     "%",     "°C",    "degC",  "C",    "K",    "W",
                                         "kW",     "g",      "l/min", "L/min", "psig",  "psia", "barg", "bara",
                                         "bar(g)", "bar(a)", "1/min", "m/s²",  "m/s^2", "dB"};

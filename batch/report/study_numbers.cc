@@ -15,7 +15,7 @@ constexpr size_t kMostFailures = 20;
 constexpr size_t kMostCells = 40;
 constexpr int kBins = 12;
 
-// Values that a key has in few cases spread over the study; empty when one is no number.
+// The values of a key in a few cases spread over the study; empty when one of them is not a number.
 std::vector<double> SampledValues(const Study& study, size_t place) {
   constexpr int64_t kSamples = 500;
   std::vector<double> values;
@@ -47,7 +47,7 @@ std::optional<SurfaceAxis> AxisOf(const Study& study, const std::string& key) {
   if (distinct.size() <= (axis.place < study.grid.size() ? kMostCells : static_cast<size_t>(kBins))) {
     axis.centres.assign(distinct.begin(), distinct.end());
   } else {
-    // Bins over most of them; the first and the last take what lies beyond.
+    // Bins over most of the values. The first and the last bin take the values beyond.
     std::ranges::sort(values);
     const double low = Quantile(values, 0.01), high = Quantile(values, 0.99);
     if (!(high > low)) return std::nullopt;
@@ -75,7 +75,7 @@ Surface MakeSurface(const Study& study, const std::string& x, const std::string&
   return surface;
 }
 
-// What the study asks for, or the first two keys that are numbers.
+// The surface that the study asks for, or one over the first two keys that are numbers.
 Surface WantedSurface(const Study& study) {
   const std::vector<std::string>& wanted = study.report.surface;
   if (!wanted.empty()) return MakeSurface(study, wanted[0], wanted[1], wanted[2]);
@@ -89,7 +89,8 @@ Surface WantedSurface(const Study& study) {
   return MakeSurface(study, numeric[0], numeric[1], number);
 }
 
-// Between the two values around a place, which counts from 0 and is at most that of the last.
+// Interpolates between the two values around a place. Places count from 0, and `place` is at most that of the
+// last value.
 double ValueAt(const std::vector<double>& values, double place) {
   const auto below = static_cast<size_t>(place);
   const size_t above = std::min(below + 1, values.size() - 1);

@@ -17,7 +17,7 @@ namespace hydro::batch {
 namespace {
 
 constexpr size_t kWorst = 10;
-constexpr size_t kManyKeys = 7;  // whose table needs a wide page
+constexpr size_t kManyKeys = 7;  // with this many keys, the table needs a wide page
 
 std::string Row(const std::string& cells) { return "<tr>" + cells + "</tr>\n"; }
 std::string RightCell(const std::string& text) {
@@ -121,7 +121,7 @@ std::string WorstRow(const Study& study, int64_t index, const std::string& numbe
   return Row(cells);
 }
 
-// A case without the number (one that never settles) is worse than any with it.
+// A case without the number (one that never settles) is worse than any case with it.
 std::string WorstTable(const Study& study, const StudyNumbers& numbers) {
   const NumberColumn* column = numbers.worst();
   if (column == nullptr) return "";
@@ -191,7 +191,7 @@ void WritePage(const Study& study, const std::string& folder, const TableCounts&
     if (figure) {
       WriteWholeFile(file, page::FigureFile(*figure, name));
     } else {
-      unlink(file.c_str());  // of an earlier, other report
+      unlink(file.c_str());  // it belongs to an earlier, different report
     }
   };
   write(DistributionsFigure(numbers), "distributions");

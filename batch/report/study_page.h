@@ -1,4 +1,4 @@
-// The page of a study. It depends on the study and its results alone: no time of day, no host.
+// The page of a study. It depends only on the study and its results, and not on the time of day or the host.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ namespace hydro::batch {
 // A self-contained HTML document.
 std::string StudyPage(const Study& study, const TableCounts& counts, const StudyNumbers& numbers);
 
-// Writes index.html, distributions.svg, worst.svg and surface.svg, those that there are, into `folder`. Throws WriteError.
+// Writes index.html and those of distributions.svg, worst.svg and surface.svg that exist into `folder`.
+// Throws WriteError.
 void WritePage(const Study& study, const std::string& folder, const TableCounts& counts,
                const StudyNumbers& numbers);
 

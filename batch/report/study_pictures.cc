@@ -20,13 +20,13 @@ struct Histogram {
   std::vector<double> counts;
 };
 
-// Bins as wide as Freedman and Diaconis (1981) advise, 8 to 60 of them.
+// Bins as wide as Freedman and Diaconis (1981) advise, between 8 and 60 of them.
 Histogram HistogramOf(const std::vector<double>& sorted) {
   Histogram histogram;
   const double low = sorted.front(), high = sorted.back();
   if (!(high > low)) return {low - 0.5, 1, {static_cast<double>(sorted.size())}};
   if (!std::isfinite(high - low))
-    return {low, high, {static_cast<double>(sorted.size())}};  // no bin is that wide
+    return {low, high, {static_cast<double>(sorted.size())}};  // no bin can be that wide
   const double spread = Quantile(sorted, 0.75) - Quantile(sorted, 0.25);
   const double advised = 2 * spread / std::cbrt(static_cast<double>(sorted.size()));
   const double bins = advised > 0 ? std::ceil((high - low) / advised) : 20;

@@ -20,7 +20,7 @@ std::string CsvCell(const std::string& text) {
   return quoted + "\"";
 }
 
-// Lines into a file, a megabyte at a time.
+// Writes lines to a file, a megabyte at a time.
 class Lines {
  public:
   explicit Lines(const std::string& file) : file_(file, Opening::kTemporary) {}
@@ -115,7 +115,7 @@ void ForEachRow(const Study& study, CaseStore* store, int jobs,
     const ShardCases there = store->Shard(first / kShard);
     const auto count = static_cast<size_t>(std::min(kShard, study.cases() - first));
     std::vector<TableRow> rows(count);
-    // One thread reads ten at a time: a case alone is less than starting a thread.
+    // One thread reads ten cases at a time, because one case costs less than starting a thread.
     ParallelFor((count + 9) / 10, jobs, [&](size_t ten) {
       for (size_t i = 10 * ten; i < std::min(count, 10 * ten + 10); ++i)
         rows[i] = ReadRow(study, *store, there, first + static_cast<int64_t>(i));

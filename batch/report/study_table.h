@@ -1,4 +1,5 @@
-// The table of a study: a row for each case, whole, failed or missing. It depends on the study and its results alone.
+// The table of a study: a row for each case, whether done, failed or missing. It depends only on the study
+// and its results.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,11 @@ struct TableRow {
   int64_t index = 0;
   CaseStatus status = CaseStatus::kMissing;
   std::vector<Value> values;  // as Study::Keys()
-  CaseResult result;          // kMissing: nothing in it
+  CaseResult result;          // empty when it is kMissing
 };
 
-// Reads all cases, in their order, a shard at a time on `jobs` threads. A result that is not whole, as after a power cut, is taken away
-// and counts as missing. Throws StoreError.
+// Reads all cases in order, one shard at a time, on `jobs` threads. A result that is not whole, as after a
+// power cut, is removed and counts as missing. Throws StoreError.
 void ForEachRow(const Study& study, CaseStore* store, int jobs,
                 const std::function<void(const TableRow&)>& use);
 

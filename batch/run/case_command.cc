@@ -33,7 +33,7 @@ bool IsName(const std::string& text) {
   });
 }
 
-// Braces around anything but a name are the command's own, as in JSON or awk, and so are ${...}.
+// Braces around anything but a name belong to the command itself, as in JSON or awk, and so does ${...}.
 std::string Replaced(const std::string& text, const std::vector<std::string>& keys,
                      const std::vector<Value>& values, const CasePlace& place) {
   std::string result;

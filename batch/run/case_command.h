@@ -1,7 +1,7 @@
-// The commands of a case, with its values in the place of placeholders:
+// The commands of a case, with its values in place of the placeholders:
 //   {case}        the case's number
 //   {value:KEY}   the case's value of a varied key
-//   {folder}      the folder that the case runs in
+//   {folder}      the folder in which the case runs
 //   {inputs}      the folder with the study's files
 #pragma once
 
@@ -18,14 +18,15 @@ struct CasePlace {
   std::string folder, inputs;  // absolute paths
 };
 
-// Throws InputError for a placeholder that is none.
+// Throws InputError for an unknown placeholder.
 std::vector<std::string> CaseCommand(const Step& step, const std::vector<std::string>& keys,
                                      const std::vector<Value>& values, const CasePlace& place);
 
-// Where a program is that a study names: as given when it has a slash, else beside this program, else in PATH. Throws InputError.
+// The path of a program that a study names: as given when the name has a slash, or else beside this program,
+// or else in PATH. Throws InputError.
 std::string ProgramPath(const std::string& name);
 
-// Throws InputError when the study's commands have placeholders or programs that are none.
+// Throws InputError when the study's commands have unknown placeholders or programs that do not exist.
 void CheckCommands(const Study& study);
 
 }  // namespace hydro::batch

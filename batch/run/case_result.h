@@ -1,4 +1,4 @@
-// What a case leaves: result.json.
+// What a case leaves behind: result.json.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,11 @@ struct CaseResult {
   std::string reason;                         // of a failure, one line
 };
 
-// The text of result.json: depends on the arguments alone.
+// The text of result.json, which depends on the arguments alone.
 std::string ResultText(const Study& study, int64_t index, const CaseResult& result);
 
-// Reads it back. None when it is not whole, as after a power cut, or of another case.
+// Reads the text back. Returns nothing when it is not whole, as after a power cut, or when it belongs to
+// another case.
 std::optional<CaseResult> ParseResult(const Study& study, int64_t index, const std::string& text);
 
 }  // namespace hydro::batch

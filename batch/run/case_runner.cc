@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The last line with anything in it, of a file that may be long.
+// The last line of a file that is not blank. The file may be long.
 std::string LastLine(const std::string& path) {
   constexpr size_t kMost = 300;
   const std::string text = ReadSmallFile(path).value_or("");
@@ -41,7 +41,7 @@ std::string LastLine(const std::string& path) {
   return Printable(line.size() > kMost ? std::string(FirstBytes(line, kMost)) + "..." : line);
 }
 
-// The same on every machine.
+// Makes the text the same on every machine.
 std::string WithoutPath(std::string text, const std::string& path, const std::string& name) {
   for (size_t place = text.find(path); place != std::string::npos;
        place = text.find(path, place + name.size()))
@@ -49,7 +49,8 @@ std::string WithoutPath(std::string text, const std::string& path, const std::st
   return text;
 }
 
-// Where a program gave back what it had written, the disk is full no more.
+// Whether the reason is a full disk. The test is needed because the disk may have room again after a program
+// has removed what it had written.
 bool TellsOfFullDisk(const std::string& reason) {
   return reason.find(std::strerror(ENOSPC)) != std::string::npos ||
          reason.find(std::strerror(EDQUOT)) != std::string::npos;
@@ -62,8 +63,8 @@ bool IsFull(const std::string& folder) {
   return bytes || (disk.f_files > 0 && disk.f_favail == 0);
 }
 
-// Who cancels a job, or switches a machine off, ends this process and the case's at the same time. Of the two ends the case's may be seen
-// first; it is no failure of the case.
+// A user who cancels a job, or a machine that is switched off, ends this process and the case's process at
+// the same time. The case's end may be seen first, but it is not a failure of the case.
 bool MayBeStopped(const process::ProcessEnd& end) {
   static const bool in_job = std::getenv("SLURM_JOB_ID") != nullptr;
   return in_job || end.signal == SIGTERM || end.signal == SIGINT || end.signal == SIGHUP ||
@@ -107,7 +108,7 @@ void CaseRunner::Prepare(const std::vector<Value>& values) const {
   if (!study_.model_text.empty()) WriteSmallFile(folder_ + "/model.toml", case_inputs_.Model(values));
   if (const std::string machine = case_inputs_.Machine(values); !machine.empty())
     WriteSmallFile(folder_ + "/machine.toml", machine);
-  // So that commands and configurations name files alike wherever they run.
+  // With this link, commands and configurations name files in the same way wherever they run.
   if (symlink(inputs_.c_str(), (folder_ + "/inputs").c_str()) != 0) ThrowCannotWrite(folder_);
 }
 

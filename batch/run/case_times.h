@@ -1,5 +1,5 @@
-// When cases ran and how long: times/HOST-...csv, one file for each process that runs cases. Kept apart from results, which do not
-// depend on it.
+// Records when cases ran and for how long: times/HOST-...csv, one file for each process that runs cases. They
+// are kept apart from the results, which do not depend on the times.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace hydro::batch {
 
 class CaseTimes {
  public:
-  // `folder`: the study's. The file is made with the first lines.
+  // `folder` is the study's folder. The file is made together with its first lines.
   explicit CaseTimes(const std::string& folder);
 
-  // `began_s`: wall clock, seconds since 1970. Any thread may call it.
+  // `began_s` is the wall clock in seconds since 1970. Any thread may call this.
   void Add(int64_t index, bool failed, int attempts, double began_s, double seconds);
-  // Writes what was added. A full disk is no error: no result depends on it.
+  // Writes what was added. A full disk is not an error, because no result depends on this file.
   void Flush();
 
  private:

@@ -42,11 +42,12 @@ int OpenOutput(const std::string& path) {
   return descriptor;
 }
 
-// What a child says of a full disk must not fail for want of room: another case beside it may take what was just given back.
+// A child's message about a full disk must not fail for lack of room, and another case beside it may take the
+// space that was just freed.
 void ReserveLastWords(int descriptor, const std::string& path) {
   constexpr off_t kRoom = 4096;
   if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, kRoom) == 0) return;
-  if (errno == ENOSPC || errno == EDQUOT) ThrowCannotWrite(path);  // other file systems cannot reserve
+  if (errno == ENOSPC || errno == EDQUOT) ThrowCannotWrite(path);  // other file systems cannot reserve space
 }
 
 int Milliseconds(Clock::time_point until) {
@@ -59,15 +60,15 @@ bool HasEnded(pid_t pid) {
   return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == pid;
 }
 
-// A child, and its pidfd; -1 where the kernel gives none.
+// A child and its pidfd, which is -1 where the kernel provides none.
 struct Child {
   pid_t pid;
   int descriptor;
 };
 
-// True when the child has ended; `bell` may end the wait.
+// Returns true when the child has ended; `bell` may end the wait.
 bool WaitFor(const Child& child, int bell, std::optional<Clock::time_point> until) {
-  constexpr int kLook = 5;  // ms, without a pidfd
+  constexpr int kLook = 5;  // ms between checks without a pidfd
   for (;;) {
     std::array<pollfd, 2> waits = {pollfd{bell, POLLIN, 0}, pollfd{child.descriptor, POLLIN, 0}};
     int left = until ? Milliseconds(*until) : -1;

@@ -1,4 +1,4 @@
-// Runs one command and waits for it, until it ends, is late, or everything is to stop.
+// Runs one command and waits until it ends, is late, or must stop.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace hydro::batch {
 
-// Wakes all that wait, once. Any thread may call these.
+// Wakes all waiting threads, once. Any thread may call these functions.
 class StopBell {
  public:
   StopBell();
@@ -18,7 +18,7 @@ class StopBell {
 
   void Ring() const;
   bool Rings() const;
-  // Waits for it.
+  // Waits for the bell at most that long.
   bool RingsWithin(std::chrono::milliseconds time) const;
   int descriptor() const { return descriptor_; }  // readable once it rang
 
@@ -28,7 +28,7 @@ class StopBell {
 
 struct ChildRequest {
   std::vector<std::string> argv;  // argv[0]: path of the program
-  std::string folder;             // that it runs in
+  std::string folder;             // folder in which it runs
   std::string out, err;           // files for its output
   std::optional<std::chrono::steady_clock::time_point> deadline = std::nullopt;
 };
@@ -40,8 +40,8 @@ struct ChildResult {
   int wait_status = 0;
 };
 
-// A child that is late or stopped gets SIGTERM, with all its process group, and SIGKILL two seconds later. Throws
-// process::StartError, StoreError for the files.
+// A child that is late or stopped gets SIGTERM, together with its whole process group, and SIGKILL two
+// seconds later. Throws process::StartError, and StoreError for the files.
 ChildResult RunChild(const ChildRequest& request, const StopBell& bell);
 
 }  // namespace hydro::batch

@@ -61,13 +61,13 @@ std::string FilesIn(const std::string& folder) {
   return Listed(names);
 }
 
-// How far a pointer leads into a document, and what stands there.
+// Says how far a pointer leads into a document, and what is there.
 std::string NothingThere(const json& document, const Collected& from) {
   json::json_pointer deepest;
   try {
     deepest = json::json_pointer(from.pointer);
     while (!deepest.empty() && !document.contains(deepest)) deepest = deepest.parent_pointer();
-  } catch (const json::exception&) {  // no pointer at all
+  } catch (const json::exception&) {  // it is not a pointer
     deepest = json::json_pointer();
   }
   const json& there = document.at(deepest);

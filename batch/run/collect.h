@@ -1,4 +1,4 @@
-// The numbers that a case leaves in its files.
+// Collects the numbers that a case leaves in its files.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace hydro::batch {
 
-// In the order of study.collect; none where the file says null. The file exit_codes.json is the list of `exit_codes`, those of the steps.
-// Throws InputError naming file and pointer.
+// The numbers in the order of study.collect; none where the file says null. The file exit_codes.json is the
+// list of `exit_codes`, the exit codes of the steps. Throws InputError naming file and pointer.
 std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder,
                                                  const std::vector<int>& exit_codes);
 

@@ -29,7 +29,7 @@ std::optional<int64_t> MissingCases::Next() {
     }
     const auto place = static_cast<size_t>(next_ % kShard);
     if (there_.done[place] || (there_.failed[place] && !failed_too_)) continue;
-    // Another process may have stored it since.
+    // Another process may have stored it in the meantime.
     if (store_.IsDone(next_) || (!failed_too_ && store_.IsFailed(next_))) continue;
     return next_++;
   }

@@ -1,4 +1,5 @@
-// The missing cases of a range, one after the other, for several threads. Looks at one shard at a time.
+// Hands out the missing cases of a range, one after another, to several threads. Looks at one shard at a
+// time.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace hydro::batch {
 
-// How many of the cases from `first` to the one before `end` are there.
+// The number of cases that are there, from `first` to the one before `end`.
 struct CaseCount {
   int64_t done = 0, failed = 0;
 };
@@ -17,11 +18,11 @@ CaseCount CountCases(const CaseStore& store, int64_t first, int64_t end);
 
 class MissingCases {
  public:
-  // `failed_too`: failed cases count as missing.
+  // With `failed_too`, failed cases count as missing.
   MissingCases(const CaseStore& store, int64_t first, int64_t end, bool failed_too)
       : store_(store), next_(first), end_(end), failed_too_(failed_too) {}
 
-  // None when there are no more.
+  // Returns nothing when there are no more.
   std::optional<int64_t> Next();
 
  private:

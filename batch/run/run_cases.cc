@@ -70,9 +70,10 @@ class Pool {
         const auto start = Clock::now();
         const double began = WallClock();
         const auto result = runner.Run(*index, bell_);
-        // A child that was stopped together with this process may have ended as if all were well.
+        // A child that was stopped together with this process may have ended as if everything were well.
         if (!result || (request_.stop && request_.stop())) break;
-        // A case that fails while another worker finds the disk full may have failed of that: it runs again next time.
+        // A case that fails while another worker finds the disk full may have failed for that reason, so it
+        // runs again next time.
         if (result->failed && bell_.Rings()) break;
         Keep(*index, *result, runner.Kept(), slot);
         times_.Add(*index, result->failed, result->attempts, began, SecondsSince(start));
@@ -106,7 +107,7 @@ class Pool {
     }
   }
 
-  // Until all threads have ended.
+  // Runs until all threads have ended.
   void Watch() {
     std::unique_lock lock(mutex_);
     while (running_ > 0) {
@@ -121,7 +122,7 @@ class Pool {
     }
   }
 
-  // One flush of the disk serves all cases of a second.
+  // One flush of the disk serves all cases of one second.
   void SyncNowAndThen(const std::stop_token& stop) {
     std::mutex own;
     std::condition_variable_any wait;

@@ -19,7 +19,7 @@ Scratch::Scratch() {
   const std::string all = fs::absolute(place == nullptr || *place == '\0' ? "/tmp" : place).string() +
                           "/hydro-batch-" + std::to_string(getuid());
   if (mkdir(all.c_str(), 0700) != 0 && errno != EEXIST) ThrowCannotWrite(all);
-  // Somebody else may have made it first, to see or change what runs there.
+  // Another user may have made it first, to see or change what runs there.
   struct stat status = {};
   if (lstat(all.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != getuid())
     throw StoreError(all + ": found somebody else's, allowed a folder of yours; set TMPDIR");

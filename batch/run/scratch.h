@@ -1,4 +1,4 @@
-// A folder on this machine's own disk, for cases while they run: $TMPDIR, or /tmp.
+// A folder on this machine's own disk for cases while they run, in $TMPDIR or /tmp.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace hydro::batch {
 
 class Scratch {
  public:
-  // Also removes what killed processes of this user left. Throws StoreError.
+  // Also removes what this user's killed processes left. Throws StoreError.
   Scratch();
   ~Scratch();
   Scratch(const Scratch&) = delete;

@@ -66,7 +66,7 @@ std::string ProgramInPath(const std::string& name) {
 
 Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,
                   const std::function<bool()>& stop) {
-  // Files in memory rather than pipes: nobody has to empty them while it runs.
+  // Uses files in memory rather than pipes, which would have to be emptied while the command runs.
   const Descriptor out(memfd_create("out", MFD_CLOEXEC)), err(memfd_create("err", MFD_CLOEXEC));
   const process::Spawned spawned = process::Spawn({.argv = argv, .out = out.number(), .err = err.number()});
   const Descriptor child(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));

@@ -1,4 +1,4 @@
-// Runs a command for what it prints.
+// Runs a command and returns what it prints.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,8 @@ struct Answer {
 // The path of a program in $PATH; empty when there is none.
 std::string ProgramInPath(const std::string& name);
 
-// `argv[0]`: path of the program. It is ended after `limit`, or when `stop` is true. Throws process::StartError, std::runtime_error.
+// `argv[0]` is the path of the program. The command is ended after `limit`, or when `stop` is true. Throws
+// process::StartError, std::runtime_error.
 Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,
                   const std::function<bool()>& stop);
 

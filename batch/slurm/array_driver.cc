@@ -14,7 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Squeue is asked rarely: everybody's commands go to the same slurmctld. At the beginning a study may be over soon.
+// squeue is asked rarely, because all users' commands go to the same slurmctld. At the beginning it is asked
+// more often, because a study may be over soon.
 milliseconds NextWait(milliseconds waited) {
   return std::clamp(waited / 50, milliseconds(200), milliseconds(10000));
 }
@@ -56,7 +57,7 @@ DriveEnd ArrayDriver::Run() {
 void ArrayDriver::Adopt() {
   const std::vector<ArrayRecord> records = folders_.Read();
   if (records.empty()) {
-    cursor_ = request_.cases;  // no pass yet
+    cursor_ = request_.cases;  // no pass has begun yet
     pass_ = -1;
     return;
   }
@@ -70,7 +71,7 @@ void ArrayDriver::Adopt() {
   cursor_ = request_.cases;
   for (ArrayRecord record : records) {
     if (record.id == 0) {
-      unknown_.push_back(record);  // Look() cancels it when it comes to light
+      unknown_.push_back(record);  // Look() cancels it when it appears
       continue;
     }
     const QueuedArray* queued = Named(*queue, record.name);
@@ -89,7 +90,7 @@ void ArrayDriver::Adopt() {
   there_before_ = count.done + count.failed;
 }
 
-// Updates active_ and progress_; false when the batch system does not answer.
+// Updates active_ and progress_; returns false when the batch system does not answer.
 bool ArrayDriver::Look() {
   const auto queue = cluster_.Queue();
   progress_.answered = queue.has_value();
@@ -113,7 +114,7 @@ bool ArrayDriver::Look() {
       return false;
     });
   }
-  // After the queue: what an array had stored when it ended is counted.
+  // The count comes after the queue, so that it includes what an array had stored when it ended.
   const CaseCount count = count_.Count();
   progress_.cases = request_.cases;
   progress_.done = count.done;
@@ -122,8 +123,8 @@ bool ArrayDriver::Look() {
   return queue.has_value();
 }
 
-// A controller that was killed forgets the last seconds: that an array was released, and that some of its jobs have begun. One that its
-// user holds has no more pending jobs than before.
+// A controller that was killed forgets the last seconds: that an array was released, and that some of its
+// jobs have begun. An array that its user holds has no more pending jobs than before.
 void ArrayDriver::ReleaseForgotten(const ArrayRecord& record, const QueuedArray& queued) {
   const auto seen = pending_.find(record.id);
   if (!queued.held) {
@@ -133,7 +134,7 @@ void ArrayDriver::ReleaseForgotten(const ArrayRecord& record, const QueuedArray&
   }
 }
 
-// When no array has any of the missing cases. False: it is no use.
+// Called when no array has any of the missing cases. Returns false when another pass is of no use.
 bool ArrayDriver::StartsPass() {
   const int64_t there = progress_.done + progress_.failed;
   if (!ended_.empty()) {
@@ -144,7 +145,7 @@ bool ArrayDriver::StartsPass() {
                              complaint.empty() ? "" : "; a job said: ", complaint));
     if (barren_ >= request_.barren_passes) return false;
   }
-  // On a full disk the next jobs would fail like those before.
+  // On a full disk, the next jobs would fail like those before.
   WriteSmallFile(request_.folder + "/slurm.probe", std::string(65536, ' '));
   std::error_code ignored;
   std::filesystem::remove(request_.folder + "/slurm.probe", ignored);
@@ -154,14 +155,16 @@ bool ArrayDriver::StartsPass() {
   return true;
 }
 
-// As many of its jobs as can run at the same time; 0: not known. Others use the cluster, too, which only time tells.
+// The number of its jobs that can run at the same time; 0: unknown. Other users need the cluster too, so the
+// true number only appears with time.
 int64_t ArrayDriver::AtOnce() const {
   const int64_t places = limits_.processors / request_.processors;
   if (request_.at_once == 0) return places;
   return places == 0 ? request_.at_once : std::min(places, request_.at_once);
 }
 
-// With a limit of jobs at once, one array after the other: Slurm knows such a limit within an array only.
+// With a limit on simultaneous jobs, arrays run one after another, because Slurm knows such a limit only
+// within an array.
 bool ArrayDriver::MayAdd() const {
   if (cursor_ >= request_.cases) return false;
   if (request_.at_once > 0) return active_.empty();
@@ -226,7 +229,7 @@ void ArrayDriver::Add() {
   request_.say(fmt::format("array {}: {}", record.id, grouping.why));
 }
 
-// From the cursor on: ranges with so many missing cases each.
+// Splits the cases from the cursor on into ranges with this many missing cases each.
 std::vector<CaseRange> ArrayDriver::NextRanges(int64_t cases_per_job, int64_t most_jobs) {
   std::vector<CaseRange> ranges;
   int64_t in_range = 0;
@@ -249,12 +252,13 @@ std::vector<CaseRange> ArrayDriver::NextRanges(int64_t cases_per_job, int64_t mo
 DriveEnd ArrayDriver::EndEarly(StopWish wish) {
   if (wish == StopWish::kLeave) return DriveEnd::kLeft;
   if (!CancelAll(&Cluster::Cancel)) return DriveEnd::kLeft;
-  // Slurm kills what does not end by itself half a minute later.
+  // Half a minute after its signal, Slurm kills what has not ended by itself.
   WaitForTheirEnd(milliseconds(60000));
   return active_.empty() ? DriveEnd::kCancelled : DriveEnd::kLeft;
 }
 
-// All cases are there. What still waits in the queue would find nothing to do; what runs is ending: it makes its last cases durable.
+// All cases are there. Jobs that still wait in the queue would find nothing to do. Jobs that run are about to
+// end: they make their last cases durable.
 DriveEnd ArrayDriver::End() {
   CancelAll(&Cluster::CancelPending);
   WaitForTheirEnd(milliseconds(10000));
@@ -283,7 +287,7 @@ bool ArrayDriver::CancelAll(void (Cluster::*cancel)(int64_t)) {
   return all;
 }
 
-// What starting jobs really cost.
+// Reports how long it really took to start jobs.
 void ArrayDriver::SayWaits() const {
   double busy = 0;
   double waits = 0, weight = 0;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a folder that a killed driver began, none.
+// Returns nothing for a folder that a killed driver had only begun.
 std::optional<ArrayRecord> ParseRecord(const std::string& text, int64_t number) {
   constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
   try {
@@ -47,7 +47,7 @@ std::string RecordText(const ArrayRecord& record) {
                      record.jobs);
 }
 
-// Not by time or process alone: several hosts may make arrays for folders of the same name.
+// Time and process number are not enough, because several hosts may make arrays for folders of the same name.
 std::string RandomText() {
   std::random_device device;
   return fmt::format("{:08x}", device());
@@ -138,8 +138,8 @@ std::optional<JobSpan> ParseJobSpan(const std::string& log) {
 }
 
 std::optional<double> MeanWait_s(std::vector<JobSpan> jobs) {
-  // The processors: as many as ran jobs at once. Each job but the first on its processor begins after the end of another; which one does
-  // not matter for the mean.
+  // Assigns the jobs to as many processors as there were simultaneous jobs. Each job except the first on its
+  // processor begins after the end of another job. For the mean it does not matter which one.
   std::ranges::sort(jobs, {}, &JobSpan::began);
   std::vector<double> ends;
   for (const JobSpan& job : jobs) ends.push_back(job.ended);

@@ -1,4 +1,4 @@
-// What a job of an array runs.
+// The script that a job of an array runs.
 #pragma once
 
 #include <string>
@@ -6,19 +6,19 @@
 namespace hydro::batch {
 
 struct ScriptRequest {
-  std::string program;  // hydro-batch, absolute
-  std::string study;    // the study's folder, absolute
-  std::string array;    // the array's (array_folder.h), absolute
+  std::string program;  // absolute path of hydro-batch
+  std::string study;    // absolute path of the study's folder
+  std::string array;    // absolute path of the array's folder (array_folder.h)
 };
 
-// A script for sh: runs the cases of the job's line in `cases` on as many processors as Slurm gives the job. The paths may hold any
-// character.
+// A script for sh that runs the cases in the job's line of `cases`, on as many processors as Slurm gives the
+// job. The paths may hold any character.
 std::string ArrayScript(const ScriptRequest& request);
 
-// `text` as one word for sh.
+// Quotes `text` as one word for sh.
 std::string ShellWord(const std::string& text);
 
-// A name for sbatch: letters, digits and "._-" of `text`, not too long.
+// A name for sbatch: letters, digits and "._-" of `text`, with a limited length.
 std::string PlainName(const std::string& text);
 
 }  // namespace hydro::batch

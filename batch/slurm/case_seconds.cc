@@ -27,7 +27,7 @@ std::optional<double> MeanCaseSeconds(const std::string& folder) {
   for (size_t i = 0; i < std::min(kMostFiles, files.size()); ++i) {
     std::istringstream lines(ReadSmallFile(files[i].second).value_or(""));
     for (std::string line; std::getline(lines, line);) {
-      const auto seconds = ParseNumber(line.substr(line.rfind(',') + 1));  // the heading has none
+      const auto seconds = ParseNumber(line.substr(line.rfind(',') + 1));  // the heading has no number
       if (!seconds) continue;
       sum += *seconds;
       ++count;

@@ -1,4 +1,4 @@
-// How long the cases of a study took, from its folder.
+// How long the cases of a study took, according to its folder.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,8 @@
 
 namespace hydro::batch {
 
-// s; the mean of the cases that times/ tells of (run/case_times.h), of the 100 files written last. None when it tells of none.
+// The mean time in s of the cases listed in times/ (run/case_times.h), in the 100 files that were written
+// last. None when no case is listed.
 std::optional<double> MeanCaseSeconds(const std::string& folder);
 
 }  // namespace hydro::batch

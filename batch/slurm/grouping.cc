@@ -8,7 +8,7 @@
 namespace hydro::batch {
 namespace {
 
-// Cases of a job that may last `seconds`.
+// The number of cases of a job that may last `seconds`.
 int64_t CasesIn(double seconds, double case_s, int64_t most) {
   const double cases = case_s > 0 ? std::ceil(seconds / case_s) : static_cast<double>(most);
   return static_cast<int64_t>(std::clamp(cases, 1.0, static_cast<double>(std::max<int64_t>(most, 1))));
@@ -16,11 +16,11 @@ int64_t CasesIn(double seconds, double case_s, int64_t most) {
 
 int64_t CeilingOf(int64_t dividend, int64_t divisor) { return (dividend + divisor - 1) / divisor; }
 
-// Jobs with `cases` or more each, but at most `most`.
+// The number of jobs with `cases` or more each, but at most `most`.
 int64_t Jobs(int64_t missing, int64_t cases, int64_t most, int64_t at_once) {
-  // What is left over is shared among the jobs rather than a short job of its own.
+  // The remaining cases are shared among the jobs instead of forming a short job of their own.
   int64_t jobs = std::max<int64_t>(1, missing / cases);
-  // All end at about the same time when they are a multiple of those that run at once.
+  // When the jobs are a multiple of those that run at once, all of them end at about the same time.
   if (at_once > 0 && jobs > at_once) jobs -= jobs % at_once;
   return CeilingOf(missing, jobs) > most ? CeilingOf(missing, most) : jobs;
 }
@@ -41,7 +41,7 @@ Grouping ChooseGrouping(const GroupingQuestion& question) {
     grouping.jobs = CeilingOf(missing, grouping.cases);
     because = "as --cases-per-job asks";
   } else {
-    // Half of what a job may take, because cases differ.
+    // Half of the time that a job may take, because cases differ.
     const int64_t most = question.limit_s > 0 && each_s > 0
                              ? std::max<int64_t>(1, static_cast<int64_t>(question.limit_s / 2 / each_s))
                              : missing;

@@ -1,4 +1,4 @@
-// How many cases are there, counted again and again while others store them.
+// Counts the cases that are there, again and again, while others store more.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class SharedCount {
  public:
   SharedCount(const CaseStore& store, int64_t cases);
 
-  // Lists the folders that were not full yet.
+  // Lists only the folders that were not full before.
   CaseCount Count();
 
  private:

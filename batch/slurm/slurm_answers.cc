@@ -9,7 +9,8 @@
 namespace hydro::batch {
 namespace {
 
-// Between the end of a job and the next on that processor, with slurmctld and slurmd idle: measured 0.05 to 0.1 s.
+// s between the end of a job and the next one on the same processor, with idle slurmctld and slurmd: measured
+// 0.05 to 0.1 s.
 constexpr double kLaunch_s = 0.1;
 
 std::vector<std::string> Split(const std::string& text, char between) {
@@ -48,7 +49,7 @@ ClusterLimits ParseLimits(const std::string& text) {
   };
   take("MaxArraySize", &limits.array_jobs);
   take("MaxJobCount", &limits.all_jobs);
-  // Slurm looks once a second at most.
+  // Slurm looks at most once a second.
   const double delay = SchedulerParameter(values["SchedulerParameters"], "batch_sched_delay").value_or(3);
   limits.start_s = std::max(delay, 1.0) + kLaunch_s;
   return limits;
@@ -87,7 +88,8 @@ std::vector<QueuedArray> ParseQueue(const std::string& text) {
     array.name = fields[3];
     if (fields[1] == "PENDING") {
       ++array.pending;
-      // Waiting for one of its own is what the limit is for.
+      // JobArrayTaskLimit only means that a job waits for others of its array, which is the purpose of that
+      // limit, so any other reason is preferred.
       array.held = array.held || fields[2] == "JobHeldUser";
       if (array.reason.empty() || array.reason == "JobArrayTaskLimit") array.reason = fields[2];
     } else {
@@ -101,7 +103,7 @@ std::vector<QueuedArray> ParseQueue(const std::string& text) {
 }
 
 std::string WayOut(const std::string& refusal) {
-  // sbatch's words (slurm_errno.c), and what changes them.
+  // sbatch's messages (slurm_errno.c), and what helps.
   constexpr std::pair<const char*, const char*> kWays[] = {
       {"QOS policy",
        "the cluster limits how many jobs a user may have, their size and their time: take fewer and longer "
@@ -138,7 +140,7 @@ std::optional<double> ParseTimeLimit(const std::string& text) {
     parts.push_back(static_cast<double>(*number));
   }
   if (parts.empty() || parts.size() > 3) return std::nullopt;
-  // After days come hours; without, minutes, and hours only before two others.
+  // After days come hours. Without days, the first number is minutes, or hours when two others follow.
   const bool hours_first = dash != std::string::npos || parts.size() == 3;
   parts.resize(3, 0);
   if (!hours_first) parts = {0, parts[0], parts[1]};

@@ -12,7 +12,8 @@
 namespace hydro::batch {
 namespace {
 
-// A busy slurmctld answers late; sbatch even tries for minutes when it has as many jobs as it may have.
+// A busy slurmctld answers late. sbatch even retries for minutes when slurmctld has as many jobs as it may
+// have.
 constexpr std::chrono::seconds kPatience{60};
 
 std::string LastLine(const std::string& text) {
@@ -36,7 +37,7 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
 [[noreturn]] void Refuse(const std::string& program, const Answer& answer) {
   if (!answer.ended_itself) throw ClusterError(program + ": no answer", false);
   const std::string line = LastLine(answer.err.empty() ? answer.out : answer.err);
-  // slurmctld is away, or has too many jobs, for now.
+  // For now, slurmctld is unreachable or has too many jobs.
   const bool later = line.find("contact") != std::string::npos ||
                      line.find("timed out") != std::string::npos ||
                      line.find("temporarily unavailable") != std::string::npos;
@@ -47,7 +48,7 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
 
 bool Never() { return false; }
 
-// One that has ended meanwhile is cancelled enough.
+// A job that has ended in the meantime counts as cancelled.
 void CheckCancelled(const Answer& answer) {
   if (answer.exit_code != 0 && answer.err.find("Invalid job id") == std::string::npos)
     Refuse("scancel", answer);
@@ -64,7 +65,8 @@ SlurmCluster::SlurmCluster(std::function<bool()> stop) : stop_(std::move(stop)) 
 std::vector<std::string> SbatchArguments(const ArrayRequest& request) {
   std::string array = "--array=0-" + std::to_string(request.jobs - 1);
   if (request.at_once > 0) array += "%" + std::to_string(request.at_once);
-  // What a job prints goes where the script says. A job whose node is lost begins again, unless an argument that follows says otherwise.
+  // The script decides where a job's output goes. A job whose node is lost begins again, unless a later
+  // argument says otherwise.
   std::vector<std::string> arguments = {"sbatch",
                                         "--parsable",
                                         "--requeue",

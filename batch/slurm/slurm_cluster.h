@@ -1,4 +1,5 @@
-// Slurm, through its commands: sbatch, squeue, scontrol, scancel. They find the cluster as in a shell (SLURM_CONF, PATH).
+// Slurm, used through its commands: sbatch, squeue, scontrol, scancel. They find the cluster as in a shell
+// (SLURM_CONF, PATH).
 #pragma once
 
 #include <functional>
@@ -11,7 +12,8 @@ namespace hydro::batch {
 
 class SlurmCluster : public Cluster {
  public:
-  // `stop`: asked while sbatch runs, which may take minutes; when true that is ended. Throws InputError when this machine has no sbatch.
+  // `stop` is asked while sbatch runs, which may take minutes; when it returns true, sbatch is ended. Throws
+  // InputError when this machine has no sbatch.
   explicit SlurmCluster(std::function<bool()> stop);
 
   ClusterLimits Limits(const std::string& partition) override;
@@ -25,7 +27,7 @@ class SlurmCluster : public Cluster {
   const std::function<bool()> stop_;
 };
 
-// The arguments of sbatch, the program's name first.
+// The arguments of sbatch, beginning with the program's name.
 std::vector<std::string> SbatchArguments(const ArrayRequest& request);
 
 }  // namespace hydro::batch

@@ -23,7 +23,7 @@ std::string Digits(int64_t number) {
   return std::string(text.size() < 3 ? 3 - text.size() : 0, '0') + text;
 }
 
-// The number that three digits are; -1 for anything else.
+// The number written by three digits; -1 for any other text.
 int NumberOf(std::string_view name) {
   if (name.size() != 3) return -1;
   int number = 0;
@@ -34,7 +34,7 @@ int NumberOf(std::string_view name) {
   return number;
 }
 
-// Several processes may make it at the same time.
+// Several processes may make the folders at the same time.
 void MakeFolders(const std::string& path) {
   if (mkdir(path.c_str(), 0777) == 0 || errno == EEXIST) return;
   if (errno != ENOENT) ThrowCannotWrite(path);
@@ -115,12 +115,12 @@ bool CaseStore::Store(int64_t index, bool failed, const std::string& result,
     WriteSmallFile(staging + "/result.json", result);
     if (rename(staging.c_str(), place.c_str()) == 0) return true;
     if (errno == ENOENT) {
-      // The server of a shared folder may have done it, and its answer was lost.
+      // The server of a shared folder may have renamed it although its answer was lost.
       if (!Exists(staging) && Exists(place)) return true;
       MakeFolders(ShardFolder(index / kShard));
       if (rename(staging.c_str(), place.c_str()) == 0) return true;
     }
-    // Somebody else was first.
+    // Another process was first.
     if (errno != ENOTEMPTY && errno != EEXIST) ThrowCannotWrite(place);
   } catch (...) {
     RemoveAll(staging);
@@ -131,7 +131,7 @@ bool CaseStore::Store(int64_t index, bool failed, const std::string& result,
 }
 
 void CaseStore::Remove(int64_t index, bool failed, int slot) {
-  // Away in one step first, so that no half of it is seen.
+  // The case is first moved away in one step, so that no half of it is seen.
   const std::string away = StagingFolder(slot) + "/removed";
   const std::string place = CaseFolder(index, failed);
   if (rename(place.c_str(), away.c_str()) != 0 && errno != ENOENT) ThrowCannotWrite(place);

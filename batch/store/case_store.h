@@ -3,9 +3,10 @@
 //   cases/000/012/345          case 12345, done
 //   cases/000/012/346.failed   case 12346, which failed
 //
-// each with its result.json and the files that the study keeps. It is written below staging/ and renamed, so that a kill leaves it whole
-// or absent. A thousand cases share a folder, so that what is there is found by listing folders, without opening any case. Any number of
-// processes on any hosts may store cases of one folder at the same time; of two that store the same case the first stays.
+// Each holds its result.json and the files that the study keeps. It is written below staging/ and renamed, so
+// that a kill leaves it whole or absent. A thousand cases share a folder, so that the existing cases can be
+// listed without opening any of them. Any number of processes on any hosts may store cases of one folder at
+// the same time; of two that store the same case, the first one stays.
 #pragma once
 
 #include <bitset>
@@ -18,48 +19,49 @@
 
 namespace hydro::batch {
 
-inline constexpr int64_t kShard = 1000;  // cases in a folder
+inline constexpr int64_t kShard = 1000;  // cases in one folder
 
-// Which cases of a shard are there, by their number within it.
+// The cases of a shard that are there, by their number within it.
 struct ShardCases {
-  std::bitset<kShard> done, failed;  // never both: done counts
+  std::bitset<kShard> done, failed;  // never both: a done case does not count as failed
 };
 
 struct KeptFile {
   std::string from;  // path
-  std::string name;  // in the case's folder
+  std::string name;  // its name in the case's folder
 };
 
 class CaseStore {
  public:
-  // `folder`: the study's.
+  // `folder` is the study's folder.
   explicit CaseStore(std::string folder);
-  // Removes what this object has in staging/.
+  // Removes this object's files in staging/.
   ~CaseStore();
   CaseStore(const CaseStore&) = delete;
   CaseStore& operator=(const CaseStore&) = delete;
 
-  // What is there of the cases from shard * kShard on.
+  // The cases from shard * kShard on that are there.
   ShardCases Shard(int64_t shard) const;
   bool IsDone(int64_t index) const;
   bool IsFailed(int64_t index) const;
   bool IsThere(int64_t index, bool failed) const;
 
-  // The folder of a case that is there.
+  // The folder of a case, which must be there.
   std::string CaseFolder(int64_t index, bool failed) const;
 
-  // Stores a case: result.json with that text, and files, which are copied. False when the case was there already. Any thread may call
-  // it, each with a `slot` of its own. Throws StoreError; then nothing is stored.
+  // Stores a case: result.json with that text, and copies of the files. Returns false when the case was
+  // already there. Any thread may call it, each with a `slot` of its own. Throws StoreError; then nothing is
+  // stored.
   bool Store(int64_t index, bool failed, const std::string& result, const std::vector<KeptFile>& files,
              int slot);
 
-  // Takes a case away, so that it is missing.
+  // Removes a case, so that it is missing.
   void Remove(int64_t index, bool failed, int slot);
 
-  // Makes what was stored survive a power cut. Throws StoreError.
+  // Ensures that stored cases survive a power cut. Throws StoreError.
   void Sync();
 
-  // Removes what processes that have ended left in staging/.
+  // Removes what ended processes left in staging/.
   void SweepStaging() const;
 
  private:
@@ -67,7 +69,7 @@ class CaseStore {
   std::string StagingFolder(int slot);
 
   std::string folder_;
-  std::string own_;  // name of this object in staging/
+  std::string own_;  // this object's name in staging/
   int descriptor_ = -1;
 };
 

@@ -34,7 +34,8 @@ long long StartOf(long pid) {
   return ParseInteger(field).value_or(0);
 }
 
-// The host, and which of its sets of process numbers (containers have their own). '-' separates the parts of an owner's text.
+// The host together with its set of process numbers, because containers have their own. '-' separates the
+// parts of an owner's text.
 std::string PlainHost() {
   static const std::string plain = [] {
     std::string host = HostName();

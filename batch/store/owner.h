@@ -1,5 +1,5 @@
-// Names of files that belong to a running process, so that what a killed one left behind can be told from what is in use, on this host
-// and on others.
+// Names for files that belong to a running process. They tell the remains of a killed process from files in
+// use, on this host and on others.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace hydro::batch {
 
-// A process, on whichever host: "HOST-BOOT-PID-START".
+// A process on any host: "HOST-BOOT-PID-START".
 struct Owner {
-  std::string host;  // "node17+4026531836": with the set of process numbers that its are of
-  std::string boot;  // which boot of the host, 8 hex digits
+  std::string host;  // "node17+4026531836": the host, and the set to which its process numbers belong
+  std::string boot;  // identifies the boot of the host, 8 hex digits
   long pid = 0;
   long long started = 0;  // clock ticks after that boot
 };
@@ -20,16 +20,17 @@ std::string OwnerText(const Owner& owner);
 // The owner at the beginning of a name; pid 0 for other names.
 Owner ParseOwner(const std::string& name);
 
-enum class Life { kRuns, kEnded, kUnknown };  // kUnknown: on another host
+enum class Life { kRuns, kEnded, kUnknown };  // kUnknown: it is on another host
 Life LifeOf(const Owner& owner);
 
-// A name that no other object, in this or another process, has.
+// A name that no other object has, in this or any other process.
 std::string NewOwnerName();
 
 // Paths in `folder` whose names begin with `name` and a point.
 std::vector<std::string> OwnedBy(const std::string& folder, const std::string& name);
 
-// Paths in `folder` of owners that have ended, and of those on other hosts that have not been touched for a day.
+// Paths in `folder` whose owners have ended, and paths of owners on other hosts that have not been touched
+// for a day.
 std::vector<std::string> LeftBehind(const std::string& folder);
 
 }  // namespace hydro::batch

@@ -24,7 +24,7 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   int number() const { return number_; }
-  // A shared file system may say only here that its disk is full.
+  // A shared file system may report only here that its disk is full.
   bool Close() {
     const int result = close(number_);
     number_ = -1;
@@ -45,7 +45,7 @@ void WriteAll(int descriptor, const char* data, size_t size, const std::string& 
   }
 }
 
-// Calls use(data, size) with one part after the other; false when it cannot be read.
+// Calls use(data, size) with one part after another; returns false when the file cannot be read.
 template <class Use>
 bool ReadParts(const std::string& path, const Use& use) {
   const Descriptor in(path, O_RDONLY);

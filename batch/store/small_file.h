@@ -1,4 +1,5 @@
-// Small files, many of them: without what base/new_file.h and base/text_file.h remember of each.
+// Reads and writes many small files, without the records that base/new_file.h and base/text_file.h keep of
+// each.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@ namespace hydro::batch {
 void WriteSmallFile(const std::string& path, const std::string& text);
 void CopySmallFile(const std::string& from, const std::string& to);
 
-// None when it cannot be read.
+// Returns nothing when the file cannot be read.
 std::optional<std::string> ReadSmallFile(const std::string& path);
 
 }  // namespace hydro::batch

@@ -1,4 +1,5 @@
-// The study's folder, or this machine's disk, cannot be written: full, or no permission.
+// The error when the study's folder, or this machine's disk, cannot be written because it is full or
+// permission is missing.
 #pragma once
 
 #include <cerrno>
@@ -14,7 +15,7 @@ class StoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// With errno's reason.
+// Throws with errno's reason.
 [[noreturn]] inline void ThrowCannotWrite(const std::string& path) {
   throw StoreError(path + ": cannot be written: " + std::strerror(errno));
 }

@@ -23,14 +23,15 @@ namespace {
 
 constexpr auto kBeat = std::chrono::seconds(5);
 constexpr double kSilent = 60;   // s
-constexpr int kMostUnread = 50;  // a lock that is released meanwhile is free or another's by then
+constexpr int kMostUnread = 50;  // by then, a lock that is being released is free or has a new owner
 constexpr auto kUnread = std::chrono::milliseconds(20);
 
 double Seconds(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// What time it is for the folder's file system, whose clock may be another host's. 0 when it cannot be asked.
+// The current time according to the folder's file system, which may use another host's clock. 0 when it
+// cannot be found.
 double TimeThere(const std::string& folder) {
   const std::string path = folder + "/lock.time." + NewOwnerName();
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -78,7 +79,7 @@ bool StudyLock::Make() {
 StudyLock::StudyLock(const std::string& folder) : file_(folder + "/lock"), owner_(NewOwnerName()) {
   for (int attempt = 0, unread = 0; !Make(); ++attempt) {
     LockHolder holder;
-    if (!Holder(folder, &holder)) {  // just released, or nothing that can be read
+    if (!Holder(folder, &holder)) {  // just released, or unreadable
       if (++unread > kMostUnread) {
         throw InputError(file_ +
                          ": found something that cannot be read, allowed is the lock that hydro-batch makes; "
@@ -93,7 +94,8 @@ StudyLock::StudyLock(const std::string& folder) : file_(folder + "/lock"), owner
                        " on " + holder.host + " (seen " + ShortNumber(holder.silent_s, 2) +
                        " s ago); wait for that one, stop it, or ask it with --status " + folder);
     }
-    // Away by one of those that see it left behind: what another has made since is put back.
+    // One of those that see the lock left behind moves it away. A lock that another process has made since
+    // then is put back.
     const std::string left = ReadSmallFile(file_).value_or("");
     const std::string away = file_ + "." + owner_;
     if (rename(file_.c_str(), away.c_str()) == 0) {

@@ -54,7 +54,7 @@ std::string CaseInputs::Machine(const std::vector<Value>& values) const {
   return machine_varies_ ? settings::FormatModel(Changed(values, true)) : "";
 }
 
-// The machine is the case's model with keys of its own.
+// The machine is the case's model with changes of its own.
 model::ModelDescription CaseInputs::Changed(const std::vector<Value>& values, bool machine) const {
   model::ModelDescription model = model_;
   for (size_t i = 0; i < keys_.size(); ++i) {

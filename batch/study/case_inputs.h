@@ -1,4 +1,4 @@
-// The configuration, the model and the machine of a case: the study's, with the case's values.
+// The configuration, the model and the machine of a case: those of the study, with the case's values.
 #pragma once
 
 #include <string>
@@ -11,13 +11,15 @@ namespace hydro::batch {
 
 class CaseInputs {
  public:
-  // The study must outlive it. Throws InputError where its texts cannot be read.
+  // The study must outlive this object. Throws InputError where its texts cannot be read.
   explicit CaseInputs(const Study& study);
 
-  // Empty where the study has none. `values`: of Study::Values(). Throws InputError where a key leads to nothing.
+  // Empty where the study has none. `values` come from Study::Values(). Throws InputError where a key leads
+  // to nothing.
   std::string Config(const std::vector<Value>& values) const;
   std::string Model(const std::vector<Value>& values) const;
-  // The machine that hydro-sim has in the place of the model (--machine); empty where the study has no key of it.
+  // The machine that hydro-sim simulates in place of the model (--machine); empty where no key of the study
+  // changes it.
   std::string Machine(const std::vector<Value>& values) const;
 
  private:

@@ -12,7 +12,7 @@
 namespace hydro::batch {
 namespace {
 
-// What is random for a draw and a key; `attempt` numbers independent ones.
+// The random key for a draw and a key of the study. `attempt` numbers independent ones.
 uint64_t KeyOf(const Draw& draw, int64_t seed, int64_t number, uint64_t attempt = 0) {
   const uint64_t numbered = Scatter(Scatter(static_cast<uint64_t>(seed)) ^ static_cast<uint64_t>(number));
   return Scatter(Scatter(numbered ^ NameKey(draw.key)) ^ attempt);
@@ -23,7 +23,7 @@ double Unit(const Draw& draw, int64_t seed, int64_t number) {
 }
 
 double Normal(const Draw& draw, int64_t seed, int64_t number) {
-  // Bounds that leave little are refused when the study is read.
+  // Reading a study refuses bounds that leave little room, so this ends.
   for (uint64_t attempt = 0; attempt < 10000; ++attempt) {
     const double deviations = StandardNormal(KeyOf(draw, seed, number, attempt));
     const double value = Rounded(draw.mean + draw.standard_deviation * deviations);

@@ -17,8 +17,8 @@ using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
 constexpr size_t kMostValues = 1'000'000;
-constexpr double kLargestWhole = 0x1p53;  // up to it every whole number is a double
-constexpr double kFarthestDraw = 10;  // standard deviations; a normal draw never lies so far from the mean
+constexpr double kLargestWhole = 0x1p53;  // up to here, a double can hold every whole number
+constexpr double kFarthestDraw = 10;      // standard deviations; no normal draw lies so far from the mean
 
 std::vector<std::string> ParameterNames() {
   std::vector<std::string> names;
@@ -26,7 +26,7 @@ std::vector<std::string> ParameterNames() {
   return names;
 }
 
-// The same for a parameter of an effect. `prefix`: what the key begins with.
+// The same for a parameter of an effect. `prefix` is the beginning of the key.
 std::string WrongEffect(const Key& key, const std::string& prefix, const KeyScope& scope) {
   std::vector<std::string> ids;
   for (const model::EffectDescription& effect : scope.model->effects) {
@@ -45,7 +45,7 @@ std::string WrongEffect(const Key& key, const std::string& prefix, const KeyScop
   return prefix + key.effect + ". and one of " + QuotedList(names) + DidYouMean(key.parameter, names);
 }
 
-// What is wrong with a key, as ", allowed ..." says it; empty: nothing.
+// What is wrong with a key, followed by ", allowed ..."; empty: nothing.
 std::string WrongKey(const std::string& text, const KeyScope& scope) {
   const Key key = ParseKey(text);
   if (key.kind == KeyKind::kOwn) return text.empty() ? "a key" : "";
@@ -86,7 +86,7 @@ std::vector<Value> ReadValues(SectionReader* section, const std::string& name) {
   return values;
 }
 
-// From `from` to `to`, both included, evenly or by equal factors.
+// Values from `from` to `to`, both included, evenly spaced or by equal factors.
 std::vector<Value> Range(double from, double to, int steps, bool logarithmic) {
   std::vector<Value> values;
   for (int i = 0; i < steps; ++i) {
@@ -211,7 +211,8 @@ void ReadNormal(SectionReader* section, Draw* draw) {
     throw section->Error("mean", ShortestNumber(draw->mean), "a number between min and max");
 }
 
-// The parameters that a key with "uncertainty" stands for: one, or with model:* or machine:* all that are not 0.
+// The parameters for which a key with "uncertainty" stands: one, or with model:* or machine:* all that are
+// not 0.
 void AddUncertain(const SectionReader& section, const std::string& key, const KeyScope& scope,
                   std::vector<Draw>* draws) {
   const std::string prefix = key.substr(0, key.find(':') + 1);

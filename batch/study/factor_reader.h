@@ -11,7 +11,7 @@
 
 namespace hydro::batch {
 
-// What a key may lead to in a study.
+// What a key of a study may lead to.
 struct KeyScope {
   bool has_config = false;
   std::optional<model::ModelDescription> model = std::nullopt;
@@ -19,7 +19,7 @@ struct KeyScope {
 
 // These throw InputError naming place and key.
 std::vector<GridFactor> ReadGrid(settings::SectionReader* study, const KeyScope& scope);
-// `csv`: the text of the file that `file` names; empty when it names none.
+// `csv` is the text of the file that `file` names; empty when it names none.
 RowList ReadList(settings::SectionReader section, const KeyScope& scope, const std::string& csv,
                  const std::string& csv_name);
 std::vector<Draw> ReadDraws(settings::SectionReader* study, const KeyScope& scope);

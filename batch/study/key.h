@@ -1,6 +1,7 @@
-// What a study may vary: "position.c2" of the configuration, "model:b" of the model's parameters,
-// "effect:pump.stribeck.static_excess" of its effects, "machine:b" and "machine:pump.stribeck.static_excess" of the simulated machine
-// alone, which the controllers do not know, and names without a point ("trial") of its own, for commands.
+// The keys that a study may vary: "position.c2" of the configuration, "model:b" of the model's parameters,
+// "effect:pump.stribeck.static_excess" of its effects, "machine:b" and "machine:pump.stribeck.static_excess"
+// of the simulated machine alone, which the controllers do not know, and the study's own names without a
+// point ("trial"), for commands.
 #pragma once
 
 #include <string>
@@ -11,8 +12,8 @@ enum class KeyKind { kOwn, kConfiguration, kModel, kEffect, kMachine };
 
 struct Key {
   KeyKind kind = KeyKind::kOwn;
-  std::string effect;     // kEffect, kMachine: its id; empty: the parameter is the model's
-  std::string parameter;  // kModel, kEffect, kMachine; else the whole text
+  std::string effect;     // kEffect, kMachine: its id; empty: the parameter belongs to the model
+  std::string parameter;  // kModel, kEffect, kMachine; otherwise the whole text
 };
 
 inline Key ParseKey(const std::string& text) {

@@ -9,7 +9,8 @@ using settings::SectionReader;
 using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
-// The command of a step that is known by name. `machine`: cases have a machine that the controllers do not know.
+// The command of a step that has a known name. `machine`: cases have a machine that the controllers do not
+// know.
 std::optional<std::vector<std::string>> NamedCommand(const std::string& name, bool machine) {
   if (name == "hydro-sim") {
     if (machine) return {{"hydro-sim", "config.toml", "--machine", "machine.toml", "-o", "run.lcmlog"}};

@@ -9,11 +9,11 @@
 
 namespace hydro::batch {
 
-// Without a section, hydro-sim and its summary in a study that has a configuration. `has_machine`: a key is the machine's, which hydro-sim
-// then has. Throws InputError naming place and key.
+// Without a section, a study that has a configuration runs hydro-sim and its summary. `has_machine` says that
+// a key changes the machine, which hydro-sim then receives. Throws InputError naming place and key.
 std::vector<Step> ReadSteps(settings::SectionReader* study, bool has_config, bool has_machine);
 
-// A list of texts, none of them empty; none without the key. Throws InputError.
+// A list of texts, none of them empty; an empty list without the key. Throws InputError.
 std::vector<std::string> Texts(settings::SectionReader* section, const std::string& key);
 
 }  // namespace hydro::batch

@@ -16,7 +16,7 @@ std::vector<std::string> Study::Keys() const {
   return keys;
 }
 
-// The draws change fastest, then the list's rows, then the last factor of the grid.
+// The draws change fastest, then the rows of the list, then the last factor of the grid.
 std::vector<Value> Study::Values(int64_t index) const {
   const int64_t draw = same_draws ? index % draw_count : index;
   int64_t rest = index / draw_count;

@@ -1,6 +1,6 @@
 // A study: many cases of one thing, with other values in each. docs/studies.md explains the file.
 //
-// Case i of a study is a function of the study and i alone: nothing is kept for each case.
+// Case i of a study is a function of the study and i alone, so nothing is kept for each case.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace hydro::batch {
 
-// A key with the values that are combined with those of all other factors.
+// A key and its values, which are combined with those of all other factors.
 struct GridFactor {
   std::string key;
   std::vector<Value> values;
@@ -28,14 +28,14 @@ struct RowList {
   std::vector<std::vector<Value>> rows;
 };
 
-// A command that a case runs, in the case's folder.
+// A command that a case runs in its folder.
 struct Step {
   std::vector<std::string> argv;      // with placeholders (run/placeholders.h)
-  std::vector<int> exit_codes = {0};  // those that are no failure
+  std::vector<int> exit_codes = {0};  // those that do not count as failure
   std::string place = {};             // "file:line", for messages
 };
 
-// A number that a case leaves: where it stands in a file of JSON or TOML.
+// A number that a case leaves, and its place in a JSON or TOML file.
 struct Collected {
   std::string name;
   std::string file;
@@ -45,7 +45,7 @@ struct Collected {
 };
 
 struct ReportWishes {
-  std::string worst;                 // a collected number: the page shows the cases where it is worst
+  std::string worst;  // a collected number that decides which cases the page shows as the worst
   std::vector<std::string> surface;  // two varied keys and a collected number
 };
 
@@ -56,17 +56,18 @@ struct Study {
   RowList list;
   std::vector<Draw> draws;
   int64_t draw_count = 1;   // draws for each combination of grid and list
-  bool same_draws = false;  // the same for each combination
+  bool same_draws = false;  // every combination gets the same draws
   std::vector<Step> steps;
   std::vector<Collected> collect;
-  std::vector<std::string> keep;  // files of a case that stay beside its result
+  std::vector<std::string> keep;  // files of a case that are kept beside its result
   int retries = 0;
   double timeout_s = 0;  // of a case; 0: none
   ReportWishes report;
   // The texts of the configuration and the model that cases change; empty: the study has none.
   std::string config_text, model_text;
 
-  // What the study's folder holds: name in the folder -> text. study.toml is the study with its paths as they are there.
+  // The contents of the study's folder: name in the folder -> text. study.toml is the study, with its paths
+  // as they are in the folder.
   std::map<std::string, std::string> files;
 
   int64_t cases() const;
@@ -76,8 +77,8 @@ struct Study {
   std::vector<Value> Values(int64_t index) const;
 };
 
-// Reads and checks a study, what it names, and the first cases' configurations. Throws InputError naming file, line and key. `asked`: where
-// to note the keys asked for.
+// Reads and checks a study, what it names, and the configurations of the first cases. Throws InputError
+// naming file, line and key. `asked` receives the keys for which the reader asked.
 Study ReadStudy(const std::string& file, std::vector<settings::AskedKey>* asked = nullptr);
 
 inline constexpr int64_t kMostCases = 1'000'000'000;

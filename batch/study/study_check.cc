@@ -17,7 +17,7 @@ using settings::TomlNode;
 constexpr int64_t kMostChecked = 200;
 constexpr int64_t kMostDraws = 20;
 
-// Cases that together have every value of the grid, and the first rows and draws.
+// Cases that together cover every value of the grid, and the first rows and draws.
 std::set<int64_t> CheckedCases(const Study& study) {
   const int64_t rows = study.list.keys.empty() ? 1 : static_cast<int64_t>(study.list.rows.size());
   std::set<int64_t> cases = {0};
@@ -34,7 +34,8 @@ std::set<int64_t> CheckedCases(const Study& study) {
   return cases;
 }
 
-// What is wrong with a case; empty: nothing. The files have no lines that anybody has seen, so they are left out.
+// What is wrong with a case; empty: nothing. Line numbers are left out, because the user has never seen the
+// files that they refer to.
 std::string Wrong(const Study& study, const CaseInputs& inputs, const std::vector<Value>& values) {
   try {
     const std::string model = inputs.Model(values), machine = inputs.Machine(values);
@@ -53,7 +54,7 @@ std::string Wrong(const Study& study, const CaseInputs& inputs, const std::vecto
   return "";
 }
 
-// The key without which a case is right; none when there is no such key.
+// The key without which a case would be right; none when there is no such key.
 std::optional<size_t> Culprit(const Study& study, const std::vector<std::string>& keys,
                               const std::vector<Value>& values) {
   for (size_t i = 0; i < keys.size(); ++i) {

@@ -22,7 +22,7 @@ using settings::SectionReader;
 using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
-// A file of a case: in its folder, and none of ours.
+// The name of a case's file, which must lie in the case's folder and must not be one of our own files.
 std::string CaseFile(const std::string& place, const std::string& key, const std::string& name) {
   const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || path.begin()->string() == ".." || path == "result.json")
@@ -79,7 +79,7 @@ class Reader {
  private:
   std::string Place(const std::string& key) const { return root_.Find(key)->place; }
 
-  // What is wrong with a file that a key names, or with what a key changes in it, is said with the key's place.
+  // An error in a file that a key names, or in what a key changes there, is reported with the key's place.
   template <class Take>
   auto Placed(const std::string& key, const Take& take) const {
     try {
@@ -114,7 +114,8 @@ class Reader {
     if (!kept_files.items.empty()) *Member(&kept_, "files") = kept_files;
   }
 
-  // The configuration with its model in the study's folder, so that this alone is enough anywhere. A reference from a table stands in the text.
+  // Writes the configuration with its model to the study's folder, so that the folder is enough anywhere. A
+  // reference from a table becomes part of the text.
   void TakeConfig(const std::string& path, const std::vector<std::string>& changes) {
     const bool one_joint =
         std::ranges::any_of(changes, [](const std::string& each) { return each.starts_with("joint="); });
@@ -177,7 +178,7 @@ class Reader {
         keys, [](const std::string& key) { return ParseKey(key).kind == KeyKind::kMachine; });
   }
 
-  // Cases that nothing tells apart would be the same run again and again.
+  // Cases that do not differ would be the same run again and again.
   void CheckDrawsDiffer() const {
     if (!study_.draws.empty() || study_.draw_count == 1) return;
     for (const Step& step : study_.steps) {
@@ -211,7 +212,7 @@ class Reader {
         section.Choice<bool>("worse", {{"larger", false}, {"smaller", true}}, &collected.smaller_is_worse);
         section.Finish();
       }
-      // As sections, the folder's study.toml keeps their order.
+      // Stored as sections, so that the folder's study.toml keeps their order.
       *Member(Member(&kept_, "collect"), name) = AsTable(item);
       const size_t colon = from.find(":/");
       if (colon == std::string::npos || colon == 0) {

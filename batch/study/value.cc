@@ -11,7 +11,7 @@ namespace {
 
 using Kind = settings::TomlNode::Kind;
 
-// A number that looks like one with a fraction, so that TOML reads a float again.
+// Writes the number with a fraction, so that TOML reads it back as a float.
 std::string FloatText(double value) {
   std::string text = ShortestNumber(value);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
@@ -49,7 +49,7 @@ std::optional<double> AsNumber(const Value& value) {
 std::optional<Value> ValueOf(const settings::TomlNode& node) {
   switch (node.kind) {
     case Kind::kFloat:
-      // No result can hold another: JSON has none.
+      // No result can hold a number that is not finite, because JSON has none.
       return std::isfinite(node.number) ? std::optional<Value>(node.number) : std::nullopt;
     case Kind::kInteger:
       return node.integer;

@@ -12,22 +12,22 @@ namespace hydro::batch {
 
 using Value = std::variant<double, int64_t, bool, std::string>;
 
-// As TOML and as JSON write it; a number's text reads back as the same number.
+// The value as TOML and as JSON; the text of a number reads back as the same number.
 std::string TomlText(const Value& value);
 std::string JsonText(const Value& value);
-// Without quotes: in a table, and in a command.
+// The value without quotes, for a table or a command.
 std::string PlainText(const Value& value);
 
-// What a number is to a picture; none for text.
+// The value as a number for a picture; none for text.
 std::optional<double> AsNumber(const Value& value);
 
 // None for a table, an array or a date.
 std::optional<Value> ValueOf(const settings::TomlNode& node);
 
-// A cell of a CSV file: a whole number, a number, true, false, or else text.
+// Reads a cell of a CSV file: a whole number, a number, true, false, or else text.
 Value ValueOfCell(const std::string& cell);
 
-// `text` in JSON's quotes; what is not UTF-8 is replaced.
+// `text` in JSON's quotes. Bytes that are not UTF-8 are replaced.
 std::string JsonString(const std::string& text);
 
 }  // namespace hydro::batch

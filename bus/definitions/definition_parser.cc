@@ -56,7 +56,8 @@ class Parser {
                       allowed);
   }
 
-  // A line with nothing but a comment: of the struct where that has not begun, else more of the field's before it.
+  // Adds a line with nothing but a comment: to the struct's comment when the struct has not begun, otherwise
+  // to that of the field before it.
   void GoOn(const std::string& comment) {
     std::string* const text = definition_.type.empty() ? &definition_.description : comment_of_;
     if (text != nullptr) *text += (text->empty() ? "" : " ") + comment;
@@ -104,7 +105,7 @@ class Parser {
     throw Error("the length " + Quoted(name), "a whole number among the fields before it");
   }
 
-  // "[psi] pressure of side 1" has its unit in brackets; "[as value] ..." says where it stands.
+  // Takes the unit out of "[psi] pressure of side 1"; "[as value] ..." names the field that holds the unit.
   static void SplitUnit(Field* field) {
     std::string& text = field->description;
     const size_t end = text.find(']');

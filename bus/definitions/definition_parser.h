@@ -1,4 +1,4 @@
-// Reads the text of a message definition in LCM's language, as far as ours use it.
+// Reads the text of a message definition in the part of LCM's language that ours use.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace hydro::definitions {
 
-// One struct of plain fields, lists whose length is a field before them, and constants; the comment at a line's end belongs to its
-// field, and goes on in lines that have nothing else. `channel` and `hash` are left empty. Throws InputError that names `file` and the
-// line: a struct within another, a list of fixed length and a list of lists are not allowed.
+// Reads one struct of plain fields, lists whose length is an earlier field, and constants. The comment at a
+// line's end belongs to its field, and continues in lines that hold nothing but a comment. `channel` and
+// `hash` are left empty. Throws InputError that names `file` and the line: a struct within another, a list of
+// fixed length and a list of lists are not allowed.
 MessageDefinition ParseDefinition(std::string_view text, const std::string& file);
 
 }  // namespace hydro::definitions

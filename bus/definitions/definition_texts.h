@@ -1,4 +1,4 @@
-// The texts of lcmtypes/*.lcm, which the build puts into the program.
+// The texts of lcmtypes/*.lcm, which the build compiles into the program.
 #pragma once
 
 #include <string_view>

@@ -10,7 +10,8 @@
 namespace hydro::definitions {
 namespace {
 
-// Reads an encoding from its beginning; everything after a value that is not whole is not whole either.
+// Reads an encoding from its beginning. After a value that is incomplete, every later one counts as
+// incomplete too.
 class Encoding {
  public:
   Encoding(const uint8_t* data, int size) : next_(data), left_(size) {}
@@ -34,7 +35,8 @@ class Encoding {
     return std::bit_cast<float>(static_cast<uint32_t>(Whole(FieldType::kInt32)));
   }
 
-  // Its length includes the zero byte at its end, the only one: LCM could not send another on.
+  // The length includes the zero byte at the text's end, which must be the only one: LCM could not send a
+  // text with another one on.
   std::string Text() {
     const int64_t size = Whole(FieldType::kInt32);
     const uint8_t* const bytes = size > 0 ? Take(size) : nullptr;
@@ -73,7 +75,7 @@ std::vector<T> ReadList(Encoding& from, FieldType type, int64_t count) {
   return list;
 }
 
-// The value of the field of that name, which comes before the list.
+// The value of the field with that name, which comes before the list.
 int64_t CountOf(const std::vector<Field>& fields, const std::vector<Value>& values, const std::string& name) {
   for (size_t i = 0; i < values.size(); ++i) {
     if (fields[i].name == name) return std::get<int64_t>(values[i]);

@@ -1,4 +1,4 @@
-// The values of a message out of its encoding, field by field.
+// Reads the values of a message from its encoding, field by field.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace hydro::definitions {
 
-// Whole numbers and truth values, numbers, texts, and lists of them.
+// Integers and booleans, floating-point numbers, texts, and lists of them.
 using Value = std::variant<int64_t, double, std::string, std::vector<int64_t>, std::vector<double>,
                            std::vector<std::string>>;
 
-// The values of an encoded message, in the order of the definition's fields, with or without a seal after it. False: the
-// bytes are no whole message of that type and version; `values` is then anything.
+// Reads the values of an encoded message, in the order of the definition's fields, with or without a seal
+// after it. Returns false when the bytes are not a whole message of that type and version; `values` is then
+// unspecified.
 bool ReadValues(const MessageDefinition& definition, const uint8_t* data, int size,
                 std::vector<Value>* values);
 

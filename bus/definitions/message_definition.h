@@ -1,4 +1,4 @@
-// What the .lcm files say of the messages, at run time: their fields with type, unit and meaning.
+// The contents of the .lcm files at run time: the fields of the messages with type, unit and meaning.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ enum class FieldType { kBoolean, kByte, kInt8, kInt16, kInt32, kInt64, kFloat, k
 struct Field {
   std::string name;
   FieldType type = FieldType::kDouble;
-  std::string count = {};        // the field that says how many elements there are; empty: a single value
-  std::string unit = {};         // "psi", of a comment that begins with "[psi]"; empty: none
+  std::string count = {};        // the field that holds the number of elements; empty: a single value
+  std::string unit = {};         // "psi", from a comment that begins with "[psi]"; empty: none
   std::string description = {};  // the rest of the comment
 
   bool is_list() const { return !count.empty(); }
@@ -33,19 +33,19 @@ struct MessageDefinition {
   std::string description;  // the comment before the struct
   std::vector<Field> fields;
   std::vector<Constant> constants;
-  int64_t hash = 0;  // what an encoded message begins with
+  int64_t hash = 0;  // the first bytes of an encoded message
 };
 
-// Whether values of the type are whole numbers; truth values are.
+// Whether values of the type are integers; booleans count as integers.
 bool IsWhole(FieldType type);
 
-// Bytes of a value as LCM encodes it; 0 for strings.
+// The bytes that a value takes in LCM's encoding; 0 for strings.
 int SizeOf(FieldType type);
 
 // All messages of a stack, in the order of bus/messages.h.
 const std::vector<MessageDefinition>& Definitions();
 
-// The definition whose channel `channel` begins with; the rest is the stack's suffix. Null: none.
+// The definition whose channel is the beginning of `channel`; the rest is the stack's suffix. Null: none.
 const MessageDefinition* DefinitionOf(std::string_view channel);
 
 }  // namespace hydro::definitions

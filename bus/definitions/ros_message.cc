@@ -99,12 +99,12 @@ std::string RosSchema(const std::vector<Field>& fields, const std::vector<Consta
 
 CdrWriter::CdrWriter(std::string* bytes) : bytes_(*bytes) { bytes_.assign("\0\1\0\0", kHeaderSize); }
 
-// Each value at a multiple of its size from the header's end.
+// Each value is aligned to a multiple of its size, counted from the header's end.
 template <class T>
 void CdrWriter::Put(T value) {
   while ((bytes_.size() - kHeaderSize) % sizeof value != 0) bytes_.push_back('\0');
   char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);  // little endian, as every machine that this runs on
+  std::memcpy(raw, &value, sizeof value);  // little endian, as on every machine on which this runs
   bytes_.append(raw, sizeof value);
 }
 

@@ -1,4 +1,5 @@
-// Messages as ROS 2 has them: a definition in its language, the bytes as CDR. Foxglove, Lichtblick and PlotJuggler read both.
+// Converts messages to the form of ROS 2: a definition in its language, and the bytes as CDR. Foxglove,
+// Lichtblick and PlotJuggler read both.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +18,10 @@ std::string RosTopic(std::string_view channel);
 // "hydro_msgs/msg/MotorCommand" for motor_command_t.
 std::string RosType(std::string_view type);
 
-// The field as ROS 2 names it: in small letters.
+// The field's name in ROS 2: in lower case.
 std::string RosField(std::string_view name);
 
-// A line for each field, with its unit and meaning as a comment, and one for each constant.
+// One line for each field, with its unit and meaning as a comment, and one for each constant.
 std::string RosSchema(const std::vector<Field>& fields, const std::vector<Constant>& constants = {});
 
 // Writes the values of fields as OMG's common data representation, version 1, little endian.

@@ -8,7 +8,7 @@
 
 namespace hydro::bus {
 
-// The channels that the table of messages marks as sealed; that of the introductions comes first.
+// The channels that the table of messages marks as sealed; the channel of the introductions comes first.
 inline std::vector<std::string> AuthenticatedChannels(const Channels& channels) {
   std::vector<std::string> sealed = {channels.Of<introduction_t>()};
   ForEachMessage([&]<class Message>(const MessageRow<Message>& row) {

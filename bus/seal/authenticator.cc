@@ -12,10 +12,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A recording played fast must not make us send equally fast.
+// A recording that is played fast must not make this process send equally fast.
 constexpr auto kQuestionPeriod = 10ms;
 
-// Bounds on memory. Only holders of the key can fill the first; in the second, new entries replace the
+// These bound the memory. Only holders of the key can fill the first; in the second, new entries replace the
 // oldest.
 constexpr size_t kMostAdmitted = 65536;
 constexpr size_t kMostWaiting = 64;
@@ -68,7 +68,7 @@ Authenticator::Opened Authenticator::Open(std::string_view channel, const void* 
 
   const auto sender = admitted_.find(seal.session);
   if (sender == admitted_.end()) {
-    // An introduction may be the very proof that we await.
+    // An introduction may be the very proof that this process awaits.
     if (*index != 0 && WaitsTooLong(seal.session, now)) {
       Opened opened = Refuse(&RefusedMessages::unknown_sender, channel, size);
       opened.session = seal.session;
@@ -109,7 +109,7 @@ std::optional<introduction_t> Authenticator::Hear(const introduction_t& introduc
   if (opened.session == session_) return std::nullopt;
   const bool answers_us = introduction.answers == session_;
   if (answers_us && !admitted_.contains(opened.session) && admitted_.size() < kMostAdmitted) {
-    // Nothing proves that what the sender sent before is new.
+    // Nothing proves that the sender's earlier messages are new.
     admitted_[opened.session].assign(channels_.size(), opened.counter);
     waiting_.erase(opened.session);
     *admitted = true;

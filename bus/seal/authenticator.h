@@ -9,7 +9,7 @@
 // - a recording is refused, whether of an earlier run or of this one;
 // - a process that restarts has a new session, introduces itself, and is accepted.
 //
-// Pure: the caller passes the time in and sends what is returned.
+// Pure: the caller passes the time in and sends the messages that are returned.
 #pragma once
 
 #include <chrono>
@@ -49,8 +49,8 @@ class Authenticator {
     uint64_t counter = 0;
   };
 
-  // `channels`: the authenticated ones, that of the introductions first.
-  // `session`: of this process's bus; only a simulation gives it one that is not fresh.
+  // `channels` are the authenticated ones; the channel of the introductions comes first. `session` is that of
+  // this process's bus; only a simulation passes one that is not fresh.
   Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session = RandomSession());
 
   const std::string& introduction_channel() const { return channels_.front(); }
@@ -63,11 +63,11 @@ class Authenticator {
   // Call once for each message that arrives.
   Opened Open(std::string_view channel, const void* data, int size, TimePoint now);
 
-  // What to send first.
+  // The introduction to send first.
   introduction_t Greeting() const { return Introduction(0); }
 
   // For an introduction that Open() did not refuse: returns the answer, if one is due. Sets `admitted` when
-  // the introduction has proved its sender.
+  // the introduction has proved that its sender is genuine.
   std::optional<introduction_t> Hear(const introduction_t& introduction, const Opened& opened,
                                      bool* admitted);
 
@@ -77,7 +77,7 @@ class Authenticator {
   const RefusedMessages& refused() const { return refused_; }
 
  private:
-  using Counters = std::vector<uint64_t>;  // the newest accepted, by channel
+  using Counters = std::vector<uint64_t>;  // the newest accepted counter, by channel
 
   std::optional<size_t> IndexOf(std::string_view channel) const;
   Opened Refuse(int64_t RefusedMessages::*reason, std::string_view channel, int size);
@@ -90,15 +90,14 @@ class Authenticator {
   int64_t session_;
   uint64_t counter_ = 0;
   std::unordered_map<int64_t, Counters>
-      admitted_;  // by session; never removed, or its messages could be replayed
+      admitted_;  // by session; never removed, because a removed session's messages could be replayed
   std::unordered_map<int64_t, TimePoint> waiting_;  // when a session was first heard
   TimePoint next_question_{};
   RefusedMessages refused_;
 };
 
 // The authenticator of a stack with that key file; null when `key_file` is empty. Throws InputError
-// (bus_key.h).
-// `channels`: the stack's own first, then those of its joints.
+// (bus_key.h). In `channels`, the stack's own come first, then those of its joints.
 std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file,
                                                  const std::vector<Channels>& channels, int port);
 

@@ -16,7 +16,7 @@
 namespace hydro::bus {
 namespace {
 
-constexpr size_t kLongest = 200;  // bytes of a key file, blanks included
+constexpr size_t kLongest = 200;  // bytes of a key file, including white space
 constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
 
 class File {
@@ -33,7 +33,7 @@ class File {
   int fd_;
 };
 
-// Text that holds a key, wiped on destruction.
+// Text that holds a key and is wiped on destruction.
 class SecretText {
  public:
   SecretText() = default;
@@ -156,7 +156,7 @@ void MakeBusKeyFile(const std::string& file) {
                 errno == EEXIST ? "remove it first if it is to be replaced"
                                 : "a name in a folder that can be written is needed");
   }
-  errno = ENOSPC;  // of a write that is shorter
+  errno = ENOSPC;  // the reason of a short write
   if (write(made.fd(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.fd()) != 0) {
     const std::string why = std::strerror(errno);
     unlink(file.c_str());

@@ -9,7 +9,7 @@
 
 namespace hydro::bus {
 
-// Wipes its memory on destruction.
+// A key whose memory is wiped on destruction.
 class BusKey {
  public:
   explicit BusKey(const std::array<uint8_t, kBusKeySize>& bytes) : bytes_(bytes) {}
@@ -23,13 +23,13 @@ class BusKey {
   std::array<uint8_t, kBusKeySize> bytes_;
 };
 
-// The key of the stack on that port: a hash of `key` and port, so that messages of one stack are of no use on another that has
-// the same key file. (The channel suffix is sealed with each message.)
+// The key of the stack on that port: a hash of `key` and port, so that messages of one stack are of no use on
+// another that has the same key file. (The channel suffix is sealed with each message.)
 BusKey KeyForPort(const BusKey& key, int port);
 
 // Reads a key file: 32 bytes, as 64 hexadecimal digits or in base64, on one line. Throws InputError naming
-// the file when it cannot be read, holds anything else, or is accessible to anyone but its owner. Never shows
-// the content.
+// the file when it cannot be read, holds anything else, or is accessible to anyone but its owner. The error
+// never shows the content.
 BusKey ReadBusKey(const std::string& file);
 
 // Writes a new random key, readable by its owner only. Throws InputError when the file exists or cannot be

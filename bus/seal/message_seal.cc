@@ -24,7 +24,7 @@ const uint8_t* Bytes(std::string_view text) { return reinterpret_cast<const uint
 std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>& key,
                                           std::string_view channel, int64_t session, uint64_t counter,
                                           const void* message, int size) {
-  // Lengths first, so that no two different inputs give the same bytes.
+  // The lengths come first, so that no two different inputs give the same bytes.
   std::array<uint8_t, 32> numbers{};
   StoreBigEndian64(channel.size(), numbers.data());
   StoreBigEndian64(static_cast<uint64_t>(size), numbers.data() + 8);

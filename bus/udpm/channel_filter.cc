@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kUdpHeader = 8;  // where the filter of a UDP socket starts to read
 constexpr uint32_t kPass = 0xffffffff;
 
-// The bytes at `position` of the channel and its final 0, as the filter loads them.
+// The bytes at `position` of the channel and its final 0, in the form in which the filter loads them.
 uint32_t Word(const std::string& channel, size_t position, size_t size) {
   uint32_t word = 0;
   for (size_t i = 0; i < size; ++i) {
@@ -38,7 +38,7 @@ void AppendChannel(const std::string& channel, std::vector<sock_filter>* program
     position += size;
   }
   code.push_back(BPF_STMT(BPF_RET | BPF_K, kPass));
-  // At most 16 pieces of two instructions: 8 bits are enough for a jump over all of them.
+  // There are at most 16 pieces of two instructions, so 8 bits are enough for a jump over all of them.
   for (size_t i = 1; i + 1 < code.size(); i += 2) code[i].jf = static_cast<uint8_t>(code.size() - 1 - i);
   program->insert(program->end(), code.begin(), code.end());
 }
@@ -47,7 +47,8 @@ void AppendChannel(const std::string& channel, std::vector<sock_filter>* program
 
 void AttachChannelFilter(int fd, const std::vector<std::string>& channels) {
   std::vector<sock_filter> program{
-      // Anything but a whole message passes, because only the first fragment of a message names its channel.
+      // Everything but a whole message passes, because only the first fragment of a message names its
+      // channel.
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kUdpHeader),
       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kLcmWholeMagic, 1, 0),
       BPF_STMT(BPF_RET | BPF_K, kPass),

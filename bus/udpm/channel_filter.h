@@ -7,7 +7,7 @@
 namespace hydro::bus {
 
 // Makes the UDP socket `fd` pass LCM packets (lcm_packet.h) on exactly these channels, and all fragments. If
-// the kernel refuses the filter, everything arrives.
+// the kernel refuses the filter, all packets arrive.
 void AttachChannelFilter(int fd, const std::vector<std::string>& channels);
 
 }  // namespace hydro::bus

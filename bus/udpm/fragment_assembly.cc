@@ -35,7 +35,7 @@ std::optional<FragmentAssembly::Message> FragmentAssembly::Take(uint64_t sender,
     return other.sender == sender && other.sequence == sequence;
   });
   if (found != unfinished_.end() && (found->pieces.size() != fragments || found->size != whole)) {
-    unfinished_.erase(found);  // another message with the same number
+    unfinished_.erase(found);  // another message has the same number
     found = unfinished_.end();
   }
   if (found == unfinished_.end()) {
@@ -55,7 +55,7 @@ std::optional<FragmentAssembly::Message> FragmentAssembly::Take(uint64_t sender,
   return message;
 }
 
-// Empty when the pieces do not fit together.
+// Returns nothing when the pieces do not fit together.
 std::optional<FragmentAssembly::Message> FragmentAssembly::Joined(const Unfinished& whole) {
   Message message{whole.channel, {}};
   for (const Piece& piece : whole.pieces) {

@@ -9,8 +9,8 @@
 
 namespace hydro::bus {
 
-// Bounded: messages of at most 16 MiB, at most four incomplete at a time (a new one replaces the oldest), and
-// no more memory than the received packets took.
+// Memory is bounded: messages have at most 16 MiB, at most four are incomplete at a time (a new one replaces
+// the oldest), and they take no more memory than the received packets took.
 class FragmentAssembly {
  public:
   struct Message {

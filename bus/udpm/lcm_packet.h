@@ -42,7 +42,7 @@ struct LcmWhole {
   size_t size = 0;
 };
 
-// False when `packet` is not a whole message.
+// Returns false when `packet` is not a whole message.
 inline bool ReadLcmWhole(const uint8_t* packet, size_t size, LcmWhole* whole) {
   if (size < kLcmWholeHeader || LoadLcm(packet, 4) != kLcmWholeMagic) return false;
   const uint8_t* const channel = packet + kLcmWholeHeader;

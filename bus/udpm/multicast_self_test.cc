@@ -52,7 +52,7 @@ void SetProbeOption(int fd, int level, int option, const Value& value) {
 }
 
 // A packet in LCM's format, on the channel of LCM's own self-test so that it surprises no receiver, with
-// random bytes by which we recognise it.
+// random bytes by which this process recognises it.
 std::vector<uint8_t> MakeProbe() {
   constexpr char kHeader[] = "LC02\0\0\0\0LCM_SELF_TEST";  // magic, sequence number, channel with its final 0
   std::vector<uint8_t> probe(kHeader, kHeader + sizeof kHeader);
@@ -62,7 +62,7 @@ std::vector<uint8_t> MakeProbe() {
   return probe;
 }
 
-// Sends to the group, from this machine too.
+// Sets the sender up to send to the group, and to be heard on this machine too.
 void Connect(const Socket& sender, const UdpmUrl& url, const sockaddr_in& group) {
   if (connect(sender.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "no route to the group", kCure);
@@ -90,7 +90,7 @@ int Listen(const Socket& receiver, const UdpmUrl& url, const sockaddr_in& group)
   return receive_buffer;
 }
 
-// Waits until `deadline` for a packet that is the probe. False: none came.
+// Waits until `deadline` for a packet that is the probe. Returns false when none came.
 bool Receives(const Socket& receiver, const std::vector<uint8_t>& probe,
               std::chrono::steady_clock::time_point deadline) {
   std::vector<uint8_t> packet(probe.size() + 1);
@@ -124,7 +124,7 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   const std::vector<uint8_t> probe = MakeProbe();
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (true) {
-    // Sent repeatedly, because a busy machine may lose a packet.
+    // The probe is sent repeatedly, because a busy machine may lose a packet.
     if (send(sender.fd(), probe.data(), probe.size(), 0) < 0) {
       FailErrno(url, "cannot send to the group", kFirewallCure);
     }

@@ -6,15 +6,16 @@
 namespace hydro::bus {
 namespace {
 
-// A refused message is still recorded, under a name that no one mistakes for the real channel.
+// A refused message is still recorded, under a name that nobody mistakes for the real channel.
 constexpr const char* kRefusedPrefix = "REFUSED_";
 
-// How many messages may wait for their senders to prove themselves.
+// The number of messages that may wait for their senders to prove themselves.
 constexpr size_t kMostHeld = 1024;
 
 }  // namespace
 
-// Not before everyone has subscribed: who records everything wants the introductions too.
+// Introductions start only after everyone has subscribed, because a subscriber that records everything needs
+// them too.
 void UdpmBus::StartIntroductions() {
   introduced_ = true;
   const std::string& channel = authenticator_->introduction_channel();
@@ -22,7 +23,8 @@ void UdpmBus::StartIntroductions() {
   Publish(channel, authenticator_->Greeting());
 }
 
-// How much of the message handlers may see: its size without the seal, or nothing when they must not see it.
+// Returns how much of the message handlers may see: its size without the seal, or nothing when they must not
+// see it.
 std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
   using Verdict = Authenticator::Verdict;
   const auto now = std::chrono::steady_clock::now();

@@ -39,7 +39,7 @@ void CheckChannel(const std::string& channel) {
   }
 }
 
-// The network may come back: it has worked before (OpenUdpmBus() checked that).
+// The network may come back, because it has worked before (OpenUdpmBus() checked that).
 bool IsPassing(int error) {
   return error == ENETUNREACH || error == ENETDOWN || error == EHOSTUNREACH || error == EADDRNOTAVAIL ||
          error == ENOBUFS || error == EPERM;  // the last: a firewall
@@ -47,7 +47,7 @@ bool IsPassing(int error) {
 
 enum class Wait { kReadable, kOther, kDeadline, kSignal };
 
-// `other`: ends the wait too; -1: none.
+// `other` also ends the wait when it is readable; -1: none.
 Wait WaitReadable(int fd, int other, Bus::TimePoint deadline) {
   while (true) {
     timespec timeout{};
@@ -106,7 +106,7 @@ UdpmBus::Outcome UdpmBus::HandleNext() {
 UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
   RawMessage message = arrived;
   if (message.channel == kLcmSelfTest) return Outcome::kPassedOver;
-  bool introduction = false;  // for the bus itself and the record
+  bool introduction = false;  // only for the bus itself and the recording
   if (authenticator_ != nullptr) {
     const std::optional<int> plain_size = Authenticate(message);
     if (!plain_size) return Outcome::kPassedOver;
@@ -114,7 +114,7 @@ UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
     introduction = message.channel == authenticator_->introduction_channel();
   }
   Outcome outcome = Outcome::kPassedOver;
-  // By index, because a handler may subscribe. New subscriptions do not get this message.
+  // The loop goes by index, because a handler may subscribe. New subscriptions do not get this message.
   const size_t count = subscriptions_.size();
   for (size_t i = 0; i < count; ++i) {
     Subscription& subscription = subscriptions_[i];
@@ -129,7 +129,7 @@ UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
   return outcome;
 }
 
-// False: the message cannot be decoded.
+// Returns false when the message cannot be decoded.
 bool UdpmBus::DeliverTyped(const RawMessage& message, Subscription* subscription) {
   if (!subscription->type->decode_into(subscription->message.get(), message.data, message.size)) {
     ++undecodable_;
@@ -165,7 +165,7 @@ void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, 
 void UdpmBus::SendOrCount(const std::string& channel, const void* data, int size) {
   if (socket_.Send(channel, data, static_cast<size_t>(size))) return;
   if (!IsPassing(errno)) throw BusError("LCM cannot publish on " + channel + ": " + std::strerror(errno));
-  ++unsent_;  // as if lost on its way: whoever waits for it has a watchdog
+  ++unsent_;  // as if lost on its way: every process that waits for it has a watchdog
 }
 
 int UdpmBus::HandleUntil(TimePoint deadline) {
@@ -174,7 +174,7 @@ int UdpmBus::HandleUntil(TimePoint deadline) {
   if (!held_.empty()) GiveUpHeld();
   int handled = 0;
   for (int seen = 0; seen < kMostPerCall; ++seen) {
-    // Once a message has been handled, only those already waiting count.
+    // Once a message has been handled, the loop takes only those that already wait.
     if (handled == 0 && WaitReadable(socket_.fd(), wake_on_, deadline) != Wait::kReadable) break;
     const Outcome outcome = HandleNext();
     if (outcome == Outcome::kHandled) ++handled;

@@ -17,8 +17,8 @@ namespace hydro::bus {
 
 class UdpmBus : public Bus {
  public:
-  // The kernel's receive buffer in bytes: what was asked for and what it granted (which includes the kernel's
-  // own bookkeeping).
+  // The kernel's receive buffer in bytes: the requested size and the one that it granted (which includes the
+  // kernel's own bookkeeping).
   struct ReceiveBuffer {
     int asked = 0;
     int given = 0;
@@ -27,8 +27,8 @@ class UdpmBus : public Bus {
   // OpenUdpmBus() (open_udpm_bus.h) makes one, after it has proved that multicast works. Throws BusError.
   UdpmBus(const UdpmUrl& url, std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer);
 
-  // Withholds the messages by which LCM tests itself when a process starts. Refused messages come as they
-  // arrived, with REFUSED_ before the channel's name.
+  // Does not deliver the messages by which LCM tests itself when a process starts. Refused messages come as
+  // they arrived, with REFUSED_ before the channel's name.
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
@@ -56,7 +56,7 @@ class UdpmBus : public Bus {
     std::function<void(const RawMessage&)> raw;
   };
 
-  // Genuine: delivered to SubscribeAll() handlers as soon as its sender has proved itself.
+  // A genuine message: it is delivered to SubscribeAll() handlers as soon as its sender has proved itself.
   struct HeldMessage {
     std::string channel;
     std::vector<uint8_t> data;
@@ -71,14 +71,14 @@ class UdpmBus : public Bus {
   // Takes one waiting message and passes it to Deliver(). Never waits for one.
   Outcome HandleNext();
 
-  // If an arrived message is genuine, calls its handlers in the order of subscription. Call once for each
-  // message. A handler's exception leaves it.
+  // If an arrived message is genuine, calls its handlers in the order of subscription. Call it once for each
+  // message. An exception of a handler passes through.
   Outcome Deliver(const RawMessage& arrived);
 
   bool DeliverTyped(const RawMessage& message, Subscription* subscription);
   void SendOrCount(const std::string& channel, const void* data, int size);
 
-  // udpm_authentication.cc
+  // These are defined in udpm_authentication.cc.
   void StartIntroductions();
   std::optional<int> Authenticate(const RawMessage& arrived);
   void Ask(int64_t session, TimePoint now);

@@ -29,7 +29,7 @@ void Store(uint32_t value, size_t size, uint8_t* bytes) {
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<uint8_t>(value >> (8 * (size - 1 - i)));
 }
 
-// Names the destination each time: a connected socket keeps its source address, and silently drops packets
+// Names the destination each time: a connected socket keeps its source address and silently drops packets
 // while the interface of that address is down.
 bool SendAll(int fd, const sockaddr_in& destination, iovec* parts, size_t count) {
   msghdr message{};
@@ -66,7 +66,8 @@ UdpmSocket::UdpmSocket(const UdpmUrl& url) : packet_(kLcmLargestPacket + 1) {
   if (open && url.recv_buf_size > 0) SetOption(receiver_, SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   SetOption(receiver_, SOL_SOCKET, SO_TIMESTAMP, 1);
   AttachChannelFilter(receiver_, channels_);
-  // To the group: what is sent to other groups on this port, or to this machine alone, stays away.
+  // The socket is bound to the group, so that packets to other groups on this port, or to this machine alone,
+  // do not arrive.
   if (!open || bind(receiver_, address(group_), sizeof group_) != 0 ||
       !SetOption(receiver_, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) {
     const std::string why = std::strerror(errno);

@@ -1,10 +1,10 @@
 // LCM's UDP multicast protocol on the caller's thread, for every program that receives.
 //
-// Two reasons against liblcm 1.3.1's own receiver. Its check of fragments wraps in 32 bits, so that two
-// datagrams from anybody make it write outside its buffer. And it receives on a thread of its own and passes
-// each message on through a queue and a pipe: two wake-ups and several allocations per message. For a loop
-// that answers a message, the wake-up is most of the round trip. Here the loop itself waits on the socket,
-// the kernel's buffer is the queue, and nothing is allocated.
+// There are two reasons not to use the receiver of liblcm 1.3.1. Its check of fragments wraps in 32 bits, so
+// that two datagrams from anyone make it write outside its buffer. And it receives on a thread of its own and
+// passes each message on through a queue and a pipe, which costs two wake-ups and several allocations per
+// message. For a loop that answers a message, the wake-up is most of the round trip. Here the loop itself
+// waits on the socket, the kernel's buffer is the queue, and nothing is allocated.
 #pragma once
 
 #include <netinet/in.h>
@@ -21,19 +21,19 @@ namespace hydro::bus {
 
 class UdpmSocket {
  public:
-  // Opens what LCM would for the same URL. Throws BusError.
+  // Opens the sockets that LCM would open for the same URL. Throws BusError.
   explicit UdpmSocket(const UdpmUrl& url);
   ~UdpmSocket();
   UdpmSocket(const UdpmSocket&) = delete;
   UdpmSocket& operator=(const UdpmSocket&) = delete;
 
-  // Receives messages on `channel` (1 to 63 bytes) from now on; before the first call, receives none.
+  // From now on receives messages on `channel` (1 to 63 bytes); before the first call, it receives none.
   void Accept(const std::string& channel);
   void AcceptAll();
   bool accepts_all() const { return all_; }
 
-  // Sends a message and never waits. On false, errno says why: ENOBUFS when the network is slower than the
-  // sender.
+  // Sends a message and never waits. When it returns false, errno gives the reason: ENOBUFS when the network
+  // is slower than the sender.
   bool Send(std::string_view channel, const void* data, size_t size);
 
   // A received message, valid until the next call of Receive().
@@ -44,8 +44,8 @@ class UdpmSocket {
     int64_t receive_utime = 0;  // us since 1970-01-01 UTC, by the kernel's stamp
   };
 
-  // Takes the next waiting message on any channel; false when none waits. Skips packets that are not LCM's.
-  // Throws BusError.
+  // Takes the next waiting message on any channel; returns false when none waits. Skips packets that are not
+  // LCM's. Throws BusError.
   bool Receive(Message* message);
 
   int fd() const { return receiver_; }  // readable when a packet waits

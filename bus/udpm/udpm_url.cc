@@ -15,7 +15,7 @@ constexpr std::string_view kScheme = "udpm://";
 [[noreturn]] void Refuse(const std::string& text, const std::string& what) {
   std::string line = "bus url \"" + text + "\": " + what + "; an example is udpm://239.255.76.67:7667?ttl=0";
   for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20) c = '?';  // on one line whatever the text holds
+    if (static_cast<unsigned char>(c) < 0x20) c = '?';  // stays on one line whatever the text holds
   }
   throw InputError(line);
 }

@@ -10,7 +10,7 @@ struct UdpmUrl {
   std::string group = "239.255.76.67";  // IPv4 multicast address
   uint16_t port = 7667;
   int ttl = 0;            // time to live; 0: a packet stays on this machine, 1: on the local network
-  int recv_buf_size = 0;  // bytes asked for the kernel's receive buffer; 0: not given
+  int recv_buf_size = 0;  // bytes requested for the kernel's receive buffer; 0: not given
 
   std::string ToString() const;
 };

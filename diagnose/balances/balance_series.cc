@@ -44,8 +44,9 @@ std::vector<double> SmoothDrive(const std::vector<double>& middle, double step) 
   return Smoothed(middle, SmoothingOf(step) / step);
 }
 
-// What a filter sees of the motor's torque at an instant at which it may jump: the mean of both. A jump before the instant, where a
-// command acts late by part of a sample, counts in both samples beside it, so that its time stays what it is.
+// What a filter sees of the motor's torque at an instant at which it may jump: the mean of both sides. A jump
+// before the instant, where a command acts late by part of a sample, is spread over both samples beside it,
+// so that its time is kept.
 void SetMiddle(const model::BalanceEquations& equations, const RunMotion& run, size_t k, double drive,
                std::vector<double>* middle) {
   (*middle)[k] = drive;
@@ -56,7 +57,7 @@ void SetMiddle(const model::BalanceEquations& equations, const RunMotion& run, s
   (*middle)[k - 1] += 0.5 * equations.early() * jump;
 }
 
-// Calls visit(k, balances) at every instant in turn, states along with the motion.
+// Calls visit(k, balances) at every instant in order. The effects' states follow the motion.
 template <class Visit>
 void WalkAlong(const model::ModelDescription& model, const RunMotion& run, size_t stride, Visit visit,
                size_t last = std::numeric_limits<size_t>::max()) {
@@ -69,7 +70,7 @@ void WalkAlong(const model::ModelDescription& model, const RunMotion& run, size_
   }
 }
 
-// Whether the first samples show that the model gives another torque of the motor.
+// Whether the first samples already show that the model gives another motor torque.
 bool DriveChangesEarly(const model::ModelDescription& model, const RunMotion& run, const BaseSeries& base) {
   constexpr size_t kSamples = 256;
   bool changes = false;
@@ -150,7 +151,7 @@ BalanceSeries Beyond(const model::ModelDescription& model, const RunMotion& run,
     });
     return driven;
   };
-  // Where the motor's torque is the same, every stride-th instant tells all.
+  // Where the motor's torque is the same, every stride-th instant suffices.
   const bool likely = run.stride > 1 && DriveChangesEarly(model, run, base);
   bool driven = pass(likely ? 1 : run.stride);
   if (driven && !likely && run.stride > 1) driven = pass(1);

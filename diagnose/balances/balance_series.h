@@ -18,18 +18,21 @@ inline constexpr std::array<BalanceKind, kBalanceKinds> kAllBalances = {
     BalanceKind::kTorque, BalanceKind::kFlow1,  BalanceKind::kFlow2,
     BalanceKind::kArm,    BalanceKind::kLevel1, BalanceKind::kLevel2};
 
-// A number for every stride-th instant of the run, for each balance; empty: it cannot be formed from what was measured.
+// The values of each balance at every stride-th instant of the run. A series is empty where the balance
+// cannot be formed from what was measured.
 using BalanceSeries = std::array<Eigen::VectorXd, kBalanceKinds>;
 
-// Whether the run's signals suffice for the balance. One that cannot be formed is left out: what is missing never counts as 0.
+// Whether the run's signals suffice to form the balance. A balance that cannot be formed is left out: a
+// missing signal never counts as 0.
 bool CanForm(const RunMotion& run, BalanceKind balance);
-// Whether its series are computed: those of a side with a marched pressure act in the torque balance (latent_pressures.h).
+// Whether the balance's series are computed. Those of a side whose pressure is marched act in the torque
+// balance instead (latent_pressures.h).
 bool IsComputed(const RunMotion& run, BalanceKind balance);
 
-// What the motor's torque is over time, smoothed as the signals are.
+// The motor's torque over time, smoothed as the signals are.
 struct Drive {
-  std::vector<double> raw;     // at every instant, from then on
-  std::vector<double> middle;  // the mean of just before and from then on
+  std::vector<double> raw;     // at every instant, the value from that instant on
+  std::vector<double> middle;  // the mean of the values just before the instant and from it on
   std::vector<double> smooth;  // `middle`, smoothed
 };
 
@@ -38,20 +41,21 @@ struct BaseSeries {
   Drive drive;
 };
 
-// What the model leaves. Throws ModelError as Equations does.
+// The series that the model leaves. Throws ModelError as Equations does.
 BaseSeries SeriesOf(const model::ModelDescription& model, const RunMotion& run);
-// What another model, or another motion of the same run, leaves beyond `base`. Effects' states are integrated along the
-// motion.
+// What another model, or another motion of the same run, leaves beyond `base`. The states of effects are
+// integrated along the motion.
 BalanceSeries Beyond(const model::ModelDescription& model, const RunMotion& run, const BaseSeries& base);
-// Whether the model differs by what it remembers of the command alone: noise of the sensors then makes no difference. Judged by the run's
-// first samples.
+// Whether the model differs from the given one only by what it remembers of the command, so that sensor noise
+// makes no difference to it. The run's first samples decide this.
 bool DependsOnCommandAlone(const model::ModelDescription& model, const RunMotion& run,
                            const BaseSeries& base);
-// The balances' derivatives by each of the unknowns. Empty where one of them changes the motor's torque, which depends
-// on the held command: Beyond is for these.
+// The balances' derivatives by each of the unknowns. The result is empty where an unknown changes the motor's
+// torque, which depends on the held command: use Beyond() for those.
 std::vector<BalanceSeries> DerivativesOf(const model::ModelDescription& model, const RunMotion& run,
                                          const std::vector<model::Unknown>& unknowns);
-// What sensors would read beyond the motion because of the model's effects; smoothed, at every instant. Empty series: nothing.
+// What the model's effects make the sensors read beyond the motion, smoothed, at every instant. An empty
+// series means no error.
 SignalErrors ErrorsOf(const model::ModelDescription& model, const RunMotion& run);
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// Columns of base parameters: relative deviations of the values as given.
+// Columns of base parameters: relative deviations from the given values.
 #include <algorithm>
 #include <cmath>
 
@@ -12,20 +12,21 @@ namespace {
 using model::BaseParameters;
 using model::Parameters;
 
-// A value given as 0 may well make a tenth of its balance.
+// A value given as 0 may contribute up to a tenth of its balance.
 constexpr double kFromNothing = 0.1;
-// "One value is far off": by half as much again.
+// For "one value is far off": a deviation of a half.
 constexpr double kValueFarOff = 0.5;
-// "One value differs by run": by so many times what each run may differ by in every hypothesis.
+// For "one value differs by run": this many times the deviation that each run may have in every hypothesis.
 constexpr double kDiffersByRun = 6;
 
-// Relative, of numbers of effects that the model states, and in rad of their phases.
+// Relative uncertainty of the numbers of effects that the model states; for their phases, in rad.
 constexpr double kEffectKnown = 0.3, kPhaseKnown = 0.1;
 
-// One term of each balance keeps its value, and all others are measured by it: with every scale free, the smallest balance is the best.
+// One term of each balance keeps its value, and all others are measured by it. If every scale were free, the
+// smallest balance would be the best.
 bool IsFixed(double Parameters::*member) { return member == &Parameters::k_1 || member == &Parameters::k_2; }
 
-// In the flows D w is what the others are measured by.
+// In the flows, the others are measured by D w.
 bool CountsIn(double Parameters::*member, BalanceKind balance) {
   return member != &Parameters::D || balance == BalanceKind::kTorque;
 }
@@ -39,7 +40,8 @@ void PutBase(ColumnMaker* maker, int column, size_t run, const BalanceSeries& se
   maker->Put(column, run, counted, factor);
 }
 
-// Of the limit of the motor's torque: a finite difference, as it acts through the held command.
+// The column of the motor's torque limit: a finite difference, because the limit acts through the held
+// command.
 void AddLimit(ColumnMaker* maker, int column, double Parameters::*member) {
   maker->works.back().push_back([maker, column, member](size_t run) {
     constexpr double kPart = 1e-3;
@@ -49,7 +51,7 @@ void AddLimit(ColumnMaker* maker, int column, double Parameters::*member) {
   });
 }
 
-// Numbers of effects that the model has: estimates, as friction and leakage are.
+// Numbers of the model's own effects: they are estimates, as friction and leakage are.
 void AddGivenEffects(ColumnMaker* maker) {
   const model::ModelDescription& given = maker->setup->given;
   const std::vector<model::EffectParameter> all = model::EffectParameters(given);
@@ -70,7 +72,7 @@ void AddGivenEffects(ColumnMaker* maker) {
   }
 }
 
-// Where it is asked whether a base parameter differs by run that no hypothesis lets differ otherwise.
+// Adds a base parameter that is tested for differing by run although no hypothesis otherwise lets it differ.
 void AddAskedRuns(ColumnMaker* maker, int of) {
   const ScanColumn column = maker->table.columns[static_cast<size_t>(of)];
   const std::vector<std::string>& asked = maker->setup->per_run;

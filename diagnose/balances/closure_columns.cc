@@ -1,4 +1,5 @@
-// Columns of closures: a smooth curve over one variable, added to one element of the machine, for what no effect explains.
+// Columns of closures: a smooth curve over one variable, added to one element of the machine, for what no
+// effect explains.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,13 +13,14 @@ namespace {
 
 using ElementPart = ClosureElement::Part;
 
-// Sines of a curve, and how fast their amplitudes may fall: a curve is as smooth as a Gaussian of a seventh of its range.
+// The number of sines in a curve. Their amplitudes fall so fast that a curve is as smooth as a Gaussian of a
+// seventh of its range.
 constexpr int kSpeedSines = 10, kOtherSines = 8;
 constexpr double kSmooth = 0.15;
-// An amount of the first sine, in usual parts of the balance.
+// The amount of the first sine, in usual parts of the balance.
 constexpr double kFirst = 1.5;
 constexpr double kUsual = 0.15;
-// Curves reach beyond what was seen by so much.
+// How far curves reach beyond the range that was seen.
 constexpr double kBeyond = 1.15, kBeyondArm = 0.1, kBelowCharge = 0.1, kFastArm = 4;
 
 double SpreadOf(int sine) { return kFirst * std::exp(-0.5 * std::pow(kSmooth * std::numbers::pi * sine, 2)); }

@@ -1,4 +1,5 @@
-// What makes columns: registers each once, and fills its series run by run. For .cc files of this room.
+// Makes columns: registers each column once and fills its series run by run. Only .cc files of this room use
+// it.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,7 @@
 
 namespace hydro::diagnose {
 
-// Work on one run that fills the series of some columns; different works fill different columns.
+// Work on one run that fills the series of some columns. Different works fill different columns.
 using ColumnWork = std::function<void(size_t run)>;
 
 struct ColumnMaker {
@@ -16,9 +17,9 @@ struct ColumnMaker {
   const std::vector<RunMotion>* runs = nullptr;
   const std::vector<BaseSeries>* base = nullptr;
   ColumnTable table;
-  const ColumnTable* again = nullptr;  // the same columns of the runs without more noise, where these have it
+  const ColumnTable* again = nullptr;  // the same columns of the runs without added noise, where they exist
   std::vector<std::vector<ColumnWork>>
-      works;  // done after each other: later ones use columns of earlier ones
+      works;  // done one after the other: later works use columns of earlier ones
 
   const RunMotion& Motion(size_t run) const { return (*runs)[run]; }
   const model::Parameters& given() const { return setup->given.parameters; }
@@ -31,15 +32,16 @@ struct ColumnMaker {
     table.series[run][static_cast<size_t>(balance)][column] = std::move(series);
   }
   void Put(int column, size_t run, const BalanceSeries& all, double factor = 1);
-  // The series of a column that an earlier work made; null: none.
+  // The series of a column that an earlier work made, or null.
   const Eigen::VectorXd* Find(int column, size_t run, BalanceKind balance) const;
   // The column of that name.
   std::optional<int> Named(const std::string& name) const;
-  // A column that is another one, in one run or in all.
+  // Adds a column that equals another one, in one run or in all.
   int AddAlias(ScanColumn column, ColumnMeaning meaning, int of, int only_run);
 };
 
-// What the balances change by where a signal reads `errors` too much, for errors of that size and in proportion.
+// What the balances change by when a signal reads `errors` too high, for errors of that size and in
+// proportion.
 BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalErrors& errors);
 
 void AddBaseColumns(ColumnMaker* maker);

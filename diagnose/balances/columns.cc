@@ -12,15 +12,16 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Of the largest speed: what a motor reaches now and then, not once.
+// The quantile that counts as the largest speed: a motor reaches it now and then, not just once.
 constexpr double kTopQuantile = 0.995;
-// Of the largest pressure.
+// The quantile that counts as the largest pressure.
 constexpr double kTopPressureQuantile = 0.998;
-// Of the balance's main term: an effect of this size is nothing unusual, and a tenth of it, or ten times as much, costs little.
+// The usual size of an effect, as a fraction of the balance's main term. One ten times as small or as large
+// costs little.
 constexpr double kUsualPart = 0.15;
-// So many times a whole effect would have to be there to make the usual part.
+// A whole effect is next to nothing if it would take this many times its size to make the usual part.
 constexpr double kNextToNothing = 1e3;
-// A column that acts seldom is measured where it acts: by the root of sum x^4 over sum x^2.
+// A column that seldom acts is measured where it acts: by the root of sum x^4 over sum x^2.
 double SizeWhereItActs(const std::vector<const Eigen::VectorXd*>& series) {
   double second = 0, fourth = 0;
   for (const Eigen::VectorXd* one : series) {
@@ -39,7 +40,8 @@ double Quantile(std::vector<double> values, double part) {
 
 double RootMean(double sum, double count) { return count > 0 ? std::sqrt(sum / count) : 0; }
 
-// An amount of 1 makes the column the usual part of its balance; of several balances, of that in which it is largest.
+// An amount of 1 makes the column the usual part of its balance; with several balances, of the one in which
+// the column is largest.
 double UnitOf(const ColumnMaker& maker, int column) {
   double largest = 0;
   for (size_t b = 0; b < kBalanceKinds; ++b) {
@@ -90,7 +92,8 @@ int ColumnMaker::AddAlias(ScanColumn column, ColumnMeaning meaning, int of, int 
 
 BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalErrors& errors) {
   const RunMotion& motion = maker.Motion(run);
-  // A thousandth of the signals' own ranges: the balances are all but linear there, and rounding is far.
+  // A thousandth of the signals' own ranges: there the balances are practically linear, and rounding is far
+  // away.
   double largest = 0;
   for (size_t s = 0; s < kGridChannels; ++s) {
     if (errors.of[s].empty() || !motion.signals[s].measured()) continue;
@@ -156,9 +159,9 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
 
 namespace {
 
-// What flow columns do to the torque balance through pressures that were not measured.
+// Adds the effect of flow columns on the torque balance through pressures that were not measured.
 void FollowPressures(ColumnMaker* maker, int jobs) {
-  // Of the squared column: what rounding leaves where an effect does not act.
+  // Rounding errors where an effect does not act, as a fraction of the squared column.
   constexpr double kNothing = 1e-18;
   const size_t runs = maker->runs->size(), count = maker->table.columns.size();
   std::vector<std::vector<bool>> direct(runs, std::vector<bool>(count, false));

@@ -1,5 +1,6 @@
-// All columns of the scan: what each change would do to each balance, at the measured motion. Each is a derivative of the
-// balances themselves, so an effect that is new in the catalogue, or written as text, has its columns by itself.
+// All columns of the scan: what each change would do to each balance at the measured motion. Each column is a
+// derivative of the balances themselves, so an effect that is new in the catalogue, or written as text, gets
+// its columns without further code.
 #pragma once
 
 #include <map>
@@ -20,7 +21,7 @@ struct ColumnMeaning {
     kWhole,    // the effect as a whole: 1 is the variant as it stands
     kMoved,    // logarithm of a parameter of such an effect
     kWave,     // sine or cosine part of a run's wave
-    kReading,  // what a recorder reads too much in one run
+    kReading,  // an error of a sensor's reading in one run
     kOther,    // a nuisance or a closure
   };
   Kind kind = Kind::kOther;
@@ -35,9 +36,9 @@ struct ColumnMeaning {
 struct ColumnTable {
   std::vector<ScanColumn> columns;
   std::vector<ColumnMeaning> meaning;
-  // series[run][balance]: column -> values at every stride-th instant, for an amount of 1.
+  // series[run][balance]: from the column to its values at every stride-th instant, for an amount of 1.
   std::vector<std::array<std::map<int, Eigen::VectorXd>, kBalanceKinds>> series;
-  // Whether some balance has the column itself, and not only through a pressure that nobody measured.
+  // Whether the column acts directly in some balance, and not only through a pressure that was not measured.
   std::vector<bool> direct;
 
   int Add(ScanColumn column, ColumnMeaning means) {
@@ -47,7 +48,7 @@ struct ColumnTable {
   }
 };
 
-// How large the balances are in the runs: what amounts are measured by.
+// How large the balances are in the runs: the scale in which amounts are measured.
 struct BalanceSizes {
   std::array<double, kBalanceKinds>
       of{};  // torque, flow, arm torque, pressure: root mean square of the main term
@@ -55,33 +56,34 @@ struct BalanceSizes {
   double arm_low = 0, arm_high = 0, arm_speed = 0;
 };
 
-// What the columns are made from, the same for clean and noisy motion.
+// What the columns are made from. Clean and noisy motions use the same setup.
 struct ColumnSetup {
   model::ModelDescription given;
   std::vector<size_t> allowed;       // base parameters that may differ
-  std::vector<std::string> per_run;  // those of which it is asked whether they differ by run
-  bool hold_effects = false;         // numbers of effects that the model has stay as they are
+  std::vector<std::string> per_run;  // those that are tested for differing by run
+  bool hold_effects = false;         // the numbers of the model's own effects stay as they are
   std::vector<EffectVariant> variants;
-  std::vector<int> periods;  // per turn, that waves are tried at
+  std::vector<int> periods;  // numbers of periods per turn at which waves are tried
   bool only_always = false;  // no columns but those of every hypothesis
   BalanceSizes sizes;
-  std::vector<double> units;  // by column, set when it is first made: what an amount of 1 is
+  std::vector<double> units;  // by column, set when the column is first made: the unit of an amount of 1
 };
 
 BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vector<BaseSeries>& base,
                              const model::Parameters& given);
 
-// Makes all columns but those of waves. The first call fixes the units of amounts (`setup->units`); a later one, with noisier motions
-// of the same runs and `again` what the first one made, keeps them. `jobs`: threads; the result does not depend on them.
+// Makes all columns except those of waves. The first call fixes the units of the amounts (`setup->units`). A
+// later call, with noisier motions of the same runs and with the first call's table as `again`, keeps them.
+// `jobs` is the number of threads; the result does not depend on it.
 ColumnTable MakeColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                         const std::vector<BaseSeries>& base, int jobs, const ColumnTable* again = nullptr);
 
-// Those of `setup->variants` alone.
+// Makes the columns of `setup->variants` alone.
 ColumnTable MakeEffectColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                               const std::vector<BaseSeries>& base, int jobs,
                               const ColumnTable* again = nullptr);
 
-// Those of what repeats with the shaft, at `setup->periods`.
+// Makes the columns of effects that repeat with the shaft, at `setup->periods`.
 ColumnTable MakeWaveColumns(ColumnSetup* setup, const std::vector<RunMotion>& runs,
                             const std::vector<BaseSeries>& base, int jobs);
 

@@ -15,11 +15,12 @@ using VariantKind = EffectVariant::Kind;
 constexpr double kReadingPart = 0.02;
 // s: filters and buses of recorders add a few milliseconds.
 constexpr double kReadingTime = 3e-3;
-// A parameter without a grid may well be off by half.
+// A parameter without a grid may well be wrong by a half.
 constexpr double kMovedBy = 0.5;
-// What derivatives by such parameters are taken over.
+// The step over which derivatives by such parameters are taken.
 constexpr double kMovedStep = 0.05;
-// Of a balance's size: an amount that makes a change so small is as good as a derivative.
+// As a fraction of a balance's size: a difference with an amount that causes such a small change is as good
+// as a derivative.
 constexpr double kSmallChange = 1e-4;
 
 model::ModelDescription With(const model::ModelDescription& given, const model::EffectDescription& effect) {
@@ -28,7 +29,7 @@ model::ModelDescription With(const model::ModelDescription& given, const model::
   return with;
 }
 
-// An amount that is as good as none: of a time part of a sample.
+// An amount that is practically zero; for a time, part of a sample.
 double Probe(const EffectVariant& variant, const RunMotion& run) {
   return variant.is_time ? 0.25 * run.step : 1e-3;
 }
@@ -40,7 +41,7 @@ model::EffectDescription AtAmount(const EffectVariant& variant, const std::strin
   return effect;
 }
 
-// How an effect acts: on the balances alone, on states of its own, or on what is read.
+// How an effect acts: only on the balances, on states of its own, or on readings.
 enum class Way { kPlain, kWithMemory, kReading };
 
 Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
@@ -49,7 +50,7 @@ Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
     model::EffectDescription effect = variant.at;
     for (const std::string& one : variant.amounts) effect.parameters[one] = Probe(variant, run);
     const model::ModelDescription with = With(maker.setup->given, effect);
-    // A run in which the signal is not measured, or stands still, does not tell.
+    // A run in which the signal is not measured, or stands still, says nothing.
     RunMotion begin = run;
     begin.at.resize(std::min<size_t>(begin.at.size(), 64));
     for (size_t k = 0; k < begin.at.size(); ++k) {
@@ -65,14 +66,15 @@ Way WayOf(const ColumnMaker& maker, const EffectVariant& variant) {
   return way;
 }
 
-// Columns that one evaluation with derivatives makes together.
+// Columns that one evaluation with derivatives computes together.
 struct Together {
   std::vector<size_t> variants;
   std::vector<int> columns;  // of all amounts of the variants, in order
   int switches = 0;
 };
 
-// The series of an amount of an effect that has states: by a change that is small against the balances.
+// The series of an amount of an effect that has states, computed from a change that is small compared with
+// the balances.
 void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
   const EffectVariant& variant = maker->setup->variants[v];
   double amount = Probe(variant, maker->Motion(run));
@@ -90,7 +92,7 @@ void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, i
   }
 }
 
-// One evaluation of the model with all these effects, at amounts of 0.
+// Evaluates the model once with all these effects, at amounts of 0.
 void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   model::ModelDescription model = maker->setup->given;
   struct Place {
@@ -115,7 +117,8 @@ void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   const std::vector<BalanceSeries> series = DerivativesOf(model, maker->Motion(run), unknowns);
   for (size_t u = 0; u < series.size(); ++u) maker->Put(together.columns[u], run, series[u]);
   if (!series.empty()) return;
-  // Some of them change the motor's torque, which only a change of the whole shows, and hide the others.
+  // Some of the effects change the motor's torque, which only a change of the whole model shows, and they
+  // hide the others.
   size_t next = 0;
   for (const size_t v : together.variants) {
     const std::vector<std::string>& amounts = maker->setup->variants[v].amounts;
@@ -130,8 +133,8 @@ void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   }
 }
 
-// What only scales k_2 dp, by which all of the arm's balance is measured, is written as the rest of it growing: a yardstick that
-// shrinks makes every residual small.
+// An effect that only scales k_2 dp, by which the arm's whole balance is measured, is written as growth of
+// the remaining terms: a yardstick that shrinks would make every residual small.
 void KeepTheArmsYardstick(const ColumnMaker& maker, size_t run, BalanceSeries* change) {
   constexpr double kOnlyScales = 0.99;
   constexpr auto kArm = static_cast<size_t>(BalanceKind::kArm);
@@ -148,7 +151,7 @@ void KeepTheArmsYardstick(const ColumnMaker& maker, size_t run, BalanceSeries* c
   arm -= along / size * (*maker.base)[run].left[kArm];
 }
 
-// The series of an amount of an effect of a sensor, and how much its signal then errs.
+// The series of an amount of a sensor's effect, and the resulting error of the signal.
 void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int column, size_t run) {
   const EffectVariant& variant = maker->setup->variants[v];
   const RunMotion& motion = maker->Motion(run);
@@ -164,7 +167,7 @@ void PutReading(ColumnMaker* maker, size_t v, const std::string& parameter, int 
   maker->Put(column, run, change);
 }
 
-// What an amount of 1 of a sensor's effect is: the usual part of the signals' range.
+// The unit of a sensor effect's amount: the usual part of the signals' range.
 double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const std::string& parameter) {
   if (variant.is_time) return kReadingTime;
   double unit = 0;
@@ -184,7 +187,7 @@ double ReadingUnit(const ColumnMaker& maker, const EffectVariant& variant, const
   return unit;
 }
 
-// An effect as a whole, and the derivatives by the logarithms of what has no grid.
+// Adds an effect as a whole, and its derivatives by the logarithms of parameters without a grid.
 void PutWhole(ColumnMaker* maker, size_t v, const std::vector<int>& columns, size_t run) {
   const EffectVariant& variant = maker->setup->variants[v];
   const RunMotion& motion = maker->Motion(run);
@@ -200,7 +203,7 @@ void PutWhole(ColumnMaker* maker, size_t v, const std::vector<int>& columns, siz
   }
 }
 
-// What does not depend on the sensors is as it was without more noise.
+// Copies series that do not depend on the sensors: more noise does not change them.
 void CopySeries(ColumnMaker* maker, const std::vector<int>& columns, size_t run) {
   for (size_t b = 0; b < kBalanceKinds; ++b) {
     for (const int column : columns) {

@@ -14,12 +14,14 @@ namespace {
 using model::ParameterInfo;
 using model::Role;
 
-// s: from what a sample hides to what nobody calls a lag any more, in half octaves: neighbours differ by less than such balances tell.
+// s: from times shorter than a sample shows to times that are no longer called a lag, in half octaves.
+// Neighbours differ by less than such balances can distinguish.
 constexpr double kShortestTime = 5e-4, kTimeRatio = 1.4142135623730951;
 constexpr int kTimes = 13;
-// Of a sample: a shorter time does not show.
+// As a fraction of a sample: a shorter time does not show.
 constexpr double kLeastTime = 0.2;
-// Neighbours on a grid of one shape differ by no more than this factor: a term between two is met by one of them to a few per cent.
+// Neighbours on a grid of one shape differ by no more than this factor, so that one of them approximates a
+// term between them to a few per cent.
 constexpr double kGridRatio = 2;
 
 bool IsWave(const ParameterInfo& parameter) {
@@ -70,7 +72,7 @@ const model::EffectInfo* InfoOf(const std::string& id) {
   return entry == nullptr ? nullptr : &entry->info;
 }
 
-// All combinations of the parameters' grids, as descriptions.
+// All combinations of the parameters' grid points, as descriptions.
 std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::EffectInfo& info,
                                   const Sizes& sizes) {
   size_t shapes = 0;
@@ -102,7 +104,7 @@ std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::Effect
   return variants;
 }
 
-// The effect with its amounts at 0, and what kind of variant it makes.
+// Opens the effect: sets its amounts to 0 and determines its kind of variant.
 EffectVariant Open(const Change& change, const model::EffectInfo& info) {
   EffectVariant variant;
   variant.change = change;
@@ -114,7 +116,7 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
                                    [](const ParameterInfo& one) { return one.role == Role::kChannel; });
   for (const ParameterInfo& parameter : info.parameters) {
     if (IsWave(parameter)) variant.kind = EffectVariant::Kind::kWave;
-    // What one channel reads late, or what its sensor does over time, grows with the time.
+    // The error of a late channel, or of what its sensor does over time, grows with the time.
     const bool time = parameter.role == Role::kTime && (channel || change.effect.starts_with("sensor."));
     if (!IsSize(parameter) && !time) continue;
     variant.amounts.push_back(parameter.name);

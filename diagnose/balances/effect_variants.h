@@ -1,5 +1,6 @@
-// Every effect of the catalogue as the scan tries it: at grid points of its shape, with the numbers in which it is linear
-// left open. All of it follows from what the catalogue says of the parameters: no effect is known here by name.
+// Every effect of the catalogue as the scan tries it: at grid points of its shape, with the numbers in which
+// it is linear left open. Everything here follows from what the catalogue says about the parameters: this
+// code knows no effect by name.
 #pragma once
 
 #include <string>
@@ -12,29 +13,31 @@ namespace hydro::diagnose {
 struct EffectVariant {
   enum class Kind {
     kAmounts,  // linear in `amounts` from 0 on
-    kWhole,    // as it stands at the grid point, less or more of it as a whole
-    kWave,     // repeats with the shaft: amplitude and phase of each run, at one of many periods
+    kWhole,    // as it stands at the grid point, scaled up or down as a whole
+    kWave,     // repeats with the shaft: one amplitude and phase for each run, at one of many periods
   };
   std::string set;  // "pump.stribeck|0.03", "sensor.skew(p1)": the name of the change in sets of changes
-  Change change;    // the effect, with the channel it takes
+  Change change;    // the effect and the channel it takes
   model::EffectDescription at;  // at its grid point, amounts at 0
   Kind kind = Kind::kAmounts;
   std::vector<std::string> amounts;  // kAmounts: linear from 0 on
-  // kWhole: parameters that have no grid of their own; the derivatives by their logarithms come beside the whole.
+  // kWhole: parameters without a grid of their own. The derivatives by their logarithms stand beside the
+  // whole.
   std::vector<std::string> moved;
-  // Amounts that are times: of what sensors read late, linear in the time.
+  // The amounts are times: sensors read late, and the error is linear in the time.
   bool is_time = false;
-  // Parameters that are on a grid here.
+  // Parameters that this variant has on a grid.
   std::vector<std::string> shapes;
 };
 
-// Those of all `changes` that are effects. `sizes`: what grids are scaled with.
+// The variants of those `changes` that are effects. `sizes` scales the grids.
 std::vector<EffectVariant> VariantsOf(const std::vector<Change>& changes, const Sizes& sizes);
 
-// Whether the effect is gone where this number is 0, and grows with it in proportion: a size, or the amplitude of a wave.
+// Whether the effect vanishes where this number is 0 and grows in proportion to it: a size, or the amplitude
+// of a wave.
 bool IsAmount(const model::ParameterInfo& parameter);
 
-// The parameters of an effect, by its entry in the catalogue.
+// Finds a parameter of an effect by its entry in the catalogue.
 const model::ParameterInfo& ParameterOf(const std::string& effect, const std::string& parameter);
 
 }  // namespace hydro::diagnose

@@ -11,9 +11,9 @@ namespace {
 
 using model::KnownMotion;
 
-// s: the start is the median of so long.
+// s: the start is the median over this time.
 constexpr double kStartTime = 0.02;
-// Of the range of pressures: differences are taken over it.
+// The step of finite differences, as a fraction of the range of pressures.
 constexpr double kSlopeStep = 1e-4;
 
 constexpr double KnownMotion::*kPressureOf[] = {&KnownMotion::p1, &KnownMotion::p2};
@@ -44,7 +44,7 @@ class March {
   }
 
  private:
-  // The pressure that turns the pump as the motor's torque, inertia and friction leave it.
+  // Sets the pressure that must turn the pump, given the motor's torque, inertia and friction.
   void SetStart() {
     const size_t n = std::min(run_.size(), std::max<size_t>(1, static_cast<size_t>(kStartTime / run_.step)));
     std::vector<double> differences, levels;
@@ -84,7 +84,7 @@ class March {
     return rates;
   }
 
-  // One step of Heun's method: the flow of a sample is the mean of that at its ends.
+  // One step of Heun's method: the flow of a sample is the mean of the flows at its ends.
   void Advance(size_t k) {
     KnownMotion &from = run_.at[k], &to = run_.at[k + 1];
     const std::array<double, 2> before = Rates(from);
@@ -127,8 +127,9 @@ class March {
   std::array<bool, 2> latent_{}, held_{};
 };
 
-// delta at the end of a step of the trapezoidal rule, from what is known at its beginning; each side by itself, the other side's
-// part as it was: a step is short against the time in which pressures leak.
+// delta at the end of a step of the trapezoidal rule, from the values at its beginning. Each side is computed
+// alone, with the other side's part unchanged, because a step is short compared with the time in which
+// pressures leak.
 void Follow(const PressureSlopes& slopes, const std::array<double, 2>& flow, double step,
             std::array<double, 2>* delta, std::array<double, 2>* rate) {
   const std::array<double, 2> before = *delta;

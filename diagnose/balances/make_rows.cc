@@ -16,13 +16,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The arm is slower, and its balance has a second derivative.
+// The arm moves more slowly, and its balance has a second derivative.
 constexpr double kArmPart = 0.5;
-// Levels are constants: a few test functions a tile tell all.
+// Levels are constants, so a few test functions in each tile suffice.
 constexpr double kLevelTiles = 2;
-// Of the largest pressure: a held side's pressure is not quite still.
+// Motion of a held side's pressure, which is not completely still, as a fraction of the largest pressure.
 constexpr double kLevelNoise = 5e-4;
-// s, how well samples of different signals belong together; of a slow recorder a tenth of a sample.
+// s, error of the timing between samples of different signals; for a slow recorder, a tenth of a sample.
 constexpr double kClock = 2e-4, kClockPart = 0.1;
 constexpr uint64_t kNoiseSeed = 5;
 
@@ -37,7 +37,7 @@ double HighestOf(const RunMotion& run, BalanceKind balance, double tile, double 
   return level ? std::min(highest, kLevelTiles / tile) : highest;
 }
 
-// The variance that the sensors' noise gives what a balance leaves, at a frequency.
+// The variance, at a frequency, that the sensors' noise causes in what a balance leaves.
 double SensorVariance(const RunMotion& run, const model::Parameters& p, BalanceKind balance, double frequency,
                       double largest_pressure) {
   const double omega = 2 * std::numbers::pi * frequency;
@@ -64,7 +64,8 @@ double SensorVariance(const RunMotion& run, const model::Parameters& p, BalanceK
   return p1 * p1 + std::pow(kLevelNoise * largest_pressure, 2);
 }
 
-// Base values are relative to the one term of their balance that keeps its value, so its uncertainty is in all of them.
+// Base values are relative to the one term of their balance that keeps its value, so all of them share its
+// uncertainty.
 void SetPrior(const ColumnSetup& setup, const std::vector<ColumnMeaning>& meaning, Rows* rows) {
   const auto count = static_cast<Eigen::Index>(rows->columns.size());
   rows->prior = Eigen::MatrixXd::Zero(count, count);
@@ -93,7 +94,7 @@ void SetPrior(const ColumnSetup& setup, const std::vector<ColumnMeaning>& meanin
       size_t place = 0;
       while (model::BaseParameters()[place].member != of) ++place;
       const double known = model::UncertaintyOf(setup.given, place);
-      // A bulk modulus divides.
+      // A bulk modulus divides, so its sign is opposite.
       const bool opposite = (member_of(a) == &Parameters::beta) != (member_of(b) == &Parameters::beta);
       rows->prior(i, j) += (opposite ? -1 : 1) * known * known;
     }
@@ -125,7 +126,7 @@ int MainColumn(const Rows& rows, BalanceKind balance) {
   return -1;
 }
 
-// Where two columns are in a block; null: the column is 0 there.
+// The position of a column's values in a block; null: the column is 0 there.
 const double* ColumnIn(const RowBlock& block, int column) {
   const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
   if (found == block.columns.end() || *found != column) return nullptr;
@@ -134,7 +135,7 @@ const double* ColumnIn(const RowBlock& block, int column) {
 
 // Whether a column is another one times a number, in all rows.
 bool IsDouble(const Rows& rows, int column, int other) {
-  constexpr double kSame = 1e-6;  // of the squared size, what rounding and smoothing leave of a difference
+  constexpr double kSame = 1e-6;  // of the squared size: difference due to rounding and smoothing
   double aa = 0, ab = 0, bb = 0;
   for (const RowBlock& block : rows.blocks) {
     const double* a = ColumnIn(block, column);
@@ -150,7 +151,8 @@ bool IsDouble(const Rows& rows, int column, int other) {
   return aa > 0 && bb > 0 && ab * ab > (1 - kSame) * aa * bb;
 }
 
-// Takes out effects of one number that do to all balances what a base parameter does: a value is the likelier cause.
+// Removes effects of one number that change all balances exactly as a base parameter does, because a wrong
+// value is the likelier cause.
 std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
   std::vector<std::pair<std::string, std::string>> doubles;
   std::map<std::string, std::vector<int>> sets;
@@ -176,7 +178,8 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
   return doubles;
 }
 
-// Whether the model may have the effect where the runs hold the arm: a line leaves less of a side's volume to the stroke.
+// Whether the model may have the effect where the runs hold the arm: a line leaves less of a side's volume to
+// the stroke.
 bool CanStand(const model::ModelDescription& given, const EffectVariant& variant,
               const std::vector<RunMotion>& runs) {
   if (variant.kind != EffectVariant::Kind::kWhole) return true;
@@ -250,7 +253,7 @@ void ScanRuns::Project(const ColumnTable& clean, const ColumnTable& noisy, Rows*
     const auto& series = clean.series[r][kind];
     const auto& again = noisy.series[r][kind];
     const Eigen::Index count = base_[r].left[kind].size();
-    // Columns, then what is left; the second half is of the noise alone.
+    // The columns, then the residual. The second half of the matrix holds the noise alone.
     Eigen::MatrixXd all(count, 2 * static_cast<Eigen::Index>(series.size() + 1));
     const Eigen::Index half = all.cols() / 2;
     for (const auto& [column, values] : series) {

@@ -1,4 +1,4 @@
-// From runs to rows: motions, balances, masks, columns, test functions.
+// Makes rows from runs: motions, balances, masks, columns and test functions.
 #pragma once
 
 #include <optional>
@@ -19,23 +19,24 @@ struct ScanOptions {
   std::vector<Change> changes;             // effects that may be named
   std::vector<std::string> inverted = {};  // sensors whose readings have the wrong sign
   bool only_always = false;                // no columns but those of every hypothesis
-  double highest = 120;                    // Hz: what sensors of such machines pass, and what moves them
-  double tile = 0;                         // s; 0: as suits the runs' lengths
-  // Base parameters that may differ by run, of any kind ("J"). Friction, charge pressure and load always may.
+  double highest = 120;                    // Hz: such machines and their sensors are not faster
+  double tile = 0;                         // s; 0: chosen from the runs' lengths
+  // Base parameters of any kind ("J") that may differ by run. Friction, charge pressure and load always may.
   std::vector<std::string> per_run = {};
-  bool hold_effects = false;  // numbers of effects that the model has stay as they are
-  // What pressures are marched with that were not measured; none: the model as given. The balances stay those of the model as given.
+  bool hold_effects = false;  // the numbers of the model's own effects stay as they are
+  // The model with which pressures that were not measured are marched; none: the model as given. The balances
+  // always use the model as given.
   std::optional<model::ModelDescription> marched = std::nullopt;
 };
 
-// The measured runs as the scan sees them, made once.
+// The measured runs in the form that the scan uses, made once.
 class ScanRuns {
  public:
   // Throws ModelError where the given model's equations cannot be set up for a run.
   ScanRuns(const model::ModelDescription& given, const std::vector<const RunData*>& runs,
            const ScanOptions& options);
 
-  // All rows, with waves at these periods per turn.
+  // Makes all rows, including waves at these periods per turn.
   Rows MakeRows(const std::vector<int>& periods);
 
   const ColumnSetup& setup() const { return setup_; }
@@ -45,26 +46,29 @@ class ScanRuns {
   // By run and balance.
   const std::vector<std::array<std::vector<uint8_t>, kBalanceKinds>>& masks() const { return masks_; }
   double tile() const { return tile_; }
-  // Effects that these runs cannot tell from another value of the base parameter beside them: the value stands for both.
+  // Effects that these runs cannot tell from another value of the base parameter named beside them. That
+  // value stands for both.
   const std::vector<std::pair<std::string, std::string>>& doubles() const { return doubles_; }
 
-  // Whether some pressure was not measured, and is marched.
+  // Whether some pressure was not measured and is marched instead.
   bool HasLatent() const;
-  // Sets of changes (ScanColumn::set) that act in no balance but through such a pressure: of those, only that there is one can be told.
+  // Sets of changes (ScanColumn::set) that act in the balances only through such a pressure. The runs show
+  // that one of these is present, but not which.
   std::set<std::string> OilOnly() const;
 
-  // The same rows with the columns of waves at these periods alone.
+  // Makes the same rows with only the columns of waves at these periods.
   Rows MakeWaveRows(const std::vector<int>& periods) const;
 
-  // Columns of an effect at other shapes than its variant's: `rows` has them alone, those of the first shape first.
+  // Columns of an effect at other shapes than its variant's. `rows` has only these columns, those of the
+  // first shape first.
   struct OtherShapes {
     Rows rows;
     std::vector<double> units;  // of the columns (ColumnMeaning::unit)
   };
   OtherShapes MakeShapeRows(size_t variant, const std::vector<model::EffectDescription>& at) const;
-  // The variant stands at this shape from now on, with these units of its columns.
+  // From now on the variant stands at this shape, and its columns have these units.
   void SetShape(size_t variant, const model::EffectDescription& at, const std::vector<double>& units);
-  // The columns of a variant, in the order of those of MakeShapeRows.
+  // The columns of a variant, in the order that MakeShapeRows() uses.
   std::vector<int> ColumnsOf(size_t variant) const;
 
  private:

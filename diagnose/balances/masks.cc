@@ -10,17 +10,18 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The pump is at rest where its speed stays within so many of its standard deviations for so long, s. What is shorter is a reversal.
+// The pump is at rest where its speed stays within this many standard deviations of its noise for kStillTime,
+// s. A shorter rest is a reversal.
 constexpr double kStill = 3;
 constexpr double kStillTime = 0.008;
-// s: what smoothing carries over from rest.
+// s: smoothing spreads the rest this far.
 constexpr double kStillSpread = 0.003;
-// s: a valve closes later than its side's pressure has left the level.
+// s: a valve closes this much later than its side's pressure leaves the level.
 constexpr double kValveSpread = 0.004;
-// Values below this part of the range of pressures may be of a held side.
+// Values below this part of the range of pressures may belong to a held side.
 constexpr double kLowPart = 0.15;
 constexpr size_t kEnoughLow = 200;
-// s: a pump that reverses is not at rest for so long.
+// s: a pump that reverses rests for a shorter time.
 constexpr double kRestTime = 0.1;
 
 // Widens marked stretches by `by` on either side.
@@ -81,7 +82,7 @@ std::vector<uint8_t> EachStride(const std::vector<uint8_t>& mask, size_t stride)
   return thin;
 }
 
-// Where the side's valve passes oil: more flows in than noise and other terms explain.
+// Finds where the side's valve passes oil: more flows in than noise and other terms explain.
 std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low, const Eigen::VectorXd& flow,
                           double D) {
   const auto n = static_cast<size_t>(flow.size());
@@ -98,7 +99,8 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
   for (size_t i = 0; i < n; ++i) {
     if (low[i] == 0) far.push_back(lacking[i]);
   }
-  // Five robust standard deviations, and two per cent of the pump's flow, which leakage alone may be wrong by.
+  // Five robust standard deviations, and two per cent of the pump's flow, because the leakage alone may be
+  // wrong by that much.
   double limit = 0.15 * flow_size;
   if (far.size() > 50) {
     const double middle = maths::Median(far);
@@ -111,9 +113,9 @@ std::vector<uint8_t> Held(const RunMotion& run, const std::vector<uint8_t>& low,
   return mask;
 }
 
-// Stretches from, to (not included) in which the pump hardly turns, and not just because it reverses.
+// Stretches, from and to (not included), in which the pump hardly turns, and not just because it reverses.
 std::vector<std::pair<size_t, size_t>> Rests(const RunMotion& run) {
-  // Of the largest speed, and s.
+  // As a fraction of the largest speed.
   constexpr double kRest = 0.05;
   double largest = 0;
   for (const model::KnownMotion& at : run.at) largest = std::max(largest, std::abs(at.motor_speed));
@@ -127,11 +129,11 @@ std::vector<std::pair<size_t, size_t>> Rests(const RunMotion& run) {
   return rests;
 }
 
-// The rests of a machine with a valve that closes at rest, which the model lacks: in most of them the pump stands although the
-// pressures would turn it against its friction and the motor. What oil and arm then do is the valve's affair, and for a while before
-// and after.
+// The rests of a machine with a valve that closes at rest and that the model lacks. In most of these rests
+// the pump stands although the pressures would turn it against its friction and the motor. That valve then
+// determines how oil and arm behave, and also for a while before and after.
 std::vector<uint8_t> HeldAtRest(const RunMotion& run, const model::Parameters& p) {
-  // Static friction of pumps is at most some so many times that which the model has.
+  // Static friction of pumps is at most about this many times the friction in the model.
   constexpr double kStatic = 2;
   std::vector<uint8_t> held(run.size(), 0);
   if (!run.pressures || !run.arm_moves) return held;
@@ -157,7 +159,7 @@ bool BothLatent(const RunMotion& run) {
   return run.IsLatent(GridChannel::kP1) && run.IsLatent(GridChannel::kP2);
 }
 
-// Of the pressures that were measured.
+// The lower of the pressures that were measured.
 double Lower(const RunMotion& run, const model::KnownMotion& at) {
   if (run.IsLatent(GridChannel::kP1)) return at.p2;
   return run.IsLatent(GridChannel::kP2) ? at.p1 : std::min(at.p1, at.p2);

@@ -1,5 +1,6 @@
-// Columns that are part of every hypothesis, also of "nothing is missing": what no rig is free of and no model states. Without
-// them a clock that is a fraction of a sample off, or a hose that creeps, is taken for an effect.
+// Columns that are part of every hypothesis, including "nothing is missing". They describe imperfections that
+// every rig has and no model states. Without them, a clock that is wrong by a fraction of a sample, or a hose
+// that creeps, would be taken for an effect.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// s: by which channels are late beside half a sample, of anti-alias filters and of conversion.
+// s: delay of channels in addition to half a sample, due to anti-alias filters and conversion.
 constexpr double kLate = 2.5e-4;
 // s, and part of the compliance: hoses and seals creep over such times.
 constexpr double kCreepTimes[] = {0.03, 0.15};
@@ -18,12 +19,13 @@ constexpr double kCreep = 0.04;
 constexpr double kMuchCreep = 0.3;
 // Part of the arm's torque: the centre of mass lies off the line through the zero of the angle.
 constexpr double kOffCentre = 0.03;
-// Friction differs by run, and over a turn, by this part.
+// Friction differs by this part between runs, and over a turn.
 constexpr double kFrictionByRun = 0.02;
-constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump that is said to have none
-// Of the largest pressure: zeros of transducers wander by a thousandth of their range, and the charge pressure with the temperature.
+constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump given without friction
+// As a fraction of the largest pressure: the zeros of transducers drift by a thousandth of their range, and
+// the charge pressure changes with the temperature.
 constexpr double kPressureByRun = 1e-3;
-// Of the arm's torque: another load of the run.
+// As a fraction of the arm's torque: the load may differ by run.
 constexpr double kLoadByRun = 0.03;
 
 std::string OfRun(const std::string& name, size_t run) { return name + "[" + std::to_string(run) + "]"; }
@@ -40,7 +42,7 @@ Eigen::VectorXd Lagged(const Eigen::VectorXd& x, double step, double time) {
   return y;
 }
 
-// What a signal reads too much where it is late by a second, to first order.
+// The error of a signal's reading if it is late by a second, to first order.
 SignalErrors LateBySecond(const RunMotion& run, GridChannel signal) {
   double model::KnownMotion::*const rates[kGridChannels] = {
       &model::KnownMotion::motor_acceleration, &model::KnownMotion::motor_speed,
@@ -91,7 +93,7 @@ void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
   if (moves) add("late.arm_angle", {GridChannel::kArm});
 }
 
-// Oil and hoses give more the longer a pressure stands.
+// Oil and hoses yield more the longer a pressure lasts.
 void AddCreep(ColumnMaker* maker) {
   const std::optional<int> beta = maker->Named("beta");
   if (!beta) return;
@@ -113,7 +115,7 @@ void AddCreep(ColumnMaker* maker) {
   }
 }
 
-// Friction of a run, and once a turn.
+// Friction that differs by run, and friction that varies once a turn.
 void AddFriction(ColumnMaker* maker) {
   const std::optional<int> friction = maker->Named("T_s");
   if (!friction) return;
@@ -143,7 +145,7 @@ void AddFriction(ColumnMaker* maker) {
     }
   }
   if (const std::optional<int> viscous = maker->Named("b")) {
-    // Relative to the value as given; of a pump that is said to have none, in its unit.
+    // Relative to the given value; for a pump given without friction, in its unit.
     const double b = maker->given().b, speed = maker->setup->sizes.speed;
     const double part = b != 0 || !(speed > 0) ? 1 : kLeastFriction * torque / speed;
     for (size_t r = 0; r < maker->runs->size(); ++r) {
@@ -180,7 +182,7 @@ void AddPressures(ColumnMaker* maker) {
   }
 }
 
-// Where a marched pressure began: nothing is known of it but how large pressures are.
+// The initial value of a marched pressure: only the usual size of pressures is known.
 void AddStarts(ColumnMaker* maker) {
   for (size_t r = 0; r < maker->runs->size(); ++r) {
     if (maker->Motion(r).slopes.empty()) continue;

@@ -17,9 +17,10 @@ using std::numbers::sqrt2;
 
 // The Gaussian's reach, in standard deviations.
 constexpr double kReach = 4;
-// s: balances are needed this often, four times the highest frequency of their test functions.
+// s: the balances are needed at this interval, at four times the highest frequency of their test functions.
 constexpr double kBalanceStep = 2e-3;
-// The arm's direction is sure when it has moved by this part of its range since it turned, or by what noise hides.
+// The arm's direction is certain once it has moved by this part of its range since it turned, or by more than
+// noise hides.
 constexpr double kTurnPart = 1e-3;
 constexpr double kTurnNoise = 3;
 
@@ -115,7 +116,7 @@ std::vector<model::Surroundings> AroundOnGrid(const model::Stimulus& run, double
   return around;
 }
 
-// The arm's direction, remembered where it stands.
+// The arm's direction; where the arm stands, the last one.
 std::vector<double> Directions(const std::vector<double>& angle, double noise) {
   const maths::Range range = maths::RangeOf(angle);
   const double reach = std::max({kTurnPart * range.size(), kTurnNoise * noise, 1e-300});
@@ -135,7 +136,7 @@ const std::vector<double>& SmoothedOf(const GridSignal& signal, double sigma, st
   return *store;
 }
 
-// The pressures of a run whose two sides are connected, or whose pressures nobody measured.
+// The single pressure of a run whose two sides are connected, or of a run without measured pressures.
 double OnePressure(const RunMotion& run, const model::Parameters& given, size_t k) {
   double sum = 0;
   int count = 0;
@@ -147,7 +148,7 @@ double OnePressure(const RunMotion& run, const model::Parameters& given, size_t 
   return count > 0 ? sum / count : given.p_3;
 }
 
-// Those that were measured.
+// Sets the pressures that were measured.
 void SetPressures(double sigma, RunMotion* run) {
   for (const GridChannel side : {GridChannel::kP1, GridChannel::kP2}) {
     if (!run->Of(side).measured()) continue;
@@ -161,7 +162,7 @@ void SetPressures(double sigma, RunMotion* run) {
   }
 }
 
-// What acts from outside, smoothed as all signals are.
+// Sets the outside influences, smoothed as all signals are.
 void SetAround(double sigma, RunMotion* run) {
   if (run->around.empty()) return;
   std::vector<double> force;
@@ -223,7 +224,8 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   }
 }
 
-// Why the angle is believed where the speed was measured too; "": they agree. An angle is counted, a speed is somebody's filter.
+// Explains why the angle is used although the speed was measured too; "": they agree. An angle is counted,
+// whereas a recorded speed has passed through a filter.
 std::string WhyTheAngle(const RunMotion& run) {
   constexpr double kFactor = 0.02, kLateSamples = 2, kLateSeconds = 2e-3, kSurely = 5;
   const double sigma = SmoothingOf(run.step) / run.step;
@@ -263,7 +265,7 @@ double SmoothingOf(double step) { return std::max(kSmoothing, 0.7 * step); }
 std::vector<double> Derivative(const std::vector<double>& values, double step) {
   constexpr double kWeight[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
   const auto n = static_cast<std::ptrdiff_t>(values.size());
-  // Beyond the ends the series goes on as it would through the end points.
+  // Beyond its ends the series continues point-symmetrically about the end points.
   const auto value = [&](std::ptrdiff_t i) {
     if (i < 0) return 2 * values.front() - values[static_cast<size_t>(std::min(n - 1, -i))];
     if (i >= n)
@@ -303,7 +305,7 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   RunMotion motion;
   motion.name = run.name;
   motion.options.shaft = run.stimulus.shaft;
-  // What moves an arm whose force is known leaves its balance as it is.
+  // If the force that drives the arm is known, the arm's balance is that of a free arm.
   if (run.stimulus.shaft == model::Shaft::kDriven && run.measured.arm_force.measured())
     motion.options.shaft = model::Shaft::kFree;
   motion.options.bypass = run.stimulus.bypass;
@@ -345,7 +347,7 @@ RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, u
     if (!signal.measured()) continue;
     const auto every = std::max<size_t>(1, static_cast<size_t>(std::lround(signal.interval / run.step)));
     double before = signal.noise * normal(random);
-    // Noise of a signal that is slower than the grid goes in straight lines too.
+    // Noise of a signal that is slower than the grid also follows straight lines.
     for (size_t k = 0; k < signal.values.size(); k += every) {
       const double after = signal.noise * normal(random);
       for (size_t i = k; i < std::min(k + every, signal.values.size()); ++i) {
@@ -356,7 +358,7 @@ RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, u
     }
   }
   SetMotion(given, run.at.front().time, &noisy);
-  // What decides where a term acts stays as it was: only the terms themselves are compared.
+  // The quantities that decide where a term acts stay as they were: only the terms themselves are compared.
   for (size_t k = 0; k < run.size(); ++k) {
     noisy.at[k].motor_angle = run.at[k].motor_angle;
     if (run.IsLatent(GridChannel::kP1)) {

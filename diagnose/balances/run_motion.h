@@ -1,5 +1,5 @@
-// A measured run as the balances need it: every signal smoothed alike on one even grid, with its derivatives. A filter that is
-// the same for all signals leaves every linear balance as it was.
+// A measured run in the form that the balances need: every signal is smoothed alike on one even grid, with
+// its derivatives. A filter that is the same for all signals leaves every linear balance unchanged.
 #pragma once
 
 #include <array>
@@ -13,21 +13,22 @@
 
 namespace hydro::diagnose {
 
-// The signals that balances are made of.
+// The signals from which balances are made.
 enum class GridChannel { kSpeed, kAngle, kArm, kP1, kP2 };
 inline constexpr size_t kGridChannels = 5;
 
-// One signal on the grid, as measured: gaps bridged.
+// One measured signal on the grid, with its gaps bridged.
 struct GridSignal {
   std::vector<double> values;  // empty: not measured
   double noise = 0;            // standard deviation, white, at its own samples
   double interval = 0;         // s, between its own samples
-  std::vector<uint8_t> gap;    // 1: further from a sample than its own interval
+  std::vector<uint8_t> gap;    // 1: further from the nearest sample than the signal's own interval
 
   bool measured() const { return !values.empty(); }
 };
 
-// How balances move with the pressures, at one instant of a run of which one or both pressures were not measured.
+// How the balances change with the pressures at one instant, for a run in which one or both pressures were
+// not measured.
 struct PressureSlopes {
   std::array<double, 2> torque{};               // by p1, p2
   std::array<std::array<double, 2>, 2> flow{};  // of each side, by p1, p2
@@ -39,37 +40,40 @@ struct RunMotion {
   std::string name;
   model::ActuatorOptions options;  // how the shaft was held
   double step = 0;                 // s, of the grid
-  size_t stride = 1;               // every stride-th instant is enough for the balances
+  size_t stride = 1;               // the balances need only every stride-th instant
   std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
   std::vector<double> voltage;  // held from each instant to the next
-  std::vector<model::Surroundings> around;  // at each instant; empty: nothing was recorded of them
+  std::vector<model::Surroundings> around;  // at each instant; empty: none were recorded
   std::array<GridSignal, kGridChannels> signals;
-  bool pressures = false;              // both are known, and the two sides are not connected
-  bool arm_moves = false;              // and was measured
-  bool speed_known = false;            // measured, or from the angle
-  bool from_angle = false;             // the speed is the angle's derivative
+  bool pressures = false;              // both are known, and the bypass does not connect the two sides
+  bool arm_moves = false;              // and its motion was measured
+  bool speed_known = false;            // measured, or derived from the angle
+  bool from_angle = false;             // the speed is the derivative of the angle
   double speed_noise = 0;              // rad/s, of the smoothed speed
-  std::vector<model::KnownMotion> at;  // an instant each
-  // At every stride-th instant, where a pressure was not measured but follows from the flow balance (latent_pressures.h); else empty.
+  std::vector<model::KnownMotion> at;  // one entry an instant
+  // At every stride-th instant, where a pressure was not measured but follows from the flow balance
+  // (latent_pressures.h); otherwise empty.
   std::vector<PressureSlopes> slopes;
 
   size_t size() const { return at.size(); }
   const GridSignal& Of(GridChannel signal) const { return signals[static_cast<size_t>(signal)]; }
-  // Of a pressure: known, but not measured.
+  // Whether a pressure is known although it was not measured.
   bool IsLatent(GridChannel signal) const { return pressures && !Of(signal).measured(); }
 };
 
-// s, of the Gaussian that smooths all signals: it passes 120 Hz, beyond which derivatives of noisy signals say little.
+// s, width of the Gaussian that smooths all signals. It passes up to 120 Hz; beyond that, derivatives of
+// noisy signals say little.
 inline constexpr double kSmoothing = 1.5e-3;
 double SmoothingOf(double step);
 
-// `inverted`: sensors ("p1") whose readings have the wrong sign; they are turned round.
+// `inverted` names sensors ("p1") whose readings have the wrong sign. Their sign is turned back.
 RunMotion MotionOf(const RunData& run, const model::Parameters& given,
                    const std::vector<std::string>& inverted = {});
-// The same with the sensors' noise added once more, by a generator of its own: the difference shows what noise does.
+// The same motion with the sensors' noise added once more, from a separate generator. The difference shows
+// what noise does.
 RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, uint64_t seed);
-// The same with `errors`, one series of values a signal (empty: none), taken off what was measured, times `part`. The series are of
-// smoothed signals.
+// The same motion after `errors` times `part` has been subtracted from the measured signals. `errors` has one
+// series for each smoothed signal; an empty series means none.
 struct SignalErrors {
   std::array<std::vector<double>, kGridChannels> of;
 };

@@ -1,4 +1,5 @@
-// Rows of an effect at shapes beside its grid: a speed, a set pressure or a lag is where the evidence has it, not where a grid point lies.
+// Rows of an effect at shapes off its grid: the evidence decides on a speed, a set pressure or a lag, not the
+// position of a grid point.
 #include "diagnose/balances/make_rows.h"
 
 namespace hydro::diagnose {

@@ -11,18 +11,19 @@ namespace {
 
 using std::numbers::pi;
 
-// s: shorter pieces hold no test function that is smooth at both ends and slow enough to be believed.
+// s: a shorter piece holds no test function that is smooth at both ends and slow enough to be trusted.
 constexpr double kShortestPiece = 0.04;
-// s, over which a test function rises at the end of a piece: slower than what the smoothing of signals spreads.
+// s, rise time of a test function at the end of a piece: slower than the spread from the smoothing of
+// signals.
 constexpr double kRise = 0.008;
-// Of a tile, over which neighbours overlap.
+// The overlap of neighbours, as a fraction of a tile.
 constexpr double kOverlap = 0.45;
-// s: what smoothing and derivatives carry over from a masked sample.
+// s: smoothing and derivatives spread a masked sample this far.
 constexpr double kSpread = 0.004;
-// Hz: the mains, and how far its hum reaches.
+// Hz: the mains frequencies, and how far their hum reaches.
 constexpr double kMains[] = {50, 60};
 constexpr double kHum = 5;
-// Hz, of tiles of a quarter of a second: narrow where machines differ, wide where noise rules.
+// Hz, for tiles of a quarter of a second: narrow where machines differ, wide where noise dominates.
 constexpr double kBandEnds[] = {1.5, 3.5, 8, 16, 30, 50, 80};
 constexpr double kBandTile = 0.25;
 

@@ -1,5 +1,5 @@
-// Test functions: lapped local cosines, orthonormal, each within one unmasked piece of a run and smooth at its ends. What a
-// balance leaves is weighed with them, so nothing has to be integrated and gaps count for nothing.
+// Test functions: lapped local cosines, orthonormal, each within one unmasked piece of a run and smooth at
+// its ends. Balances are weighed with them, so that nothing has to be integrated and gaps do not count.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,23 +9,24 @@
 namespace hydro::diagnose {
 
 struct TestFunctions {
-  Eigen::Index first = 0;     // the sample at which they begin
-  Eigen::MatrixXd values;     // a row for each, a column for each sample from `first` on
+  Eigen::Index first = 0;     // the sample at which the functions begin
+  Eigen::MatrixXd values;     // one row for each function, one column for each sample from `first` on
   Eigen::VectorXd frequency;  // Hz
 };
 
-// Test functions end at this part of the rate of the slowest signal of a balance: samples show no more of its motion.
+// Test functions end at this fraction of the sampling rate of the balance's slowest signal. Samples show no
+// faster motion.
 inline constexpr double kOfTheRate = 0.2;
 
-// s, the length of the tiles into which pieces are cut: `duration` is that of a typical run.
+// s, the length of the tiles into which pieces are cut. `duration` is that of a typical run.
 double TileLength(double duration);
 
-// Those of all unmasked pieces of a series with samples each `step` seconds, up to `highest` Hz. `mask`: 1 where the series
-// says nothing. Frequencies within 5 Hz of the mains' are left out.
+// The test functions of all unmasked pieces of a series sampled every `step` seconds, up to `highest` Hz.
+// `mask` is 1 where the series says nothing. Frequencies within 5 Hz of the mains frequency are left out.
 std::vector<TestFunctions> TestFunctionsOf(const std::vector<uint8_t>& mask, double step, double length,
                                            double highest);
 
-// Which frequencies share a variance, by tiles of that length.
+// The band of a frequency, for tiles of that length. Frequencies of one band share a variance.
 int BandOf(double frequency, double length);
 
 }  // namespace hydro::diagnose

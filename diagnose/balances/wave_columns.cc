@@ -1,4 +1,5 @@
-// Columns of what repeats with the shaft: a carrier from the effect's own equation, times sine and cosine of the shaft's angle.
+// Columns of effects that repeat with the shaft: a carrier from the effect's own equation, times sine and
+// cosine of the shaft's angle.
 #include <cmath>
 #include <numbers>
 
@@ -9,14 +10,14 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The effect with its wave standing still at its crest.
+// The effect with its wave fixed at its crest.
 model::EffectDescription AtCrest(const EffectVariant& variant) {
   model::EffectDescription effect = variant.at;
   const model::CatalogueEntry* entry = model::FindCatalogueEntry(effect.id);
   for (const model::ParameterInfo& parameter : entry->info.parameters) {
     if (!parameter.is_number()) continue;
     const bool sine = parameter.role == model::Role::kPhase;
-    // So few periods that the angle of a whole run makes no difference.
+    // So few periods that the angle over a whole run makes no difference.
     effect.parameters[parameter.name] = sine                                      ? std::numbers::pi / 2
                                         : parameter.role == model::Role::kPeriods ? 1e-12
                                                                                   : 0;
@@ -76,7 +77,7 @@ void AddWaveColumns(ColumnMaker* maker) {
           for (Eigen::Index i = 0; i < series.size(); ++i) {
             const model::KnownMotion& at = motion.at[static_cast<size_t>(i) * motion.stride];
             const double angle = part.periods * at.motor_angle;
-            // What the Gaussian that smooths the signals leaves of this frequency.
+            // The part of this frequency that the Gaussian smoothing of the signals leaves.
             const double left = std::exp(-0.5 * std::pow(part.periods * at.motor_speed * smoothing, 2));
             series[i] *= left * (part.sine ? std::sin(angle) : std::cos(angle));
           }

@@ -10,7 +10,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A curve that no known effect draws is to be said only where no effect will do: it can draw most of them.
+// A curve without a known cause is named only where no effect will do, because a curve can imitate most
+// effects.
 constexpr double kOddsOfAClosure = 1.0 / 300;
 
 }  // namespace

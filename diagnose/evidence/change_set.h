@@ -1,4 +1,4 @@
-// Sets of changes by name, and how probable they are beforehand.
+// Sets of changes by name, and how probable they are before the runs are seen.
 #pragma once
 
 #include <map>
@@ -8,40 +8,41 @@
 
 namespace hydro::diagnose {
 
-// The names of what is switched on together with the columns of every hypothesis (ScanColumn::set), sorted.
-// Empty: nothing is missing.
+// Sorted names of changes that are switched on beside the columns of every hypothesis (ScanColumn::set). An
+// empty set means that nothing is missing.
 using ChangeSet = std::vector<std::string>;
 
-// There are some thirty effects to choose from, and models usually lack one of them.
+// About thirty effects are available, and models usually lack one of them.
 inline constexpr double kOddsOfAChange = 1.0 / 30;
 
-// "pump.stribeck" of "pump.stribeck|0.03": the change without its variant. Variants of one change exclude
-// each other.
+// Returns the change without its variant: "pump.stribeck" for "pump.stribeck|0.03". Variants of one change
+// exclude each other.
 std::string_view ChangeOf(std::string_view name);
 
-// The changes of a set, sorted, without their variants.
+// The changes of a set, sorted and without their variants.
 ChangeSet ChangesOf(const ChangeSet& set);
 
-// The effect's id: "sensor.skew" of "sensor.skew(p1)" and of "sensor.skew(p1)|0.02"; of a closure its balance's.
+// The id of the effect: "sensor.skew" for "sensor.skew(p1)" and for "sensor.skew(p1)|0.02". For a closure it
+// is the id for its balance.
 std::string EffectOf(std::string_view name);
 
-// Is it an effect, with or without a form of its own (a closure), and not merely another value of what the
-// model has?
+// Whether the change is an effect, with or without a form of its own (a closure), and not merely another
+// value of something that the model already has.
 bool IsMissingTerm(std::string_view name);
 
-// `set` with `name`, sorted.
+// Returns `set` with `name` added, sorted.
 ChangeSet WithChange(const ChangeSet& set, const std::string& name);
 
-// Does `set` have a variant of `name`, or `name` itself?
+// Whether `set` contains a variant of `name`, or `name` itself.
 bool HasChange(const ChangeSet& set, std::string_view name);
 
-// Odds of changes before the runs are seen.
+// The odds of changes before the runs are seen.
 class ChangeOdds {
  public:
-  // Among these changes. The variants of one of them share its odds.
+  // The odds among these changes. The variants of one change share its odds.
   explicit ChangeOdds(const std::vector<std::string>& names);
 
-  // ln of the odds of `set` against none.
+  // ln of the odds of `set` against the empty set.
   double LogOdds(const ChangeSet& set) const;
 
  private:

@@ -22,10 +22,9 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
-// Of the log evidence: ten to one.
+// A clear gain of the log evidence: ten to one.
 const double kClearSign = std::log(10.0);
-constexpr double kFarOff =
-    6;  // standard deviations of the noise: the lowest of thousands of samples is nearer
+constexpr double kFarOff = 6;  // standard deviations of the noise, beyond the lowest of thousands of samples
 
 using maths::Range;
 using maths::RangeOf;
@@ -80,7 +79,7 @@ class RunChecklist {
   void AddSignal(const runs::SignalName& name) {
     const MeasuredSignal& signal = run_.*name.signal;
     if (!signal.measured()) {
-      // What few machines have is not missed.
+      // Signals that few machines record are not reported as missing.
       if (name.signal != &MeasuredRun::pressure_ref && name.exported != nullptr)
         Add(State::kAbsent, name.ours, "not recorded");
       return;
@@ -109,7 +108,7 @@ class RunChecklist {
       unit = shown->to;
     }
     const ChargeFit fit = FitOf(low1, low2, 1, 1);
-    // Pressures of 4 to 20 bar that fit the model are pressures.
+    // Values of 4 to 20 bar that fit the model are pressures.
     const bool currents = !fit.good() && LooksLikeCurrents();
     const std::string in_unit = fit.good() ? "" : UnitThatFits(low1, low2);
     Add(fit.good() ? State::kGood : State::kLook, "charge pressure",
@@ -124,14 +123,14 @@ class RunChecklist {
                                 : ": is one side under load all the time, or its sensor's scale another?"));
   }
 
-  // How the lowest pressures go with the model's charge.
+  // How well the lowest pressures agree with the model's charge pressure.
   struct ChargeFit {
     bool near = false, same = false;
     bool good() const { return near && same; }
   };
 
-  // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it. The
-  // factors bring each pressure from another unit.
+  // Except for their noise, the one-way valves keep both sides above the charge pressure. Gauges of a charge
+  // of 5 bar read a fifth less than that. The factors convert each pressure from another unit.
   ChargeFit FitOf(double low1, double low2, double factor1, double factor2) const {
     const double first = low1 * factor1, second = low2 * factor2, low = std::min(first, second);
     const double noise =
@@ -140,8 +139,8 @@ class RunChecklist {
             .same = std::max(first, second) < 1.5 * low + noise};
   }
 
-  // "p1 and p2 are in mbar, not in bar": of all units that a sidecar can name, the one in which the pressures go with the charge best.
-  // "" where there is none. Needs no motion, which the balances do.
+  // "p1 and p2 are in mbar, not in bar": of all units that a sidecar can name, the one in which the pressures
+  // agree best with the charge pressure. "" where there is none. Unlike the balances, this needs no motion.
   std::string UnitThatFits(double low1, double low2) const {
     std::string best;
     double nearest = std::numeric_limits<double>::infinity();
@@ -162,7 +161,7 @@ class RunChecklist {
     return best;
   }
 
-  // The columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
+  // Looks at the columns' own numbers, before any unit: sensors with a live zero that nobody scaled.
   bool LooksLikeCurrents() const {
     for (const MeasuredSignal* signal : {&run_.p1, &run_.p2}) {
       const Range range = RangeOf(signal->values);
@@ -191,7 +190,7 @@ class RunChecklist {
 
   using IsMistake = std::function<bool(const RecordingMistake&)>;
 
-  // How much better the balances close with a mistake undone; nothing where it is not possible.
+  // How much better the balances close with a mistake undone; nothing where the mistake is not possible.
   std::optional<double> GainOf(const IsMistake& is_mistake) const {
     const std::vector<RecordingMistake> possible = PossibleMistakes(run_);
     const auto mistake = std::find_if(possible.begin(), possible.end(), is_mistake);
@@ -199,7 +198,8 @@ class RunChecklist {
     return mistakes_.Try({*mistake}).gain;
   }
 
-  // `turned`: what is said if the balances close far better with these mistakes undone; far worse, it is good.
+  // `turned` is the text for balances that close far better with these mistakes undone. If they close far
+  // worse, the sign is good.
   void AddSign(const std::string& item, const IsMistake& is_mistake, const std::string& good,
                const std::string& turned) {
     const std::optional<double> gain = GainOf(is_mistake);

@@ -1,5 +1,5 @@
-// What somebody who brings a rig of his own wants to see before any search: what is recorded, in which range, and whether signs
-// and sizes are those of the model.
+// What the owner of a new rig wants to see before any search: which signals are recorded, over which range,
+// and whether signs and sizes agree with the model.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace hydro::diagnose {
 struct ChecklistLine {
   enum class State {
     kGood,
-    kLook,    // worth a look: not as the model has it, or not enough to tell
+    kLook,    // worth a look: it differs from the model, or the data do not suffice to tell
     kAbsent,  // not recorded
   };
   State state = State::kGood;
@@ -21,12 +21,12 @@ struct ChecklistLine {
   std::string text;
 };
 
-// The lines of one run, in the order in which they are best settled: samples, ranges, then signs. A sign is judged by what turning it
-// does to the evidence of the balances.
+// The lines of one run, in the order in which they are best settled: samples, then ranges, then signs. A sign
+// is judged by how the evidence of the balances changes when the sign is turned.
 std::vector<ChecklistLine> Checklist(const model::ModelDescription& model, const runs::MeasuredRun& run,
                                      bool si = false);
 
-// "ok       samples              1301 in 1.3 s, ..."
+// Formats a line: "ok       samples              1301 in 1.3 s, ..."
 std::string Written(const ChecklistLine& line);
 
 }  // namespace hydro::diagnose

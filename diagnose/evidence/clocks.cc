@@ -18,7 +18,7 @@ namespace {
 using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal Run::*;
 
-// s and samples: a shorter delay is what the catalogue's effects of amplifier and sensors name.
+// s and samples: shorter delays have names among the catalogue's effects of amplifier and sensors.
 constexpr double kLeastDelay = 0.02, kLeastSamples = 2;
 // s: a shorter run does not fill a tile of test functions.
 constexpr double kShortest = 2;
@@ -40,14 +40,14 @@ const std::vector<std::pair<const char*, Signal>>& SignalsOf(Late late) {
 
 double LeastDelay(const Run& run) { return std::max(kLeastDelay, kLeastSamples * MedianInterval(run.time)); }
 
-// Whether command and motor are late enough to be another clock's.
+// Whether command and motor are late enough to belong to another clock.
 bool AreLate(const LateSignals& found, const Run& run) {
   const double least = LeastDelay(run);
   return found.delay[0] >= least && found.delay[1] >= least &&
          std::max(found.delay[0], found.delay[1]) < LargestDelay(run);
 }
 
-// What a signal alone, or both pressures, that are late have names for.
+// Delays that the catalogue can name: of a single signal, or of both pressures.
 const std::vector<std::vector<Late>> kOthers = {
     {Late::kCommand}, {Late::kMotor}, {Late::kPressures, Late::kP2}};
 
@@ -90,7 +90,7 @@ std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, Run* r
     }
     if (devices.score <= others) return {};
   } catch (const InputError&) {
-    return {};  // said of the run itself, where it is prepared
+    return {};  // reported for the run itself, where it is prepared
   } catch (const model::ModelError&) {
     return {};
   }
@@ -110,12 +110,12 @@ std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given, const 
 RunData PrepareAligned(const Run& recorded, AlignedRun aligned, const model::Parameters& given,
                        std::vector<ClockDelay>* delays) {
   const std::vector<ClockDelay>& found = aligned.clocks;
-  if (!found.empty()) PrepareRun(recorded, given);  // errors then name the rows of the recording
+  if (!found.empty()) PrepareRun(recorded, given);  // so that errors name the rows of the recording
   RunData data = PrepareRun(std::move(aligned.run), given);
   if (found.empty()) return data;
   double error = 0;
   for (const ClockDelay& delay : found) {
-    if (delay.signals.front().starts_with("arm")) continue;  // imposed: not compared
+    if (delay.signals.front().starts_with("arm")) continue;  // the arm's motion is imposed, not compared
     error = std::max(error, delay.error / 2);
   }
   for (SignalData& signal : data.signals) {
@@ -124,7 +124,7 @@ RunData PrepareAligned(const Run& recorded, AlignedRun aligned, const model::Par
       const double step = data.stimulus.time[i] - data.stimulus.time[i - 1];
       const double rate = (signal.values[i] - signal.values[i - 1]) / step;
       if (std::isnan(rate)) continue;
-      // Less the contribution of noise.
+      // Without the contribution of noise.
       square += rate * rate - 2 * signal.noise * signal.noise / (step * step);
       count += 1;
     }

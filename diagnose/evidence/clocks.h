@@ -1,4 +1,5 @@
-// Recordings whose channels were sampled by devices with separate clocks: how late each clock is, from the balances themselves.
+// Recordings whose channels were sampled by devices with separate clocks: the balances themselves show how
+// late each clock is.
 #pragma once
 
 #include <vector>
@@ -10,14 +11,16 @@
 
 namespace hydro::diagnose {
 
-// Estimates the clocks of a recording relative to that of p1 and p2 (a common shift cannot be seen) and shifts its signals to it
-// (RemoveDelays of runs/run_delays.h). A clock is the column of a late signal in the balances, with a wide prior: Gauss-Newton on their
-// evidence, first on rows up to 0.25 Hz, where a large delay is a small change, at last on those up to 2 Hz. All values of the model are
-// as good as free there, so that a wrong one is not taken for a delay (late_signals.h).
+// Estimates the recording's clocks relative to that of p1 and p2 (a common shift cannot be seen) and shifts
+// its signals to that clock (RemoveDelays of runs/run_delays.h). In the balances a clock is the column of a
+// late signal with a wide prior. Its delay is found by Gauss-Newton on their evidence, first on rows up to
+// 0.25 Hz, where a large delay is a small change, and finally on rows up to 2 Hz. All values of the model are
+// nearly free there, so that a wrong value is not taken for a delay (late_signals.h).
 //
-// Command and motor that are both late by 20 ms, two samples or more are another clock, where that is likelier than that one
-// signal alone, or the pressures, are late: these have names in the catalogue of effects, and smaller delays too. Otherwise the run stays
-// unchanged to the bit and the result is empty.
+// A late command and motor count as another clock when both are late by at least 20 ms and by at least two
+// samples, and when this is likelier than a delay of that one signal or of the pressures alone. The catalogue
+// of effects has names for those delays, and for smaller ones. Otherwise the run stays unchanged to the bit
+// and the result is empty.
 std::vector<ClockDelay> AlignClocks(const model::ModelDescription& given, runs::MeasuredRun* run);
 
 // A run with all signals on one clock, and the clocks that were found.
@@ -25,12 +28,13 @@ struct AlignedRun {
   runs::MeasuredRun run;
   std::vector<ClockDelay> clocks;
 };
-// Of each run, by AlignClocks(); the same for any number of jobs.
+// Aligns each run by AlignClocks(). The result is the same for any number of jobs.
 std::vector<AlignedRun> AlignedRuns(const model::ModelDescription& given,
                                     const std::vector<runs::MeasuredRun>& runs, int jobs);
 
-// PrepareRun of the aligned run; appends its clocks to `delays`. If there are any, a signal is no more certain than its timing: its
-// change within the standard error of the delays counts as noise. `recorded`: as it was before, whose rows errors name.
+// Calls PrepareRun for the aligned run and appends its clocks to `delays`. If there are any, a signal is no
+// more certain than its timing: the change within the standard error of the delays counts as noise.
+// `recorded` is the run before alignment; errors name its rows.
 RunData PrepareAligned(const runs::MeasuredRun& recorded, AlignedRun aligned, const model::Parameters& given,
                        std::vector<ClockDelay>* delays);
 

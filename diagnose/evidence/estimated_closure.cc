@@ -10,12 +10,12 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Enough for the shortest wave of a curve to have two knots a half.
+// Enough for two knots in each half of a curve's shortest wave.
 constexpr int kKnots = 33;
-// Of a curve that is multiplied by a pressure difference: it is linear in it.
+// For a curve that is multiplied by a pressure difference, in which it is linear.
 constexpr int kEnds = 2;
 
-// The curve's value at a place, from the amounts of its sines.
+// The curve's value at a place, computed from the amounts of its sines.
 double ValueAt(const std::vector<double>& amounts, double place) {
   double value = 0;
   for (size_t s = 0; s < amounts.size(); ++s)

@@ -16,13 +16,14 @@ namespace {
 using model::Parameters;
 using MeaningKind = ColumnMeaning::Kind;
 
-// No value is estimated to be less than this part of what was given: then it is another machine.
+// No value is estimated below this part of the given value: that would be another machine.
 constexpr double kLeastPart = 0.05;
-// A whole effect is moved along its shape by no more than neighbours on the grid are apart.
+// A whole effect is moved along its shape by no more than the distance between neighbours on the grid.
 constexpr double kMostMove = 2;
 constexpr double kMoveStep = 0.1;
 
-// Whether any balance of the runs has the column. One that none has may still seem to move, with what it shares a yardstick with.
+// Whether any balance of the runs has the column. A column that no balance has may still seem to move,
+// together with others that share its yardstick.
 bool Acts(const Rows& rows, int column) {
   return std::any_of(rows.blocks.begin(), rows.blocks.end(), [&](const RowBlock& block) {
     const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
@@ -31,10 +32,11 @@ bool Acts(const Rows& rows, int column) {
   });
 }
 
-// A value is shown by runs that make its interval smaller than it was by this part at least.
+// Runs show a value if they shrink its interval at least to this part of its former width.
 constexpr double kShown = 0.9;
 
-// The sum of the amounts of all columns of a base parameter that hold for all runs, of those that the runs show.
+// The sum of the amounts of all columns of a base parameter that hold for all runs, for the parameters that
+// the runs show.
 std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, const SetFit& fit) {
   std::map<size_t, double> sums;
   for (size_t i = 0; i < fit.columns.size(); ++i) {
@@ -50,7 +52,7 @@ std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, cons
   return sums;
 }
 
-// Whether any balance of the runs has a column of this value: a held arm shows nothing of its area.
+// Whether any balance of the runs has a column of this value: a held arm shows nothing about its area.
 bool IsSeen(const ScanRuns& runs, const Rows& rows, double Parameters::*member) {
   for (size_t i = 0; i < runs.meaning().size(); ++i) {
     const ColumnMeaning& meaning = runs.meaning()[i];
@@ -61,7 +63,8 @@ bool IsSeen(const ScanRuns& runs, const Rows& rows, double Parameters::*member) 
   return false;
 }
 
-// In the flows all is measured by D w: a displacement that the torques show scales the other flows that the runs show.
+// In the flows everything is measured by D w, so a displacement that the torques show scales the other flows
+// that the runs show.
 void ScaleFlows(const ScanRuns& runs, const Rows& rows, double by, Parameters* p) {
   if (IsSeen(runs, rows, &Parameters::beta)) p->beta /= by;
   for (double Parameters::*member : {&Parameters::c, &Parameters::c_E, &Parameters::c_I}) {
@@ -89,7 +92,7 @@ double Bounded(const model::ParameterInfo& info, double value) {
   return std::clamp(value, least, info.max);
 }
 
-// Numbers of effects that the model has.
+// Sets the numbers of the model's own effects.
 void SetGivenEffects(const ScanRuns& runs, const SetFit& fit, EstimatedModel* estimated) {
   std::map<size_t, double> amounts;
   for (size_t i = 0; i < fit.columns.size(); ++i) {
@@ -107,7 +110,7 @@ void SetGivenEffects(const ScanRuns& runs, const SetFit& fit, EstimatedModel* es
   }
 }
 
-// How much of the variant's series at another shape there is, relative to that at its grid point.
+// The size of the variant's series at another shape, relative to its size at the grid point.
 double SizeAt(const ScanRuns& runs, const EffectVariant& variant, const std::string& parameter,
               double value) {
   model::ModelDescription with = runs.setup().given;
@@ -134,7 +137,8 @@ void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount
   const double here = SizeAt(runs, variant, shape, at),
                there = SizeAt(runs, variant, shape, at * (1 + kMoveStep));
   if (!(here > 0) || !(there > 0) || !(amount > 0)) return;
-  // A time acts in proportion: what grows more slowly is the part of it that the balances' filters pass.
+  // A time acts in proportion. Where the series grows more slowly, the balances' filters pass only part of
+  // it.
   const bool is_time = ParameterOf(effect->id, shape).role == model::Role::kTime;
   const double slope = is_time ? 1 : std::log(there / here) / std::log(1 + kMoveStep);
   if (std::abs(slope) < kMoveStep) return;
@@ -142,7 +146,7 @@ void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount
   effect->parameters[shape] = Bounded(ParameterOf(effect->id, shape), at * move);
 }
 
-// Amplitude from all runs, phase from the first: there the shaft's angle counts.
+// Takes the amplitude from all runs and the phase from the first, where the shaft's angle counts.
 void SetWave(const EffectVariant& variant, const std::string& set,
              const std::map<int, std::pair<double, double>>& parts, model::EffectDescription* effect) {
   double sum = 0;
@@ -184,7 +188,7 @@ void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, 
   model::EffectDescription effect = variant.at;
   for (const auto& [parameter, amount] : amounts)
     effect.parameters[parameter] = Bounded(ParameterOf(effect.id, parameter), amount);
-  // What was moved is a part of the whole: of less of it, it is the more.
+  // What was moved is part of the whole, so it is relatively larger when there is less of the whole.
   for (const auto& [parameter, amount] : moved) {
     const double by = std::exp(
         std::clamp(amount / std::max(whole, 1 / kMostMove), -std::log(kMostMove), std::log(kMostMove)));

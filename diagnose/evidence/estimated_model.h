@@ -1,4 +1,5 @@
-// The model that a set of changes amounts to: the given one with the estimated values, and the effects at theirs.
+// The model that a set of changes amounts to: the given model with the estimated values and the estimated
+// effects.
 #pragma once
 
 #include <optional>
@@ -11,12 +12,12 @@ namespace hydro::diagnose {
 
 struct EstimatedModel {
   model::ModelDescription model;
-  std::vector<Change> changes;  // effects, closures among them, and values that are far off
+  std::vector<Change> changes;  // effects, including closures, and values that are far off
   std::vector<size_t> base;     // base parameters that the estimate moves, as in BaseParameters()
 };
 
-// `fit`: of `set`. A value keeps to its physical bounds. Empty where the set has a change that no model can state (oil that
-// creeps).
+// `fit` is the fit of `set`. Each value keeps to its physical bounds. The result is empty where the set has a
+// change that no model can state (oil that creeps).
 std::optional<EstimatedModel> ModelOf(const ScanRuns& runs, const Rows& rows, const ChangeSet& set,
                                       const SetFit& fit);
 

@@ -18,11 +18,11 @@ std::string WhatIsWrong(const Mistakes& mistakes) {
   return Enumerated(parts);
 }
 
-// The same to be said of several runs.
+// One remark that applies to several runs.
 struct Remark {
   const RecordingFinding* finding;
   std::string lines;
-  std::vector<Mistakes> tied;  // those that other lines mend
+  std::vector<Mistakes> tied;  // those that other sidecar lines correct
   std::vector<std::string> tied_lines;
   std::vector<std::string> names, sidecars;
 
@@ -79,7 +79,7 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
     for (const Mistakes& other : finding.tied) {
       std::string lines = SidecarLines(other, run);
       const bool same =
-          !lines.empty() && lines == next.lines;  // signs of two sensors, one by one or together
+          !lines.empty() && lines == next.lines;  // signs of two sensors, separately or together
       if (same || std::find(next.tied_lines.begin(), next.tied_lines.end(), lines) != next.tied_lines.end())
         continue;
       next.tied.push_back(other);
@@ -92,7 +92,7 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
     if (same != remarks.end() && remark.names.back() != run.name) remark.names.push_back(run.name);
     AddOnce(sidecar, &remark.sidecars);
   }
-  // What says most comes first.
+  // The remark that says most comes first.
   std::stable_sort(remarks.begin(), remarks.end(), [](const Remark& a, const Remark& b) {
     return a.finding->mistakes.size() > b.finding->mistakes.size();
   });

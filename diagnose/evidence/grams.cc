@@ -21,10 +21,10 @@ using Eigen::VectorXd;
 constexpr double kLeastSignalToNoise = 10;
 // Two rows cannot tell a variance from an amount.
 constexpr size_t kLeastRows = 3;
-// The equations themselves are true to one part in a hundred: geometry, temperature, play.
+// The equations themselves hold to one part in a hundred: geometry, temperature, play.
 constexpr double kPartNotModelled = 0.01;
-// Test functions overlap, so that two rows are one independent number. Of all constants here the answers
-// depend on this one most, and more than a half is never right.
+// Test functions overlap, so that two rows are one independent number. Of all constants here, this one
+// affects the answers most, and more than a half is never right.
 constexpr double kIndependentShare = 0.5;
 
 using RowsOfGroups = std::map<int, std::vector<Index>>;  // by band
@@ -76,7 +76,7 @@ class BlockOfGrams {
  private:
   bool IsLevel() const { return block_.main_column < 0; }
 
-  // Where a column is among those of the block, or -1.
+  // The position of a column among those of the block, or -1.
   Index Place(int column) const {
     const auto at = std::lower_bound(block_.columns.begin(), block_.columns.end(), column);
     return at != block_.columns.end() && *at == column ? at - block_.columns.begin() : -1;
@@ -90,13 +90,13 @@ class BlockOfGrams {
   bool Teaches(const std::vector<Index>& group) const {
     if (IsLevel()) return true;
     double signal = SizeOf(block_.main_column, group);
-    // An arm that hardly accelerates shows its load.
+    // An arm that hardly accelerates shows its load instead.
     if (block_.balance == BalanceKind::kArm) signal = std::max(signal, MeanSquare(block_.y, group));
     return group.size() >= kLeastRows && signal > kLeastSignalToNoise * block_.sensor_variance(group).mean();
   }
 
-  // The variance of each row of a group: that of the sensors, and what the model and the clocks leave of the
-  // largest term.
+  // The variance of each row of a group: the sensors' variance, and what the model and the clocks leave of
+  // the largest term.
   VectorXd FloorOf(const std::vector<Index>& group) const {
     VectorXd floor = block_.sensor_variance(group);
     if (IsLevel()) return floor;

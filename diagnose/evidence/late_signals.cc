@@ -21,19 +21,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Run = runs::MeasuredRun;
 
-// s: devices that are polled one after the other are a few tenths of a second apart, beforehand.
+// s: prior standard deviation. Devices that are polled one after the other are a few tenths of a second
+// apart.
 constexpr double kClocksApart = 0.3;
-// s: what one device reads at once belongs together but for its filters.
+// s: signals that one device reads at once differ only by their filters.
 constexpr double kWithinADevice = 0.05;
-// s, and part of the run: a longer delay would have to be read off too little of it.
+// s, and part of the run: too little of a run would remain for a longer delay.
 constexpr double kMostDelay = 1, kMostOfTheRun = 0.02;
-// Hz: a delay is a small change of a motion up to here, once the rows below have given most of it.
+// Hz: a delay is a small change of a motion up to this frequency, once the rows below have determined most of
+// it.
 constexpr double kHighest[] = {0.25, 0.5, 1, 2};
 // s: a tile whose first test function is at 0.125 Hz.
 constexpr double kTile = 2;
 // s: rows up to 2 Hz need no more samples.
 constexpr double kStep = 5e-3;
-// Of the values as given: a factor of two and more leaves nothing of them to lean on.
+// Relative to the given values: with a deviation of a factor of two or more, nothing relies on them.
 constexpr double kAsGoodAsFree = 1;
 constexpr int kMostSteps = 8;  // of Gauss-Newton, on rows up to one frequency
 
@@ -71,7 +73,7 @@ Run Averaged(const Run& run, size_t count) {
   return mean;
 }
 
-// What is known of these delays before the run is seen: their covariance. Command and motor are one device's.
+// The prior covariance of these delays. Command and motor belong to one device.
 MatrixXd Known(const std::vector<Late>& late) {
   const auto count = static_cast<Index>(late.size());
   const auto is_devices = [&](Index i) { return late[static_cast<size_t>(i)] <= Late::kMotor; };
@@ -85,7 +87,8 @@ MatrixXd Known(const std::vector<Late>& late) {
   return known;
 }
 
-// One step: what the rows up to `highest` say of the run with its signals moved by `moved`, to the nearest sample.
+// One step: what the rows up to `highest` say about the run with its signals moved by `moved`, to the nearest
+// sample.
 class ClockSteps {
  public:
   ClockSteps(const model::ModelDescription& given, const Run& run, std::vector<Late> late)
@@ -101,7 +104,7 @@ class ClockSteps {
       Delays best_moved = moved_;
       for (int step = 0; step < kMostSteps; ++step) {
         const LateSignals found = At(highest);
-        // Steps from sample to sample may turn in a circle.
+        // Steps from sample to sample may cycle.
         if (step == 0 || found.score > best.score) {
           best = found;
           best_moved = moved_;
@@ -121,7 +124,7 @@ class ClockSteps {
     return step_ * std::round(std::clamp(delay, -reach_, reach_) / step_);
   }
 
-  // The same stretch of the run, whatever is moved.
+  // The same stretch of the run, whatever signals are moved.
   RunData Moved() const {
     Run moved = run_;
     runs::RemoveDelays(OfSignals(moved_), &moved);
@@ -175,7 +178,8 @@ class ClockSteps {
       signals.delay.push_back(moved[k] + more[k]);
       signals.error.push_back(there ? std::sqrt(fit.covariance(place, place)) : kClocksApart);
     }
-    // The prior is about no delay, not about what was moved already; and a late signal has the odds of any change.
+    // The prior is centred on no delay, not on what has already been moved. A late signal has the odds of any
+    // change.
     const Eigen::LLT<MatrixXd> factor(known);
     const VectorXd all = moved + more;
     signals.score = fit.log_evidence - (all.dot(factor.solve(all)) - more.dot(factor.solve(more))) / 2 +

@@ -1,4 +1,5 @@
-// How late signals of a run are, by Gauss-Newton on the evidence of its balances: the inside of clocks.cc.
+// Finds how late the signals of a run are, by Gauss-Newton on the evidence of its balances. Only clocks.cc
+// uses it.
 #pragma once
 
 #include <array>
@@ -10,15 +11,15 @@
 
 namespace hydro::diagnose {
 
-// What may be late: a device with all of its signals; both pressures; p2 beyond both.
+// What may be late: a device with all of its signals, both pressures, or p2 beyond both.
 enum class Late { kCommand, kMotor, kArm, kPressures, kP2 };
 inline constexpr size_t kLates = 5;
 using Delays = std::array<double, kLates>;  // s, by Late
 
-// All signals, each with the delay of its device.
+// Lists all signals, each with the delay of its device.
 std::vector<runs::SignalDelay> OfSignals(const Delays& delays);
 
-// s: no delay of the run is looked for beyond.
+// s; the search considers no larger delay of the run.
 double LargestDelay(const runs::MeasuredRun& run);
 
 struct LateSignals {
@@ -26,8 +27,9 @@ struct LateSignals {
   std::vector<double> delay, error;  // s, in the order of what may be late; standard errors
 };
 
-// `late`: without doubles. All values of the model are as good as free, so that a wrong one is not taken for a delay. Scores of one
-// run can be compared. Throws InputError as PrepareRun does, ModelError where the model's equations cannot be set up.
+// `late` has no duplicates. All values of the model are nearly free, so that a wrong value is not taken for a
+// delay. Scores of one run can be compared with each other. Throws InputError as PrepareRun does, and
+// ModelError where the model's equations cannot be set up.
 LateSignals FindLate(const model::ModelDescription& given, const runs::MeasuredRun& run,
                      const std::vector<Late>& late);
 

@@ -32,7 +32,7 @@ Priors::Priors(const MatrixXd& covariance, std::vector<int> always)
 
 PriorOfAmounts Priors::With(const std::vector<int>& changes) const {
   if (changes.empty()) return of_always_;
-  // The inverse of a matrix in four parts, by the Schur complement of the one whose inverse is known.
+  // The inverse of a matrix in four parts, by the Schur complement of the part whose inverse is known.
   const MatrixXd across = covariance_(changes, always_);
   const MatrixXd regression = across * of_always_.precision;
   const PriorOfAmounts rest = Inverted(covariance_(changes, changes) - regression * across.transpose());
@@ -55,7 +55,7 @@ NormalEquations::NormalEquations(const std::vector<PlacedBlock>& blocks, Index a
     for (size_t i = 0; i < changes.size(); ++i) {
       const auto at = std::lower_bound(own.begin(), own.end(), changes[i]);
       if (at == own.end() || *at != changes[i]) continue;
-      // y is between the columns of every hypothesis and the others.
+      // y stands between the columns of every hypothesis and the others.
       placed.emplace_back(static_cast<Index>(block.always.size()) + 1 + (at - own.begin()),
                           always + static_cast<Index>(i));
     }

@@ -9,20 +9,21 @@
 
 namespace hydro::diagnose {
 
-// What is known of the amounts before the runs are seen: normal, mean 0.
+// What is known of the amounts before the runs are seen: a normal distribution with mean 0.
 struct PriorOfAmounts {
   Eigen::MatrixXd precision;
   double log_determinant = 0;  // of the covariance
 };
 
-// The prior of the columns of every hypothesis, from which that of any set is made without inverting it again.
+// The prior of the columns of every hypothesis. The prior of any set is made from it without a second
+// inversion.
 class Priors {
  public:
   // `always`: the columns of every hypothesis. Throws std::invalid_argument unless `covariance` is positive
   // definite.
   Priors(const Eigen::MatrixXd& covariance, std::vector<int> always);
 
-  // Of the columns `always`, then `changes`.
+  // The prior of the columns `always` followed by `changes`.
   PriorOfAmounts With(const std::vector<int>& changes) const;
 
  private:
@@ -31,34 +32,36 @@ class Priors {
   PriorOfAmounts of_always_;
 };
 
-// Where the columns of every hypothesis of a block are among those of all blocks.
+// The positions of a block's columns of every hypothesis among those of all blocks.
 struct PlacedBlock {
   const BlockGrams* grams = nullptr;
-  Eigen::Index first_group = 0;  // groups of all blocks are numbered one after the other
+  Eigen::Index first_group = 0;  // groups of all blocks are numbered consecutively
   std::vector<Eigen::Index> always;
 };
 
-// A set of changes: amounts are those of the columns of every hypothesis, then those of the changes' columns.
+// The normal equations of a set of changes. The amounts are those of the columns of every hypothesis,
+// followed by those of the changes' columns.
 class NormalEquations {
  public:
-  // `always`: how many columns are in every hypothesis. `changes`: columns, increasing. The blocks must
-  // outlive this.
+  // `always` is the number of columns in every hypothesis. `changes` lists columns, increasing. The blocks
+  // must outlive this object.
   NormalEquations(const std::vector<PlacedBlock>& blocks, Eigen::Index always,
                   const std::vector<int>& changes);
 
   Eigen::Index size() const { return size_; }
 
-  // Adds the sum over groups of weight X'X to `normal`, its lower triangle only, and of -weight X'y to `right`.
+  // Adds the sum over groups of weight X'X to the lower triangle of `normal`, and that of -weight X'y to
+  // `right`.
   void Add(const Eigen::VectorXd& weights, Eigen::MatrixXd* normal, Eigen::VectorXd* right) const;
 
   // |y + X amounts|^2 of each group, 0 or more.
   Eigen::VectorXd Squares(const Eigen::VectorXd& amounts) const;
 
-  // The same of what noise does to y + X amounts.
+  // The same for what noise does to y + X amounts.
   Eigen::VectorXd NoiseSquares(const Eigen::VectorXd& amounts) const;
 
  private:
-  // A column of the set in a block: where it is among the block's, and among the amounts.
+  // A column of the set in a block: its position among the block's columns, and among the amounts.
   using Placed = std::pair<Eigen::Index, Eigen::Index>;
 
   Eigen::VectorXd SquaresOf(Eigen::MatrixXd BlockGrams::*products, const Eigen::VectorXd& amounts) const;

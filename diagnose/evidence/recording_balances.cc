@@ -23,18 +23,19 @@ using Eigen::VectorXd;
 using Factors = SignalFactors;
 using Run = runs::MeasuredRun;
 
-// Hz: recorders, filters and delays of any kind pass this.
+// Hz: recorders, filters and delays of any kind pass this frequency.
 constexpr double kHighestOfACheck = 40;
-// Bands of frequencies up to there: a balance counts as that many numbers.
+// Number of frequency bands up to there: a balance counts as that many numbers.
 constexpr double kNumbers = 6;
-// Of a term, squared: what a model that lacks an effect or two leaves of a balance. Smaller residuals say no more about a recording.
+// Squared part of a term that a model leaves of a balance if it lacks an effect or two. Smaller residuals say
+// no more about a recording.
 constexpr double kLacking = 0.01;
-// Of what noise makes of the terms, squared: a band in which they are smaller says nothing.
+// Squared, relative to the noise in the terms: a band with smaller terms says nothing.
 constexpr double kAboveNoise = 1;
 constexpr uint64_t kSeed = 5;
-// Relative: how wrong the gain of a sensor is that is no mistake.
+// Relative: how wrong a sensor's gain may be without being a mistake.
 constexpr double kGain = 0.05;
-// Of a pressure's range: there a one-way valve may be open, and no flow balances.
+// The lowest part of a pressure's range, in which a one-way valve may be open and no flow balances.
 constexpr double kLow = 0.05;
 
 double Relative(const model::ModelDescription& model, double model::Parameters::*member) {
@@ -79,12 +80,12 @@ class BalanceMaker {
 
  private:
   using Known = double model::KnownMotion::*;
-  struct Open {  // a balance in the making
+  struct Open {  // a balance under construction
     TermBalance balance;
     std::vector<MatrixXd> series;
   };
 
-  // In the first column a term over time, in the second what noise adds to it.
+  // The first column is a term over time, the second what noise adds to it.
   template <class Value>
   MatrixXd Series(const RunMotion& motion, const RunMotion& noisy, const Value& value) const {
     MatrixXd series(count_, 2);
@@ -107,13 +108,13 @@ class BalanceMaker {
     open->series.push_back(std::move(series));
   }
 
-  // What corrects the motor's speed, which an angle's rate may stand for.
+  // The factor that corrects the motor's speed. The rate of an angle may replace the speed.
   std::function<double(const Factors&)> Speed() const {
     const bool measured = run_.motor_speed.measured();
     return [measured](const Factors& f) { return measured ? f.motor_speed : f.motor_angle; };
   }
 
-  // Several balances share a mask.
+  // Several balances share one mask.
   const std::vector<TestFunctions>& FunctionsOf(const std::vector<uint8_t>& mask) {
     const auto [known, is_new] = functions_.try_emplace(mask);
     if (!is_new) return known->second;
@@ -145,7 +146,8 @@ class BalanceMaker {
     if (!bands.empty()) all_.push_back(std::move(open.balance));
   }
 
-  // The sizes of a signal's factor in all mistakes: what is not linear in the signal has a term for each.
+  // The sizes of a signal's factor in all mistakes. A quantity that is not linear in the signal has one term
+  // for each.
   std::vector<double> SizesOf(double SignalFactors::*signal) const {
     std::vector<double> sizes = {1};
     for (const RecordingMistake& mistake : possible_) {
@@ -187,7 +189,7 @@ class BalanceMaker {
     Finish(std::move(open), MaskOf(BalanceKind::kTorque));
   }
 
-  // coefficient (p2 - p1), whichever column is which.
+  // Adds coefficient (p2 - p1), whichever column is which.
   void AddPressures(double coefficient, Open* open) const {
     Put(
         open, [](const Factors& f) { return f.exchanged ? -f.p1 : f.p1; },
@@ -195,10 +197,10 @@ class BalanceMaker {
     Put(
         open, [](const Factors& f) { return f.exchanged ? -f.p2 : f.p2; },
         Series(&model::KnownMotion::p2, coefficient), kGain);
-    --open->balance.terms.back().group;  // what counts is the difference
+    --open->balance.terms.back().group;  // only the difference counts
   }
 
-  // The command's torque for each size of the voltage's factor: it has a limit.
+  // Adds the command's torque for each size of the voltage's factor, because the torque has a limit.
   void AddCommands(Open* open) const {
     for (const double size : SizesOf(&Factors::voltage)) {
       std::vector<double> torque;
@@ -218,7 +220,7 @@ class BalanceMaker {
     }
   }
 
-  // Of one side: the other column's is exchanged.
+  // Adds the flow of one side. The other column's flow is the exchanged one.
   void AddFlow(int side, bool exchanged) {
     if (!CanForm(motion_, BalanceKind::kFlow1)) return;
     const bool first = (side == 1) != exchanged;  // the column p1
@@ -270,7 +272,7 @@ class BalanceMaker {
           &open, [](const Factors& f) { return f.arm_angle; },
           Series(&model::KnownMotion::arm_acceleration, -p_.J_a), inertia);
     } else {
-      // Nobody measured the arm: below the resonance of the oil it follows the pump.
+      // The arm was not measured. Below the resonance of the oil it follows the pump.
       Put(&open, Speed(), Series(&model::KnownMotion::motor_acceleration, -p_.J_a * p_.D / p_.c), inertia);
     }
     if (run_.arm_force.measured()) {
@@ -288,13 +290,13 @@ class BalanceMaker {
             Relative(model_, &model::Parameters::mgl));
       }
     } else {
-      // A weight that nobody stated may be any: what does not change says nothing.
+      // A weight that nobody stated may have any size, so the constant part says nothing.
       for (MatrixXd& series : open.series) series.rowwise() -= series.colwise().mean().eval();
     }
     Finish(std::move(open), MaskOf(motion_.arm_moves ? BalanceKind::kArm : BalanceKind::kTorque));
   }
 
-  // A speed against its angle.
+  // Adds the balance of a speed against its angle.
   void AddRate(runs::MeasuredSignal Run::*speed, runs::MeasuredSignal Run::*angle,
                double SignalFactors::*of_speed, double SignalFactors::*of_angle) {
     if (!(run_.*speed).measured() || !(run_.*angle).measured()) return;
@@ -345,7 +347,7 @@ void AddFactors(const RecordingMistake& mistake, SignalFactors* factors) {
   for (const auto& [signal, factor] : mistake.factors) {
     for (const auto& [of, member] : kMembers) {
       if (of != signal) continue;
-      // After an exchange the name means the other column.
+      // After an exchange, the name refers to the other column.
       const bool other = factors->exchanged && (signal == &Run::p1 || signal == &Run::p2);
       const auto column = !other ? member : signal == &Run::p1 ? &SignalFactors::p2 : &SignalFactors::p1;
       factors->*column *= factor;
@@ -360,18 +362,19 @@ RecordingBalances::RecordingBalances(const model::ModelDescription& model, const
 
 namespace {
 
-// A balance with its terms corrected: what it leaves at the likeliest values.
+// A balance with corrected terms: what it leaves at the likeliest values.
 struct Closed {
   double left = 0;     // mean over bands of the logarithm of the squared share that is left
   double penalty = 0;  // of the values
 };
 
-// Products of corrected terms in a band: of their sum, and of each group by itself, without and of noise.
+// Products of the corrected terms in a band: of their sum, and of each group by itself, without noise and for
+// noise.
 struct Band {
   MatrixXd sum, parts, noise_sum, noise_parts;
 
-  // The share of the terms that is left, a ratio of squares, and what is never known better. More than all of them is left by terms
-  // that have nothing to do with each other, which is no worse than nothing.
+  // The share of the terms that is left, a ratio of squares, including what is never known better. Terms that
+  // have nothing to do with each other leave more than all of them, which counts as no worse than nothing.
   double Left(const VectorXd& x) const {
     const double noise = x.dot(noise_parts * x), size = x.dot(parts * x) - noise;
     if (!(size > kAboveNoise * noise)) return 1;
@@ -415,7 +418,8 @@ Closed Close(const TermBalance& balance, const VectorXd& f) {
     closed.penalty = 0.5 * precision.dot((x - given).cwiseAbs2());
     return closed;
   };
-  // Amounts and variances in turn. Amounts that only make all terms small gain nothing: what is left is measured by the terms.
+  // Iterates between amounts and variances. Amounts that only make all terms small gain nothing, because the
+  // remainder is measured by the terms.
   VectorXd x = given;
   for (int turn = 0; turn < 8; ++turn) {
     MatrixXd normal = precision.asDiagonal();

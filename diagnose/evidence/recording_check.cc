@@ -15,20 +15,20 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
-// Of the log evidence, beyond the odds: ten to one, after a thousand to one.
+// A clear gain of the log evidence, in addition to the odds: ten to one, after a thousand to one.
 const double kClear = std::log(10.0);
-// Two sets this near to each other explain a run alike.
+// Two sets closer to each other than this explain a run alike.
 constexpr double kAlikeMistakes = 2;
-// A share of a balance's terms, squared: a model that leaves more of every balance predicts nothing.
+// A squared share of a balance's terms: a model that leaves more of every balance predicts nothing.
 constexpr double kPredictsNothing = 0.5;
-constexpr size_t kOfEachRun = 3;  // sets that the other runs are asked about
+constexpr size_t kOfEachRun = 3;  // sets of each run that are tried on the other runs
 
 // Factors without a unit, and the step between those that are tried.
 constexpr double kLeastFactor = 2, kMostFactor = 1000, kFactorStep = 1.2;
 const std::vector<SignalOfRun> kQuantities[] = {
     {&Run::p1, &Run::p2}, {&Run::motor_speed}, {&Run::motor_angle}, {&Run::arm_angle}, {&Run::arm_speed}};
 
-// How many mistakes a set has in the run that can have most of them.
+// The number of the set's mistakes in the run that can have most of them.
 size_t LargestOf(const std::vector<std::vector<MistakeTrial>>& trials, size_t set) {
   size_t most = 0;
   for (const std::vector<MistakeTrial>& run : trials) most = std::max(most, run[set].mistakes.size());
@@ -41,7 +41,7 @@ bool Includes(const Mistakes& all, const Mistakes& some) {
   });
 }
 
-// What all runs say of the same sets of mistakes.
+// What all runs say about the same sets of mistakes.
 class Recorder {
  public:
   Recorder(const model::ModelDescription& model, const std::vector<Run>& runs, int jobs,
@@ -73,7 +73,8 @@ class Recorder {
     for (size_t r = 0; r < runs_.size(); ++r) {
       const MistakeTrial* own = own_[r].empty() ? nullptr : &own_[r].front();
       const MistakeTrial* shared = common ? &trials_[r][*common] : nullptr;
-      // The recorder has paid for its mistake; one of its own a run has to pay for.
+      // The recorder's mistake already has its odds counted; a mistake of a single run still has to overcome
+      // its own.
       const bool follows = shared != nullptr && !shared->mistakes.empty() && shared->gain > -kAlikeMistakes &&
                            own->Merit() <= shared->gain;
       if (follows) {
@@ -85,7 +86,7 @@ class Recorder {
     return findings;
   }
 
-  // A factor of one quantity in all runs that is no known unit's.
+  // A factor of one quantity in all runs that matches no known unit.
   std::vector<RecordingFinding> UnknownFactors(int jobs) const {
     std::vector<Mistakes> factors;
     for (const std::vector<SignalOfRun>& signals : kQuantities) {
@@ -124,8 +125,8 @@ class Recorder {
       sets_.push_back(mistakes);
   }
 
-  // The set of mistakes that all runs together, and one at least by itself, speak for. One recorder makes one mistake: the odds
-  // count once, and runs that do not have it say nothing.
+  // The set of mistakes that all runs together support, and at least one by itself. One recorder makes one
+  // mistake: its odds count once, and runs that do not have the mistake say nothing.
   static std::optional<size_t> ClearBest(const std::vector<std::vector<MistakeTrial>>& trials) {
     std::optional<size_t> best;
     double most = kClear;
@@ -142,7 +143,7 @@ class Recorder {
     return best;
   }
 
-  // Sets that explain all runs as well as this one, one more mistake allowed.
+  // Sets that explain all runs as well as this one, with at most one more mistake.
   std::vector<Mistakes> TiedWith(size_t run, size_t set) const {
     std::vector<Mistakes> tied;
     for (size_t s = 0; s < sets_.size(); ++s) {

@@ -1,5 +1,5 @@
-// Looks for mistakes in recordings before any physics: signs, exchanged channels, units and the shaft. A mistake is a change of the
-// recording, and the evidence of the balances judges it: nothing is simulated.
+// Looks for mistakes in recordings before any physics: signs, exchanged channels, units and the shaft. Each
+// mistake is a change of the recording, and the evidence of the balances judges it. Nothing is simulated.
 #pragma once
 
 #include <functional>
@@ -12,23 +12,25 @@
 
 namespace hydro::diagnose {
 
-// What explains a run far better than its sidecar.
+// Mistakes that explain a run far better than its sidecar does.
 struct RecordingFinding {
   size_t run = 0;
   std::vector<RecordingMistake> mistakes;
   double gain = 0;  // of the log evidence
-  // Others that explain the runs as well: no more mistakes than these, or one more.
+  // Other sets that explain the runs as well, with no more mistakes than these or with one more.
   std::vector<std::vector<RecordingMistake>> tied = {};
 };
 
-// One finding at most for each run, in their order. `unpredicted`: runs of which nothing is found, and of which the model as given
-// closes no balance at all, so that nothing can be said. The results do not depend on `jobs`. What `time_is_up` cuts off is not found.
+// Returns at most one finding for each run, in the order of the runs. `unpredicted` receives the runs without
+// a finding for which the given model closes no balance at all, so that nothing can be said about them. The
+// results do not depend on `jobs`. Mistakes that `time_is_up` cuts off are not found.
 std::vector<RecordingFinding> CheckRecordings(
     const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs, int jobs,
     const std::function<bool()>& time_is_up = [] { return false; },
     std::vector<size_t>* unpredicted = nullptr);
 
-// One line for each kind of finding: what is wrong, in which runs, and the sidecars' lines that mend it.
+// One line for each kind of finding: what is wrong, in which runs, and which lines of the sidecars correct
+// it.
 std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& findings,
                                         const std::vector<runs::MeasuredRun>& runs);
 

@@ -12,19 +12,20 @@ namespace hydro::diagnose {
 
 namespace {
 
-// What is between two neighbours on a grid is halved so often: to a thirtieth, which no balance shows.
+// The distance between two neighbours on a grid is halved this often: to a thirtieth, which no balance shows.
 constexpr int kHalvings = 3;
-// Steps of Gauss-Newton of a whole effect, and the change of its numbers that is none.
+// The number of Gauss-Newton steps for a whole effect, and the change of its numbers that counts as none.
 constexpr int kMostStepsOfAWhole = 4;
 constexpr double kSettledShape = 0.01;
-// Where a grid has one point only, and as far as a whole may go from its grid point: neighbours are no further apart.
+// The range where a grid has only one point, and the limit of a whole effect's move from its grid point:
+// neighbours are no further apart.
 constexpr double kMostShapeMove = 2;
 
 bool IsOf(const ScanColumn& column, const ChangeSet& set) {
   return std::find(set.begin(), set.end(), column.set) != set.end();
 }
 
-// The columns of every hypothesis and of the set, those of the set in every block.
+// Keeps the columns of every hypothesis and of the set. The set's columns are in every block.
 RowBlock OnlyOf(const RowBlock& block, const std::vector<ScanColumn>& columns, const ChangeSet& set) {
   RowBlock only = block;
   only.columns.clear();
@@ -60,7 +61,7 @@ const RowBlock* SameBlock(const Rows& rows, const RowBlock& block) {
   return found == rows.blocks.end() ? nullptr : &*found;
 }
 
-// Puts a column of `from`, which has it, into the block.
+// Copies a column of `from`, which has it, into the block.
 void SetColumn(const RowBlock& from, int column, RowBlock* block) {
   const auto place = [&](const RowBlock& of) {
     return std::lower_bound(of.columns.begin(), of.columns.end(), column) - of.columns.begin();
@@ -81,10 +82,10 @@ void SetColumn(const RowBlock& from, int column, RowBlock* block) {
   block->noise_X.col(to) = from.noise_X.col(own);
 }
 
-// What stands for the `which`-th of several shapes in sets of changes.
+// The name of the `which`-th of several shapes in sets of changes.
 std::string NameOf(size_t which) { return "shape|" + std::to_string(which); }
 
-// `rows` and the columns of all these shapes, each a change of its own.
+// Combines `rows` and the columns of all these shapes. Each shape is a change of its own.
 Rows WithShapes(const Rows& rows, const Rows& shapes, size_t columns_of_one) {
   Rows with = rows;
   const auto before = static_cast<Eigen::Index>(rows.columns.size()),
@@ -111,7 +112,7 @@ Rows WithShapes(const Rows& rows, const Rows& shapes, size_t columns_of_one) {
   return with;
 }
 
-// ln of how far the next grid point of this parameter is.
+// ln of the distance to the next grid point of this parameter.
 double Apart(const std::vector<EffectVariant>& variants, const EffectVariant& variant,
              const std::string& parameter) {
   const double at = std::log(variant.at.parameters.at(parameter));
@@ -174,7 +175,7 @@ void RefinedShapes::Keep(Rows* rows) {
   before_.clear();
 }
 
-// An effect of which more or less may be there: at each of some shapes the evidence is that with the likeliest amounts.
+// For an effect with an amount: at each of some shapes, computes the evidence with the likeliest amounts.
 void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
   const EffectVariant start = runs_->setup().variants[variant];
   const size_t columns = runs_->ColumnsOf(variant).size();
@@ -213,7 +214,8 @@ void RefinedShapes::MoveAmounts(size_t variant, const ChangeSet& set) {
   TakeIf(variant, at, [&] { return SetEvidence(rows_).Shows(set); });
 }
 
-// An effect that is there or not: Gauss-Newton from its derivatives, until the whole of it is what the balances lack.
+// For an effect that is either present or absent: Gauss-Newton from its derivatives, until the whole effect
+// equals what the balances lack.
 void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
   const EffectVariant start = runs_->setup().variants[variant];
   SetFit fit = SetEvidence(rows_).Fit(set);
@@ -235,7 +237,8 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
       }
     }
     if (!(change > kSettledShape)) return;
-    // A step may be too far, as of a resonance, whose phase turns within a few per cent, or of a limit that the runs then never reach.
+    // A step may be too large, for example for a resonance, whose phase turns within a few per cent, or for a
+    // limit that the runs then never reach.
     const bool taken = TakeIf(variant, at, [&] {
       const SetEvidence moved(rows_);
       if (!moved.Shows(set)) return false;

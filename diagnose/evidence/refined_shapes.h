@@ -1,4 +1,5 @@
-// Shapes of a set's effects where the evidence has them: speeds, set pressures and lags begin at a grid point and end between two.
+// Moves the shapes of a set's effects to where the evidence has them: speeds, set pressures and lags begin at
+// a grid point and end between two.
 #pragma once
 
 #include <functional>
@@ -9,22 +10,24 @@
 
 namespace hydro::diagnose {
 
-// Moves the shapes of the effects of `set` to where the evidence of the set is the largest, between the neighbours of their grid points; their
-// columns are made again there. While this exists the variants of `runs` stand at these shapes, for what is made of the set's amounts.
-// Periods of a turn are whole numbers and stay.
+// Moves the shapes of the effects of `set` to where the set's evidence is largest, between the neighbours of
+// their grid points, and makes their columns again there. While this object exists, the variants of `runs`
+// stand at these shapes, so that models made from the set's amounts use them. Periods of a turn are whole
+// numbers and stay.
 class RefinedShapes {
  public:
-  // `rows`: as `runs` made them. Nothing moves where no effect of the set has a shape.
+  // `rows` are those that `runs` made. Nothing moves where no effect of the set has a shape.
   RefinedShapes(ScanRuns* runs, const Rows& rows, const ChangeSet& set);
   ~RefinedShapes();
   RefinedShapes(const RefinedShapes&) = delete;
   RefinedShapes& operator=(const RefinedShapes&) = delete;
 
-  // Whether there is a shape at all.
+  // Whether any effect of the set has a shape.
   bool any() const { return !before_.empty(); }
-  // Those of every hypothesis and of the set alone, numbered as before.
+  // The rows with only the columns of every hypothesis and of the set, numbered as before.
   const Rows& rows() const { return rows_; }
-  // Leaves the variants at these shapes for good, and puts their columns into `rows`, from which this was made.
+  // Leaves the variants at these shapes for good, and puts their columns into `rows`, from which this object
+  // was made.
   void Keep(Rows* rows);
 
  private:
@@ -34,14 +37,15 @@ class RefinedShapes {
     std::vector<double> units;
   };
 
-  // Where the variant stands now.
+  // The shape at which the variant stands now.
   Shape ShapeOf(size_t variant) const;
   void Restore(const Shape& shape);
   void MoveAmounts(size_t variant, const ChangeSet& set);
   void MoveWhole(size_t variant, const ChangeSet& set);
-  // Takes that shape where the rows then are good; else leaves all as it was. Returns whether it did.
+  // Takes the shape if the rows then pass `good`; otherwise leaves everything as it was. Returns whether it
+  // took the shape.
   bool TakeIf(size_t variant, const model::EffectDescription& at, const std::function<bool()>& good);
-  // Puts the columns of that shape in the place of those of the variant.
+  // Replaces the variant's columns by those of the shape.
   void Take(size_t variant, const ScanRuns::OtherShapes& shape, const model::EffectDescription& at);
 
   ScanRuns* runs_;

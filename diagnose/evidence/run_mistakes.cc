@@ -17,11 +17,12 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
-// Sets of which each is tried with one more mistake.
+// The number of sets that are tried with one more mistake.
 constexpr size_t kExtended = 16;
 // s between samples: no recorder of such a machine is faster.
 constexpr double kFastest = 5e-6;
-// Whether the motor surely moves: balances of a run at rest are those of noise, of which any unit explains some.
+// Whether the motor certainly moves. The balances of a run at rest consist of noise, and any unit explains
+// some of it.
 bool Moves(const Run& run) {
   for (const SignalOfRun signal : {&Run::motor_speed, &Run::motor_angle}) {
     const runs::MeasuredSignal& measured = run.*signal;
@@ -37,7 +38,7 @@ bool IsPossible(const Mistakes& mistakes, const RecordingMistake& one) {
                       [&](const RecordingMistake& other) { return other == one || Exclude(other, one); });
 }
 
-// Whether other factors of the signals do not mend it.
+// Whether other factors of the signals do not correct it.
 bool NeedsAnotherReading(const RecordingMistake& one) {
   return one.time_factor != 1 || one.shaft.has_value() || one.unsigned_signal.has_value();
 }
@@ -64,7 +65,8 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
   as_recorded_ = given == nullptr ? 0 : given->Evidence({});
 }
 
-// The balances with the times, the shaft and the signs of these mistakes; null: no samples of such a machine are so far apart.
+// The balances with the times, the shaft and the signs of these mistakes; null: no recording of such a
+// machine has samples so far apart.
 const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
   std::tuple<double, model::Shaft, std::string> reading = {1, run_.shaft, ""};
   for (const RecordingMistake& one : mistakes) {
@@ -110,7 +112,7 @@ std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_
       if (time_is_up()) return all;
       for (const RecordingMistake& more : possible_) {
         if (!IsPossible(one.mistakes, more)) continue;
-        Mistakes set;  // in the order of what is possible, so that each comes once
+        Mistakes set;  // in the order of the possible mistakes, so that each set occurs once
         for (const RecordingMistake& other : possible_) {
           const bool in = other == more ||
                           std::find(one.mistakes.begin(), one.mistakes.end(), other) != one.mistakes.end();
@@ -126,7 +128,7 @@ std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_
     std::stable_sort(next.begin(), next.end(),
                      [](const MistakeTrial& a, const MistakeTrial& b) { return a.gain > b.gain; });
     all.insert(all.end(), next.begin(), next.end());
-    // Two mistakes may hide each other; a third has to bring something.
+    // Two mistakes may hide each other; a third has to add to the evidence.
     const bool brings = !next.empty() && next.front().Merit() > best;
     if (brings) best = next.front().Merit();
     const bool first = from.size() == 1 && from.front().mistakes.empty();

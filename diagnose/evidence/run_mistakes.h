@@ -13,30 +13,31 @@
 
 namespace hydro::diagnose {
 
-// The odds against one mistake, a logarithm: of a thousand lines of sidecars one is wrong.
+// The logarithm of the odds against one mistake: about one sidecar line in a thousand is wrong.
 double OddsAgainstMistake();
 
 struct MistakeTrial {
   std::vector<RecordingMistake> mistakes;
   double gain = 0;  // of the log evidence
 
-  // With the odds of that many mistakes.
+  // The gain less the odds against that many mistakes.
   double Merit() const { return gain - OddsAgainstMistake() * static_cast<double>(mistakes.size()); }
 };
 
 class RunMistakes {
  public:
-  // `model` must outlive this.
+  // `model` must outlive this object.
   RunMistakes(const model::ModelDescription& model, runs::MeasuredRun run);
 
-  // The sets that gain most, best first: single mistakes, and the best sets with one more. `time_is_up` ends the search.
+  // The sets that gain most, best first: single mistakes, and the best sets extended by one mistake.
+  // `time_is_up` ends the search.
   std::vector<MistakeTrial> Search(const std::function<bool()>& time_is_up) const;
-  // These mistakes, as far as this run can have them.
+  // Tries these mistakes, leaving out those that this run cannot have.
   MistakeTrial Try(const std::vector<RecordingMistake>& mistakes) const;
-  // What the log evidence gains by these corrections, which need be none of the known ones.
+  // What the log evidence gains by these corrections, which need not be among the known mistakes.
   double Gain(const std::vector<RecordingMistake>& mistakes) const;
-  // The share of its terms that the balance of the run as recorded leaves open that closes best; 0: none is formed, 1: nobody could
-  // form one from samples so far apart.
+  // The share of its terms that the best-closing balance of the run as recorded leaves open. 0: no balance is
+  // formed. 1: the samples are too far apart to form one.
   double LeastLeftOpen() const;
 
  private:
@@ -46,8 +47,8 @@ class RunMistakes {
   runs::MeasuredRun run_;
   std::vector<RecordingMistake> possible_;
   double as_recorded_ = 0;
-  bool moves_ = false;  // the motor: nothing is said of a run at rest
-  // By the times' factor, the shaft, and the signals that are read as signed numbers.
+  bool moves_ = false;  // the motor moves: nothing is said about a run at rest
+  // By the factor of the times, the shaft, and the signals that are read as signed numbers.
   mutable std::map<std::tuple<double, model::Shaft, std::string>, RecordingBalances> readings_;
 };
 

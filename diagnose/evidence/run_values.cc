@@ -12,7 +12,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// What the value's own columns are worth in its unit: those of all runs, and of one; below 0: of all alone.
+// The amounts in the value's own columns, converted to its unit: for all runs and one run together; with
+// `run` below 0, for all runs alone.
 Eigen::VectorXd PartsOf(const ScanRuns& runs, const SetFit& fit, double given, int run) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(fit.amounts.size());
   for (Eigen::Index i = 0; i < parts.size(); ++i) {

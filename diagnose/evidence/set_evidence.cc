@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kMostFromNothing = 25, kMostFromNull = 8;  // times that amounts and variances take turns
+constexpr int kMostFromNothing = 25, kMostFromNull = 8;  // iterations between amounts and variances
 
 }  // namespace
 
@@ -76,7 +76,8 @@ void SetEvidence::SolveNull() {
   const NormalEquations none(blocks_, static_cast<Index>(always_.size()), {});
   const VectorXd whole = none.Squares(VectorXd::Zero(none.size()));
   const VectorXd start = (floor_.array() + whole.array() / numbers_.array().max(1.0)).inverse();
-  // First without the Jacobian: only then is it known which part of the residuals is not the sensors' noise.
+  // The first solution has no Jacobian: only then is it known which part of the residuals is not the sensors'
+  // noise.
   Solution null = Solve({}, start, kMostFromNothing);
   VectorXd noise = none.NoiseSquares(null.amounts);
   if (!noise.size() || noise.maxCoeff() <= 0) noise = numbers_.cwiseProduct(floor_);

@@ -1,10 +1,10 @@
 // The log evidence of any set of changes, from the balances' rows: nothing is simulated.
 //
-// Each group g of rows (balance, run, band of frequencies) has a variance of its own, integrated over an
-// inverse-gamma prior (a, b_g = a times the variance that is known beforehand, f_g):
+// Each group g of rows (balance, run, band of frequencies) has a variance of its own. It is integrated over
+// an inverse-gamma prior (a, b_g), where b_g = a f_g and f_g is the variance that is known beforehand:
 //   log E = -sum_g (a + n_g / 2) ln((b_g + RSS_g / 2) / f_g) - amounts' P^-1 amounts / 2 - ln|P A| / 2
-// at the amounts and the variances that agree with each other, with corrections: noise in the columns, a
-// Jacobian where a disturbance moves the shaft, and amounts that cannot be negative.
+// This holds at the amounts and variances that agree with each other. Corrections are made for noise in the
+// columns, for the Jacobian where a disturbance moves the shaft, and for amounts that cannot be negative.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +24,8 @@ struct GroupFit {
   size_t run = 0;
   int band = 0;
   double numbers = 0;          // n: independent numbers
-  double floor = 0;            // f: variance of a number that is known beforehand
-  double weight = 0;           // 1 / variance, at which the amounts are the best
+  double floor = 0;            // f: variance of one number that is known beforehand
+  double weight = 0;           // 1 / variance for which the amounts are the best
   double squares = 0;          // of the residuals
   double counted_squares = 0;  // RSS: the same, corrected for the noise in the columns
 };
@@ -36,26 +36,27 @@ struct SetFit {
   Eigen::VectorXd amounts;
   Eigen::MatrixXd covariance;  // of the amounts
   std::vector<GroupFit> groups;
-  std::vector<double> by_run;  // log likelihood of each run: its groups' part of log E
+  std::vector<double> by_run;  // log likelihood of each run: the part of log E from its groups
 };
 
 class SetEvidence {
  public:
-  // Of all runs. Throws as GramsOf().
+  // Uses all runs. Throws as GramsOf() does.
   explicit SetEvidence(const Rows& rows);
 
-  // As if these runs were not there.
+  // The same evidence without these runs.
   SetEvidence Without(const std::vector<size_t>& runs) const;
 
-  // Changes that the runs can show: at least one of their columns is not zero. Sorted.
+  // Sorted names of the changes that the runs can show: at least one of their columns is not zero.
   const std::vector<std::string>& names() const { return names_; }
-  // Whether all of the set are among names(): at another shape, or without a run, an effect may act nowhere.
+  // Whether all changes of the set are among names(). At another shape, or without a run, an effect may act
+  // nowhere.
   bool Shows(const ChangeSet& set) const;
 
-  // How many runs there are; those left out count.
+  // The number of runs, including those left out.
   size_t runs() const { return grams_->runs; }
 
-  // Throws std::out_of_range where a name is not among names().
+  // The log evidence. Throws std::out_of_range where a name is not among names().
   double Log(const ChangeSet& set) const;
   SetFit Fit(const ChangeSet& set) const;
 
@@ -69,7 +70,7 @@ class SetEvidence {
 
   std::vector<int> ColumnsOf(const ChangeSet& set) const;
   Solution SolveFor(const ChangeSet& set) const;
-  // Amounts and variances in turn, from `weights` on, `most` times at most.
+  // Iterates between amounts and variances, starting from `weights`, at most `most` times.
   Solution Solve(const std::vector<int>& changes, Eigen::VectorXd weights, int most) const;
   void AddJacobian(const std::vector<Eigen::Index>& inertia, const Eigen::VectorXd& amounts,
                    Eigen::MatrixXd* normal, Eigen::VectorXd* right) const;
@@ -85,9 +86,9 @@ class SetEvidence {
   std::vector<std::string> names_;
   std::vector<std::vector<int>> columns_of_names_;
   Eigen::VectorXd numbers_, floor_, inertia_share_;  // by group
-  // Of the fit without changes.
+  // From the fit without changes.
   Eigen::VectorXd start_weights_, null_noise_, null_squares_;
-  double inertia_numbers_ = 0;  // how many numbers the Jacobian of the torque balance counts
+  double inertia_numbers_ = 0;  // how many numbers count in the Jacobian of the torque balance
 };
 
 }  // namespace hydro::diagnose

@@ -11,13 +11,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-// How wide the search is. Right answers were among the first three singles or pairs on nearly all rigs.
+// The width of the search. Right answers were among the first three singles or pairs on nearly all rigs.
 constexpr size_t kWithAllPartners = 3;  // singles
 constexpr size_t kSinglesToPair = 8, kPartnersOfSingles = 20;
 constexpr size_t kPairsToExtend = 6, kLargerToExtend = 2, kPartnersOfLarger = 25;
-// Explanations of more changes are not worth saying.
+// Explanations with more changes are not worth reporting.
 constexpr size_t kMostOfASet = 6;
-// Where no pair comes near the best single, no third change is worth a try.
+// Where no pair comes this close to the best single, no third change is worth trying.
 constexpr double kWithinReach = 2;
 
 class SetSearch {
@@ -28,7 +28,7 @@ class SetSearch {
     const std::vector<std::string>& names = scores_.evidence().names();
     Extend({ChangeSet()}, names);
     for (size_t changes = 1; changes < kMostOfASet; ++changes) {
-      // Pairs are searched from every single; from then on each further change must have been a gain.
+      // Pairs are searched from every single. From then on each further change must have been a gain.
       if (changes > 2 && Best(changes) <= Best(changes - 1)) return;
       if (changes == 1)
         Pair(names);
@@ -103,7 +103,7 @@ void SetScores::Try(const std::vector<ChangeSet>& sets) {
   std::vector<double> scores(work.size());
   ParallelFor(work.size(), jobs_,
               [&](size_t i) { scores[i] = evidence_.Log(work[i]) + odds_.LogOdds(work[i]); });
-  // What cannot be computed is not probable.
+  // A set that cannot be computed is not probable.
   for (size_t i = 0; i < work.size(); ++i)
     scores_[work[i]] = std::isnan(scores[i]) ? -std::numeric_limits<double>::infinity() : scores[i];
 }

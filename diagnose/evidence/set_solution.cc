@@ -12,13 +12,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Variances have settled when none moves by more than a hundredth: what the log evidence still moves by is common to
-// sets, which all start from the same variances.
+// Variances have settled when none changes by more than a hundredth. The remaining change of the log evidence
+// is common to all sets, which all start from the same variances.
 constexpr double kSettled = 0.01;
-// Inertia is positive: where the linear form would make it less than this share, the Jacobian stops there.
+// Inertia is positive. Where the linear form would make it less than this share, the Jacobian stops there.
 constexpr double kLeastInertia = 0.05;
-// Limits of what the noise in the columns does to a sum of squares. A set that passes on a thirtieth of the
-// noise explains by cancelling signals, one that passes on ten times more is out of the running.
+// Limits of the effect of noise in the columns on a sum of squares. A set that passes on a thirtieth of the
+// noise explains by cancelling signals; one that passes on ten times more is out of the running.
 constexpr double kLeastNoiseFactor = 0.03, kMostNoiseFactor = 10;
 
 // ln of the normal distribution.
@@ -29,7 +29,7 @@ double LogNormal(double x) {
   return -x * x / 2 - std::log(-x * std::sqrt(2 * std::numbers::pi)) + std::log1p(-s + 3 * s * s);
 }
 
-// What the amounts make of J w', as a factor.
+// The factor by which the amounts change J w'.
 double InertiaFactor(const std::vector<Index>& inertia, const VectorXd& amounts) {
   return std::max(kLeastInertia, 1 + amounts(inertia).sum());
 }
@@ -71,10 +71,11 @@ SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, Vector
   return found;
 }
 
-// Where the residual of the torque balance is a disturbance and not noise of the sensors, w' answers to it,
-// and the density of the measured w' has a factor J for each number: n ln(1 + delta_J), here its second-order
-// form about the amounts so far. Without it every disturbance shrinks J, by 77 to 100 % on three real
-// machines. (In the flows and in the arm's balance it makes things worse: their residuals are the sensors'.)
+// Where the residual of the torque balance is a disturbance and not noise of the sensors, w' responds to it,
+// and the density of the measured w' has a factor J for each number: n ln(1 + delta_J), used here in its
+// second-order form about the amounts so far. Without this term every disturbance shrinks J, by 77 to 100 %
+// on three real machines. (In the flows and in the arm's balance the term makes things worse, because their
+// residuals come from the sensors.)
 void SetEvidence::AddJacobian(const std::vector<Index>& inertia, const VectorXd& amounts, MatrixXd* normal,
                               VectorXd* right) const {
   if (inertia.empty()) return;
@@ -86,10 +87,9 @@ void SetEvidence::AddJacobian(const std::vector<Index>& inertia, const VectorXd&
   }
 }
 
-// Errors in variables: what the residuals' squares are to be divided by. `passed`: the squares of the noise
-// that the set's columns pass on. Amounts that cancel noise also cancel what the sensors had to say, and
-// amounts that pass on more noise than the model without changes explain that much of the residuals by
-// themselves.
+// Errors in variables: the divisors for the residuals' squares. `passed` has the squares of the noise that
+// the set's columns pass on. Amounts that cancel noise also cancel what the sensors measured. Amounts that
+// pass on more noise than the model without changes explain that much of the residuals by themselves.
 VectorXd SetEvidence::NoiseFactors(const VectorXd& passed) const {
   VectorXd factors(passed.size());
   for (Index g = 0; g < passed.size(); ++g) {
@@ -113,9 +113,9 @@ double SetEvidence::LogOf(const Solution& solution) const {
     const auto at = static_cast<Index>(i);
     const VectorXd unit = VectorXd::Unit(solution.amounts.size(), at);
     const double deviation = solution.normal.matrixL().solve(unit).norm();
-    // Half of the prior of an amount that cannot be negative is not there: 2 Phi(mean / deviation).
+    // An amount that cannot be negative has only half of the prior: 2 Phi(mean / deviation).
     if (column.positive) log += std::log(2.0) + LogNormal(solution.amounts[at] / deviation);
-    // Nor is what lies beyond the most that it can be.
+    // The prior also excludes values beyond the largest possible amount.
     if (std::isfinite(column.most))
       log += LogNormal((column.most - solution.amounts[at]) / deviation) - LogNormal(column.most / column.sd);
   }

@@ -1,4 +1,4 @@
-// The amounts and variances that agree with each other under one set of changes: inside of SetEvidence.
+// The amounts and variances that agree with each other under one set of changes. Only SetEvidence uses it.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,15 +8,15 @@
 
 namespace hydro::diagnose {
 
-// a: what is known beforehand of a group's variance is worth two numbers. It changes nothing where groups
-// have tens.
+// a: the prior knowledge of a group's variance counts as two numbers. It makes no difference to groups with
+// tens of numbers.
 inline constexpr double kVarianceShape = 1;
 
 struct SetEvidence::Solution {
-  std::vector<int> columns;  // of Rows::columns: those of every hypothesis, then those of the changes
+  std::vector<int> columns;  // indices in Rows::columns: those of every hypothesis, then those of the changes
   Eigen::VectorXd amounts;
-  Eigen::VectorXd weights;  // at which the amounts are the best
-  Eigen::VectorXd next;     // that the residuals of the amounts ask for
+  Eigen::VectorXd weights;  // for which the amounts are the best
+  Eigen::VectorXd next;     // that follow from the residuals of the amounts
   Eigen::VectorXd squares, counted_squares;
   Eigen::LLT<Eigen::MatrixXd> normal;
   double penalty = 0;   // amounts' P^-1 amounts / 2 + ln|P A| / 2

@@ -19,15 +19,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kDraws = 400;
-// Most wrong answers are the truth and something more, which repairs the truth's form a little. Each change
+// Most wrong answers are the truth plus a further change that slightly corrects the truth's form. Each change
 // beyond the first must be worth this share of what there is to explain.
 constexpr double kPriceOfAChange = 0.05;
-// An addition that is worth less than this share of the whole gain was true in 2 of 15 cases.
+// Additions worth less than this share of the whole gain were true in 2 of 15 cases.
 constexpr double kLeastShareOfGain = 0.1;
-// Wide enough that the truth is among them.
+// Large enough to include the truth.
 constexpr size_t kBestSets = 25, kBestNamed = 25, kSubsetsOf = 3, kBestValues = 2;
 
-// The changes of a set that are missing terms, without variants.
+// Those changes of a set that are missing terms, without variants.
 ChangeSet NamedBy(const ChangeSet& set) {
   ChangeSet named = ChangesOf(set);
   std::erase_if(named, [](const std::string& name) { return !IsMissingTerm(name); });
@@ -44,8 +44,8 @@ std::vector<ChangeSet> SubsetsOf(const ChangeSet& set) {
   return subsets;
 }
 
-// The best sets, all that is in the best three, the best of each named set, values, values of runs, and
-// nothing.
+// The best sets, all subsets of the best three, the best of each named set, values, values of runs, and the
+// empty set.
 std::vector<ScoredSet> Finalists(SetScores* scores, bool curves) {
   std::vector<ScoredSet> tried = scores->BestFirst();
   if (!curves) {
@@ -91,8 +91,9 @@ double ScoreOfNothing(const std::vector<ScoredSet>& finalists) {
 }
 
 // The mean over draws of the finalists' shares exp(Z_k), with
-//   Z_k = [S_k - ln pi_k + sum over runs (W_r - 1) l_kr - price (S_max - S_0) max(0, changes - 1)] / T + ln pi_k.
-// S has the odds pi in it, which are not tempered. W_r is exponential with mean 1.
+//   Z_k = [S_k - ln pi_k + sum over runs (W_r - 1) l_kr - price (S_max - S_0) max(0, changes - 1)] / T
+//         + ln pi_k.
+// The odds pi are part of S and are not tempered. W_r is exponential with mean 1.
 VectorXd DrawnShares(const SetScores& scores, const std::vector<ScoredSet>& finalists, uint64_t seed) {
   const auto count = static_cast<Index>(finalists.size());
   const double whole_gain = finalists.front().score - ScoreOfNothing(finalists);
@@ -104,7 +105,7 @@ VectorXd DrawnShares(const SetScores& scores, const std::vector<ScoredSet>& fina
     fixed[k] = one.score - odds[k] - kPriceOfAChange * whole_gain * further;
   }
   const MatrixXd likelihoods = LikelihoodsByRun(scores, finalists);
-  // What one run says cannot be held against another.
+  // With a single run, the runs cannot contradict each other.
   const bool one_run = (likelihoods.array() != 0).rowwise().any().count() < 2;
   VectorXd shares = VectorXd::Zero(count);
   Random random(seed);
@@ -122,8 +123,8 @@ bool AddsTo(const ChangeSet& more, const ChangeSet& less) {
   return more.size() > less.size() && std::includes(more.begin(), more.end(), less.begin(), less.end());
 }
 
-// Gives the share of each set that adds next to nothing to a smaller one to that one; from the largest sets
-// down.
+// Adds the share of each set that gains next to nothing over a smaller set to the share of that smaller one,
+// starting with the largest sets.
 void DropAdditions(const std::vector<ScoredSet>& finalists, VectorXd* shares) {
   const double least = kLeastShareOfGain * (finalists.front().score - ScoreOfNothing(finalists));
   std::vector<size_t> order(finalists.size());

@@ -1,4 +1,4 @@
-// How probable each explanation is: tempered scores, drawn over runs.
+// How probable each explanation is: from tempered scores, drawn over runs.
 #pragma once
 
 #include <algorithm>
@@ -10,30 +10,30 @@
 
 namespace hydro::diagnose {
 
-// What is wrong with all models here is alike in all rows, which the evidence takes for independent: measured on 63 rigs, a third of a
-// difference in scores is worth what it says.
+// The errors of all models here are alike in all rows, but the evidence takes rows for independent.
+// Measurements on 63 rigs show that a third of a difference in scores counts.
 inline constexpr double kTemperature = 3;
 
 struct WeighedExplanation {
   ChangeSet changes;  // without their variants
-  ChangeSet set;      // the variants that have most of the weight
+  ChangeSet set;      // the variants with most of the weight
   double score = 0;   // of `set`
   double weight = 0;
 };
 
 struct ExplanationWeights {
-  std::vector<WeighedExplanation> explanations;  // those with a weight, largest first; they add to 1
-  size_t in_90 = 0;                              // how many of the first hold 90 % together
+  std::vector<WeighedExplanation> explanations;  // those with a weight, largest first; they add up to 1
+  size_t in_90 = 0;                              // how many of the first hold 90 % of the weight together
 };
 
-// The weights of the sets in `scores`; tries those that it lacks. In each of 400 draws each run counts by a
-// random factor, so that what a single run says weighs less than what all say; the finalists share the draw
-// by their tempered scores. What a set adds to another for hardly any gain is no explanation of its own: its
-// weight is the other's. The same for any number of jobs.
-// `curves`: whether unknown curves are among them.
+// Computes the weights of the sets in `scores`, and tries sets that are missing there. In each of 400 draws
+// each run counts by a random factor, so that what a single run says weighs less than what all runs say. The
+// finalists share each draw by their tempered scores. A set that adds changes to another set for hardly any
+// gain is no explanation of its own: its weight goes to the other set. The result is the same for any number
+// of jobs. `curves` says whether unknown curves take part.
 ExplanationWeights WeighExplanations(SetScores* scores, uint64_t seed = 1, bool curves = true);
 
-// Sorts what has a weight, the largest first; how many of the first hold 90 % together.
+// Sorts the items that have a weight, largest first, and returns how many of the first hold 90 % together.
 template <class Weighed>
 size_t SortByWeight(std::vector<Weighed>* all) {
   std::stable_sort(all->begin(), all->end(),

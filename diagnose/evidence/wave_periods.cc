@@ -13,18 +13,18 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Once a turn is an eccentric shaft, which every hypothesis has.
+// One period a turn is an eccentric shaft, which every hypothesis has.
 constexpr int kFirstPeriod = 2;
-// How often something has to be seen to repeat.
+// How often a wave has to be seen to repeat.
 constexpr double kSeen = 2;
-// How many periods of each effect go on: the true one and its strongest neighbour.
+// How many periods of each effect are kept: the true one and its strongest neighbour.
 constexpr size_t kKept = 2;
-// Rows overlap: two count for one (as in the evidence).
+// Rows overlap, so two count as one (as in the evidence).
 constexpr double kIndependent = 0.5;
 
 using Gains = std::map<std::string, double>;  // by set
 
-// What each set of waves gains in one run, beyond what is in every hypothesis.
+// What each set of waves gains in one run beyond the columns of every hypothesis.
 Gains GainsIn(size_t run, const Rows& waves, const Rows& rows, const SetFit& null) {
   std::vector<double> amount(rows.columns.size(), 0.0);
   for (size_t i = 0; i < null.columns.size(); ++i)

@@ -1,4 +1,5 @@
-// At how many periods a turn something repeats with the shaft: a score test for each, of what every hypothesis leaves.
+// Finds at how many periods per turn something repeats with the shaft: a score test for each number of
+// periods, on what every hypothesis leaves.
 #pragma once
 
 #include <vector>
@@ -8,15 +9,16 @@
 
 namespace hydro::diagnose {
 
-// Poles, teeth, pistons and vanes of such machines are fewer.
+// Such machines have fewer poles, teeth, pistons and vanes than this.
 inline constexpr int kMostPeriods = 48;
 
-// The fewest periods a turn that the runs can show: what repeats has to be seen to repeat, in one run at least, and a part of a sine is
-// any smooth load over the angle. Beyond kMostPeriods: none.
+// The fewest periods per turn that the runs can show. At least one run has to cover a repetition, because
+// part of a sine could be any smooth load over the angle. Returns more than kMostPeriods when the runs show
+// none.
 int FewestPeriods(const std::vector<RunMotion>& runs);
 
-// The likeliest few periods of each effect that repeats with the shaft, all together, increasing. `rows` and `evidence` are those of the
-// same runs without such effects.
+// The few likeliest periods of each effect that repeats with the shaft, all in one increasing list. `rows`
+// and `evidence` are those of the same runs without such effects.
 std::vector<int> LikelyPeriods(const ScanRuns& runs, const Rows& rows, const SetEvidence& evidence, int jobs);
 
 }  // namespace hydro::diagnose

@@ -18,7 +18,7 @@ std::string BalanceOf(const Closure& closure) {
   return balance == "flow_1" ? "the flow into side 1" : "the flow into side 2";
 }
 
-// Of a variable that closures depend on, in the model's units.
+// The unit of a variable on which closures depend, in the model's units.
 std::string UnitOf(const std::string& variable, const UnitSystem& units) {
   if (variable == "voltage") return "V";
   std::string angle = ChannelUnit(model::Channel::kArmAngle, units);
@@ -75,7 +75,7 @@ std::vector<Closure> FoundClosures(const Hypothesis& hypothesis, const std::vect
 
 std::string ClosureSentence(const std::vector<Closure>& closures) {
   if (closures.empty()) return "";
-  // What rounds to nothing is no improvement.
+  // A change that rounding hides is no improvement.
   if (ShortNumber(closures.front().before, 3) == ShortNumber(closures.front().after, 3)) return "";
   std::vector<std::string> curves;
   curves.reserve(closures.size());

@@ -28,8 +28,8 @@ using Eigen::VectorXd;
 constexpr char kCannotBeSimulated[] = "its simulation fails";
 
 // Simulates all runs on several threads when the solver moves to another point. The solver itself uses one
-// thread: with more it would add up the runs' costs in the order in which they finish, and round differently
-// every time.
+// thread: with several, it would add the runs' costs in the order in which they finish, and round differently
+// each time.
 class AllRuns : public ceres::EvaluationCallback {
  public:
   AllRuns(const std::vector<double>& values, const std::vector<model::StartState>& starts, int jobs)
@@ -47,8 +47,8 @@ class AllRuns : public ceres::EvaluationCallback {
   std::vector<RunCost*> costs_;
 };
 
-// Takes the run's start out of its normal equations, the last unknowns after `p` free parameters: the Schur
-// complement of the start's block.
+// Eliminates the run's start, which forms the last unknowns after `p` free parameters, from its normal
+// equations, by the Schur complement of the start's block.
 void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   const Eigen::Index n = normal.rows() - 1;
   MatrixXd information = normal.topLeftCorner(p, p);
@@ -93,9 +93,10 @@ class FitProblem {
     problem_.AddResidualBlock(prior_.get(), nullptr, values_.data());
   }
 
-  // False if the solver can get nowhere because simulations fail.
+  // Returns false if the solver cannot make progress because simulations fail.
   bool Solve(const FitOptions& options) {
-    // A step that cannot be simulated is not an error. The flag is of the whole process: one thread sets it, before any solver reads it.
+    // A step that cannot be simulated is not an error. The flag belongs to the whole process: one thread sets
+    // it before any solver reads it.
     [[maybe_unused]] static const auto quiet = FLAGS_minloglevel = google::GLOG_FATAL;
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -141,8 +142,8 @@ class FitProblem {
  private:
   static ceres::Problem::Options ProblemOptions(AllRuns* all_runs) {
     ceres::Problem::Options options;
-    // `costs_` owns the cost functions: the problem would own only those added to it, and the cost of a run
-    // of which nothing is free is not added.
+    // `costs_` owns the cost functions. The problem would own only those added to it, and the cost of a run
+    // with nothing free is not added.
     options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.evaluation_callback = all_runs;
     return options;
@@ -163,8 +164,8 @@ class FitProblem {
     }
   }
 
-  // Each run's start is in the equations of that run alone. With hundreds of windows, anything else takes far
-  // longer than the simulations.
+  // Each run's start appears only in the equations of that run. With hundreds of windows, any other order
+  // takes far longer than the simulations.
   void EliminateStartsFirst(ceres::Solver::Options* solver) {
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
     for (size_t r = 0; r < runs_.size(); ++r) {
@@ -206,8 +207,8 @@ class FitProblem {
   int jobs_;
   std::vector<FreeParameter> free_;
   std::vector<double> values_;  // of the free parameters, as fitted
-  // Of each run, first those that are free. In one array: the solver eliminates them in the order of their
-  // addresses, and another order would round differently.
+  // For each run, those that are free come first. They are in one array because the solver eliminates them in
+  // the order of their addresses, and another order would round differently.
   std::vector<model::StartState> start_values_;
   std::vector<std::unique_ptr<RunCost>> costs_;
   std::unique_ptr<ceres::CostFunction> prior_;

@@ -1,5 +1,5 @@
 // Fits a hypothesis to runs by simulation: chooses the free numbers and each run's start so that predicted
-// and measured signals differ least, in noise units.
+// and measured signals differ as little as possible, in noise units.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct RunFit {
   double sum = 0;    // of squared residuals
   size_t count = 0;  // of residuals
   // At the fitted values, with the unknown start eliminated (its best value follows the parameters):
-  // information and gradient of sum/2 with respect to the free parameters as fitted (some as logarithms),
-  // by columns.
+  // information and gradient of sum/2 with respect to the free parameters as fitted (some as logarithms), by
+  // columns.
   std::vector<double> information, gradient;
 };
 
@@ -37,13 +37,13 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
 struct FitOptions {
   int most_iterations = 20;
-  double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
+  double tolerance = 1e-4;    // the fit stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
 };
 
-// `starts`: initial guesses, one a run. Never throws ModelError: a model that cannot be simulated is reported
-// as a failure.
+// `starts` has an initial guess for each run. Fit() never throws ModelError: it reports a model that cannot
+// be simulated as a failure.
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& starts, const FitOptions& options);
 

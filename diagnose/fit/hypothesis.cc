@@ -7,7 +7,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// How far a fit may go from an effect's starting points: a factor of this, up or down.
+// How far a fit may move from an effect's starting points: by this factor, up or down.
 constexpr double kReach = 300;
 
 const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
@@ -25,7 +25,7 @@ struct FreeEffectNumber {
   double value = 0;
 };
 
-// Those that are free. Poles, teeth and pistons are counted, not measured: a whole number of periods stays.
+// The free ones. Poles, teeth and pistons are counted, not measured, so a whole number of periods stays.
 std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
   std::vector<FreeEffectNumber> free;
   model::ModelDescription model = hypothesis.model;
@@ -190,7 +190,7 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
 
 namespace {
 
-// Where fits of the effect's parameter begin.
+// The starting values of an effect's parameter in fits.
 std::vector<double> StartsOf(const model::ParameterInfo& parameter, const Sizes& sizes) {
   std::vector<double> starts;
   starts.reserve(parameter.starts.size());

@@ -37,23 +37,24 @@ struct FreeParameter {
   bool logarithmic = false;  // positive: fitted as its logarithm
   model::Role role = model::Role::kSize;
 
-  // Converts to the number that a fit moves, and back.
+  // Converts the value to the number that a fit moves, and back.
   double ToFitted(double number) const;
   double FromFitted(double fitted) const;
-  // The value after the fitted number has moved by this much.
+  // The value after the fitted number has changed by `by`.
   double Moved(double by) const;
-  // Derivative of the value with respect to the fitted number, at the present value.
+  // Derivative of the value with respect to the fitted number, at the current value.
   double Slope() const { return logarithmic ? value : 1; }
 };
 
-// No data sheet or drawing is wrong by a larger factor: a value that moves farther is implausible.
+// Data sheets and drawings are not wrong by a larger factor, so a value that moves farther is implausible.
 inline constexpr double kImplausible = 2;
 
-// How far fits may move base values; infinite where only physics bounds them.
+// How far fits may move base values; infinite where only physics limits them.
 struct ValueReach {
   model::Parameters low, high;
 };
-// Twice as far as the given and the estimated value are apart: a fit that goes beyond contradicts both.
+// Allows twice the distance between the given and the estimated value: a fit that goes further contradicts
+// both.
 ValueReach ReachOf(const model::Parameters& given, const model::Parameters& estimated);
 
 struct Hypothesis {
@@ -62,21 +63,22 @@ struct Hypothesis {
   // Free base parameters, as in BaseParameters(), including those of `changes`.
   std::vector<size_t> base;
   std::vector<std::string> effects;  // ids whose parameters are free
-  // What fits know of the free base parameters beforehand; null: nothing.
+  // What is known of the free base parameters before a fit; null: nothing.
   std::shared_ptr<const Knowledge> known = {};
-  std::shared_ptr<const ValueReach> reach = {};  // null: as far as physics
-  // What runs sampled this way can show of a frequency, Hz: beyond half their rate a resonance is any stiffness or resistance.
+  std::shared_ptr<const ValueReach> reach = {};  // null: only physics limits the values
+  // Hz, the highest frequency that runs sampled this way can show. Beyond half their sampling rate, a
+  // resonance fits any stiffness or resistance.
   double highest_frequency = std::numeric_limits<double>::infinity();
 
   std::vector<FreeParameter> Free() const;
   // Sets the model to these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
-  // The same with nothing free.
+  // The same hypothesis with nothing free.
   Hypothesis Held() const;
 };
 
-// Magnitudes seen in the runs, used to scale starting values.
+// Magnitudes seen in the runs; they scale starting values.
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
   double flow = 0, arm_stiffness = 0, arm_damping = 0, oil_stiffness = 0;

@@ -18,25 +18,25 @@ using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 
-// Relative standard deviation of a number for what its equation idealises. With tens of thousands of samples,
-// noise alone gives a tenth of this. Rigs with slightly rounded friction or second-order sensors moved the
-// numbers found by up to two percent without the runs showing it (bench/gap_score).
+// Relative standard deviation of a number due to the idealisations of its equation. With tens of thousands of
+// samples, noise alone gives a tenth of this. On rigs with slightly rounded friction or second-order sensors,
+// the numbers found were off by up to two percent without any sign of it in the runs (bench/gap_score).
 constexpr double kIdealised = 0.005;
 
-// The same for each of the model's own numbers that are held: an effect found stands beside their terms, so a
-// small effect shifts by this fraction of a large term. Calibrated on the same rigs.
+// The same for each of the model's own numbers that are held. An effect that was found stands beside their
+// terms, so a small effect shifts by this fraction of a large term. Calibrated on the same rigs.
 constexpr double kIdealisedHeld = 0.0003;
 
-// Standard deviation of a time, in sample intervals, for what the model takes to be immediate and is not: a
-// tachometer with a filter of a twelfth of a sample, left out of the model, made the delays and lags found
-// 0.02 to 0.03 samples longer.
+// Standard deviation of a time, in sample intervals, for reactions that the model takes to be immediate and
+// that are not: a tachometer with a filter of a twelfth of a sample, left out of the model, made the delays
+// and lags found 0.02 to 0.03 samples longer.
 constexpr double kInstant = 0.02;
 
-// Of the residuals' variance: correlations below it are chance.
+// As a fraction of the residuals' variance: smaller correlations are due to chance.
 constexpr double kUncorrelated = 0.02;
 
-// How many successive residuals of a signal count as one: the integrated autocorrelation, summed until it is lost (Geyer's initial
-// positive sequence, in pairs).
+// How many successive residuals of a signal count as one: the integrated autocorrelation, summed until it
+// vanishes (Geyer's initial positive sequence, in pairs).
 double CorrelationOf(const double* x, size_t n) {
   double variance = 0;
   for (size_t i = 0; i < n; ++i) variance += x[i] * x[i];
@@ -51,7 +51,8 @@ double CorrelationOf(const double* x, size_t n) {
   return sum;
 }
 
-// What a squared residual is worth beside the noise of its sensor: what the model leaves is larger, and lasts.
+// The weight of a squared residual relative to its sensor's noise: what the model leaves is larger, and
+// lasts.
 double DiscrepancyOf(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   std::vector<double> weighted(runs.size()), count(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
@@ -76,7 +77,8 @@ double DiscrepancyOf(const Fitted& fitted, const std::vector<const RunData*>& ru
   return std::max(1.0, fitted.squared_gap()) * (all > 0 ? std::max(1.0, sum / all) : 1);
 }
 
-// What the runs say of the fit's free numbers, by what their residuals are worth, and what was known, as inverse variances.
+// What the runs, with their residuals weighted, and prior knowledge say about the fit's free numbers, as
+// inverse variances.
 MatrixXd InformationOf(const Fitted& fitted, double discrepancy, const std::vector<double>& known) {
   const auto p = static_cast<Index>(known.size());
   MatrixXd information = MatrixXd::Zero(p, p);
@@ -94,10 +96,11 @@ MatrixXd CovarianceOf(const MatrixXd& information) {
   return scale.asDiagonal() * maths::SolveSymmetric(scaled, one) * scale.asDiagonal();
 }
 
-// How far the numbers move between windows or runs: the variances of the fit with each left out in turn. What the model lacks lasts as
-// long as these do, and differs from one to the next.
+// How far the numbers move between windows or runs: the variances of the fit with each left out in turn. What
+// the model lacks lasts as long as these do, and differs from one to the next.
 Eigen::VectorXd ScatterOf(const Fitted& fitted, const MatrixXd& information) {
-  // A run that holds nearly all that is known of a number says nothing of its scatter: it counts as if it held no more than this.
+  // A run that holds nearly all information about a number says nothing about its scatter. It counts as if it
+  // held no more than this share.
   constexpr double kMostLeverage = 0.75;
   const Index p = information.rows();
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(p);
@@ -121,7 +124,7 @@ std::vector<double> KnownVariances(const Hypothesis& hypothesis) {
   return weights;
 }
 
-// The fit with the base values that it holds free too.
+// The same fit with the held base values also free.
 Fitted WithHeld(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   Hypothesis all = fitted.hypothesis;
   for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
@@ -139,7 +142,7 @@ Interval Around(const FreeParameter& parameter, double variance, double sample) 
       std::hypot(kIdealised * parameter.value, parameter.role == model::Role::kTime ? kInstant * sample : 0);
   const double half = 1.96 * std::hypot(std::sqrt(variance), unseen / parameter.Slope());
   Interval interval{parameter.Moved(-half), parameter.Moved(half)};
-  // A logarithm keeps the value positive, and its bounds are the fit's, not physics'.
+  // A logarithm keeps the value positive, and its bounds are those of the fit, not of physics.
   if (!parameter.logarithmic) {
     interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
     interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
@@ -172,7 +175,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   if (!all.ok()) all = fitted;
   const std::vector<FreeParameter> numbers = all.hypothesis.Free();
   std::vector<Index> own, held;
-  std::vector<double> off;  // of those held, as fitted
+  std::vector<double> off;  // of the held numbers, as fitted
   for (size_t i = 0; i < numbers.size(); ++i) {
     const bool is_free = std::any_of(free.begin(), free.end(),
                                      [&](const FreeParameter& one) { return one.name == numbers[i].name; });
@@ -187,7 +190,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
         discrepancy * InformationOf(fitted, discrepancy, KnownVariances(fitted.hypothesis));
     variance = variance.cwiseMax(ScatterOf(fitted, total));
   }
-  // The fit follows the held numbers as far as the runs cannot tell them from the free ones.
+  // The fit follows the held numbers to the extent that the runs cannot distinguish them from the free ones.
   const Map<const Eigen::VectorXd> off_by(off.data(), static_cast<Index>(off.size()));
   const MatrixXd by_held = covariance * information(own, held) * off_by.asDiagonal();
   std::vector<Interval> intervals;

@@ -11,13 +11,14 @@ struct Interval {
   double low = 0, high = 0;
 };
 
-// 95 % intervals of the fit's free parameters, in the order of Free(): from the fit's information, with residuals counted by what the
-// model leaves of them and by how long that lasts, and from the scatter between windows or runs, where these are three or more. They allow for what the equations idealise, in their own form and in the numbers
-// that are held.
+// 95 % intervals of the fit's free parameters, in the order of Free(). They come from the fit's information,
+// in which residuals count by what the model leaves of them and by how long that lasts, and from the scatter
+// between windows or runs, where there are at least three. They allow for idealisations of the equations,
+// both in the equations' own form and in the numbers that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
-// Which of the fit's free numbers, in the order of Hypothesis::Free(), the runs do not show apart from others: without what is known
-// beforehand their standard deviation would be three times as large.
+// Which of the fit's free numbers, in the order of Hypothesis::Free(), the runs do not show apart from
+// others: without prior knowledge their standard deviation would be three times as large.
 std::vector<bool> RestOnKnown(const Fitted& fitted);
 
 }  // namespace hydro::diagnose

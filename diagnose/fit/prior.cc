@@ -10,8 +10,9 @@ namespace hydro::diagnose {
 
 namespace {
 
-// How far a base parameter that is given as 0 may be from it: the size of the pump's greatest torque, of the pressure
-// that it holds, and of its flow and friction at 100 rad/s. It only keeps what no run tells from drifting.
+// How far a base parameter that is given as 0 may be from 0: the size of the pump's greatest torque, of the
+// pressure that it holds, and of its flow and friction at 100 rad/s. This only keeps parameters that no run
+// shows from drifting.
 double VagueDeviation(const model::Parameters& given, const std::string& name) {
   constexpr double kSpeed = 100;  // rad/s
   const double pressure = given.T_pmax / given.D;
@@ -26,8 +27,8 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
 }  // namespace
 
 double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given) {
-  constexpr double kExpected = 2;    // standard deviations: nineteen values of twenty are nearer
-  constexpr double kNothing = 0.01;  // of a value: less is none of it
+  constexpr double kExpected = 2;    // standard deviations: 19 of 20 values lie closer
+  constexpr double kNothing = 0.01;  // of a value: less counts as none
   double lost = 0;
   for (size_t base = 0; base < model::BaseParameters().size(); ++base) {
     const auto member = model::BaseParameters()[base].member;

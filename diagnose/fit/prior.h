@@ -1,4 +1,4 @@
-// What is known of free numbers before the runs speak.
+// What is known of free numbers before the runs are seen.
 #pragma once
 
 #include <vector>
@@ -10,28 +10,29 @@ namespace hydro::diagnose {
 
 struct Hypothesis;
 
-// What is known of each free parameter beforehand, in the order of Hypothesis::Free(). Each, as fitted (some as
-// logarithms), adds weight * (parameter - centre)^2 to the sum that is minimised.
+// What is known beforehand of each free parameter, in the order of Hypothesis::Free(). Each parameter, as
+// fitted (some as logarithms), adds weight * (parameter - centre)^2 to the sum that is minimised.
 struct Prior {
   std::vector<double> centre, weight;
 };
 
-// The base parameters as a model gives them and how well it knows them ([uncertainty], or by kind). Residuals of
-// a wrong model are neither white nor of the sensors' size, so that in noise units they would always outweigh
-// what is known. `weight` is the part of the sum of squares that a deviation of one standard deviation has to
-// gain.
+// The base parameters as a model gives them, and how well it knows them ([uncertainty], or by kind). The
+// residuals of a wrong model are neither white nor of the sensors' size, so that in noise units they would
+// always outweigh prior knowledge. `weight` is the part of the sum of squares that a deviation of one
+// standard deviation has to gain.
 struct Knowledge {
   model::ModelDescription given;
   double weight = 0;
 };
 
-// The logarithm of the odds that base values lose by being farther from where they are given than two standard deviations, each: the
-// fall of Cauchy's distribution, because a data sheet that says 5 % is now and then wrong altogether. Nearer, only the balances count how
-// far, or the same knowledge would be heard twice. Values given as 0 lose nothing.
+// The logarithm of the odds that base values lose by lying more than two standard deviations from their given
+// values, summed over the values. It follows the tail of Cauchy's distribution, because a data sheet that
+// says 5 % is sometimes wrong altogether. For smaller deviations only the balances count the distance;
+// otherwise the same knowledge would count twice. Values given as 0 lose nothing.
 double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given);
 
-// For the hypothesis' free numbers; all weights are 0 where it has no knowledge. Of a base parameter that is given as
-// 0 only its order of magnitude is known.
+// The prior for the hypothesis' free numbers. All weights are 0 where the hypothesis has no knowledge. For a
+// base parameter that is given as 0, only the order of magnitude is known.
 Prior KnownBefore(const Hypothesis& hypothesis);
 
 }  // namespace hydro::diagnose

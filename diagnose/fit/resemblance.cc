@@ -1,4 +1,4 @@
-// Which simple law a closure looks like.
+// Finds the simple law that a closure resembles.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,10 +13,10 @@
 namespace hydro::diagnose {
 namespace {
 
-// A value is not taken to be known better than to this part of the curve's range, and so many times worse at the first and the last
-// knot, which few samples reach.
+// A value is never taken to be known better than to this part of the curve's range. At the first and the last
+// knot, which few samples reach, the limit is this many times larger.
 constexpr double kCoarse = 0.05, kAtEnds = 3;
-// What each number of a law has to gain, in squared standard deviations: two of them.
+// What each number of a law has to gain, in squared standard deviations: two standard deviations.
 constexpr double kPerNumber = 4;
 // A law has to explain this part of the curve's variation.
 constexpr double kLikeIt = 0.9;
@@ -27,12 +27,12 @@ struct Law {
   std::string says;
   std::vector<Function> parts;  // each with a coefficient
   double numbers = 0;           // besides the coefficients
-  bool odd = false;             // its sign is that of the variable
+  bool odd = false;             // it changes sign with the variable
 };
 
 double SignOf(double x) { return static_cast<double>((x > 0) - (x < 0)); }
 
-// Laws of a variable without a constant or a straight line beside them.
+// Laws of a variable, without a constant or a straight line added.
 std::vector<Law> BareLaws(const std::string& name, const std::string& unit, const std::vector<double>& x) {
   const bool both = x.front() < 0 && x.back() > 0;
   const std::string size = both ? "|" + name + "|" : name;
@@ -96,14 +96,15 @@ std::vector<Law> LawsOf(const Closure& closure) {
   return laws;
 }
 
-// A column's values over what counts as their standard deviations.
+// A column's values divided by what counts as their standard deviations.
 std::vector<double> Over(const std::vector<double>& error, const std::vector<double>& x, const Function& of) {
   std::vector<double> column;
   for (size_t i = 0; i < x.size(); ++i) column.push_back(of(x[i]) / error[i]);
   return column;
 }
 
-// The sum of squares that the law leaves, and the coefficient of its first part. Infinite: it is another law on these points.
+// The sum of squares that the law leaves, and the coefficient of its first part. Infinite: on these points it
+// is another law.
 std::pair<double, double> FitLaw(const Law& law, const std::vector<double>& x,
                                  const std::vector<double>& error, const std::vector<double>& scaled) {
   std::vector<std::vector<double>> columns;
@@ -116,7 +117,7 @@ std::pair<double, double> FitLaw(const Law& law, const std::vector<double>& x,
   }
 }
 
-// Of a surface: whether it is its second variable times a function of the first.
+// For a surface: whether it is its second variable times a function of the first.
 std::string SurfaceResemblance(const Closure& closure) {
   const size_t columns = closure.knots[1].size();
   double all = 0, explained = 0, squares = 0;
@@ -153,7 +154,7 @@ std::string Resemblance(const Closure& closure) {
     const double numbers = static_cast<double>(law.parts.size()) + law.numbers;
     if (numbers + 2 > static_cast<double>(x.size())) continue;
     const auto [left, first] = FitLaw(law, x, error, scaled);
-    const bool constant = least == std::numeric_limits<double>::infinity();  // the first that is tried
+    const bool constant = least == std::numeric_limits<double>::infinity();  // the first law that is tried
     if (constant) variation = left;
     if (!(left + kPerNumber * numbers < least)) continue;
     least = left + kPerNumber * numbers;

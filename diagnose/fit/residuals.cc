@@ -11,8 +11,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Relative, of an integration step. With 1e-5, a Stribeck speed of 0.1 rad/s came out 11 % too large, outside
-// its interval.
+// Relative tolerance of an integration step. With 1e-5, a Stribeck speed of 0.1 rad/s came out 11 % too
+// large, outside its interval.
 constexpr double kTolerance = 1e-7;
 
 }  // namespace

@@ -12,18 +12,18 @@
 namespace hydro::diagnose {
 
 struct Residuals {
-  // (Predicted - measured) / noise, signal after signal, each signal's valid samples in order of time.
+  // (Predicted - measured) / noise, one signal after the other, each signal's valid samples in order of time.
   std::vector<double> values;
-  std::vector<double> jacobian;  // by columns: one column of values.size() an unknown
-  std::vector<size_t> first;     // where each of the run's signals begins, then the end
+  std::vector<double> jacobian;  // by columns, values.size() entries for each unknown
+  std::vector<size_t> first;     // where each of the run's signals begins, then the end of the last
 };
 
-// Without derivatives. Throws ModelError when the model cannot be simulated.
+// Computes residuals without derivatives. Throws ModelError when the model cannot be simulated.
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start);
 
-// With derivatives with respect to the free parameters as a fit moves them (some as logarithms), then with
-// respect to `starts`. The values of `free` are those of the model. Throws as above.
+// Computes residuals and their derivatives with respect to the free parameters as a fit moves them (some as
+// logarithms), then with respect to `starts`. The values of `free` are those of the model. Throws as above.
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start, const std::vector<FreeParameter>& free,
                       const std::vector<model::Unknown>& starts, bool repeated_effects = false);
@@ -31,11 +31,12 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
 // The sum of the squared residuals; infinite where the model cannot be simulated.
 double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start);
 
-// The unknown numbers of a run's start: those that are free, and what the model's effects need besides. The shaft's angle as
-// what repeats with it sees it is unknown, but in the run whose zero counts, where that has a phase of its own; waves may be under
-// way in lines where a window begins; an accumulator that remembers what it has taken in may have taken in some before any run.
+// The unknown numbers of a run's start: those that are free, and those that the model's effects need in
+// addition. The shaft's angle is unknown to effects that repeat with the shaft, except in the run whose zero
+// counts, if the effect has a phase of its own. Waves may be under way in lines where a window begins. An
+// accumulator that remembers what it has taken in may have taken in some before any run.
 std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run);
-// Which of them is that angle; none where it is known.
+// Which of the unknowns is that angle; none where the angle is known.
 std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const RunData& run);
 
 }  // namespace hydro::diagnose

@@ -85,7 +85,7 @@ bool RunCost::Simulate(const double* free, const double* start, bool derivatives
   } catch (const model::ModelError&) {
     return false;
   }
-  // What is known of the start holds it where the run says nothing, for example below p_3.
+  // Prior knowledge of the start holds it where the run says nothing, for example below p_3.
   std::vector<double> off(starts_.size()), weight(starts_.size());
   double start_sum = 0;
   for (size_t i = 0; i < starts_.size(); ++i) {

@@ -12,30 +12,31 @@
 
 namespace hydro::diagnose {
 
-// One run against the hypothesis. The solver does not get the residuals, hundreds of thousands of them, but a
-// square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
+// One run against the hypothesis. There are hundreds of thousands of residuals, so the solver gets a square
+// root of their normal equations instead: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 // Keeps references to the hypothesis and the run.
 class RunCost : public ceres::CostFunction {
  public:
   RunCost(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start);
 
-  // Simulates at the point that the solver will ask for next.
+  // Simulates the run at the point that the solver will ask for next.
   void Prepare(const double* free, const double* start, bool derivatives);
 
   // Evaluates at the prepared point.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
-  // [J r]' [J r] at the point; null where the run cannot be simulated. Valid until the next call. Costs nothing at the point
-  // of the last derivatives, where a solver ends.
+  // [J r]' [J r] at the point; null where the run cannot be simulated. The pointer is valid until the next
+  // call. The call costs nothing at the point of the last derivatives, which is where a solver ends.
   const Eigen::MatrixXd* Normal(const double* free, const double* start);
 
-  // How many residuals the run had where derivatives were last computed.
+  // How many residuals the run had when derivatives were last computed.
   size_t count() const { return count_; }
   const std::vector<model::Unknown>& starts() const { return starts_; }
 
  private:
   size_t unknowns() const { return free_.size() + starts_.size(); }
-  // [J r]' [J r] at the point, or only r'r without derivatives. False where the run cannot be simulated.
+  // Computes [J r]' [J r] at the point, or only r'r without derivatives. Returns false where the run cannot
+  // be simulated.
   bool Simulate(const double* free, const double* start, bool derivatives, Eigen::MatrixXd* normal);
 
   const Hypothesis& hypothesis_;
@@ -45,7 +46,7 @@ class RunCost : public ceres::CostFunction {
   std::vector<model::Unknown> starts_;
   size_t count_ = 0;
   bool can_be_simulated_ = false;
-  bool with_derivatives_ = false;  // what was prepared last
+  bool with_derivatives_ = false;  // the last call of Prepare() asked for derivatives
   Eigen::MatrixXd sum_;            // r'r of the last point without derivatives
   Eigen::MatrixXd normal_;         // of the last point with derivatives, which is `at_`
   std::vector<double> at_;

@@ -11,9 +11,9 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr int kAngles = 12;  // tried, a period
+constexpr int kAngles = 12;  // tried in each period
 
-// The longest period of what repeats with the shaft, rad; 0 if nothing does.
+// The longest period of the effects that repeat with the shaft, rad; 0 if there are none.
 double PeriodOf(const model::ModelDescription& model) {
   double longest = 0;
   for (const model::EffectDescription& effect : model.effects) {

@@ -1,4 +1,5 @@
-// The shaft's angle at a run's start, where what repeats with the shaft is modelled and no sensor shows its zero.
+// Finds the shaft's angle at a run's start when the model has something that repeats with the shaft and no
+// sensor shows its zero.
 #pragma once
 
 #include "diagnose/recording/run_data.h"
@@ -6,8 +7,8 @@
 
 namespace hydro::diagnose {
 
-// The start turned by the part of the effect's period from which the model predicts the run best; the start itself where the angle
-// is known (UnknownTurn). A fit finds the angle only from near it.
+// Turns the start by the part of the effect's period for which the model predicts the run best. Returns the
+// start itself where the angle is known (UnknownTurn). A fit finds the angle only from a nearby start.
 model::StartState AtBestTurn(const model::ModelDescription& model, const RunData& run,
                              const model::StartState& start);
 

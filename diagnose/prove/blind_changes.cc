@@ -13,9 +13,10 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Of what an effect has to take: with less, other values beside it do not make it.
+// As a fraction of what an effect has to gain: with a smaller gain, refining the other values does not make
+// up for the rest.
 constexpr double kWorthRefining = 0.5;
-// From the catalogue's starts, which are factors of 2 to 6 apart.
+// From the catalogue's starts, which differ by factors of 2 to 6.
 constexpr int kStepsOfARace = 2;
 
 }  // namespace
@@ -24,13 +25,13 @@ std::vector<Change> BlindChanges(const ProofContext& context) {
   const bool free = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
     return run->stimulus.shaft == model::Shaft::kFree;
   });
-  // Where no pressure was measured, nothing of the oil shows.
+  // Where no pressure was measured, no effect of the oil shows.
   const bool oil = std::any_of(context.runs.begin(), context.runs.end(), [](const RunData* run) {
     return !run->stimulus.bypass && run->measured.p1.measured() && run->measured.p2.measured();
   });
   std::vector<Change> blind;
   for (const Change& change : context.changes) {
-    // A sensor's sign is settled before.
+    // A sensor's sign has already been settled.
     const bool is_blind = IsUnseenByBalances(change.effect) && change.names.empty();
     if (is_blind && oil && (free || !change.effect.starts_with("arm."))) blind.push_back(change);
   }

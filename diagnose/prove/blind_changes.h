@@ -1,4 +1,4 @@
-// Effects that a scan of balances cannot see, and that only simulation can try.
+// Effects that a scan of balances cannot see. Only simulation can try them.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,17 @@
 
 namespace hydro::diagnose {
 
-// Among the context's changes those that say so in the catalogue (EffectInfo::unseen_by_balances), where runs can show them: with
-// pressures measured, and of an arm where one is free.
+// Those of the context's changes that the catalogue marks so (EffectInfo::unseen_by_balances), where the runs
+// can show them: with measured pressures, and for effects of an arm, with a free arm.
 std::vector<Change> BlindChanges(const ProofContext& context);
 
-// The set with the change added, fitted to `fitted` from each of the change's starts in the catalogue, with the effect's numbers
-// alone free; the best of these, judged and refined. Not tested where no start can be fitted.
+// Adds the change to the set and fits it to `fitted` from each of the change's starts in the catalogue, with
+// only the effect's numbers free. Returns the best of these fits, judged and refined. The result is not
+// tested where no start can be fitted.
 ProvedSet RacedFrom(const ProofContext& context, const std::vector<const RunData*>& fitted,
                     const ProofWindows& windows, const ProvedSet& set, const Change& change);
 
-// Whether the balances of the runs cannot speak for the effect: simulation alone names it.
+// Whether the runs' balances cannot speak for the effect, so that only simulation can name it.
 bool IsUnseenByBalances(const std::string& effect);
 
 }  // namespace hydro::diagnose

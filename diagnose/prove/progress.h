@@ -1,4 +1,4 @@
-// How far a diagnosis has come, for whoever displays it.
+// How far a diagnosis has come, for display.
 #pragma once
 
 #include <functional>
@@ -8,10 +8,10 @@ namespace hydro::diagnose {
 
 struct Progress {
   std::string stage;    // "trying each effect"
-  double fraction = 0;  // of all the work, 0 to 1, as far as is known
+  double fraction = 0;  // of all the work, 0 to 1; an estimate
 };
 
-// Never called from two threads at once.
+// Two threads never call this at once.
 using ProgressCallback = std::function<void(const Progress&)>;
 
 }  // namespace hydro::diagnose

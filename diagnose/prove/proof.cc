@@ -13,7 +13,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The windows' fit at the best set's values, which leave these gaps, with derivatives and what is known.
+// The windows' fit at the best set's values, which leave these gaps, with derivatives and prior knowledge.
 Fitted WithDerivatives(const ProofContext& context, const Hypothesis& best,
                        const std::vector<const RunData*>& windows, const std::vector<WindowGap>& gaps) {
   FitOptions held;

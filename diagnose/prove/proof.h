@@ -1,4 +1,4 @@
-// What was proved, as a verdict reads it.
+// What was proved, in the form that a verdict needs.
 #pragma once
 
 #include <cstddef>
@@ -14,38 +14,41 @@ namespace hydro::diagnose {
 
 struct Proof {
   std::vector<ProvedSet> sets;
-  // Their places: the model as given, that with other values alone, and what predicts best.
+  // Places of the model as given, of the best model with other values alone, and of the best predictor.
   size_t given = 0, values = 0, best = 0;
-  // s, that a judging window (ProvedSet::near) reaches; 0: the held-out runs themselves judge.
+  // s, length of a judging window (ProvedSet::near); 0: the held-out runs themselves judge.
   double seconds = 0;
-  std::vector<std::string> runs;  // that each judging window is from
-  // The best set fitted to windows of the fitted runs, or to these: how well its numbers are known. Fails where nothing can be
-  // simulated.
+  std::vector<std::string> runs;  // the run of each judging window
+  // The best set fitted to windows of the fitted runs, or to these runs; it shows how well the set's numbers
+  // are known. The fit fails where nothing can be simulated.
   Fitted told;
-  std::shared_ptr<const std::vector<RunData>> windows;  // owns, where it is not null:
+  std::shared_ptr<const std::vector<RunData>> windows;  // when it is not null, it owns:
   std::vector<const RunData*> told_runs;
 
   const ProvedSet& Given() const { return sets[given]; }
   const ProvedSet& Values() const { return sets[values]; }
   const ProvedSet& Best() const { return sets[best]; }
   const Hypothesis& Found() const { return Best().hypothesis; }
-  // Whether windows judge, as they do wherever one can be simulated; else whole runs.
+  // Whether windows judge. They do wherever one can be simulated; otherwise whole runs judge.
   bool OnWindows() const { return seconds > 0; }
 };
 
-// The places of what a verdict compares.
+// The places of the sets that a verdict compares.
 struct ProofRoles {
   size_t given = 0, values = 0, best = 0;
 };
 
-// `told`: windows as the values were fitted to them. Those that the best set cannot be simulated over are left out.
+// `told` has windows to which the values were fitted. Windows over which the best set cannot be simulated are
+// left out.
 Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vector<RunData> told,
               std::vector<ProvedSet> sets, const ProofRoles& roles);
 
-// 95 % intervals of the best set's free numbers, in the order of Hypothesis::Free(); NaN where they are not known.
+// 95 % intervals of the best set's free numbers, in the order of Hypothesis::Free(); NaN where they are not
+// known.
 std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof);
 
-// The effects of the best set that may as well be none: the intervals of all their amounts hold 0. Not of curves.
+// Those effects of the best set that may be absent: the intervals of all their amounts include 0. Curves are
+// not listed.
 std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof);
 
 }  // namespace hydro::diagnose

@@ -10,10 +10,11 @@ namespace {
 
 constexpr double kShortestWindow = 60;  // samples
 constexpr double kWindowsPerRun = 4;
-// Stretches of a signal, in a search horizon, that count as independent of each other.
+// Stretches of a signal within a search horizon that count as independent of each other.
 constexpr double kIndependentStretches = 10;
 
-// How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
+// The number of independent pieces of evidence in the runs, if they are as wrong as a wrong model leaves
+// them.
 double EvidenceOf(const std::vector<const RunData*>& runs) {
   double pieces = 0;
   for (const RunData* run : runs) {

@@ -15,9 +15,10 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Numbers that are fitted to whole runs times their samples: some seconds of work.
+// Limit for fits to whole runs: numbers times samples, some seconds of work.
 constexpr size_t kMostNumbersTimesSamples = 200000;
-// Sets without one of their effects that are made: those of two that lead with three effects, and what is left of them.
+// How many sets are made by removing one of their effects: enough for two leading sets with three effects,
+// and what remains of them.
 constexpr size_t kMostMade = 10;
 
 }  // namespace
@@ -34,7 +35,7 @@ ProofSets::ProofSets(const ProofContext& context, const Hypothesis& as_given,
 }
 
 double ProofSets::SaidOf(const Change& effect) const {
-  // A curve is said of a balance and added to both columns of oil: one weight for all.
+  // A curve is reported for a balance but added to both columns of oil, so it has one weight for all.
   const bool curve = IsClosureEffect(effect.effect);
   double said = 0;
   for (const auto& [id, weight] : said_.weights) {
@@ -60,10 +61,12 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   hypothesis.model = proposal.model;
   hypothesis.changes = proposal.changes;
   hypothesis.base = proposal.base;
-  // Over windows in which little changes, a motor ten times as heavy predicts that nothing does, and the balances know better.
+  // Over windows in which little changes, a motor ten times as heavy predicts that nothing changes. The
+  // balances know better.
   hypothesis.reach =
       std::make_shared<const ValueReach>(ReachOf(context_.given.parameters, proposal.model.parameters));
-  // Estimates hold one number of each balance, which scales all others: a fit moves it instead of them.
+  // Estimates hold one number of each balance, which scales all others. A fit moves that number instead of
+  // the others.
   for (const size_t place : allowed_) {
     const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
     const bool there = std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
@@ -72,7 +75,8 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   for (const Change& change : proposal.changes) {
     if (!change.effect.empty()) hypothesis.effects.push_back(change.effect);
   }
-  // The estimate moves the numbers of effects that the model has as it moves base values. Periods of a turn are whole numbers.
+  // The estimate moves the numbers of the model's own effects just as it moves base values. Periods of a turn
+  // are whole numbers.
   for (const model::EffectDescription& effect : context_.given.effects) {
     if (!proposal.base.empty() && !model::HasRole(effect.id, model::Role::kPeriods))
       hypothesis.effects.push_back(effect.id);
@@ -141,7 +145,8 @@ void ProofSets::Refine(size_t place) {
   sets_[place].refined = true;
 }
 
-// Where that is affordable, and where it predicts windows better: what acts seldom or slowly moves few of the fitted windows.
+// Acts where this is affordable and predicts windows better: an effect that acts seldom or slowly moves few
+// of the fitted windows.
 void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   if (set->hypothesis.Free().empty() || !set->without.empty()) return;
   std::vector<RunData> thinned;
@@ -156,7 +161,7 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   ProvedSet whole = *set;
   Fitted fitted = Fit(set->hypothesis, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
   if (set->proposed.parameters.J > 0) {
-    // A fit from where the windows led may end beside what the balances saw.
+    // A fit that starts where the windows led may end away from what the balances saw.
     Hypothesis as_proposed = set->hypothesis;
     as_proposed.model = set->proposed;
     Fitted other = Fit(as_proposed, PointersTo(thinned), MeasuredStarts(context_.runs), coarse);
@@ -169,11 +174,11 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   JudgeFar(windows_, context_.jobs, set);
   JudgeFar(windows_, context_.jobs, &whole);
   const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
-  // Windows that scatter much tell little, but what is worse in most of them is worse.
+  // Windows that scatter strongly say little, but a set that is worse in most of them is worse.
   const auto equal = [](const GapFall& fall) { return std::min(fall.error, kPartOfValues); };
   const bool near_falls = near.Exceeds(0) && far.logarithm >= -equal(far);
   const bool far_falls = far.Exceeds(0) && near.logarithm >= -equal(near);
-  // Where windows are too short to tell, whole held-out runs do.
+  // Where windows are too short to decide, whole held-out runs do.
   const bool alike = std::abs(near.logarithm) <= equal(near) && std::abs(far.logarithm) <= equal(far);
   const auto of_runs = [this](const ProvedSet& one) { return MeanSquare(OverRuns(context_, one)); };
   if (near_falls || far_falls || (alike && of_runs(whole) < of_runs(*set))) *set = whole;

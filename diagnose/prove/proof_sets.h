@@ -16,39 +16,43 @@ class ProofSets {
  public:
   static constexpr size_t kGiven = 0;  // the place of the model as given
 
-  // `allowed`: indices in BaseParameters() of those that a refit may move. Keeps references to all.
+  // `allowed` has indices in BaseParameters() of the values that a refit may move. Keeps references to all
+  // arguments.
   ProofSets(const ProofContext& context, const Hypothesis& as_given, const std::vector<size_t>& allowed,
             const SaidByBalances& said);
 
-  // Adds the proposals as judged with their own values, and a refit where no proposal has other values alone. Where proposed values
-  // cannot be simulated, those of the model as given stand in.
+  // Adds the proposals, judged with their own values, and a refit if no proposal has other values alone.
+  // Where proposed values cannot be simulated, the values of the given model replace them.
   void Add(const std::vector<Proposal>& proposals);
-  // The windows that are fitted from here on, with the discrepancy that the set at this place leaves.
+  // Sets the windows that are fitted from here on, with the discrepancy that the set at this place leaves.
   void SetFitted(size_t leading);
-  // Sets with effects begin at the values of the best set of values alone, where these suit their effects better: a set is not worth
-  // less for values that nobody fitted.
+  // Sets with effects start from the values of the best set of values alone, where these suit their effects
+  // better. Otherwise a set might lose only because nobody fitted its values.
   void BeginAtBestValues();
-  // A few steps of a fit, once a set.
+  // Refines the set by a few steps of a fit, once.
   void Refine(size_t place);
-  // A set fitted with a change more, from the catalogue's starts, judged.
+  // Adds a set with one more change, fitted from the catalogue's starts and judged.
   void Race(size_t from, const Change& change);
-  // The place of the best set without the effect, among them the set itself without it, refined: values that were estimated beside an
-  // effect, or without one, may not suit what is left. Few are made; the number of sets where there is none.
+  // The place of the best set without the effect. The candidates include the same set without it, refined,
+  // because values that were estimated with or without an effect may not suit what is left. Only a few sets
+  // are made this way. Returns the number of sets where there is none.
   size_t Without(size_t with, const Change& change);
-  // The same effects with the base values as given, refined.
+  // The same effects with the given base values, refined.
   size_t WithGivenValues(size_t place);
-  // As far as it may be, with values fitted to the windows and to whole runs, where they predict better.
+  // Refines the set as far as allowed, with values fitted to the windows and to whole runs, where they
+  // predict better.
   void RefineForReport(size_t place);
 
-  // How probable the effect is as the balances speak of it; 0 where they do not.
+  // How probable the balances say the effect is; 0 where they say nothing.
   double SaidOf(const Change& effect) const;
-  // What the effect has to take, as the balances speak of it; of what they cannot see, at the odds of any effect; at even ones without balances.
+  // What the effect has to gain, given what the balances say about it. An effect that they cannot see is
+  // priced at the odds of any effect; without balances, at even odds.
   double PriceOf(const Change& effect) const;
 
   const std::vector<ProvedSet>& all() const { return sets_; }
   size_t size() const { return sets_.size(); }
   const ProvedSet& operator[](size_t place) const { return sets_[place]; }
-  // The same with its far windows judged.
+  // The same set with its far windows judged.
   const ProvedSet& Far(size_t place);
   const ProofWindows& windows() const { return windows_; }
   const ProofContext& context() const { return context_; }
@@ -67,9 +71,9 @@ class ProofSets {
   const SaidByBalances& said_;
   ProofWindows windows_;
   std::vector<ProvedSet> sets_;
-  std::vector<RunData> scaled_;  // the windows that are fitted
+  std::vector<RunData> scaled_;  // the windows that fits use
   std::vector<const RunData*> fitted_;
-  std::vector<std::pair<size_t, Change>> made_;  // sets without an effect: of which set, which effect
+  std::vector<std::pair<size_t, Change>> made_;  // sets from which an effect was removed: the set, the effect
 };
 
 }  // namespace hydro::diagnose

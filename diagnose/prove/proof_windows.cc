@@ -13,10 +13,10 @@ namespace hydro::diagnose {
 
 namespace {
 
-// What the work of a proof is bounded by. With 20 windows that judge, a difference of 10 % is seen where single windows scatter by
-// 40 %.
+// Limits of a proof's work. With 20 judging windows, a difference of 10 % shows even if single windows
+// scatter by 40 %.
 constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 32, kMostFar = 6;
-// And those of each extreme.
+// The number of windows added for each extreme.
 constexpr size_t kMostOfAnExtreme = 1;
 constexpr double kFarTimes = 4;
 constexpr double kFewestSamplesOfAWindow = 60;
@@ -25,7 +25,8 @@ constexpr double kWindowsOfARun = 3;
 
 using WindowPool = std::vector<const RunData*>;
 
-// The windows where the channel, times the sign, is largest; without those in which it is not measured.
+// The windows ordered by the channel, times the sign, largest first; without windows in which it is not
+// measured.
 WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign) {
   std::vector<std::pair<double, const RunData*>> heights;
   for (const RunData* window : pool) {
@@ -41,7 +42,7 @@ WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign)
   return sorted;
 }
 
-// At most `most` of the pool, evenly spread, and the extremes.
+// At most `most` windows of the pool, evenly spread, and the extremes.
 WindowPool Chosen(const WindowPool& pool, size_t most) {
   std::vector<bool> taken(pool.size());
   const size_t spread = std::min(most, pool.size());
@@ -49,7 +50,7 @@ WindowPool Chosen(const WindowPool& pool, size_t most) {
   for (const model::Channel channel :
        {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
     for (const double sign : {1.0, -1.0}) {
-      // A side's lowest pressure is that of its valve, most of the time.
+      // A side's lowest pressure is mostly that of its valve.
       if (sign < 0 && channel != model::Channel::kMotorSpeed) continue;
       const WindowPool highest = ByHeight(pool, channel, sign);
       for (size_t k = 0; k < std::min(highest.size(), kMostOfAnExtreme); ++k) {
@@ -85,7 +86,7 @@ void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& 
 
 namespace {
 
-// s. Runs that are shorter judge nothing, unless most are.
+// s. Shorter runs judge nothing, unless most runs are shorter.
 double NearHorizon(const std::vector<const RunData*>& runs) {
   const double seconds = std::max(kHorizon, kFewestSamplesOfAWindow * SampleInterval(runs));
   const auto longer = std::count_if(runs.begin(), runs.end(), [&](const RunData* run) {
@@ -114,7 +115,7 @@ ProofWindows ProofWindowsOf(const ProofContext& context) {
   };
   const size_t near_end = add(WindowsOf(context.held_out, proof.near.seconds, given));
   const size_t far_end = add(WindowsOf(predicted, proof.far.seconds, given));
-  // Each simulation stops at every sample, and a window a millisecond apart says the same.
+  // Each simulation stops at every sample, and samples less than a millisecond apart say the same.
   for (RunData& window : all) Thin(kFewestOfAThinned, &window);
   proof.all = std::make_shared<const std::vector<RunData>>(std::move(all));
 

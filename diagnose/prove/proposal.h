@@ -1,4 +1,5 @@
-// What a scan of the balances proposes: a set of changes with all numbers estimated, to be proved by exact simulation.
+// What a scan of the balances proposes: a set of changes with all numbers estimated, for proof by exact
+// simulation.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +13,15 @@
 namespace hydro::diagnose {
 
 struct Proposal {
-  // Effects added or values freed, relative to the model as given. Empty: other values of `base`, or nothing.
+  // Effects added or values freed, relative to the model as given. Empty: only other values of `base`, or no
+  // change.
   std::vector<Change> changes;
-  // The model as given with those effects and all base values as estimated from all fitted runs.
+  // The given model with those effects, and with all base values as estimated from all fitted runs.
   model::ModelDescription model;
-  // Base parameters (BaseParameters()) whose values the estimate has moved. A refinement may move them too.
+  // Base parameters (BaseParameters()) whose values the estimate has moved. A refinement may move these too.
   std::vector<size_t> base;
-  // Of runs that are held out in turn: the same, estimated without each of the context's runs, in their order. Empty: `model`
-  // predicts all of them, although it has seen them.
+  // When runs are held out in turn: the same model estimated without each of the context's runs, in their
+  // order. Empty: `model` predicts all runs, although it has seen them.
   std::vector<model::ModelDescription> without;
   double score = 0;   // log evidence + log prior
   double weight = 0;  // among all that were estimated, 0 to 1
@@ -27,8 +29,8 @@ struct Proposal {
 
 // What the balances say of effects, by their ids.
 struct SaidByBalances {
-  std::map<std::string, double> weights;  // of all explanations that have the effect
-  std::vector<std::string> unlikely;      // those that they rule out
+  std::map<std::string, double> weights;  // the total weight of all explanations with the effect
+  std::vector<std::string> unlikely;      // effects that the balances rule out
 };
 
 }  // namespace hydro::diagnose

@@ -19,22 +19,27 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The truth was among the first five of a prototype's sets in all but one of 40 rigs.
+// In a prototype the truth was among the first five sets on all but one of 40 rigs.
 constexpr size_t kMostExplanations = 5;
-// What a set gains over a smaller one that is no explanation of its own; simulation decides between the two.
+// Includes sets that gain little over a smaller set and are no explanations of their own. Simulation decides
+// between the two.
 constexpr size_t kMostProposals = 8;
-// Effects whose shapes are refined before sets are compared: what is true was among the first three alone nearly always.
+// The number of effects whose shapes are refined before sets are compared. The true one was nearly always
+// among the first three singles.
 constexpr size_t kMostLeaders = 5;
 
-// The torque limit bends the balance where it acts: its column holds near the limit alone, so that one that is more than this part off
-// is taken from the balances, and the columns are made anew. Twice is enough: what acts beyond the limit as given shows the rest of the way.
+// The torque limit bends the balance where it acts, so its column is valid only near the limit. If the limit
+// is off by more than this part, its value is taken from the balances and the columns are made again. Two
+// rounds suffice, because the range beyond the given limit shows the rest.
 constexpr double kLimitOff = 0.01;
 constexpr int kLimitsAgain = 2;
 
-// Pressures that were not measured are marched again with the values that the balances then show; the second time hardly moves them.
+// Pressures that were not measured are marched again with the values that the balances then show. The second
+// repetition hardly moves them.
 constexpr int kMarchesAgain = 2;
 
-// The model with each predicted run's own values of what differs by run, as the balances of that run say.
+// The model with each predicted run's own values of the parameters that differ by run, as that run's balances
+// give them.
 std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
                                                   const std::vector<size_t>& allowed,
                                                   const model::ModelDescription& model,
@@ -49,13 +54,13 @@ std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
   return models;
 }
 
-// The sets that may be proposed, in the order in which they are: nothing, the likeliest explanations, the best set by score, those
-// with one change less than the first, and each change alone at its best shape.
+// The sets that may be proposed, in this order: the empty set, the likeliest explanations, the best set by
+// score, the sets with one change less than the first explanation, and each single change at its best shape.
 std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
                                      const std::vector<ScoredSet>& scores) {
   std::vector<ChangeSet> sets = {{}};
-  // Values of its own for each run are seen in the runs that they predict, so no simulation can compare them with what all runs
-  // share: the balances decide whether they are tried.
+  // Values for each run come from the runs that they predict, so no simulation can compare them with values
+  // common to all runs. The balances decide whether they are tried.
   const bool runs_first = !weights.explanations.empty() && NamesARun(weights.explanations.front().set);
   const auto add = [&](const ChangeSet& set) {
     if (NamesARun(set) && !(runs_first && set == weights.explanations.front().set)) return;
@@ -72,13 +77,13 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
       add(less);
     }
   }
-  // Other values are the likeliest cause of all: the best one is tried by itself.
+  // Wrong values are the likeliest cause of all: the best set of values is tried by itself.
   for (const ScoredSet& scored : scores) {
     if (scored.set.size() != 1 || !scored.set[0].starts_with("value.")) continue;
     add(scored.set);
     break;
   }
-  // So is the best curve that no effect stands for: without it the nearest effect takes its place.
+  // The best curve without a known effect is also tried. Without it, the nearest effect would take its place.
   for (const ScoredSet& scored : scores) {
     if (scored.set.size() != 1 || !IsClosureEffect(scored.set[0])) continue;
     add(scored.set);
@@ -95,7 +100,7 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
   return sets;
 }
 
-// Whether the likeliest amount of an effect that only adds is below nothing: less of it, in the company of others.
+// Whether the likeliest amount of an effect that can only add is negative, in company with others.
 bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
   for (size_t i = 0; i < fit.columns.size(); ++i) {
     const ScanColumn& column = rows.columns[static_cast<size_t>(fit.columns[i])];
@@ -107,7 +112,7 @@ bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
   return false;
 }
 
-// Where one value is far off, the model with this value alone changed: all others may well be as given.
+// If one value is far off, the model with only this value changed: all other values may be right as given.
 std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, const ChangeSet& set,
                                       const Proposal& all) {
   if (set.size() != 1 || !set[0].starts_with("value.") || all.changes.size() != 1) return std::nullopt;
@@ -128,7 +133,7 @@ std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, cons
   return std::nullopt;
 }
 
-// A model has each effect once: two curves on one balance, over different variables, cannot both be in it.
+// A model has each effect once, so it cannot contain two curves on one balance over different variables.
 bool HasTwoOfAKind(const model::ModelDescription& model) {
   std::vector<std::string> ids;
   for (const model::EffectDescription& effect : model.effects) ids.push_back(effect.id);
@@ -145,7 +150,8 @@ void Invert(const std::string& sensor, Proposal* proposal) {
   for (model::ModelDescription& model : proposal->without) model.effects.push_back(effect);
 }
 
-// What a fit may move: values that the runs show, and the yardsticks of the balances that could be formed.
+// Values that a fit may move: those that the runs show, and the yardsticks of the balances that could be
+// formed.
 std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
                           const std::vector<size_t>& allowed) {
   bool torque = false, arm = false;
@@ -177,7 +183,8 @@ std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   return remarks;
 }
 
-// The ids of effects that alone score so far below the best one that, as scores are tempered, they are a hundred times less likely.
+// The ids of effects that by themselves score so far below the best single effect that, with tempered scores,
+// they are a hundred times less likely.
 std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
   const double least = kTemperature * std::log(100.0);
   std::vector<std::string> likely, unlikely;
@@ -193,8 +200,8 @@ std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
   return unlikely;
 }
 
-// Moves the shapes of the likeliest effects to where the evidence has them, so that none loses to another for lying between two points of
-// its grid.
+// Moves the shapes of the likeliest effects to where the evidence has them, so that no effect loses to
+// another because it lies between two points of its grid.
 void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
   std::vector<std::string> refined;
   const std::vector<ScoredSet> scores = ScanSets(SetEvidence(*rows), {}, jobs).BestFirst();
@@ -215,8 +222,8 @@ void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
   }
 }
 
-// The weight of all explanations that have a change, by its id. An unknown curve is no rival of an effect's name, which simulation compares
-// with it: effects are weighed without curves.
+// The total weight of all explanations that have a change, by its id. An unknown curve is no rival for the
+// name of an effect; simulation compares the two. Effects are therefore weighed without curves.
 std::map<std::string, double> SaidOf(const ExplanationWeights& all,
                                      const ExplanationWeights& without_curves) {
   std::map<std::string, double> said;
@@ -237,7 +244,7 @@ double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   return 0;
 }
 
-// The rows of the runs at the torque limit that their balances show, beside the model as given.
+// The rows of the runs at the torque limit that their balances show, with everything else as given.
 Rows RowsAtTheLimit(const ProofContext& context, const ScanOptions& options, ScanRuns* runs) {
   Rows rows = runs->MakeRows({});
   model::ModelDescription given = context.given;

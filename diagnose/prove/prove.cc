@@ -14,10 +14,11 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kGiven = ProofSets::kGiven;
-// Proposals whose values are refined: a scan has to have what is true among its first five to be of use.
+// The number of proposals whose values are refined: a scan is useful only if the truth is among its first
+// five.
 constexpr size_t kMostRefined = 5;
 
-// How many numbers the set adds to the model.
+// The number of parameters that the set adds to the model.
 size_t NumbersOf(const ProvedSet& set) {
   size_t numbers = 0;
   for (const Change& change : set.Effects()) {
@@ -31,7 +32,7 @@ size_t NumbersOf(const ProvedSet& set) {
   return numbers;
 }
 
-// The effects of `set` that `other` has not.
+// The effects of `set` that `other` lacks.
 std::vector<Change> Beyond(const ProvedSet& set, const ProvedSet& other) {
   std::vector<Change> effects = set.Effects();
   std::erase_if(effects, [&](const Change& change) { return other.hypothesis.Has(change); });
@@ -54,7 +55,7 @@ class Prover {
            IsEffectKept(sets_.Far(with), sets_.Far(without), price);
   }
 
-  // The best of the sets that remain when one of the effects that are not needed is left out; the set itself where all are needed.
+  // The best set that remains when one unneeded effect is left out; the set itself where all are needed.
   size_t Reduced(size_t place) {
     size_t reduced = place;
     double least = 0;
@@ -73,7 +74,7 @@ class Prover {
   size_t Choice() {
     size_t best = LeadingSet(sets_.all());
     if (best >= sets_.size()) return kGiven;
-    std::vector<size_t> led;  // comparisons of three sets may turn in a circle: each leads once
+    std::vector<size_t> led;  // comparisons of three sets may cycle, so each leads once
     for (size_t next = best; std::find(led.begin(), led.end(), next) == led.end();) {
       best = next;
       led.push_back(best);
@@ -87,21 +88,22 @@ class Prover {
     return best;
   }
 
-  // Of sets with as many effects that are worth as much, the one whose effects have the fewest numbers: a bias has one, an asymmetry two.
+  // Among sets with equally many effects and equal worth, prefers the one whose effects have the fewest
+  // numbers: a bias has one, an asymmetry two.
   size_t WithFewerNumbers(size_t place) const {
     size_t fewest = place;
     for (size_t i = 0; i < sets_.size(); ++i) {
       if (!sets_[i].tested() || sets_[i].Effects().size() != sets_[place].Effects().size()) continue;
       if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
       const GapFall worth = WorthOf(sets_[i], sets_[place]);
-      // A curve fits whatever is there: it has to take as much more as an effect.
+      // A curve fits anything, so it has to gain as much more as an effect.
       const bool curve = HasACurve(sets_[place]) && !HasACurve(sets_[i]);
       if (worth.logarithm <= std::max(curve ? kPartOfAnEffect : kPartOfValues, worth.error)) fewest = i;
     }
     return fewest;
   }
 
-  // What is chosen is not worse than another set with as few effects.
+  // The chosen set must not be worse than another set with as few effects.
   size_t BetterOfTheSameSize(size_t place) const {
     size_t better = place;
     double most = kEqual;
@@ -130,7 +132,8 @@ class Prover {
     }
   }
 
-  // The same effects with the base values as given, where that predicts as well: then no value is said to be wrong.
+  // Takes the same effects with the given base values where they predict as well. Then no value is called
+  // wrong.
   size_t TakeGivenValues(size_t place) {
     if (sets_[place].Effects().empty() || sets_[place].hypothesis.base.empty()) return place;
     const size_t sparse = sets_.WithGivenValues(place);
@@ -138,8 +141,9 @@ class Prover {
     return values || !sets_[sparse].tested() ? place : sparse;
   }
 
-  // With the effect that the balances are surer of than not, where windows neither show it nor deny it: a small error of a gain, or a
-  // ripple, hardly moves what is predicted over the time of a window. It is said as tied with what does without it.
+  // Adds the effect that the balances find more likely than not, where windows neither confirm nor deny it: a
+  // small error of a gain, or a ripple, hardly changes predictions over the length of a window. The effect is
+  // reported as tied with the set that does without it.
   size_t WithWhatBalancesSay(size_t place) const {
     size_t with = place;
     double most = 0.5;
@@ -160,7 +164,7 @@ class Prover {
     const size_t best = BestWithEffects(sets_.all(), {});
     if (best < sets_.size() && best != kGiven) return best;
     for (size_t i = 1; i < sets_.size(); ++i) {
-      // Values as given are among those that a refit may have.
+      // The given values are among those that a refit may have.
       if (sets_[i].Effects().empty() && PredictsBetter(sets_[i], sets_[kGiven])) return i;
     }
     return kGiven;
@@ -170,7 +174,7 @@ class Prover {
   ProofSets& sets_;
 };
 
-// What is reported where this set is what predicts best: its numbers as precise as they can be had.
+// The proof to report when this set predicts best, with its numbers as precise as possible.
 Proof Reported(ProofSets* sets, const Prover& prover, size_t best) {
   const ProofContext& context = sets->context();
   sets->SetFitted(best);
@@ -182,8 +186,9 @@ Proof Reported(ProofSets* sets, const Prover& prover, size_t best) {
                  {ProofSets::kGiven, prover.BestValues(), best});
 }
 
-// The place of the best set without an effect that may be none and that windows do not show either; that of the best set where there is
-// no such effect. Amounts that stand for each other may each be 0, but not both: then windows show the effect.
+// The place of the best set without an effect that may be absent and that the windows do not show either; if
+// there is no such effect, the place of the best set. Amounts that can replace each other may each be 0, but
+// not both: then the windows do show the effect.
 size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
   for (const Change& change : MayBeNone(sets->context(), proof)) {
     const size_t without = sets->Without(proof.best, change);
@@ -212,7 +217,7 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
   if (prover.LeavesAGap(best)) {
     context.Report("what balances cannot show", 0.91);
     prover.Race(best, blind);
-    // What stands for one of them may be in its way.
+    // An effect that substitutes for one of them may be in its way.
     if (!sets[best].Effects().empty()) prover.Race(prover.BestValues(), blind);
     best = prover.Choice();
   }
@@ -222,7 +227,8 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
     best = shown;
     proof = Reported(&sets, prover, best);
   }
-  // As much beside the noise as the noise itself: the windows are too short for what is left, if anything.
+  // The remainder beside the noise is no larger than the noise itself: windows are too short for what is
+  // left, if anything is.
   const bool at_the_noise = TypicalGap(proof.Best().near) < 2;
   return ProvedOnWholeRuns(context, as_given, std::move(proof), at_the_noise, said.unlikely);
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEven = 0.05, kWorthIt = 9;  // a twentieth of the gap, and the odds that it is worth
 
-// What odds of this logarithm are worth, as the logarithm of the gap's fall.
+// The fall of the gap's logarithm that odds of this logarithm are worth.
 double FallWorth(double odds) { return kEven * odds / std::log(kWorthIt); }
 
 double MedianLogarithm(const std::vector<WindowGap>& gaps) {
@@ -23,8 +23,8 @@ double MedianLogarithm(const std::vector<WindowGap>& gaps) {
   return maths::Median(std::move(logarithms));
 }
 
-// Of those admitted: first by the median, which needs nothing to compare with, then compared with the best so far, because
-// differences count only up to a limit. `none`: when none is.
+// The best of the admitted sets. They are ordered by the median, which needs no comparison, and then compared
+// with the best so far, because differences count only up to a limit. Returns `none` when no set is admitted.
 size_t BestSet(const std::vector<ProvedSet>& sets, const std::function<bool(const ProvedSet&)>& admitted) {
   const size_t none = sets.size();
   size_t best = none;
@@ -94,7 +94,7 @@ GapFall WorthOf(const ProvedSet& from, const ProvedSet& to) {
 }
 
 double PriceOf(double weight) {
-  constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never have exactly one
+  constexpr double kMostOdds = 1000;  // no balance is surer of a form: machines never match one exactly
   const double odds = std::clamp(weight / std::max(1 - weight, 1e-9), 1 / kMostOdds, kMostOdds);
   return kEven - FallWorth(std::log(odds));
 }

@@ -1,4 +1,4 @@
-// A set of changes under proof: its values, and what they leave of the windows that judge.
+// A set of changes under proof: its values, and what they leave of the judging windows.
 #pragma once
 
 #include <cstddef>
@@ -10,70 +10,77 @@
 namespace hydro::diagnose {
 
 struct ProvedSet {
-  Hypothesis hypothesis;  // with the values that predict best of those tried
+  Hypothesis hypothesis;  // with the values that predict best among those tried
   model::ModelDescription proposed =
-      {};  // with the values as the balances estimate them; no parameters: it was not proposed
-  // Of runs that are held out in turn, the same without each run; empty: the hypothesis' model predicts all.
+      {};  // with the values that the balances estimate; without parameters: not proposed
+  // When runs are held out in turn, the same model without each run. Empty: the hypothesis' model predicts
+  // all runs.
   std::vector<model::ModelDescription> without;
   std::vector<WindowGap> near;
   std::vector<WindowGap> far;  // empty until a comparison needs them
-  double weight = 0;           // of the proposal, 0 of what was not proposed
-  double price = 0;            // of all its effects (PriceOf())
-  double price_of_values = 0;  // of how far its base values are from those given, in the same measure
-  bool refined = false;        // as far as sets are to be compared
+  double weight = 0;           // of the proposal; 0 if it was not proposed
+  double price = 0;            // the sum over its effects (PriceOf())
+  double price_of_values = 0;  // for the distance of its base values from those given, in the same measure
+  bool refined = false;        // refined as far as comparison of sets needs
 
   bool tested() const { return IsTested(near); }
-  std::vector<Change> Effects() const;  // the changes that are not values
+  std::vector<Change> Effects() const;  // the changes other than values
   const model::ModelDescription& ModelOf(size_t run) const {
     return without.empty() ? hypothesis.model : without[run];
   }
 };
 
-// Predicts the near windows with the set's values, and prices these.
+// Predicts the near windows with the set's values, and sets the price of these values.
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set);
 
-// Predicts the far windows, unless that is done.
+// Predicts the far windows, unless they are already predicted.
 void JudgeFar(const ProofWindows& windows, int jobs, ProvedSet* set);
 
-// Whether `other`, the same set with other values, takes its place: it predicts the near windows better, and the far ones, as far as
-// they are predicted, no worse than by the error of the comparison. What cannot be tested takes no place.
+// Whether `other`, the same set with other values, should replace `set`: it predicts the near windows better,
+// and the far windows, if they were predicted, no worse than by the error of the comparison. A set that
+// cannot be tested replaces nothing.
 bool PredictsBetter(const ProvedSet& other, const ProvedSet& set);
-// The same; predicts far windows where near ones do not say no.
+// The same, but predicts far windows when the near ones do not already say no.
 bool PredictsBetter(const ProofWindows& windows, int jobs, ProvedSet* other, ProvedSet* set);
 
-// What an effect has to take of the logarithm of the near windows' gap, beyond the error of the comparison, where the balances of the
-// fitted runs give it this weight. Balances and held-out windows are two witnesses whose odds multiply: effects that are not there
-// take some per cent by mending what else is wrong, the less often the more, so that a twentieth of the gap is worth nine to one. Even
-// odds have to be paid with a twentieth; at nine to one, windows need only agree; where the balances are sure, they may not object.
+// By how much an effect has to reduce the logarithm of the near windows' gap, beyond the error of the
+// comparison, when the balances of the fitted runs give the effect this weight. Balances and held-out windows
+// are two witnesses whose odds multiply. Absent effects can reduce the gap by some per cent because they
+// compensate other errors; larger reductions are rarer, so that a twentieth of the gap is worth odds of nine
+// to one. At even odds the effect has to gain a twentieth. At nine to one the windows only have to agree.
+// Where the balances are sure, the windows only must not object.
 double PriceOf(double weight);
-// The same exchange the other way: what a fall of this logarithm is worth, as the logarithm of odds.
+// The inverse of that exchange: the log odds that a fall of this logarithm is worth.
 double LogOddsOf(double fall);
 
-// The fall of the near windows' gap from one set to another, less what the prices of effects and values rise.
+// The fall of the near windows' gap from one set to another, less the rise of the prices of effects and
+// values.
 GapFall WorthOf(const ProvedSet& from, const ProvedSet& to);
 
-// Of the gap: what is more than chance whatever the balances say. A further effect takes it in hardly any rig that lacks none.
+// The part of the gap that is more than chance, whatever the balances say. In hardly any rig that lacks no
+// effect does a further effect gain this much.
 inline constexpr double kPartOfAnEffect = 0.1;
 // Other values are likelier than a missing effect: no machine has exactly the values of its model.
 inline constexpr double kPartOfValues = 0.05;
-// Sets whose gaps differ by less predict equally well: a tenth of what an effect has to take.
+// Sets whose gaps differ by less predict equally well: a tenth of what an effect has to gain.
 inline constexpr double kEqual = 0.01;
 
-// Whether `with` is worth the price of the one effect that it has more than `without`, over the near windows; and does not make the far
-// ones, as far as they are predicted, worse by kPartOfAnEffect. True where either cannot be tested: no simulation, no veto.
+// Whether `with` is worth the price of the one effect that it has more than `without` over the near windows,
+// and does not make the far windows, if they were predicted, worse by kPartOfAnEffect. True where either set
+// cannot be tested: without a simulation there is no veto.
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price);
-// The same of other values, against the model as given.
+// The same for other values, compared with the model as given.
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given);
 
-// The place of the set that predicts the near windows best beyond the price of its effects. Of equals the likelier
-// proposal, then the first. The number of sets where none can be tested.
+// The place of the set that predicts the near windows best after the price of its effects. Of equal sets the
+// likelier proposal leads, then the first. Returns the number of sets where none can be tested.
 size_t LeadingSet(const std::vector<ProvedSet>& sets);
 
-// The places of sets with free values that are worth a refinement: those of values alone, and the `most` that predict best with
-// effects, as LeadingSet() compares them; in their order.
+// The places, in order, of the sets with free values that are worth a refinement: the sets of values alone,
+// and the `most` best sets with effects by the comparison of LeadingSet().
 std::vector<size_t> WorthRefining(const std::vector<ProvedSet>& sets, size_t most);
 
-// The best of those with exactly these effects, in any order; the number of sets where none can be tested.
+// The best set with exactly these effects, in any order; the number of sets where none can be tested.
 size_t BestWithEffects(const std::vector<ProvedSet>& sets, const std::vector<Change>& effects);
 
 }  // namespace hydro::diagnose

@@ -13,13 +13,13 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A round that takes less of the sum of squares leaves nothing for another.
+// If a round reduces the sum of squares by less than this part, another round is not worthwhile.
 constexpr double kWorthARound = 0.02;
 constexpr double kStepTolerance = 1e-3;
-// Of the median window's rms: what is left of a window counts up to here.
+// Relative to the median window's rms: a window's remainder counts up to this factor.
 constexpr double kMostOfTheMedian = 3;
 
-// What the model leaves of each channel in the median window, at least the noise.
+// What the model leaves of each channel in the median window; at least the noise.
 std::array<double, model::kChannels> MedianSquares(const std::vector<WindowGap>& gaps) {
   std::array<double, model::kChannels> medians;
   for (size_t c = 0; c < model::kChannels; ++c) {

@@ -12,7 +12,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Signals that no run has in which a balance needs them.
+// Signals that a balance needs and that no run has.
 std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
   bool p1 = true, p2 = true, speed = true, arm = true, oil = false, moves = false;
   for (const RunMotion& run : runs) {
@@ -36,7 +36,7 @@ std::vector<std::string> MissingSignals(const std::vector<RunMotion>& runs) {
 
 namespace {
 
-// What repeats with a shaft that nobody saw turn far enough.
+// Effects that repeat with a shaft that was not seen to turn far enough.
 std::vector<Unjudged> UnseenWaves(const ScanRuns& runs) {
   if (FewestPeriods(runs.motions()) <= kMostPeriods) return {};
   Unjudged unseen{{}, "the motor turns too little to show whether anything repeats with its shaft"};
@@ -73,7 +73,7 @@ std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& ru
   for (const EffectVariant& variant : runs.setup().variants) {
     // A sensor that was not recorded cannot be wrong.
     if (variant.change.effect.starts_with("sensor.")) continue;
-    // What repeats with the shaft is in no row before its period is known.
+    // An effect that repeats with the shaft is in no row before its period is known.
     if (variant.kind == EffectVariant::Kind::kWave && torque) judged.insert(variant.change.effect);
     all.insert(variant.change.effect);
   }

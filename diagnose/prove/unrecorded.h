@@ -1,4 +1,5 @@
-// What can be said where signals were not recorded: effects that no balance shows, and those of the oil as one class.
+// What can be said if signals were not recorded: which effects no balance shows, and the effects of the oil
+// as one class.
 #pragma once
 
 #include <set>
@@ -12,18 +13,21 @@
 
 namespace hydro::diagnose {
 
-// What stands in an explanation for all effects of the oil, which cannot be told apart without pressures.
+// The name in an explanation for all effects of the oil, which cannot be told apart without pressures.
 inline constexpr char kSomeOil[] = "some effect of the oil";
 
-// Effects of the context's changes of which the runs have no column of their own, and why; `names`: the sets that the rows show. None
-// where all signals were recorded that balances need, and none that simulation alone judges.
+// Those effects among the context's changes for which the runs have no column of their own, and why. `names`
+// has the sets that the rows show. The list is empty where all signals that the balances need were recorded,
+// and it leaves out effects that only simulation judges.
 std::vector<Unjudged> UnjudgedOf(const ProofContext& context, const ScanRuns& runs,
                                  const std::vector<std::string>& names);
 
-// Effects that act only in the oil's balances (ScanRuns::OilOnly) cannot be told apart: nothing, and the sets that hold the truth nine
-// times in ten, without them. What the balances do not hold likely is not tried: it might take the place of what they cannot name.
+// Effects that act only in the oil's balances (ScanRuns::OilOnly) cannot be told apart. Returns the empty
+// set, and the likeliest sets that together hold the truth nine times in ten, all without these effects. Sets
+// that the balances find unlikely are not tried, because they might take the place of the effects that cannot
+// be named.
 std::vector<ChangeSet> SetsWithout(const std::set<std::string>& oil, const ExplanationWeights& weights);
-// The same explanations, with one name for all effects of the oil.
+// The same explanations with one name for all effects of the oil.
 ExplanationWeights AsOneClass(const std::set<std::string>& oil, ExplanationWeights weights);
 
 // Whether some value differs by run ("run.T_s").

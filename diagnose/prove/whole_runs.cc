@@ -14,16 +14,17 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Noise units: beyond, small errors of values that add up over a run say more than what is missing.
+// Noise units: beyond this, small errors of values that add up over a run hide what is missing.
 constexpr double kNearEnough = 10;
-// Of all fitted runs: so few are fitted in seconds, and hold few windows.
+// Samples of all fitted runs: so few are fitted in seconds, and contain few windows.
 constexpr size_t kFewSamples = 10000;
-// Changes that are fitted: of two that the score test expects about as much of, a fit tells.
+// The number of changes that are fitted. Where the score test expects the same from two changes, a fit
+// decides.
 constexpr size_t kMostFittedChanges = 6;
-// Of the squared gap beside the noise: what a change takes has to be most of it.
+// The part of the squared gap above the noise that a change has to take: most of it.
 constexpr double kMost = 0.5;
 
-// What all runs say of the free numbers together.
+// What all runs together say about the free numbers.
 struct Sums {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
@@ -38,7 +39,8 @@ Sums SumsOf(const Fitted& fitted) {
   return sums;
 }
 
-// How much the sum of squares falls in a linear model of the hypothesis' free numbers; from its values, which cost nothing.
+// The fall of the sum of squares in a linear model of the hypothesis' free numbers. It starts at their
+// values, which cost nothing.
 double ExpectedFall(const Fitted& fitted) {
   Sums sums = SumsOf(fitted);
   if (sums.gradient.size() == 0) return 0;
@@ -50,15 +52,15 @@ double ExpectedFall(const Fitted& fitted) {
 
 struct Tested {
   Hypothesis hypothesis;
-  double sum = 0;  // that it may come to
+  double sum = 0;  // the expected sum of squares
 };
 
-// Values are, and effects that the balances do not rule out.
+// Values are worth testing, and so are effects that the balances do not rule out.
 bool IsWorthTesting(const Change& change, const std::vector<std::string>& unlikely) {
   return std::find(unlikely.begin(), unlikely.end(), change.effect) == unlikely.end();
 }
 
-// The best start of each change, by what a score test expects, the most promising first.
+// The best start of each change by the score test, the most promising change first.
 std::vector<Tested> ScoreTest(const ProofContext& context, const Hypothesis& given,
                               const std::vector<model::StartState>& from,
                               const std::vector<std::string>& unlikely) {
@@ -93,7 +95,8 @@ std::vector<Tested> ScoreTest(const ProofContext& context, const Hypothesis& giv
   return best;
 }
 
-// The fit's model without what each run says of its numbers: a Gauss-Newton step from the common fit with the others' information.
+// The fit's model without one run's information about its numbers, for each run: a Gauss-Newton step from the
+// common fit with the others' information.
 std::vector<model::ModelDescription> WithoutEachRun(const Fitted& fitted) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
   const auto p = static_cast<Eigen::Index>(free.size());
@@ -105,7 +108,7 @@ std::vector<model::ModelDescription> WithoutEachRun(const Fitted& fitted) {
       Eigen::MatrixXd left =
           all.information - Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
       const Eigen::VectorXd right = all.gradient - Eigen::Map<const Eigen::VectorXd>(run.gradient.data(), p);
-      // What no other run tells stays where it is.
+      // A number that no other run shows stays where it is.
       left.diagonal() += 1e-6 * all.information.diagonal();
       const Eigen::VectorXd scale = (left.diagonal().array() + 1e-300).sqrt().inverse();
       const Eigen::MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
@@ -162,7 +165,8 @@ Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given,
                         bool at_the_noise, const std::vector<std::string>& unlikely) {
   size_t samples = 0;
   for (const RunData* run : context.runs) samples += run->samples();
-  // Windows of long recordings show an effect that they have found; values alone may always stand for one that is small.
+  // Windows of long recordings show an effect that they have found. Values alone may always replace a small
+  // effect.
   if (!at_the_noise || (!near.Best().Effects().empty() && samples > kFewSamples)) return near;
   const std::vector<WindowGap> found = OverRuns(context, near.Best());
   Proof whole;
@@ -188,13 +192,15 @@ Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given,
     if (!TakesMost(given, square)) continue;
     if (whole.best == whole.given || square < MeanSquare(whole.Best().near)) whole.best = i;
   }
-  // Windows may have found as much with values that whole runs confirm. What both find, whole runs tell more of: what else may be.
+  // Windows may have found the same set with values that whole runs confirm. In that case, whole runs say
+  // more about alternatives.
   const bool same = !near.Best().Effects().empty() && SameEffects(whole.Best(), near.Best());
   const bool taken = same ? !FallOf(whole.Best().near, found).Exceeds(kPartOfValues)
                           : FallOf(found, whole.Best().near).Exceeds(kPartOfAnEffect);
   if (whole.best == whole.given || !taken) return near;
   for (const ProvedSet& set : near.sets) {
-    if (!set.tested()) whole.sets.push_back(set);  // what cannot be simulated over windows cannot over runs
+    // A set that cannot be simulated over windows cannot be simulated over runs.
+    if (!set.tested()) whole.sets.push_back(set);
   }
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
   whole.told_runs = context.runs;

@@ -16,12 +16,15 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A start is mended in so many linear models, each confirmed by so many simulations, while each takes a part of the squared gap.
+// A start is corrected in at most this many linear models, each confirmed by at most this many simulations,
+// as long as each step reduces the squared gap.
 constexpr int kLinearModels = 3, kStartSteps = 2;
 constexpr double kStartGain = 0.9;
-// What a start leaves of each signal and how each signal weighs take turns in a linear model, which is nearly free.
+// Within a linear model, which is nearly free, the start's residual of each signal and each signal's weight
+// are updated in turn.
 constexpr int kWeighings = 6;
-// Two predictions whose gaps differ by less than this part are the same; so many others have to be left.
+// Two predictions whose gaps differ by less than this part are the same. They are left out if at least
+// kFewestThatDiffer others remain.
 constexpr double kAlike = 0.005;
 constexpr size_t kFewestThatDiffer = 2;
 
@@ -30,9 +33,10 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the gap. Beyond it a window has diverged, and how far is chance.
+// A gap that changes by more than this factor belongs to a window that has diverged, and how far is chance.
 constexpr double kMostOfAWindow = 4;
-// Squared, in noise units: what predicts a billion of them has left what the equations hold for, and how far is no number.
+// Squared, in noise units: a prediction that is off by a billion has left the range of the equations, and its
+// distance means nothing.
 constexpr double kDiverged = 1e18;
 // Squared, in noise units: a median below it is the noise.
 constexpr double kAtTheNoise = 1.25;
@@ -67,8 +71,9 @@ class StartFit {
     }
   }
 
-  // The best start near `from`, where the residuals are these. Signals weigh by what is left of them: a start that had to mend
-  // the signal with the finest sensor would spoil the others. First as the sensors' noise has it.
+  // The best start near `from`, where the residuals are `at`. Signals are weighted by what is left of them,
+  // because a start that corrected only the signal with the finest sensor would spoil the others. The first
+  // weights are those of the sensors' noise.
   model::StartState Best(const model::StartState& from, const Residuals& at) const {
     const VectorXd residual = Map<const VectorXd>(at.values.data(), static_cast<Index>(at.values.size()));
     std::vector<double> left(normals_.size(), 1);
@@ -94,7 +99,7 @@ class StartFit {
     return of.middleRows(Row(signal), Row(signal + 1) - Row(signal));
   }
 
-  // Least squares with what is known of the start.
+  // Least squares, including prior knowledge of the start.
   VectorXd Step(const model::StartState& from, const VectorXd& residual,
                 const std::vector<double>& left) const {
     const auto n = static_cast<Index>(starts_.size());
@@ -130,7 +135,7 @@ bool IsAtTheNoise(const std::vector<WindowGap>& gaps, size_t channel) {
   for (const WindowGap& gap : gaps) {
     if (gap.tested && !std::isnan(gap.squared[channel])) squared.push_back(gap.squared[channel]);
   }
-  // Where an effect acts in few windows only, its median does not show: the mean has to be small too.
+  // An effect that acts in only a few windows does not show in the median, so the mean has to be small too.
   double sum = 0;
   for (const double one : squared) sum += one;
   return squared.empty() ||
@@ -176,7 +181,8 @@ WindowGap GapOf(const model::ModelDescription& model, const RunData& window) {
       from = best.start;
     }
   } catch (const model::ModelError&) {
-    // A start that cannot be simulated is no better one; without any the window is not tested.
+    // A start that cannot be simulated is no improvement. If there is none that can, the window is not
+    // tested.
   }
   return best;
 }
@@ -219,7 +225,8 @@ GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap
     }
     if (channels > 0) falls.push_back(sum / channels);
   }
-  // Where both predict the same, the window has no say: a valve that opens in two windows of twenty is judged by these two.
+  // Windows for which both predict the same have no say: a valve that opens in two windows of twenty is
+  // judged by these two.
   const auto alike = [](double fall) { return std::abs(fall) < kAlike; };
   if (static_cast<size_t>(std::count_if(falls.begin(), falls.end(), alike)) + kFewestThatDiffer <=
       falls.size())

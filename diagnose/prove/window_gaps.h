@@ -12,48 +12,51 @@
 
 namespace hydro::diagnose {
 
-// The logarithm of a squared gap, of one that is kept finite: what typical gaps are means of.
+// The logarithm of a squared gap, kept finite. Typical gaps are means of these.
 double LogarithmOf(double squared_gap);
 
-// One window, predicted from its measured start, which a step of least squares corrects as far as its errors allow.
+// One window, predicted from its measured start. A step of least squares corrects the start as far as its
+// errors allow.
 struct WindowGap {
-  bool tested = false;  // false: it cannot be simulated, or takes more steps than a window may
+  bool tested = false;  // false: it cannot be simulated, or needs more steps than a window may take
   // Mean squares of the residuals, in noise units; NaN for channels that are not compared.
   std::array<double, model::kChannels> squared{};
   double sum = 0;    // of squared residuals, in noise units
   size_t count = 0;  // of residuals
   model::StartState start{};
 
-  // The squared gap: the geometric mean over the channels, so that the one with the finest sensor does not decide alone.
+  // The squared gap: the geometric mean over the channels, so that the channel with the finest sensor does
+  // not decide alone.
   double Typical() const;
 };
 
 WindowGap GapOf(const model::ModelDescription& model, const RunData& window);
 
-// Which model predicts the run at this place.
+// The model that predicts the run at this place.
 using ModelOfRun = std::function<const model::ModelDescription&(size_t run)>;
 std::vector<WindowGap> GapsOfEach(const model::ModelDescription& model,
                                   const std::vector<const RunData*>& windows, int jobs);
 std::vector<WindowGap> GapsOfWindows(const ModelOfRun& model, const JudgingWindows& windows, int jobs);
 
-// The mean of log(gap before / gap after) over the windows that both can be tested on.
+// The mean of log(gap before / gap after) over the windows on which both models can be tested.
 struct GapFall {
   double logarithm = 0;  // positive: `after` is smaller
   double error = 0;      // its standard error, from the scatter between windows
   size_t windows = 0;
 
-  // Whether it is at least this part of the gap, and more than its own error.
+  // Whether the fall is at least this part of the gap, and larger than its own error.
   bool Exceeds(double part) const;
 };
 
-// Of each window and channel no more than a factor of 4 counts: one that diverges says that it does, and not how far. Channels that
-// both predict to their noise have no say. Without windows to compare: nothing, from no window.
+// Each window and channel counts by a factor of 4 at most: a prediction that diverges shows that it does, not
+// how far. Channels that both predict to their noise do not count. Without windows to compare, the fall is 0
+// from 0 windows.
 GapFall FallOf(const std::vector<WindowGap>& before, const std::vector<WindowGap>& after);
 
-// Whether half of the windows or more can be tested.
+// Whether at least half of the windows can be tested.
 bool IsTested(const std::vector<WindowGap>& gaps);
 
-// The squared gap of all windows that can be tested, a geometric mean; NaN without any.
+// The squared gap of all windows that can be tested, a geometric mean; NaN if there are none.
 double TypicalGap(const std::vector<WindowGap>& gaps);
 
 }  // namespace hydro::diagnose

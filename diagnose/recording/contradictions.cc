@@ -18,7 +18,7 @@ using Run = runs::MeasuredRun;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLikeATurn = 0.05;  // relative
-constexpr double kSmallStep = 1;     // rad: samples that follow a motion are nearer to each other
+constexpr double kSmallStep = 1;     // rad: samples that follow a motion are closer to each other
 
 // How often the angle jumps by a turn and stays there; 0 where it moves so fast that a turn could be motion.
 size_t JumpsByATurn(const std::vector<double>& angle) {
@@ -28,7 +28,7 @@ size_t JumpsByATurn(const std::vector<double>& angle) {
   }
   const double usual = steps.empty() ? kTurn : maths::Median(steps);
   if (usual > kSmallStep) return 0;
-  // The motion goes on while it jumps.
+  // The motion continues during the jump.
   const double apart = std::max(kLikeATurn * kTurn, 2 * usual);
   size_t jumps = 0;
   for (size_t i = 1; i < angle.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a recording says against itself, whatever the rig is: it takes no balance to see.
+// How a recording contradicts itself, whatever the rig: no balance is needed to see it.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace hydro::diagnose {
 
-// One line each, what was found and what mends it. In this order: pressures of both sides that are the same, by one column for both or an
-// open bypass that is not stated; angles that jump by a turn; a bypass that is said to be open while p2 - p1 takes the motor's torque,
-// which `model` gives roughly.
+// One line each with what was found and how to correct it, in this order: equal pressures on both sides, from
+// one column used for both or from an open bypass that is not stated; angles that jump by a turn; a bypass
+// stated to be open while p2 - p1 takes the motor's torque, which `model` gives roughly.
 std::vector<std::string> Contradictions(const model::ModelDescription& model, const runs::MeasuredRun& run);
 
 }  // namespace hydro::diagnose

@@ -11,19 +11,19 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr size_t kFewestSteps = 20;  // of a signal, before their rhythm says something
-constexpr double kFewestRows = 1.9;  // that a sample stands in, on average
-constexpr double kInStep = 0.9;      // share of the samples that come in one rhythm
-// Steps of an encoder that turns slowly or of a converter with little noise are single ones.
+constexpr size_t kFewestSteps = 20;  // of a signal, needed to see their rhythm
+constexpr double kFewestRows = 1.9;  // rows in which a sample stands, on average
+constexpr double kInStep = 0.9;      // share of the samples that follow one rhythm
+// An encoder that turns slowly, or a converter with little noise, makes single steps.
 constexpr double kSingleSteps = 2.5;
 
 struct Repeats {
-  std::vector<size_t> rows;  // that repeat the row before
+  std::vector<size_t> rows;  // rows that repeat the row before
   double apart = 0;          // rows between samples
 };
 
-// Whether the lengths are those of one rhythm: the usual one, its neighbour on one side where the rates have no whole ratio, and multiples,
-// of samples that by chance equal the one before.
+// Whether the lengths follow one rhythm: the usual length; its neighbour on one side, if the rates have no
+// whole ratio; and multiples, from samples that by chance equal the one before.
 bool IsRhythm(const std::vector<double>& lengths, double usual) {
   const auto share = [&](const auto& is_one) {
     return static_cast<double>(std::count_if(lengths.begin(), lengths.end(), is_one)) /
@@ -45,7 +45,7 @@ Repeats RepeatsOf(const std::vector<double>& values) {
       continue;
     }
     const double step = std::abs(values[i] - values[i - 1]);
-    // What stands before the first step, and beside a gap, may be cut.
+    // A stretch before the first step or beside a gap may be cut short.
     if (!std::isnan(step) && !steps.empty()) {
       lengths.push_back(static_cast<double>(i - first));
       rows += i - first;
@@ -68,7 +68,7 @@ std::vector<std::string> SetAsideRepeats(std::vector<runs::MeasuredRun>* runs) {
   std::vector<std::string> lines;
   for (runs::MeasuredRun& run : *runs) {
     for (const runs::SignalName& sensor : runs::kSignals) {
-      if (sensor.standard_deviation == nullptr) continue;  // not a sensor's
+      if (sensor.standard_deviation == nullptr) continue;  // not a sensor's signal
       std::vector<double>& values = (run.*sensor.signal).values;
       const Repeats repeats = RepeatsOf(values);
       for (const size_t row : repeats.rows) values[row] = runs::kMissing;

@@ -1,4 +1,4 @@
-// Columns of slow sensors that a recorder wrote at the rate of its table.
+// Finds columns of slow sensors that a recorder wrote at the rate of its table.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace hydro::diagnose {
 
-// Of a signal whose every value stands in several rows, to the bit, only the first of equal rows is a sample: the others become missing, and
-// the signal has a time base and a noise of its own, as one with empty cells between its samples. What rests, or has an encoder's steps,
-// repeats honestly and stays. Returns a line for each signal of each run.
+// If every value of a signal stands in several rows, equal to the bit, only the first of equal rows is a
+// sample. The others become missing, and the signal gets its own time base and noise, like a signal with
+// empty cells between its samples. A signal at rest, or one with an encoder's steps, repeats genuine values
+// and is not changed. Returns a line for each signal of each run.
 std::vector<std::string> SetAsideRepeats(std::vector<runs::MeasuredRun>* runs);
 
 }  // namespace hydro::diagnose

@@ -18,21 +18,22 @@ using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal;
 using Columns = std::vector<std::vector<double>>;
 
-// s: means over it need no derivative of what is noisy, and leave what is fast out.
+// s: means over this time replace derivatives of noisy signals, and leave out fast motion.
 constexpr double kBlock = 0.1;
 constexpr size_t kFewestInABlock = 2, kFewestBlocks = 20;
-// Of the largest arm speed: slower, friction and the oil's compression are as large.
+// As a fraction of the largest arm speed: in slower motion, the effects of friction and of the oil's
+// compression are as large.
 constexpr double kMoves = 0.2;
-constexpr double kOff = 0.04;     // relative: a ruler is as good
-constexpr double kSurely = 2;     // of the 95 % interval's half
-constexpr double kDiffer = 0.05;  // relative, of the two directions
-// Share of the variance: a fit that leaves more says nothing.
+constexpr double kOff = 0.04;     // relative: a ruler is as accurate
+constexpr double kSurely = 2;     // in half widths of the 95 % interval
+constexpr double kDiffer = 0.05;  // relative difference between the two directions
+// As a share of the variance: a fit that leaves more says nothing.
 constexpr double kLeaves = 0.2;
 
-// Some samples in a row of a run.
+// Consecutive samples of a run.
 struct Block {
   const Run* run;
-  size_t first, last;  // both ends belong to it
+  size_t first, last;  // both included
 
   double seconds() const { return run->time[last] - run->time[first]; }
 };
@@ -63,7 +64,7 @@ double RateOf(const Block& block, const Signal& signal) {
                            : runs::kMissing;
 }
 
-// An angle is counted, a speed is somebody's filter.
+// Prefers the angle, because an angle is counted, whereas a recorded speed has passed through a filter.
 double MotorSpeed(const Block& block) {
   return block.run->motor_angle.measured() ? RateOf(block, block.run->motor_angle)
                                            : Mean(block, block.run->motor_speed);
@@ -72,7 +73,7 @@ double ArmSpeed(const Block& block) {
   return block.run->arm_angle.measured() ? RateOf(block, block.run->arm_angle)
                                          : Mean(block, block.run->arm_speed);
 }
-// 0 where the pressures were not measured: then nothing is known to leak.
+// False where the pressures were not measured: the leakage is then unknown, and its columns are 0.
 bool HasPressures(const Block& block) { return block.run->p1.measured() && block.run->p2.measured(); }
 double Difference(const Block& block) {
   return HasPressures(block) ? Mean(block, block.run->p2) - Mean(block, block.run->p1) : 0;
@@ -92,7 +93,8 @@ struct Fitted {
   std::vector<double> value, half;
 };
 
-// Nothing where there is too little, or the fit leaves too much. A column that is 0 throughout has the coefficient 0.
+// Empty where there are too few values, or where the fit leaves too much. A column that is 0 throughout has
+// the coefficient 0.
 std::optional<Fitted> Fit(Columns columns, const std::vector<double>& y) {
   if (y.size() < kFewestBlocks) return std::nullopt;
   std::vector<double> scales;
@@ -123,13 +125,13 @@ std::optional<Fitted> Fit(Columns columns, const std::vector<double>& y) {
   return fitted;
 }
 
-// No ratio is known to more than three digits, however little scatters.
+// No ratio is known to more than three digits, however small the scatter is.
 std::string WithInterval(double value, double half) {
   half = std::max(half, 1e-3 * std::abs(value));
   return maths::PlusMinus({value, value - half, value + half});
 }
 
-// What a wrong ratio may come from.
+// The possible cause of a wrong ratio.
 std::string Cause(double factor) {
   constexpr double kNear = 0.1;
   const double turn = 2 * std::numbers::pi;
@@ -140,10 +142,10 @@ std::string Cause(double factor) {
                     : "the arm goes the other way than the motor: the sign of one of them?";
 }
 
-// motor speed = c/D arm speed, and what leaks and is compressed: columns of dp and of its rate.
+// motor speed = c/D arm speed, plus leakage and compression: columns of dp and of its rate.
 std::optional<std::string> RatioOfSpeeds(const model::ModelDescription& model,
                                          const std::vector<Block>& blocks) {
-  // Its sides are known to be unequal: one ratio says nothing.
+  // If the sides are known to be unequal, one ratio says nothing.
   for (const model::EffectDescription& effect : model.effects)
     if (effect.id == "actuator.unequal_areas") return std::nullopt;
   std::vector<double> motor, out, back, leaks, fills;
@@ -186,7 +188,8 @@ std::optional<std::string> RatioOfSpeeds(const model::ModelDescription& model,
          " times as much is measured): " + Cause(factor);
 }
 
-// force = -share k_2 dp + friction, per direction of the arm, and a weight: where the arm hardly accelerates.
+// force = -share k_2 dp + friction, for each direction of the arm, and a weight; where the arm hardly
+// accelerates.
 std::optional<std::string> RatioOfForces(const model::ModelDescription& model,
                                          const std::vector<Block>& blocks) {
   std::vector<double> force, pressed, friction, weight, speeds;

@@ -1,4 +1,5 @@
-// What the measured signals say of each other without any model of the oil: sizes that a ruler, a data sheet or a unit has wrong.
+// What the measured signals say about each other without any model of the oil: sizes that are wrong because
+// of a ruler, a data sheet or a unit.
 #pragma once
 
 #include <string>
@@ -9,11 +10,12 @@
 
 namespace hydro::diagnose {
 
-// One line for each thing that these runs together say:
-// - c/D, from the speeds of motor and arm: a bore, or a displacement per revolution where one per radian is meant. Said where it is not the
-//   model's within 4 %, and by direction where the two directions differ;
-// - how much of the load cell's force (arm_force) k_2 (p2 - p1) is, and the friction between the two;
-// - the winding's resistance and k_e, where a current commands and the voltage was measured beside it.
+// One line for each thing that these runs together show:
+// - c/D, from the speeds of motor and arm: it reveals a wrong bore, or a displacement per revolution given as
+//   one per radian. Reported where it differs from the model's by more than 4 %, and for each direction where
+//   the two directions differ;
+// - the ratio of the load cell's force (arm_force) to k_2 (p2 - p1), and the friction between the two;
+// - the winding's resistance and k_e, where the command is a current and the voltage was measured too.
 std::vector<std::string> RatioRemarks(const model::ModelDescription& model,
                                       const std::vector<runs::MeasuredRun>& runs);
 

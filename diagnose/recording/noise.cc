@@ -1,5 +1,5 @@
-// Estimates how noisy a series is from the series itself: the level of the quietest part of its upper spectrum, or of its quietest
-// samples.
+// Estimates the noise of a series from the series itself: the level of the quietest part of its upper
+// spectrum, or of its quietest samples.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -13,20 +13,20 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr int kSegment = 64;  // samples in one spectrum: an event spoils no more than these
+constexpr int kSegment = 64;  // samples in one spectrum; an event spoils at most these
 constexpr int kHop = 32;
 constexpr int kFirstBin = kSegment / 4;  // the upper half of the spectrum
 constexpr int kBins = kSegment / 2 - kFirstBin;
 constexpr int kBands = 8;
-// Fourth differences remove what is smooth before its side lobes can count.
+// Fourth differences remove smooth motion before its side lobes can count.
 constexpr double kDifference[] = {1, -4, 6, -4, 1};
 constexpr int kOrder = 4;
 
 // Cells of the spectrogram above kClip times the mean are not noise: chance puts 1 in 55 there.
 constexpr double kClip = 4;
 
-// The mean of exponentially distributed powers when some of them are larger because they are not noise:
-// leaves out those far above the mean and corrects the mean for that.
+// The mean of exponentially distributed powers when some are larger because they are not noise. Leaves out
+// those far above the mean and corrects the mean for the omission.
 double NoisePower(std::vector<double> powers) {
   const auto quarter = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 4);
   std::nth_element(powers.begin(), quarter, powers.end());
@@ -48,8 +48,9 @@ double NoisePower(std::vector<double> powers) {
   return mean;
 }
 
-// The standard deviation of the noise in fourth differences of values in a row, without those that an event made large: where a motion
-// has a corner every few samples, no band of the spectrum is quiet, but most differences are.
+// The standard deviation of the noise in fourth differences of consecutive values, without differences that
+// an event made large. Where a motion has a corner every few samples, no band of the spectrum is quiet, but
+// most differences are.
 double QuietNoise(const std::vector<double>& values) {
   constexpr double kCut = 2.5;  // standard deviations
   std::vector<double> sizes;
@@ -61,7 +62,7 @@ double QuietNoise(const std::vector<double>& values) {
   if (sizes.size() < kSegment) return std::numeric_limits<double>::infinity();
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
-  double spread = *middle / 0.6745;  // the median size of a normal number
+  double spread = *middle / 0.6745;  // the median magnitude of a normal number
   const double density = std::exp(-kCut * kCut / 2) / std::sqrt(2 * std::numbers::pi);
   const double kept_variance = 1 - 2 * kCut * density / std::erf(kCut / std::numbers::sqrt2);
   for (int pass = 0; pass < 10; ++pass) {
@@ -78,11 +79,11 @@ double QuietNoise(const std::vector<double>& values) {
   return spread / std::sqrt(square);
 }
 
-// Windowed cosines and sines of the upper half of the spectrum, one a row.
+// Windowed cosines and sines of the upper half of the spectrum, one in each row.
 Eigen::MatrixXd Basis() {
   Eigen::MatrixXd basis(2 * kBins, kSegment);
   for (int bin = 0; bin < kBins; ++bin) {
-    // Halfway between the usual bins, so that the last one is as complex as the others.
+    // Halfway between the usual bins, so that the last bin is complex like the others.
     const double frequency = 2 * std::numbers::pi * (kFirstBin + bin + 0.5) / kSegment;
     for (int i = 0; i < kSegment; ++i) {
       const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (i + 0.5) / kSegment);  // Hann
@@ -103,8 +104,8 @@ Eigen::VectorXd WhitePower(const Eigen::MatrixXd& basis) {
   return Eigen::Map<const Eigen::Matrix2Xd>(each.data(), 2, kBins).colwise().sum().transpose();
 }
 
-// Where segments begin whose samples are mostly present, according to `measured`; all segments when there are
-// none.
+// The first samples of segments whose samples are mostly present, according to `measured`; of all segments
+// when there are none.
 std::vector<int> Segments(const std::vector<double>& measured) {
   std::vector<int> all, whole;
   for (int first = 0; first + kSegment + kOrder <= static_cast<int>(measured.size()); first += kHop) {
@@ -142,7 +143,7 @@ double SpectralNoise(const std::vector<double>& values, const std::vector<int>& 
   // Pools bands from the quietest two upwards, until the next one is louder by more than chance allows.
   std::sort(powers.begin(), powers.end(),
             [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
-  // Independent powers in a band: over the whole spectrum, half as many as samples.
+  // Independent powers in a band: half as many over the whole spectrum as there are samples.
   const double used = kHop * static_cast<double>(segments.size());
   const double independent = std::max(2.0, used / (4.0 * kBands));
   std::vector<double> pooled = powers.front();
@@ -186,7 +187,7 @@ std::pair<double, double> Beside(const std::vector<double>& values, std::ptrdiff
 }  // namespace
 
 double EstimateNoise(const std::vector<double>& all) {
-  // A signal that stands in every second row or fewer has samples of its own: between them nothing is missing.
+  // A signal that stands in at most every second row has samples of its own: between them nothing is missing.
   constexpr double kOwnSamples = 0.75;
   std::vector<double> values = all;
   const bool sparse = static_cast<double>(CountValid(all)) < kOwnSamples * static_cast<double>(all.size());
@@ -199,7 +200,7 @@ double EstimateNoise(const std::vector<double>& all) {
   for (const Gap& gap : gaps) {
     std::pair<double, double> before = Beside(values, static_cast<std::ptrdiff_t>(gap.first) - 1, -1);
     std::pair<double, double> after = Beside(values, static_cast<std::ptrdiff_t>(gap.last), +1);
-    // Before the first value and after the last one, hold that value.
+    // Before the first value and after the last one, the nearest value is held.
     if (gap.first == 0) before = {after.first - 1, after.second};
     if (gap.last == values.size()) after = {before.first + 1, before.second};
     const double slope = (after.second - before.second) / (after.first - before.first);
@@ -209,7 +210,7 @@ double EstimateNoise(const std::vector<double>& all) {
   }
   const std::vector<int> segments = Segments(values);
   double noise = SpectralNoise(whole, segments);
-  // The bridges over gaps are quieter than the rest: give them noise as large as was found, until the
+  // The bridges over gaps are quieter than the rest. They get noise as large as the estimate, until the
   // estimate agrees with it.
   for (int pass = 0; pass < 4 && !gaps.empty(); ++pass) {
     std::mt19937_64 random(0x9a5);
@@ -220,8 +221,9 @@ double EstimateNoise(const std::vector<double>& all) {
     }
     noise = SpectralNoise(filled, segments);
   }
-  // The smaller of two estimates would be too small by chance: three of the standard deviations that correlated differences have. Of a
-  // signal that is slower than the recorder the motion fills the spectrum, and its quietest samples are believed as they are.
+  // Taking the smaller of two estimates would give too small a value by chance, so allow three of the
+  // standard deviations that correlated differences have. For a signal slower than the recorder, the motion
+  // fills the spectrum, and its quietest samples are trusted as they are.
   const double chance = sparse ? 0 : 3 * std::sqrt(1.5 / static_cast<double>(values.size()));
   const double quiet = QuietNoise(values);
   return std::max(quiet < (1 - chance) * noise ? quiet : noise, rounding);

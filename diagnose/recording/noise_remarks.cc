@@ -20,13 +20,13 @@ bool IsUnlikeStated(const SignalData& signal) {
   return IsNoisierThanStated(signal) || kUnlikeStated * signal.estimated_noise < signal.stated_noise;
 }
 
-// Of several runs, one signal whose noise is unlike what they state.
+// In several runs, one signal whose noise differs from what they state.
 struct Unlike {
   model::Channel channel = model::Channel::kP1;
   std::vector<double> stated, shown;  // by run, in the signal's unit
 };
 
-// Runs of which the same signals are unlike what is stated, all noisier or all quieter.
+// Runs in which the same signals differ from what is stated, all of them noisier or all quieter.
 struct Group {
   bool noisier = false, sidecar = false;
   std::vector<std::string> runs, sidecars;

@@ -1,4 +1,4 @@
-// What to say of runs whose stated noise is not what their samples show.
+// Remarks on runs whose stated noise differs from what their samples show.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace hydro::diagnose {
 
-// One remark for all runs of which the same signals are unlike what is stated, by more than a factor of two: what the samples show, how many
-// times what is stated that is, and the lines of the sidecar that mend it. Noisier signals come first.
+// One remark for all runs in which the same signals differ from the stated noise by more than a factor of
+// two. It says what the samples show, how many times the stated noise that is, and which lines correct the
+// sidecar. Noisier signals come first.
 std::vector<std::string> NoiseRemarks(const std::vector<const RunData*>& runs);
 
 }  // namespace hydro::diagnose

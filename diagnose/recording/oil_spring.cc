@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Run = runs::MeasuredRun;
 
-// Time constants of the pump on the oil: slower than that, oil leaks away.
+// In time constants of the pump on the oil: in slower motion, oil leaks away.
 constexpr double kFastOil = 5;
-// How well a model knows its inertia, and its friction beforehand; relative.
+// The relative prior uncertainty of a model's inertia, and of its friction.
 constexpr double kInertiaKnown = 0.2, kFrictionKnown = 3;
 
 VectorXd Integral(const std::vector<double>& time, const VectorXd& rate) {
@@ -28,7 +28,7 @@ VectorXd Integral(const std::vector<double>& time, const VectorXd& rate) {
   return integral;
 }
 
-// Moving means over 2 `half` + 1 values; shorter by `half` at each end.
+// Moving means over 2 `half` + 1 values. The result is shorter by `half` at each end.
 VectorXd Means(const VectorXd& values, Index half) {
   VectorXd means(values.size() - 2 * half);
   double sum = values.head(2 * half + 1).sum();
@@ -67,7 +67,7 @@ class Recorded {
     }
   }
 
-  // Empty where the run is too short or too slow for it.
+  // Empty where the run is too short or too slow.
   std::optional<OilSpring> Fitted() const {
     const double duration = time_.back() - time_.front();
     const double on_oil = std::sqrt(p_.J * p_.V_ms / (2 * p_.beta)) / p_.D;
@@ -75,7 +75,7 @@ class Recorded {
     const auto half = static_cast<Index>(window / MedianInterval(time_));
     if (half < 5 || angle_.size() < 8 * half || Rms(torque_) == 0) return std::nullopt;
     OilSpring found;
-    VectorXd squeezed = angle_;  // what the oil has to take up, as an angle of the motor
+    VectorXd squeezed = angle_;  // the motion that the oil has to take up, as a motor angle
     if (arm_.size() > 0) {
       squeezed -= p_.c / p_.D * arm_;
       const VectorXd motor = WithoutSlow(angle_, half), arm = WithoutSlow(arm_, half);
@@ -87,7 +87,7 @@ class Recorded {
     }
     const double oil = 2 * p_.beta * p_.D * p_.D / p_.V_ms;
     found.at_most = oil * (squeezed.maxCoeff() - squeezed.minCoeff()) / Rms(torque_);
-    // The torque balance, integrated over time: no speed is differentiated.
+    // The torque balance, integrated over time, so that no speed is differentiated.
     const double turning = 0.02 * Rms(speed_);
     const VectorXd direction =
         speed_.unaryExpr([turning](double w) { return static_cast<double>((w > turning) - (w < -turning)); });
@@ -103,7 +103,7 @@ class Recorded {
   }
 
  private:
-  // With as many of the terms as there are: of inertia, damping, friction, oil.
+  // Fits as many terms as are given, from inertia, damping, friction, oil.
   static void Fit(const MatrixXd& terms, const VectorXd& torque, double independent, OilSpring* found) {
     const Index count = terms.cols();
     const bool oil = count == 4;

@@ -16,7 +16,8 @@ bool HasSign(const Mistakes& mistakes, SignalOfRun signal) {
   });
 }
 
-// The signals of these, of one body, that turn round: all that are measured but those that do already.
+// Those of the given signals of one body that change sign: all measured ones except those that the mistakes
+// already invert.
 std::vector<SignalOfRun> Turned(const Run& run, const Mistakes& mistakes,
                                 const std::vector<SignalOfRun>& signals) {
   std::vector<SignalOfRun> turned;
@@ -36,7 +37,7 @@ bool IsSignOf(const RecordingMistake& mistake, const std::vector<SignalOfRun>& s
 
 std::optional<Mistakes> SeenFromTheOtherSide(const Mistakes& mistakes, const Run& run) {
   const bool one_pressure = run.p1.measured() != run.p2.measured();
-  // The twin's words would have to change sides too.
+  // In the twin, a mistake of one pressure would have to name the other side.
   const bool of_one = std::any_of(mistakes.begin(), mistakes.end(),
                                   [](const RecordingMistake& mistake) { return mistake.IsOfOnePressure(); });
   if (one_pressure || of_one) return std::nullopt;

@@ -8,8 +8,9 @@
 
 namespace hydro::diagnose {
 
-// The equations stay the same when command, motor and arm turn round and the sides change places, but for the arm's
-// weight: so every set of mistakes has a twin that explains a recording as well. Empty where no sidecar can say it.
+// Except for the arm's weight, the equations stay the same when command, motor and arm change sign and the
+// two sides change places. Every set of mistakes therefore has a twin that explains a recording as well. The
+// result is empty where no sidecar can state the twin.
 std::optional<std::vector<RecordingMistake>> SeenFromTheOtherSide(
     const std::vector<RecordingMistake>& mistakes, const runs::MeasuredRun& run);
 

@@ -8,19 +8,21 @@
 #include "diagnose/recording/sample_interval.h"
 #include "runs/measured_signals.h"
 #include "runs/signal_unit.h"
+#include "runs/slow_samples.h"
 
 namespace hydro::diagnose {
 namespace {
 
 using Run = runs::MeasuredRun;
 
-// Units in which newcomers record, as a sidecar names them; those of another quantity than a signal's are passed over.
+// Units in which newcomers record, as a sidecar names them. Units of another quantity than a signal's are
+// skipped.
 constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s",
                                   "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
                                   "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
 constexpr const char* kTimeUnits[] = {"ms", "us", "ns", "min", "s"};
 constexpr double kShortestRun = 0.1;  // s
-// How large the largest reading of a run in which something moves can be.
+// Upper limits of the largest reading in a run in which something moves.
 struct Possible {
   const char* unit;
   double least, most;
@@ -31,7 +33,7 @@ constexpr double kSameScale = 1e-4;  // relative: scales are written with few di
 
 bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
 
-// As the run's sidecar calls it.
+// The signal's name in the run's sidecar.
 std::string NameIn(const Run& run, SignalOfRun signal) {
   for (const runs::SignalName& one : runs::kSignals) {
     if (one.signal == signal) return runs::KeyIn(run, one);
@@ -46,7 +48,7 @@ std::string NamesOf(const Run& run, const std::vector<SignalOfRun>& signals) {
   return Enumerated(names) + (names.size() > 1 ? " are" : " is");
 }
 
-// The signals of these that the run has.
+// Those of the given signals that the run has.
 std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>& signals) {
   std::vector<SignalOfRun> measured;
   for (const SignalOfRun signal : signals) {
@@ -63,7 +65,7 @@ std::string UnitOf(const Run& run, SignalOfRun signal) {
   return "";
 }
 
-// The unit that a column is said to be in: ours where nothing is said; "" where its scale is no unit's.
+// The stated unit of a column: the model's where nothing is stated; "" where its scale belongs to no unit.
 template <size_t n>
 std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours,
                        const char* const (&units)[n]) {
@@ -75,7 +77,8 @@ std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours
   return "";
 }
 
-// What brings a column that is in `unit`, but is said to be in `stated`, to ours; empty where both are the same.
+// The factor from a column in `unit` that is stated to be in `stated` to the model's unit; empty where both
+// are the same.
 std::optional<double> FactorBetween(const std::string& unit, const std::string& ours,
                                     const std::string& stated) {
   const std::optional<double> factor = runs::UnitFactor(unit, ours);
@@ -85,7 +88,8 @@ std::optional<double> FactorBetween(const std::string& unit, const std::string& 
   return *factor / said;
 }
 
-// If these are counts that have the top bit of an integer of some size, which is a sign if they were signed: that size. Else 0.
+// If the values are counts of an integer of some size with the top bit set, which would be the sign bit of a
+// signed integer, returns that size; otherwise 0.
 int BitsOfUnsigned(const runs::MeasuredSignal& signal) {
   constexpr double kWhole = 1e-6;
   double largest = 0;
@@ -126,7 +130,7 @@ class MistakeList {
       if (!factor.has_value() || !IsPlausible(measured, ours, *factor)) continue;
       RecordingMistake mistake;
       mistake.what = NamesOf(run_, measured) + " in " + unit + NotIn(stated, ours);
-      // A reference is in the unit of the pressures; no simulation depends on it.
+      // A reference has the pressures' unit. No simulation depends on it.
       for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, *factor);
       mistake.unit = unit;
       list_.push_back(std::move(mistake));
@@ -178,13 +182,15 @@ class MistakeList {
   std::vector<RecordingMistake> Take() { return std::move(list_); }
 
  private:
-  // Nobody records a run of a tenth of a second and less, unless what the sidecar says of the times is no run either.
+  // A factor that makes a run last a tenth of a second or less is not plausible, unless the stated times are
+  // not either because the samples are too far apart.
   bool IsPlausibleTime(double factor) const {
     const double seconds = run_.time.back() - run_.time.front();
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
-    return factor > 1 || factor * seconds > kShortestRun || interval > kSlowestSamples;
+    return factor > 1 || factor * seconds > kShortestRun || interval > runs::kSlowestSamples;
   }
-  // Whether a machine can have read what the signals would be. Where they are as impossible already, anything may mend them.
+  // Whether a machine can produce the values that the signals would have. Where the stated values are already
+  // as impossible, any change may correct them.
   bool IsPlausible(const std::vector<SignalOfRun>& signals, const std::string& ours, double factor) const {
     for (const Possible& one : kPossible) {
       const std::optional<double> size = runs::UnitFactor(ours, one.unit);

@@ -16,16 +16,16 @@ namespace {
 
 using Run = runs::MeasuredRun;
 
-constexpr double kByChance = 1e-3;  // how often chance may hold a value so long, a run
+constexpr double kByChance = 1e-3;  // probability, in each run, that chance holds a value this long
 constexpr size_t kShortestHold = 8;
 constexpr std::ptrdiff_t kFew = 10;
-constexpr double kAboveSteps = 1.5;        // noise over resolution, below which values repeat of themselves
+constexpr double kAboveSteps = 1.5;        // noise over resolution; below it, values repeat naturally
 constexpr double kSpike = 8;               // noise units beyond all neighbours
-constexpr double kSpreadOfNeighbours = 2;  // and this many times what the neighbours differ by
-constexpr double kChange = 5;              // and this many times the change that 19 of 20 samples stay below
+constexpr double kSpreadOfNeighbours = 2;  // and this many times the neighbours' spread
+constexpr double kChange = 5;              // and this many times the change that 19 of 20 do not reach
 constexpr size_t kNeighbours = 3;          // neighbours on each side
 constexpr double kGap = 5;                 // median sample intervals without a row
-constexpr double kStepOfDamage = 0.05;     // of the command's range: what counts as a step
+constexpr double kStepOfDamage = 0.05;     // of the command's range: a larger change counts as a step
 
 struct Stretch {
   size_t first, last;  // [first, last)
@@ -35,7 +35,7 @@ std::string Counted(size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// Stretches of equal values, the first of which is a measurement.
+// Stretches of equal values. The first value of each is a measurement.
 std::vector<Stretch> EqualValues(const std::vector<double>& values) {
   std::vector<Stretch> stretches;
   for (size_t i = 0; i < values.size();) {
@@ -47,12 +47,12 @@ std::vector<Stretch> EqualValues(const std::vector<double>& values) {
   return stretches;
 }
 
-// Whether noise moves this signal from sample to sample: then many equal values are none of its own.
+// Whether noise moves this signal from sample to sample, so that many equal values are not its own.
 bool HasNoise(const std::vector<double>& values, double noise) {
   return noise >= kAboveSteps * EstimateResolution(values) && noise >= 1e-4 * maths::RangeOf(values).size();
 }
 
-// The change from one sample to the next that 19 of 20 stay below.
+// The change between samples that 19 of 20 changes do not exceed.
 double UsualChange(const std::vector<double>& values) {
   std::vector<double> changes;
   for (size_t i = 1; i < values.size(); ++i) {
@@ -65,7 +65,8 @@ double UsualChange(const std::vector<double>& values) {
   return *most;
 }
 
-// A few equal values far from those on both sides, on the same side of both: what a recorder writes for "nothing", -999 say.
+// A few equal values far from those on both sides, and on the same side of both: what a recorder writes for
+// "nothing", for example -999.
 bool IsSentinel(const std::vector<double>& values, const Stretch& one, double leap) {
   if (one.first == 0 || one.last == values.size() || one.last - one.first >= kShortestHold) return false;
   const double before = values[one.first - 1] - values[one.first];
@@ -78,8 +79,8 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   const double noise = EstimateNoise(values);
   if (noise <= 0 || !HasNoise(values, noise)) return {};
   const std::vector<Stretch> equal = EqualValues(values);
-  // How often a value repeats the one before by chance. A few long stretches are what is being looked for; many
-  // are how a slow sensor is recorded.
+  // How often a value repeats the previous one by chance. A few long stretches are damage; many are the
+  // record of a slow sensor.
   const auto is_long = [](const Stretch& one) { return one.last - one.first >= kShortestHold; };
   const bool few = std::count_if(equal.begin(), equal.end(), is_long) <= kFew;
   double repeats = 1;
@@ -99,20 +100,20 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
     }
     if (length < kShortestHold) continue;
     if (n * std::pow(chance, static_cast<double>(length - 1)) > kByChance) continue;
-    // At the end of its range the sensor reads no further, unless the value is far from those beside it.
+    // At the end of its range the sensor's reading stays, unless the value is far from those beside it.
     const double value = values[one.first];
     const double before = one.first > 0 ? values[one.first - 1] : value;
     const double after = one.last < values.size() ? values[one.last] : value;
     const bool apart = std::abs(before - value) > 20 * noise && std::abs(after - value) > 20 * noise;
     if ((value == range.low || value == range.high) && !apart) continue;
-    // The first value is a measurement, unless it is far from the one before.
+    // The first value is a measurement, unless it is far from the value before it.
     const bool own = !(std::abs(before - value) > 20 * noise);
     held.push_back({one.first + (own ? 1 : 0), one.last});
   }
   return held;
 }
 
-// A slow sensor's neighbours are its own samples, not the empty rows between them.
+// The neighbours of a slow sensor's sample are its own samples, not the empty rows between them.
 std::vector<size_t> Spikes(const std::vector<double>& all) {
   std::vector<size_t> rows;
   std::vector<double> values;
@@ -135,14 +136,14 @@ std::vector<size_t> Spikes(const std::vector<double>& all) {
     const double beyond = std::max(values[i] - beside.high, beside.low - values[i]);
     if (beyond > least + kSpreadOfNeighbours * beside.size()) spikes.push_back(rows[i]);
   }
-  // Many of them are the signal's own.
+  // If there are many, they belong to the signal.
   return spikes.size() * 50 > values.size() ? std::vector<size_t>() : spikes;
 }
 
-// Makes held values and spikes missing; counts, by row, how many sensors hold their value there.
+// Makes held values and spikes missing, and counts for each row how many sensors hold their value there.
 void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::vector<std::string>* lines) {
   for (const runs::SignalName& sensor : runs::kSignals) {
-    if (sensor.standard_deviation == nullptr) continue;  // not a sensor's
+    if (sensor.standard_deviation == nullptr) continue;  // not a sensor's signal
     std::vector<double>& values = (run->*sensor.signal).values;
     if (values.size() < kFewestSamples) continue;
     const std::vector<Stretch> held = HeldStretches(values);
@@ -173,7 +174,7 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
   }
 }
 
-// Where rows are lost (in time, or held in all sensors) and the command is another one after them.
+// Stretches where rows are lost (in time, or held in all sensors) and the command is different after them.
 std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_there, size_t sensors) {
   const double usual = MedianInterval(run.time);
   const std::vector<double>& voltage = run.voltage.values;
@@ -191,7 +192,7 @@ std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_t
       ++i;
       continue;
     }
-    // A recorder that has stopped holds the command too; it steps when the rows go on.
+    // A recorder that has stopped also holds the command, which then steps when the rows continue.
     const bool command_held = std::all_of(voltage.begin() + static_cast<std::ptrdiff_t>(i),
                                           voltage.begin() + static_cast<std::ptrdiff_t>(end),
                                           [&](double v) { return v == voltage[i - 1]; });
@@ -204,7 +205,7 @@ std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_t
   return lost;
 }
 
-// The run in parts, without what is lost.
+// The parts of the run, without the lost stretches.
 std::vector<Run> Cut(const Run& run, const std::vector<Stretch>& lost, std::vector<std::string>* lines) {
   std::vector<Run> parts;
   size_t first = 0;

@@ -61,7 +61,7 @@ bool Exclude(const RecordingMistake& a, const RecordingMistake& b) {
   if (a.shaft.has_value() && b.shaft.has_value()) return true;
   if (a.unsigned_signal.has_value() && a.unsigned_signal == b.unsigned_signal) return true;
   if (a.IsSign() != b.IsSign()) return false;
-  // Both pressures in one unit are a mistake of their own.
+  // Two pressures in one unit count as a mistake of their own.
   const bool pressures = a.IsOfOnePressure() && b.IsOfOnePressure();
   if (pressures && a.unit == b.unit) return true;
   return std::any_of(a.factors.begin(), a.factors.end(), [&](const auto& one) {

@@ -16,8 +16,8 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
-constexpr double kMostMissing = 0.05;    // of a signal that is present most of the time
-constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
+constexpr double kMostMissing = 0.05;    // of a signal that is usually present
+constexpr double kSlowerSensor = 0.5;    // if more is missing, it is a slower sensor
 constexpr double kGapTold = 5;           // median sample intervals
 constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
 
@@ -53,17 +53,18 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   if (missing > kMostMissing && missing < kSlowerSensor) {
     remarks->push_back(name + " is missing in " + InPercent(missing) + " of the rows");
   }
-  // In a recording without noise, the noise is that of rounding, q / sqrt(12).
+  // In a recording without noise, the only noise is that of rounding, q / sqrt(12).
   if (signal.resolution > kCoarseStep * signal.noise && !std::isnan(signal.stated_noise)) {
     remarks->push_back(name + " is recorded in steps of " + ShortNumber(signal.resolution, 3) + unit +
                        ", coarser than its noise");
   }
 }
 
-// Of the way that the motor turns: so much is an overshoot.
+// As a fraction of the motor's total path: less than this in the other direction is an overshoot.
 constexpr double kOtherWay = 0.01;
 
-// How far the motor turned each way, and whether it did at all; from its angle where no speed was recorded.
+// How far the motor turned each way, and whether it turned at all, from its angle where no speed was
+// recorded.
 struct MotorTurns {
   bool known = false;
   bool hardly = true;
@@ -78,7 +79,7 @@ void Add(const SignalData& signal, MotorTurns* turned) {
   const bool speed = signal.channel == model::Channel::kMotorSpeed;
   turned->known = true;
   turned->hardly = turned->hardly && maths::RangeOf(signal.values).size() < 2 * kHardlyMoves * signal.noise;
-  // Angles count when they have moved by what noise does not.
+  // An angle counts once it has moved further than noise does.
   double from = speed ? 0 : std::numeric_limits<double>::quiet_NaN();
   for (const double value : signal.values) {
     if (std::isnan(value)) continue;
@@ -94,10 +95,10 @@ std::string WhichRuns(const std::vector<std::string>& names, size_t runs) {
   return names.size() == runs && runs > 1 ? "every run" : RunsNamed(names);
 }
 
-// The fewest samples in the time constant of the pump on the oil of both sides, with which its motion shows.
+// The fewest samples per time constant of the pump on the oil of both sides for which its motion shows.
 constexpr double kFewestInMotion = 5;
 
-// s; the pump's inertia on the stiffness of the oil, at mid-stroke: eqs. (4), (13) and (14).
+// s, time constant of the pump's inertia on the stiffness of the oil at mid-stroke: eqs. (4), (13) and (14).
 double PumpOnOil(const model::Parameters& model) {
   return std::sqrt(model.J * model.V_ms / (2 * model.beta)) / model.D;
 }
@@ -157,7 +158,7 @@ void RemarkOnMissingSignals(const std::vector<const RunData*>& runs, std::vector
 
 std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs) {
   std::vector<std::string> remarks;
-  std::vector<std::pair<std::string, std::string>> layouts;  // and the runs
+  std::vector<std::pair<std::string, std::string>> layouts;  // with their runs
   for (const RunData* run : runs) {
     const std::string& layout = run->measured.layout;
     if (layout.empty()) continue;

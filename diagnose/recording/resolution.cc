@@ -1,4 +1,4 @@
-// The steps of a sensor that counts, from its values.
+// Finds the steps of a sensor that counts, from its values.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 // The unit of which nearly all steps are multiples; 0: none.
 double CommonUnit(const std::vector<double>& steps) {
-  // Digits of a table round the steps: the mean of the smallest is theirs.
+  // A table's digits round the steps, so use the mean of the smallest steps.
   double smallest = *std::min_element(steps.begin(), steps.end());
   for (int pass = 0; pass < 3; ++pass) {
     double sum = 0, count = 0;
@@ -20,7 +20,7 @@ double CommonUnit(const std::vector<double>& steps) {
     }
     if (count > 0) smallest = sum / count;
   }
-  // Values that a fast motion passes are never a single unit apart.
+  // In a fast motion no values may be a single unit apart.
   for (const int part : {1, 2, 3, 4}) {
     const double guess = smallest / part;
     double sum = 0, units = 0;
@@ -29,19 +29,19 @@ double CommonUnit(const std::vector<double>& steps) {
       const double count = std::round(step / guess);
       if (std::abs(step / guess - count) > 0.1) continue;
       ++multiples;
-      // Far apart, the error of the guess adds up.
+      // With many units between values, the error of the guess adds up.
       if (count > part) continue;
       sum += step;
       units += count;
     }
-    // One step in five is a multiple by chance.
+    // By chance, one step in five is a multiple.
     if (10 * multiples >= 9 * steps.size() && units > 0) return sum / units;
   }
   return 0;
 }
 
-// Whether nearly every row is one unit further than the row before, one way: then that is how far the motion gets in a row, and shows no
-// sensor's steps.
+// Whether nearly every row is one unit further than the row before, in one direction. The unit is then the
+// motion in one row, and shows no sensor's steps.
 bool IsSteadyMotion(const std::vector<double>& values, double unit) {
   size_t all = 0, forward = 0, backward = 0;
   for (size_t i = 1; i < values.size(); ++i) {

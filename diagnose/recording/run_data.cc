@@ -14,7 +14,7 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr size_t kFewestOfASignal = 20;  // of one signal: slower sensors leave gaps
+constexpr size_t kFewestOfASignal = 20;  // of one signal, because slower sensors leave gaps
 
 // The row of the table of signals (runs/measured_signals.h).
 constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
@@ -35,8 +35,8 @@ constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
                    allowed);
 }
 
-// Values that no actuator reaches, in the model's own units: at least twice what its equations could hold, so
-// that only a wrong unit exceeds them and a wrong parameter does not.
+// Values that no actuator reaches, in the model's own units. They are at least twice what its equations could
+// produce, so that only a wrong unit exceeds them and a wrong parameter does not.
 double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
   const std::string name = row.ours;
   const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
@@ -57,7 +57,7 @@ void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std
   }
 }
 
-// Enough values, and not one alone.
+// Checks that there are enough values, and that they are not all equal.
 void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
   const std::vector<double>& values = (run.*row.signal).values;
   const size_t valid = CountValid(values);
@@ -65,8 +65,8 @@ void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
     Refuse(run.file, row.ours, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
            std::to_string(kFewestOfASignal) + " values or more, or leave the signal out");
   }
-  // An arm may well stand still. And a simulation without noise reports a single number for a side on its
-  // one-way valve or a pump that sticks.
+  // An arm may stand still. A simulation without noise also gives a single number for a side on its one-way
+  // valve or for a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
   if (row.arm != 0 || simulated) return;
   size_t first = 0;
@@ -82,7 +82,8 @@ void CheckShows(const runs::MeasuredRun& run, const runs::SignalName& row) {
 }
 
 // `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
-// differ; where many in a row equal the largest or smallest value of all, the sensor reads no further.
+// differ; where many consecutive values equal the largest or smallest of all, the sensor is at the end of its
+// range.
 std::vector<double> WithoutEnds(const std::vector<double>& values, const maths::Range& range) {
   constexpr size_t kInARow = 8;
   std::vector<double> rest = values;
@@ -100,8 +101,9 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const maths::
   return rest;
 }
 
-// Below it, the simulation itself is the source of the noise. A noise that shows, or an encoder's steps, counts down to the simulation's
-// tolerance: an angle that turns far has a large range, and its sensor is as good as before.
+// The smallest noise to assume: below it, the simulation itself is the source of the noise. A noise that
+// shows, or an encoder's steps, counts down to the simulation's tolerance: an angle that turns far has a
+// large range, but its sensor is as good as before.
 double LeastNoise(double noise, double resolution, double range) {
   constexpr double kShows = 1e-6, kStepsShow = 1e-7, kTolerance = 1e-6, kOfNone = 1e-5;  // of the range
   const bool shows = noise > kShows * range || resolution / std::sqrt(12.0) > kStepsShow * range;
@@ -118,13 +120,13 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   const maths::Range range = maths::RangeOf(measured.values);
   const double size = range.size();
   if (size == 0) {
-    // For a signal that never moves, believe the stated noise.
+    // For a signal that never moves, use the stated noise.
     signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
   } else {
     std::vector<double> rest = WithoutEnds(measured.values, range);
     double noise = EstimateNoise(rest);
-    // Without noise above the rounding, saturation cannot be told: a signal that rests at an end of its
-    // motion reads the same.
+    // Without noise above the rounding error, saturation cannot be detected: a signal that rests at an end of
+    // its motion looks the same.
     if (noise >= 0.6 * signal.resolution && noise >= 1e-4 * size) {
       signal.values = std::move(rest);
     } else {
@@ -158,9 +160,9 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
   return motion;
 }
 
-// The values at the samples, in straight lines where some are missing.
+// The values at the samples, interpolated linearly where some are missing.
 std::vector<double> Bridged(const std::vector<double>& time, std::vector<double> values) {
-  size_t before = values.size();  // the last sample that is there; none yet
+  size_t before = values.size();  // the last sample that is present; none yet
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     for (size_t k = before == values.size() ? 0 : before + 1; k < i; ++k) {
@@ -174,7 +176,7 @@ std::vector<double> Bridged(const std::vector<double>& time, std::vector<double>
   return values;
 }
 
-// What was recorded of what acts from outside; empty: nothing.
+// The recorded outside influences; empty: none were recorded.
 std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
   std::vector<model::Surroundings> around;
   if (!run.arm_force.measured() && !run.temperature.measured()) return around;
@@ -270,7 +272,8 @@ const SignalData* RunData::Find(model::Channel channel) const {
 
 namespace {
 
-// No unit of any recorder makes a value as large: what is above it is a damaged cell, and squares of it are no numbers.
+// No unit of any recorder makes a value this large. A larger value is a damaged cell, and its square would
+// overflow.
 constexpr double kNoSuchValue = 1e15;
 
 void CheckCells(const runs::MeasuredRun& run) {
@@ -284,8 +287,8 @@ void CheckCells(const runs::MeasuredRun& run) {
   }
 }
 
-// Between two rows there may be as many samples as the recording has ten times over, or as a minute has at 2 kHz: what follows puts a
-// recording on an even grid.
+// The gap between two rows may hold ten times as many samples as the recording has, or as many as a minute
+// has at 2 kHz. Later steps put a recording on an even grid, and a longer gap would make that grid too large.
 void CheckGaps(const runs::MeasuredRun& run) {
   constexpr double kTimesTheRows = 10, kAnyway = 120000;
   const double interval = MedianInterval(run.time), rows = static_cast<double>(run.samples());

@@ -19,13 +19,14 @@ namespace hydro::diagnose {
 
 struct SignalData {
   model::Channel channel = model::Channel::kP1;
-  std::vector<double> values;  // one a sample; NaN: missing
+  std::vector<double> values;  // one for each sample; NaN: missing
   double noise = 0;            // standard deviation in the signal's unit: as stated, else estimated
-  double stated_noise = std::numeric_limits<double>::quiet_NaN();  // what the run itself states
-  double estimated_noise = 0;                                      // from the data, whatever is stated
-  double resolution = 0;  // smallest step between values; 0 if none shows
-  size_t valid = 0;       // samples that are not missing
-  // Samples at the end of the sensor's range: they say only that it was exceeded, and count as missing.
+  double stated_noise = std::numeric_limits<double>::quiet_NaN();  // stated by the run itself
+  double estimated_noise = 0;  // from the data, regardless of what is stated
+  double resolution = 0;       // smallest step between values; 0 if none shows
+  size_t valid = 0;            // samples that are not missing
+  // Samples at the end of the sensor's range. They show only that the range was exceeded, and count as
+  // missing.
   size_t saturated = 0;
 };
 
@@ -40,41 +41,42 @@ struct RunData {
   runs::MeasuredRun measured;
   model::Stimulus stimulus;  // `motion` points to the one below, or to that of the whole run
   std::unique_ptr<trajectory::Trajectory> motion;
-  // The first of the fitted runs: phases count from its shaft's angle. The other runs' shafts start anywhere.
+  // Set for the first of the fitted runs: phases count from its shaft's angle. The other runs' shafts may
+  // start at any angle.
   bool angle_counts = false;
   bool begins_within = false;  // a window that does not begin where its run does
   model::StartState start{};   // the base states at the first sample, from nearby samples
-  // Which of these states are unknown: measured badly or not at all. The others are held (for example the
-  // angle of a motor whose angle is not measured).
+  // Which of these states are unknown because they were measured badly or not at all. The others are held
+  // (for example the angle of a motor whose angle is not measured).
   std::array<bool, std::tuple_size_v<model::StartState>> start_free{};
-  // How far each of these may be from `start`, a standard deviation: noise, and what a wrong scale or a late sensor
-  // makes of it. Infinite where nothing was measured.
+  // How far each state may be from `start`, as a standard deviation: noise, and the effect of a wrong scale
+  // or a late sensor. Infinite where nothing was measured.
   model::StartState start_error = kUnknownStart;
   std::vector<SignalData> signals;    // those compared with a simulation
-  double most_steps_per_sample = 20;  // that a simulation of it may take
+  double most_steps_per_sample = 20;  // limit for a simulation of the run
 
   size_t samples() const { return stimulus.time.size(); }
   double duration() const { return stimulus.time.back() - stimulus.time.front(); }
   const SignalData* Find(model::Channel channel) const;
 };
 
-// The channel's row in the table of signals: its names, and where a run has it.
+// The channel's row in the table of signals: its names, and where a run stores it.
 const runs::SignalName& SignalOf(model::Channel channel);
-// Whether a simulation of the run is compared with the channel: it is measured, and is not of an arm that
-// stands still (clamped) or whose motion is imposed (driven).
+// Whether a simulation of the run is compared with the channel: the channel is measured, and it does not
+// belong to an arm that stands still (clamped) or whose motion is imposed (driven).
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
-// Values that are not missing.
+// The number of values that are not missing.
 size_t CountValid(const std::vector<double>& values);
-// The same of all signals that are compared.
+// The same over all signals that are compared.
 size_t CountValid(const RunData& run);
-// Of several runs: the shortest one's duration, and the median time between successive samples of all, s.
+// For several runs, s: the duration of the shortest, and the median time between successive samples of all.
 double ShortestDuration(const std::vector<const RunData*>& runs);
 double SampleInterval(const std::vector<const RunData*>& runs);
-// What was done to the actuator, without the motion of a driven shaft.
+// The inputs of the actuator, without the motion of a driven shaft.
 model::Stimulus StimulusOf(const runs::MeasuredRun& run);
 
 std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs);
-// Where the runs begin as measured.
+// The starts of the runs as measured.
 std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs);
 
 // "motor_speed", as in sidecars and reports.
@@ -82,32 +84,34 @@ const std::string& ChannelName(model::Channel channel);
 // "rad/s", in the model's units.
 std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
 
-// A run of fewer samples cannot be used.
+// A run with fewer samples cannot be used.
 inline constexpr size_t kFewestSamples = 100;
 
-// Throws InputError, with run, signal and row, for data from which nothing can be learnt in any unit: fewer than 100 samples, a signal that
-// never changes or has hardly a value.
+// Throws InputError, with run, signal and row, for data that teach nothing in any unit: fewer than 100
+// samples, or a signal that never changes or has hardly any values.
 void CheckUsable(const runs::MeasuredRun& run);
 
-// Throws InputError as CheckUsable() does, and for no signal that a model could be compared with, or
-// impossible values (speeds of 1e5 rad/s: another unit).
+// Throws InputError as CheckUsable() does, and also when no signal can be compared with a model, or when
+// values are impossible (speeds of 1e5 rad/s point to another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 
-// Sets the run's start and start_free from its first samples; the rest of `data` must be filled in.
+// Sets the run's start and start_free from its first samples. All other members of `data` must already be
+// filled in.
 void SetStart(const model::Parameters& model, RunData* data);
 
-// Standard deviations of its noise: a signal that moves by no more, up and down, hardly moves.
+// In standard deviations of its noise: a signal that moves up and down by no more than this hardly moves.
 inline constexpr double kHardlyMoves = 5;
 
 // Makes the runs' names unique.
 void MakeNamesUnique(std::vector<RunData>* runs);
 
-// The standard deviation of what no smooth signal explains: white noise and rounding. It comes from the quietest of several bands of the
-// upper spectrum, so that neither the motion nor a ripple of one frequency counts, or, where these have surely less, from the quietest
-// samples; and is at least that of rounding to the resolution. `values` may contain NaN.
+// The standard deviation of what no smooth signal explains: white noise and rounding. It comes from the
+// quietest of several bands of the upper spectrum, so that neither the motion nor a ripple of one frequency
+// counts, or from the quietest samples where these clearly have less noise. It is at least the rounding error
+// of the resolution. `values` may contain NaN.
 double EstimateNoise(const std::vector<double>& values);
 
-// The smallest step between values that differ; 0 when most steps are not multiples of it.
+// The smallest step between different values; 0 when most steps are not multiples of it.
 double EstimateResolution(const std::vector<double>& values);
 
 }  // namespace hydro::diagnose

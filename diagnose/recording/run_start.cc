@@ -1,4 +1,4 @@
-// Where a measured run begins.
+// Finds where a measured run begins.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@ namespace hydro::diagnose {
 namespace {
 
 // The value and slope at the first time of a straight line through the first valid samples, with standard
-// errors; of a signal that is not measured the value is NaN.
+// errors. The value is NaN for a signal that is not measured.
 struct StartLine {
   double value = runs::kMissing, slope = 0;
   double value_error = 0, slope_error = 0;
@@ -19,8 +19,8 @@ struct StartLine {
 };
 using StartLines = std::array<StartLine, model::kChannels>;
 
-// Takes a speed for 0 when the samples cannot tell it from 0. A motion that should begin at rest but gets a
-// little speed slips where friction or cogging hold it, and the fit then stays one tooth off.
+// Takes a speed for 0 when the samples cannot distinguish it from 0. A motion that should begin at rest but
+// gets a small speed slips where friction or cogging would hold it, and the fit then stays one tooth off.
 constexpr double kAtRest = 3;  // standard errors
 double Rest(double speed, double error) { return std::abs(speed) < kAtRest * error ? 0 : speed; }
 
@@ -66,15 +66,15 @@ StartLines FirstLines(const RunData& data) {
   return lines;
 }
 
-// How far the true state may be from what its line says, a standard deviation: noise, a scale that is wrong by
-// `scale`, and a sensor that is late. NaN without a line.
+// How far the true state may be from its line's value, as a standard deviation: noise, a scale that is wrong
+// by `scale`, and a sensor that is late. NaN without a line.
 double ErrorOf(const StartLine& line, double scale) {
   constexpr double kLate = 0.005;  // s
   constexpr double kNoises = 3;
   return kNoises * line.noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
 }
 
-// The same of a speed that is known from the angle alone.
+// The same for a speed that is known from the angle alone.
 double SlopeErrorOf(const StartLine& angle) {
   constexpr double kScale = 0.1;
   constexpr double kErrors = 5;
@@ -82,7 +82,7 @@ double SlopeErrorOf(const StartLine& angle) {
 }
 
 void SetStartErrors(const StartLines& lines, RunData* data) {
-  constexpr double kScale = 0.03;  // of a pressure or speed; an angle counts from anywhere
+  constexpr double kScale = 0.03;  // of a pressure or speed; an angle has no fixed zero
   const auto line = [&lines](model::Channel channel) { return lines[static_cast<size_t>(channel)]; };
   const auto set = [data](size_t state, double error, double otherwise) {
     const double known = std::isnan(error) ? otherwise : error;
@@ -116,8 +116,8 @@ void SetStart(const model::Parameters& model, RunData* data) {
 
   double p1 = line(model::Channel::kP1).value, p2 = line(model::Channel::kP2).value;
   if (data->stimulus.bypass) {
-    // With the bypass there is a single pressure, eqs. (13) and (14) added up: p1 stands for both in
-    // start_free, and code that moves it moves p2 too.
+    // With the bypass open there is a single pressure, from the sum of eqs. (13) and (14): p1 represents both
+    // in start_free, and code that moves it moves p2 too.
     p1 = p2 = std::isnan(p1) ? p2 : std::isnan(p2) ? p1 : (p1 + p2) / 2;
   }
   data->start[model::kP1] = first_known(p1, model.p_3);
@@ -138,7 +138,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
   SetStartErrors(lines, data);
-  // As much as the oil of a side gives up from the greatest pressure that the pump holds.
+  // The volume that the oil of a side releases from the greatest pressure that the pump holds.
   data->start_error[model::kReturned] = model.V_ms / model.beta * model.T_pmax / model.D;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using Run = runs::MeasuredRun;
 
-// The units to be named, by signal; the times under "time".
+// The units to name, by signal; that of the times under "time".
 using Units = std::map<std::string, std::string>;
 
 Units NamedUnits(const std::vector<RecordingMistake>& mistakes) {
@@ -36,7 +36,7 @@ bool Same(const runs::ColumnSource& a, const runs::ColumnSource& b) {
   return a.column == b.column && a.scale == b.scale && a.offset == b.offset;
 }
 
-// A unit and what is left of the scale beside it say it best: a person knows the unit.
+// A unit, and what remains of the scale beside it, say it best, because a person knows the unit.
 std::string Line(const std::string& name, const runs::ColumnSource& source, const std::string& unit,
                  const std::string& ours) {
   const double of_unit = runs::UnitFactor(unit, ours).value_or(1);
@@ -60,7 +60,7 @@ std::string ShaftLine(const Run& run, model::Shaft shaft) {
   return "";
 }
 
-// Only what the sidecar says of the columns.
+// Keeps only what the sidecar says about the columns.
 Run SourcesOf(const Run& run) {
   Run sources;
   sources.time_source = run.time_source;

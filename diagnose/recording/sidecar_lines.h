@@ -8,8 +8,8 @@
 
 namespace hydro::diagnose {
 
-// The lines of the run's sidecar, separated by "; ", that undo these mistakes; "" where only a factor without a unit is
-// known.
+// The lines of the run's sidecar, separated by "; ", that undo these mistakes. "" where only a factor without
+// a unit is known.
 std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const runs::MeasuredRun& run);
 
 }  // namespace hydro::diagnose

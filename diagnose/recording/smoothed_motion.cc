@@ -33,7 +33,7 @@ class Quintics : public trajectory::Trajectory {
       const double bend = h * h * (b[2] - a[2]) / 2;
       pieces_.push_back({a[0], h * a[1], h * h * a[2] / 2, 10 * rise - 4 * rate + bend,
                          -15 * rise + 7 * rate - 2 * bend, 6 * rise - 3 * rate + bend});
-      // Between samples a smooth motion hardly exceeds its samples: checking the halves is enough.
+      // Between samples a smooth motion hardly exceeds its samples, so it is enough to check the halves.
       for (const double s : {0.5, 1.0}) {
         min_ = std::min(min_, At(pieces_.back(), s));
         max_ = std::max(max_, At(pieces_.back(), s));
@@ -84,7 +84,7 @@ struct Belief {
   MotionState mean = MotionState::Zero();
   Covariance covariance = Covariance::Zero();
 
-  // Takes in a reading of one of the states; returns -2 times its log likelihood.
+  // Processes a reading of one of the states; returns -2 times its log likelihood.
   double Update(int which, double reading, double noise) {
     const Eigen::Vector3d column = covariance.col(which);
     const double variance = column[which] + noise * noise;
@@ -122,7 +122,7 @@ class Smoother {
     double misfit = 0;
     Belief now;
     now.mean[0] = first_angle_;
-    // A vague prior: any motion that moves, within one unit of time, no further than the samples do.
+    // A vague prior: any motion that moves within one unit of time no further than the samples do.
     now.covariance = std::pow(range_ + angle_noise_, 2) * Covariance::Identity();
     for (size_t i = 0; i < time_.size(); ++i) {
       if (i > 0) {
@@ -178,7 +178,8 @@ std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& 
     return std::make_unique<Quintics>(std::vector<double>{time.front()},
                                       std::vector<MotionState>{{held, 0, 0}}, 1.0);
   }
-  // Search in steps of a decade over all possible strengths, then of a fifth of a decade around the best.
+  // Search in steps of a decade over all possible strengths, then in steps of a fifth of a decade around the
+  // best.
   const double lowest =
       2 * std::log10(smoother.range()) - 5 * std::log10(static_cast<double>(time.size())) - 3;
   const double highest = 2 * std::log10(smoother.range()) + 1;

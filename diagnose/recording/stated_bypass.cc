@@ -17,23 +17,25 @@ using Eigen::VectorXd;
 using Run = runs::MeasuredRun;
 
 constexpr double kWithinNoise = 3;
-// Noise units by which the speed of a motor that turns differs from zero, or its angle from itself.
+// In noise units: a motor turns if its speed differs from zero, or its angle from itself, by this much.
 constexpr double kTurns = 20;
-// Shares of the torque: what is left of the flow through an open bypass never takes the first; above the second, pressures speak for closed
-// oil.
+// Shares of the torque. The remaining flow through an open bypass never takes the first; above the second,
+// the pressures indicate closed oil.
 constexpr double kTakesTorque = 0.5, kTakesNone = 0.2;
-// Of 227 clamped runs of 42 rigs, the 56 open ones show -0.08 to 0.05 of the oil's stiffness, 144 of the closed ones surely more than 0.3, and
-// no closed one surely less than 0.15.
+// Of 227 clamped runs of 42 rigs, the 56 with an open bypass show -0.08 to 0.05 of the oil's stiffness. Of
+// those with a closed bypass, 144 surely show more than 0.3, and none surely shows less than 0.15.
 constexpr double kNoSpring = 0.15, kSpring = 0.3;
 constexpr double kErrors = 3;
-// Of the torque the closed oil had to take this share for its absence to show; below the least, the model has no oil to speak of.
+// Closed oil would have to take this share of the torque for its absence to show. Below the smaller number,
+// the model has practically no oil.
 constexpr double kWouldShow = 0.7, kNoOil = 0.1;
-// The shares of the squared torque that a fit leaves: where more is left, the model has something else against the run.
+// The shares of the squared torque that a fit leaves. Where more is left, the model disagrees with the run
+// for another reason.
 constexpr double kExplained = 0.5, kUnexplainedWithout = 0.05, kBetter = 0.7;
-// Fitted inertia over the model's. Beyond it a unit or a sign is wrong.
+// Fitted inertia over the model's. Beyond these limits a unit or a sign is wrong.
 constexpr double kLeastInertia = 0.6, kMostInertia = 1.6;
-// An arm that follows the motor through closed oil: correlation, and the ratio of the displaced volumes. One that bends on its way, or whose
-// geometry is a guess, follows less, but moves.
+// An arm that follows the motor through closed oil: correlation, and ratio of the displaced volumes. An arm
+// behind a flexible connection, or one whose geometry is a guess, follows less closely, but moves.
 constexpr double kFollows = 0.95, kSameVolume = 0.7, kMovesLittle = 0.2;
 
 double Spread(const VectorXd& values) { return values.size() == 0 ? 0 : Rms(values.array() - values.mean()); }
@@ -70,7 +72,7 @@ class StatedBypass {
     if (motion && (run.shaft == model::Shaft::kClamped || arm)) spring_ = FitOilSpring(model, run);
     VectorXd torque = model.k_1 * Held(run.voltage.values);
     torque = torque.cwiseMin(model.T_pmax).cwiseMax(-model.T_pmax).eval();
-    // A difference that never changes is that of the sensors.
+    // A difference that never changes comes from the sensors.
     if (both_)
       share_ = model.D * Spread(Held(run.p2.values) - Held(run.p1.values)) / std::max(Spread(torque), 1e-300);
   }
@@ -103,8 +105,8 @@ class StatedBypass {
     if (clamped && both_ && turns_ && run_.motor_speed.measured() && AreSame())
       return "p1 and p2 are the same within their noise while the motor turns: the bypass was open";
     if (!spring_ || !turns_ || (both_ && share_ > kTakesNone)) return "";
-    // An arm may be heavy or lost in friction, its geometry a guess, and a pump may leak as much as it turns: where pressures were recorded,
-    // they say it.
+    // An arm may be heavy or held by friction, its geometry may be a guess, and a pump may leak as much as it
+    // turns. Where pressures were recorded, they decide.
     if (both_ && !AreSame()) return "";
     const bool no_pressure = !run_.p1.measured() && !run_.p2.measured();
     if (clamped && no_pressure && spring_->at_most < kNoOil)
@@ -125,7 +127,7 @@ class StatedBypass {
 
   const Run& run_;
   bool both_ = false, turns_ = false;
-  double share_ = 0;  // of the motor's torque that the pressures take
+  double share_ = 0;  // part of the motor's torque that the pressures take
   std::optional<OilSpring> spring_;
 };
 

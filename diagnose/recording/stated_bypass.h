@@ -1,4 +1,4 @@
-// What a recording shows of the bypass, held against what its sidecar says of it.
+// Compares what a recording shows of the bypass with what its sidecar says about it.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace hydro::diagnose {
 
-// The contradiction, with the line that mends it; empty where there is none, or nothing shows. Closed oil is a spring between motor and arm:
-// the motor's torque meets it or does not, with pressures recorded or without.
+// The contradiction, with the line that corrects it; empty where there is none, or where the recording does
+// not show the bypass. Closed oil is a spring between motor and arm, so the motor's torque shows whether the
+// oil is closed, with or without recorded pressures.
 std::string StatedBypassContradiction(const model::Parameters& model, const runs::MeasuredRun& run);
 
 }  // namespace hydro::diagnose

@@ -15,15 +15,15 @@ namespace {
 constexpr size_t kFewestCompared = 12;  // samples
 constexpr size_t kFewestValues = 8;     // of one signal
 
-// This share of a window is simulated before it, and not compared: nobody knows the states of effects where it
-// begins, for example what a lagging sensor reads.
+// This share of a window is simulated before it and not compared, because the states of effects are unknown
+// where it begins, for example what a lagging sensor reads.
 constexpr double kWarmUp = 0.25;
 
-// A window's simulation may take so many steps for each sample. Models that need more are stiffer than any
-// that the samples can show.
+// A window's simulation may take this many steps for each sample. Models that need more are stiffer than the
+// samples can show.
 constexpr double kStepsPerSample = 12;
 
-// Windows of fine recordings are thinned, to no fewer samples than these.
+// Windows of fine recordings are thinned to no fewer samples than this.
 constexpr size_t kFewestKept = 100;
 
 template <class T>
@@ -32,7 +32,7 @@ std::vector<T> Slice(const std::vector<T>& values, size_t first, size_t last) {
           values.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
-// The motor's angle along a run of which only the speed is measured; empty if neither is.
+// The motor's angle along a run in which only the speed is measured; empty if neither is.
 std::vector<double> IntegratedSpeed(const RunData& run) {
   const SignalData* speed = run.Find(model::Channel::kMotorSpeed);
   if (speed == nullptr || run.Find(model::Channel::kMotorAngle) != nullptr) return {};
@@ -103,7 +103,7 @@ std::vector<RunData> WindowsOf(const RunData& run, double seconds, const model::
       RunData window = CutWindow(run, first, compared, last, motor_angle, model);
       if (!window.signals.empty()) windows.push_back(std::move(window));
     }
-    // The next one's comparison begins where this one's ends.
+    // The next window's comparison begins where this one's ends.
     const double next = end - kWarmUp * seconds;
     while (first < last && time[first] < next) ++first;
   }

@@ -1,4 +1,4 @@
-// Sections that answer: what was found, how sure that is, what remains, what to measure next.
+// Sections with answers: what was found, how certain that is, what remains, what to measure next.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -113,7 +113,7 @@ bool IsWhatWasFound(const WeightedSet& explanation, const Diagnosis& diagnosis) 
   return terms == found;
 }
 
-// What the weights together say.
+// What the weights say together.
 std::string WeightsInWords(size_t set_90, bool first_was_found) {
   std::string words = "By what the balances say and what held-out simulation makes of it, the truth is ";
   if (set_90 <= 1) {

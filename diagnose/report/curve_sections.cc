@@ -1,4 +1,4 @@
-// Sections with curves and tables, and what all sections are made of.
+// Sections with curves and tables, and the elements of all sections.
 #include <cmath>
 
 #include "base/number_text.h"
@@ -12,7 +12,8 @@
 namespace hydro::diagnose {
 namespace {
 
-// The curve of a closure; of a surface the cut at the last knot of its second variable. The band's ends are 95 %.
+// The curve of a closure; for a surface, the cut at the last knot of its second variable. The ends of the
+// band are those of 95 %.
 MeasuredCurve CurveOf(const Closure& closure) {
   MeasuredCurve curve;
   curve.unit = closure.unit;

@@ -13,7 +13,7 @@
 namespace hydro::diagnose {
 namespace {
 
-// Converts all lists by one unit, that of the largest of the first's values, and names it.
+// Converts all lists to one unit, which suits the largest value of the first list, and names it.
 void Convert(std::string* unit, const std::vector<std::vector<double>*>& lists) {
   double largest = 0;
   for (const double value : *lists.front()) largest = std::fmax(largest, std::abs(value));
@@ -25,7 +25,7 @@ void Convert(std::string* unit, const std::vector<std::vector<double>*>& lists) 
   *unit = to->to;
 }
 
-// The same of values with intervals; returns the factor.
+// The same for values with intervals; returns the factor.
 double Convert(std::vector<Estimated>* estimated, std::string* unit) {
   double largest = 0;
   for (const Estimated& one : *estimated) largest = std::fmax(largest, std::abs(one.value));
@@ -56,7 +56,7 @@ void Convert(Closure* closure) {
   Convert(&closure->unit, {&closure->value, &closure->low, &closure->high});
   for (size_t i = 0; i < closure->knots.size(); ++i)
     Convert(&closure->against_units[i], {&closure->knots[i]});
-  closure->resembles = Resemblance(*closure);  // it may say a place
+  closure->resembles = Resemblance(*closure);  // its text may contain a value
 }
 
 void Replace(const std::string& what, const std::string& with, std::string* text) {
@@ -64,7 +64,7 @@ void Replace(const std::string& what, const std::string& with, std::string* text
     text->replace(at, what.size(), with);
 }
 
-// Whether an effect or a parameter has no place in a motor alone.
+// Whether an effect or a parameter does not exist in a motor alone.
 bool IsOfTheOil(const std::string& id) {
   static const std::regex oil(
       "((accumulator|actuator|arm|fluid|line|valve)[.]|closure[.](flow|arm|cross|outer)|"
@@ -73,7 +73,7 @@ bool IsOfTheOil(const std::string& id) {
   return std::regex_match(id, oil);
 }
 
-// The words of a text; ids such as pump.stribeck have no article.
+// Changes the words of a text. Ids such as pump.stribeck have no article.
 void SpeakOfTheMotor(std::string* text) {
   Replace("the pump's", "the motor's or its gear's", text);
   Replace("the pump", "the motor or its gear", text);
@@ -87,7 +87,7 @@ void SpeakOfTheMotor(Diagnosis* diagnosis) {
   SpeakOfTheMotor(&diagnosis->next.why);
   for (FoundEffect& effect : diagnosis->effects) SpeakOfTheMotor(&effect.summary);
   for (Candidate& candidate : diagnosis->candidates) SpeakOfTheMotor(&candidate.rejected_because);
-  // There is nothing that could leak.
+  // A motor alone has nothing that could leak.
   std::erase_if(diagnosis->remarks, [](const std::string& remark) {
     return remark.starts_with("leakage and valves cannot be judged") || IsOfTheOil(remark);
   });

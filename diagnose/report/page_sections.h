@@ -1,5 +1,5 @@
-// The sections of report.html. Each is HTML, or "" where there is nothing to say. `diagnosis` is in the units that are shown; `si` for
-// those of signals, which it has in the model's.
+// The sections of report.html. Each is HTML, or "" when there is nothing to say. `diagnosis` is in the units
+// that are shown. Its signals stay in the model's units, and `si` selects the units in which they are shown.
 #pragma once
 
 #include <string>
@@ -13,18 +13,19 @@ std::string WhatWasFound(const Diagnosis& diagnosis, bool si);
 // What the machine itself does: friction, leakage, load.
 std::string MeasuredSection(const Diagnosis& diagnosis);
 std::string HowSure(const Diagnosis& diagnosis);
-// The explanations with their weights, the first `set_90` of them marked.
+// The explanations with their weights. The first `set_90` are marked.
 std::string WhatMayExplain(const Diagnosis& diagnosis);
 std::string HowMuchOfTheGap(const Diagnosis& diagnosis);
 std::string WhatRemains(const Diagnosis& diagnosis);
-// Each closure's curve with its band, of a surface a cut through it, its values, and the gap before and after.
+// For each closure: its curve with the band (for a surface, a cut through it), its values, and the gap before
+// and after.
 std::string ClosureSection(const Diagnosis& diagnosis);
-// Values that belong to a run (friction of the day, payload, temperature): a row for each run.
+// Values that belong to a run (friction of the day, payload, temperature): one row for each run.
 std::string PerRunSection(const Diagnosis& diagnosis);
 std::string WhatToMeasureNext(const Diagnosis& diagnosis);
 
-// What they are made of: cells of tables, with two digits where they are short; pictures of curves, side by side; escaped text that
-// keeps its line breaks.
+// The elements of sections: table cells, with two digits where they are short; pictures of curves, side by
+// side; escaped text that keeps its line breaks.
 using page::Cell;
 using page::NumberCell;
 using page::Table;

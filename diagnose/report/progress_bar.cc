@@ -19,8 +19,8 @@ std::string TimeLeft(double fraction, double elapsed) {
 void ProgressBar::Show(const Progress& progress, double elapsed) {
   if (!terminal_) {
     if (progress.stage == stage_) return;
-    // The first line waits for the second stage: unusable input ends the work before that, and then the
-    // error's one line is all there is.
+    // The first line waits for the second stage. Unusable input ends the work before that, so that only the
+    // error's line appears.
     if (stages_ == 1) std::fprintf(out_, "%s\n", stage_.c_str());
     if (stages_ >= 1) std::fprintf(out_, "%s\n", progress.stage.c_str());
     std::fflush(out_);

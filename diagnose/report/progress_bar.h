@@ -1,4 +1,4 @@
-// Shows the progress of a diagnosis, to people at a terminal and in logs.
+// Shows the progress of a diagnosis on a terminal and in logs.
 #pragma once
 
 #include <cstdio>
@@ -9,11 +9,11 @@
 
 namespace hydro::diagnose {
 
-// On a terminal, a bar with the stage and the time left. Elsewhere, one line when a stage begins; the first
-// line waits for the second stage.
+// On a terminal, shows a bar with the stage and the remaining time. Elsewhere, prints one line when a stage
+// begins; the first line waits for the second stage.
 class ProgressBar {
  public:
-  // `out` stays the caller's. The bar is erased at the end.
+  // The caller still owns `out`. The bar is erased at the end.
   ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
 
   // `elapsed`: s since the work began.

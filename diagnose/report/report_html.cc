@@ -21,7 +21,7 @@
 namespace hydro::diagnose {
 namespace {
 
-// Nothing without content.
+// A section; "" without content.
 std::string Section(const std::string& heading, const std::string& content) {
   return content.empty() ? "" : "<h2>" + heading + "</h2>\n" + content;
 }
@@ -30,7 +30,8 @@ std::string Plural(size_t count, const std::string& one) {
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
-// The verdict's first sentence, and what follows it. The gap in brackets at its end is said below it.
+// The verdict's first sentence, and the text after it. The gap in brackets at the end of the sentence is
+// stated below it.
 std::pair<std::string, std::string> FirstSentence(const std::string& sentence) {
   size_t end = sentence.find(". ");
   while (end != std::string::npos &&
@@ -45,7 +46,7 @@ std::pair<std::string, std::string> FirstSentence(const std::string& sentence) {
   return {first, rest};
 }
 
-// How far the model is off, before and after, by the gap that the sentence states.
+// How far the model is off, before and after, in the gap that the sentence states.
 std::string GapInWords(const Diagnosis& diagnosis) {
   const ComparedGap& compared = diagnosis.compared;
   const BeforeAfter& gap = compared.gap;
@@ -114,7 +115,7 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
   return out;
 }
 
-// Whether no simulation had the candidate, because the balances did not propose it.
+// Whether no simulation tried the candidate, because the balances did not propose it.
 bool IsUntried(const Candidate& candidate) {
   return std::isnan(candidate.held_out) && candidate.weight == 0 &&
          candidate.rejected_because == kNotProposed;
@@ -157,7 +158,7 @@ std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
   for (const Unjudged& one : diagnosis.unjudged)
     items += "<li>" + page::TypesetHtml(UnjudgedText(one)) + ".</li>\n";
-  // How the runs were chosen stands beside the gaps.
+  // The choice of the runs is described beside the gaps.
   const std::string choice = diagnosis.choices.empty() ? "" : ChoiceRemark(diagnosis.choices);
   for (const std::string& remark : diagnosis.remarks) {
     if (remark != choice) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";

@@ -52,7 +52,7 @@ Json EffectJson(const FoundEffect& effect) {
           {"tied_with", effect.tied_with}};
 }
 
-// A list of a closure's knots; of a surface its rows.
+// A list by a closure's knots; for a surface, by rows.
 Json ByKnots(const Closure& closure, const Json& list) {
   if (closure.knots.size() == 1) return list;
   Json rows = Json::array();
@@ -79,7 +79,7 @@ Json ClosureJson(const Closure& closure) {
           {"resembles", closure.resembles}};
 }
 
-// The largest closure, with those of other balances that belong to it under "also"; null without any.
+// The largest closure, with the closures of other balances that belong to it under "also"; null without any.
 Json Closures(const Diagnosis& diagnosis) {
   Json all = List(diagnosis.closures, ClosureJson);
   if (all.empty()) return nullptr;

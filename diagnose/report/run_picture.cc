@@ -27,8 +27,8 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-// A signal over time as measured and by two models, in the order that colours have. Models that ran away may only reach as far beyond
-// what was measured as that is high.
+// A measured signal over time and its predictions by two models, in the order of the colours. Models that
+// diverge may extend beyond the measured range by its height at most.
 page::Panel SignalPanel(const std::string& label, const Points& measured, const Points& before,
                         const Points& after, const std::array<const char*, 3>& keys) {
   page::Panel panel;
@@ -58,7 +58,7 @@ Points Left(const Points& measured, const Points& simulated) {
   return left;
 }
 
-// Means over stretches of time, which average the noise away.
+// Means over stretches of time, which average out the noise.
 Points RunningMean(const Points& series) {
   const size_t size = series.x.size(), stretches = std::min<size_t>(100, size);
   Points means;
@@ -74,7 +74,7 @@ Points RunningMean(const Points& series) {
   return means;
 }
 
-// The size that 99.5 % of the values stay below.
+// The size that 99.5 % of the values do not exceed.
 double UsualSize(const std::vector<double>& values) {
   std::vector<double> sizes;
   for (const double value : values) {
@@ -86,7 +86,8 @@ double UsualSize(const std::vector<double>& values) {
   return *at;
 }
 
-// What is left of a signal, no higher than it was measured, and no lower than three times its noise.
+// The residual of a signal. Its axis is no higher than the measured signal and no lower than three times its
+// noise.
 page::Panel ResidualPanel(const Points& measured, const Points& before, const Points& after, double noise,
                           bool keys) {
   const Points left_before = Left(measured, before), left_after = Left(measured, after);

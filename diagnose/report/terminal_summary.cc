@@ -58,7 +58,7 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
   return parts.empty() ? "" : "signals:    " + Joined(parts, "; ") + "\n";
 }
 
-// The likeliest explanations: those that hold the truth nine times in ten, as far as a line can have them.
+// The likeliest explanations that together hold the truth nine times in ten, as many as fit on a line.
 std::string LikelyLine(const Diagnosis& diagnosis) {
   constexpr size_t kMost = 4;
   const size_t shown =
@@ -82,7 +82,8 @@ std::string IntervalText(const Estimated& estimated) {
          (plain ? "" : " " + estimated.unit);
 }
 
-// By the key's line: "parameters.b", "effects.pump.stribeck.speed"; of an effect itself its heading's: "effects.pump.stribeck".
+// Comments by the key of their line: "parameters.b", "effects.pump.stribeck.speed"; for the effect itself, by
+// that of its heading: "effects.pump.stribeck".
 using Comments = std::map<std::string, std::string>;
 
 void CommentOnValues(const Diagnosis& diagnosis, const model::ModelDescription& given, Comments* comments) {
@@ -123,7 +124,7 @@ void CommentOnEffects(const Diagnosis& diagnosis, Comments* comments) {
   }
 }
 
-// [effects."pump.stribeck"] is effects.pump.stribeck.
+// Turns [effects."pump.stribeck"] into effects.pump.stribeck.
 std::string SectionOf(std::string heading) {
   std::erase_if(heading, [](char c) { return c == '[' || c == ']' || c == '"'; });
   return heading;

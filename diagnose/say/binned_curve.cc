@@ -7,7 +7,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Fewer points in a bin have no scatter to speak of; nor have those of one moment, where a bin has so little of its share of all.
+// A bin with fewer points has no useful scatter. Nor has a bin whose points come from one moment, where it
+// has only this small part of its share.
 constexpr size_t kFewestPoints = 4;
 constexpr double kSmallestPart = 0.25;
 
@@ -21,7 +22,7 @@ void AddMean(const std::vector<CurvePoint>& points, size_t first, size_t end, Bi
     mean.given += points[i].given / count;
     mean.found += points[i].found / count;
   }
-  // About the model's curve: a bin may be wide.
+  // The scatter about the model's curve, because a bin may be wide.
   double squares = 0;
   for (size_t i = first; i < end; ++i) {
     squares += std::pow(points[i].measured - mean.measured - (points[i].found - mean.found), 2);

@@ -1,5 +1,5 @@
-// A curve from many blocks: means over bins of the variable. Every curve that is shown is one, and what a curve explains decides what
-// a lack is said to depend on.
+// A curve from many blocks: means over bins of the variable. Every curve in a report is one of these. What a
+// curve explains decides on which variable a lack is said to depend.
 #pragma once
 
 #include <cstddef>
@@ -8,33 +8,37 @@
 
 namespace hydro::diagnose {
 
-// What is said to be the cause, instead of something simpler, leaves less than so much of the square of what that leaves: with
-// less of a difference, what else goes on in the runs could turn the choice.
+// The stated cause must leave less than this fraction of the squares that a simpler cause leaves. With a
+// smaller difference, other events in the runs could turn the choice.
 inline constexpr double kFarLess = 0.5;
 
-// A block, and what something is there as measured and by up to two models. `noise`: standard error of `measured`.
+// One block: a quantity as measured there, and its values by up to two models. `noise` is the standard error
+// of `measured`.
 struct CurvePoint {
   double at = 0, measured = 0, noise = 0, given = 0, found = 0;
 };
 
-// Means, and the standard errors of those measured: by the points' scatter about `found`, or by noise where that is larger.
+// Means over bins. The standard errors of the measured means come from the points' scatter about `found`, or
+// from noise where that is larger.
 struct BinnedCurve {
   std::vector<double> at, measured, error, given, found;
-  std::vector<double> low, high, count;  // of a bin: its ends and how many points it has
+  std::vector<double> low, high, count;  // of each bin: its ends, and its number of points
   double left = 0;                       // sum of ((measured - its bin's mean)/noise)^2
 
   size_t size() const { return at.size(); }
 };
 
-// At most `most` bins or a few more, of which `by_range` follow the variable and the others the points: narrow where points are many, and
-// nowhere wider than two 24ths of the range if points are there. Equal values stay together, and none has both signs of the
-// variable: friction has a step there.
+// Makes at most `most` bins or a few more. The fraction `by_range` of them follows the variable and the rest
+// follow the points, so that bins are narrow where points are many, and nowhere wider than two 24ths of the
+// range if points are there. Equal values stay together. No bin has both signs of the variable, because
+// friction has a step there.
 BinnedCurve Binned(std::vector<CurvePoint> points, double most = 24, double by_range = 0.5);
-// To see what a variable explains takes more bins than a picture can show, where the points are.
+// Makes more bins than a picture can show, where the points are: they are needed to see what a variable
+// explains.
 inline BinnedCurve FineBins(std::vector<CurvePoint> points) { return Binned(std::move(points), 48, 0); }
 
-// Share of the points' variance beyond noise that their curve explains, or a straight line does, allowing for the number of
-// coefficients; 0 when chance does as well. `line`: the straight line alone.
+// The share of the points' variance beyond noise that their curve or a straight line explains, allowing for
+// the number of coefficients; 0 when chance does as well. With `line`, only the straight line is tried.
 double Explained(const std::vector<CurvePoint>& points, const BinnedCurve& curve, bool line);
 
 }  // namespace hydro::diagnose

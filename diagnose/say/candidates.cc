@@ -35,7 +35,8 @@ class Ranking {
       : proof_(proof), singles_(static_cast<double>(singles)) {
     for (const WeightedSet& one : explanations) weights_[ClaimOfSet(one.changes)] += one.weight;
     const std::string found = ClaimOf(proof.Found());
-    // No balance holds its values: where the model as given does not do, the set without changes is that of other values.
+    // No balance holds its values. Where the given model does not suffice, the set without changes is the set
+    // of other values.
     const auto given = weights_.find(kAsGiven);
     if (found == "parameters" && given != weights_.end()) {
       weights_[found] += given->second;
@@ -117,7 +118,7 @@ void Sort(std::vector<Candidate>* candidates) {
                    [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
 }
 
-// What the other runs choose: their windows in the sets' places.
+// What the other runs choose: their windows replace those of the sets.
 size_t ChoiceWithoutRun(const Proof& proof, const std::string& run) {
   std::vector<ProvedSet> sets = proof.sets;
   for (ProvedSet& set : sets) {

@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// As Change::Label(): "sensor.skew (p1)".
+// The label as Change::Label() writes it: "sensor.skew (p1)".
 std::string LabelOf(const std::string& change) {
   const size_t names = change.find('(');
   if (names == std::string::npos || IsClosureEffect(change)) return change;

@@ -32,7 +32,8 @@ void NameRuns(const ProofContext& context, Diagnosis* d) {
   for (const RunData* run : context.held_out) d->held_out_runs.push_back(run->name);
 }
 
-// Says of the user's own effects (--effect) which were never simulated, so that nobody takes them to be ruled out.
+// Says which of the user's own effects (--effect) were never simulated, so that nobody takes them to be ruled
+// out.
 void RemarkOnUsersOwn(Diagnosis* d) {
   for (const Candidate& candidate : d->candidates) {
     const std::string id = candidate.id.substr(0, candidate.id.find(' '));
@@ -61,7 +62,7 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks
   }
 }
 
-// Where each effect that was found acts, or shows.
+// Shows where each effect that was found acts, or where it is visible.
 void ShowEffects(const ProofContext& context, const Proof& proof, const WholeRuns& whole, Diagnosis* d) {
   for (const FoundEffect& effect : d->effects) {
     if (std::optional<MeasuredCurve> term = TermOf(d->model, effect.id, context.runs, context.jobs)) {
@@ -95,7 +96,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   d.horizons = HorizonGaps(context, proof);
   d.verdict = VerdictOn(d, proof, proposed.scores, ExactSensors(context.runs), SampleInterval(context.runs));
   if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
-    // Other values that are surely no others stay as given.
+    // Other values that are not clearly different stay as given.
     Proof nothing = proof;
     nothing.best = proof.given;
     return Conclude(context, nothing, proposed);

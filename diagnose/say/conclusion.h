@@ -7,7 +7,7 @@
 
 namespace hydro::diagnose {
 
-// Weights come from what the balances propose, what is named from what was proved.
+// Takes weights from what the balances propose, and names effects from what was proved.
 Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Proposed& proposed = {});
 
 }  // namespace hydro::diagnose

@@ -15,7 +15,7 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
-// Standard errors: of a normal distribution, 95 % are within.
+// Standard errors: 95 % of a normal distribution lie within.
 constexpr double kToldApart = 2;
 
 FoundEffect Describe(const Change& change, const model::ModelDescription& model,
@@ -43,7 +43,8 @@ FoundEffect Describe(const Change& change, const model::ModelDescription& model,
   return found;
 }
 
-// The typical squared gap of the windows without these effects of the best set; NaN where no such set was proved.
+// The typical squared gap of the windows without these effects of the best set; NaN where no such set was
+// proved.
 double GapWithout(const Proof& proof, const std::vector<Change>& effects) {
   std::vector<Change> others = proof.Best().Effects();
   for (const Change& change : effects) std::erase(others, change);
@@ -72,7 +73,8 @@ std::vector<Closure> DescribeClosures(const Proof& proof, const std::vector<Inte
   return closures;
 }
 
-// What the set has in the place of the best one's effects: effects or, where it has none at all, its values. "" if nothing.
+// What the set has instead of the best set's effects: effects or, where it has none at all, its values. "" if
+// nothing.
 std::string InPlace(const ProvedSet& other, const ProvedSet& best) {
   const std::vector<Change> effects = other.Effects();
   if (effects.empty()) {
@@ -86,8 +88,8 @@ std::string InPlace(const ProvedSet& other, const ProvedSet& best) {
   return Joined(labels, " + ");
 }
 
-// Whether the set is an explanation that may be true. A curve of its own can draw most effects: that it does as well is no reason to
-// doubt their names.
+// Whether the set is an explanation that may be true. A curve can imitate most effects, so that its equally
+// good fit is no reason to doubt their names.
 bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
   const std::vector<Change> effects = set.Effects();
   const auto any = [&](const auto& is) { return std::any_of(effects.begin(), effects.end(), is); };
@@ -97,7 +99,7 @@ bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
   const std::string claim = ClaimOf(set.hypothesis);
   for (size_t i = 0; i < std::min(d.set_90, d.explanations.size()); ++i) {
     const std::string said = ClaimOfSet(d.explanations[i].changes);
-    // No balance holds its values: the set without changes is that of other values too.
+    // No balance holds its values: the set without changes is also the set of other values.
     if (said == claim || (said == kAsGiven && effects.empty())) return true;
   }
   return false;
@@ -109,13 +111,15 @@ std::vector<size_t> TiesOf(const Change& change, const Proof& proof, const Diagn
   for (size_t i = 0; i < proof.sets.size(); ++i) {
     const ProvedSet& other = proof.sets[i];
     if (!other.tested() || other.hypothesis.Has(change)) continue;
-    // What may be true by the balances, windows have to tell apart, by more than sets that predict equally well differ. Values alone may
-    // be true whatever balances say, unless windows speak for the effect at all.
+    // The windows have to distinguish sets that may be true by the balances, by more than the difference
+    // between sets that predict equally well. Values alone may be true whatever the balances say, unless the
+    // windows support the effect at all.
     const bool may_be = MayBeTrue(other, d);
     if (!may_be && !other.Effects().empty()) continue;
     const GapFall fall = FallOf(other.near, proof.Best().near);
     const double told_apart = std::max(kEqual, (may_be ? kToldApart : 1) * fall.error);
-    // What is less likely in its place, an effect or far values, has to be worth it: an effect that does nothing explains nothing.
+    // A less likely replacement, an effect or values that are far off, has to be worth its price: an effect
+    // that does nothing explains nothing.
     const double dearer = std::max(0.0, other.price - proof.Best().price) +
                           std::max(0.0, other.price_of_values - proof.Best().price_of_values);
     if (fall.windows > 0 && fall.logarithm + dearer > told_apart) continue;

@@ -29,7 +29,7 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
   model::ModelDescription before = given;
   for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
     const std::string& id = given.effects[parameter.effect].id;
-    // Effects that are added come after those that the model has.
+    // Effects that were added come after those that the model has.
     if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;
     std::string unit;
     for (const model::ParameterInfo& info : model::FindEffect(given.effects[parameter.effect])->parameters) {
@@ -41,8 +41,8 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
   return numbers;
 }
 
-// "moves by a factor of 3" where a value moves by more than a factor of 2, which data sheets and drawings seldom miss by; "" otherwise,
-// and where it was given as 0.
+// "moves by a factor of 3" where a value moves by more than a factor of 2, a larger error than data sheets
+// and drawings usually have. "" otherwise, and where the value was given as 0.
 std::string WhyRemarkable(const ChangedParameter& changed) {
   const double ratio = changed.fitted.value / changed.model;
   if (changed.model == 0 || (ratio >= 1 / kImplausible && ratio <= kImplausible)) return "";
@@ -58,7 +58,7 @@ ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& inte
   return changed;
 }
 
-// Whether the command asks for the largest torque in one of the runs, fitted or not.
+// Whether the command demands the largest torque in one of the runs, fitted or not.
 bool ReachesTorqueLimit(const ProofContext& context, const model::Parameters& model) {
   const auto reaches = [&](const RunData* run) {
     return std::any_of(run->stimulus.voltage.begin(), run->stimulus.voltage.end(),
@@ -68,8 +68,8 @@ bool ReachesTorqueLimit(const ProofContext& context, const model::Parameters& mo
          std::any_of(context.held_out.begin(), context.held_out.end(), reaches);
 }
 
-// Which of the free numbers the fitted runs say nothing of, whatever the others are: nothing in them depends on it, or a hundredth of what
-// was known of it beforehand.
+// Which of the free numbers the fitted runs do not show, whatever the others are: nothing in the runs depends
+// on the number, or they tell less than a hundredth of what was known of it beforehand.
 std::vector<bool> Unseen(const Fitted& told) {
   constexpr double kNothing = 0.01;
   const Hypothesis& hypothesis = told.hypothesis;
@@ -124,7 +124,7 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
       continue;
     }
     const Interval interval = held ? Interval{kUnknown, kUnknown} : intervals[place];
-    // What is held of the base values follows from those that are free: a displacement scales all flows.
+    // Held base values follow from the free ones: a displacement scales all flows.
     const bool follows = held && number.is_base;
     const bool as_given = number.given >= interval.low && number.given <= interval.high;
     if (follows || (hypothesis.known != nullptr && as_given)) {

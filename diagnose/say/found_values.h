@@ -1,4 +1,4 @@
-// Other values of the model's own numbers, as a diagnosis states them.
+// States new values of the model's own numbers in a diagnosis.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,10 @@
 
 namespace hydro::diagnose {
 
-// Adds the base parameters, and the numbers of effects that the model as given has, that the best set has other values of.
-// `intervals`: of its free numbers. Of those that were refitted all together, only what is surely another counts; the others, and
-// those that the runs do not show apart from each other, are remarks. What was estimated and then held has no interval (NaN).
+// Adds those base parameters and those numbers of the given model's effects for which the best set has other
+// values. `intervals` are those of its free numbers. When values were refitted all together, only those that
+// clearly changed are added. The others, and those that the runs do not show apart from each other, become
+// remarks. A value that was estimated and then held has no interval (NaN).
 void DescribeValues(const ProofContext& context, const Proof& proof, const std::vector<Interval>& intervals,
                     Diagnosis* d);
 

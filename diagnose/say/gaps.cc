@@ -11,7 +11,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// s. What a pressure loop has to foresee, what a position loop has, and what every error of a value adds up over.
+// s: how far a pressure loop has to look ahead, how far a position loop has to, and a time over which every
+// error of a value adds up.
 constexpr std::array<double, 3> kHorizons = {0.1, kHorizon, 4 * kHorizon};
 constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
 constexpr double kNoGap = std::numeric_limits<double>::quiet_NaN();
@@ -22,7 +23,8 @@ std::array<const ProvedSet*, kComparedModels> SetsOf(const Proof& proof) {
   return {&proof.Given(), &proof.Values(), &proof.Best()};
 }
 
-// The root mean square of each channel in its unit, over the runs or windows that could be simulated; NaN where there is none.
+// The root mean square of each channel in its unit, over the runs or windows that could be simulated; NaN
+// where there is none.
 struct ChannelSums {
   std::array<double, model::kChannels> square{}, noise{}, count{};
 
@@ -69,7 +71,7 @@ std::vector<SignalGap> BySignal(const Runs& fitted, const Runs& held_out, const 
   return gaps;
 }
 
-// Of the windows that can be simulated.
+// The gap of the windows that can be simulated.
 double GapOfTested(const std::vector<WindowGap>& windows) {
   std::vector<WindowGap> tested;
   for (const WindowGap& gap : windows) {
@@ -78,7 +80,7 @@ double GapOfTested(const std::vector<WindowGap>& windows) {
   return tested.empty() ? kNoGap : std::sqrt(MeanSquare(tested));
 }
 
-// The geometric mean of the windows' gaps: a few windows that no model follows do not decide it.
+// The geometric mean of the windows' gaps, so that a few windows that no model follows do not decide it.
 double TypicalOf(const std::vector<WindowGap>& windows) {
   double logarithms = 0, count = 0;
   for (const WindowGap& gap : windows) {
@@ -94,7 +96,7 @@ BeforeAfter OfEach(const GapsByModel& gaps, const Function& gap_of) {
   return {gap_of(gaps[kAsItWas]), gap_of(gaps[kRefitted]), gap_of(gaps[kWithWhatWasFound])};
 }
 
-// Windows of runs, each with the run that it is from.
+// Windows of runs, each with its run.
 struct SpreadWindows {
   std::vector<RunData> all;
   Runs windows;
@@ -113,7 +115,8 @@ struct SpreadWindows {
   }
 };
 
-// `fitted`: the gaps of the same windows by models that saw them, where runs are held out in turn; else null.
+// `fitted` has the gaps of the same windows by models that saw them, where runs are held out in turn;
+// otherwise null.
 GapsByModel GapsOver(const SpreadWindows& spread, const Proof& proof, bool held_out,
                      const GapsByModel* fitted, int jobs) {
   GapsByModel gaps;

@@ -1,5 +1,6 @@
-// How well the model as given, the same refitted, and that with what was found predict: whole runs, which add up every small error of
-// a model, and windows of several lengths, which show what it knows of the next moments.
+// How well three models predict: the model as given, the same model refitted, and the model with what was
+// found. Whole runs add up every small error of a model; windows of several lengths show how well it knows
+// the next moments.
 #pragma once
 
 #include <array>
@@ -15,23 +16,24 @@ enum ComparedModel : size_t { kAsItWas, kRefitted, kWithWhatWasFound, kComparedM
 
 using GapsByModel = std::array<std::vector<WindowGap>, kComparedModels>;
 
-// Leaves only what compares the models of the same windows: those that all of them follow, where a model that follows fewer than half of
-// the windows counts as one that follows none. What is left of windows at rest says nothing of those that move.
+// Keeps only windows on which the models can be compared: those that all of them follow. A model that follows
+// fewer than half of the windows counts as one that follows none. Otherwise only windows at rest might be
+// left, which say nothing about windows in motion.
 void KeepCommon(GapsByModel* gaps);
 
-// The runs as each model leaves them: those that are fitted, and those that are predicted (ProofContext::predicted()), by models that
-// did not see them.
+// The runs as each model leaves them: those that are fitted, and those that are predicted
+// (ProofContext::predicted()) by models that did not see them.
 struct WholeRuns {
   GapsByModel fitted, held_out;
 };
 WholeRuns OverWholeRuns(const ProofContext& context, const Proof& proof);
 
-// Sets `fit`, `held_out` and `signals`, root-mean-square residuals. Infinite where a run cannot be simulated; of a signal, those of
-// the other runs.
+// Sets `fit`, `held_out` and `signals`: root-mean-square residuals. They are infinite where a run cannot be
+// simulated; for a single signal, they come from the other runs.
 void DescribeGaps(const ProofContext& context, const WholeRuns& whole, Diagnosis* d);
 
-// Over 0.1, 0.4 and 1.6 s, as far as the runs are that long. Windows are spread evenly over the runs. Models are compared on
-// windows that all of them follow (KeepCommon()); NaN where none is left.
+// Gaps over 0.1, 0.4 and 1.6 s, as far as the runs are long enough. Windows are spread evenly over the runs.
+// Models are compared on windows that all of them follow (KeepCommon()); NaN where no window is left.
 std::vector<HorizonGap> HorizonGaps(const ProofContext& context, const Proof& proof);
 
 }  // namespace hydro::diagnose

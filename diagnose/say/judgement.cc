@@ -13,15 +13,16 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Noise units, squared: what a model leaves beside the noise is no larger than the noise itself. Less cannot be asked for: the noise is
-// known to some 10 %, and starts and values are estimates.
+// Squared, in noise units: what a model leaves beside the noise is no larger than the noise itself. A
+// stricter limit makes no sense, because the noise is known to about 10 %, and starts and values are
+// estimates.
 constexpr double kNoiseAndAsMuchAgain = 2;
-// Noise units, over whole runs, whose residuals are many: the noise is known to some 10 %.
+// In noise units, over whole runs, which have many residuals: the noise is known to about 10 %.
 constexpr double kWholeRunsAtTheNoise = 1.15;
-// Of the squared gap above the noise, where all sensors are exact.
+// As a fraction of the squared gap above the noise, for exact sensors.
 constexpr double kNearlyNothing = 0.01;
 
-// The horizon with a gap that is nearest to 0.4 s, by its factor; null where no horizon has one.
+// The horizon with a gap that is nearest to 0.4 s, by their ratio; null where no horizon has one.
 const HorizonGap* DecidingHorizon(const Diagnosis& d) {
   const HorizonGap* near = nullptr;
   const auto away = [](const HorizonGap& one) { return std::abs(std::log(one.seconds / kHorizon)); };
@@ -32,14 +33,16 @@ const HorizonGap* DecidingHorizon(const Diagnosis& d) {
   return near;
 }
 
-// What a gap that is not above `limit` leaves; where all sensors are exact, what is left counts beside what there was.
+// Whether a gap is closed: it is not above `limit`. If all sensors are exact, what is left is compared with
+// what there was before.
 bool IsClosed(const BeforeAfter& gap, double limit, bool exact) {
   const double left = gap.after * gap.after - 1, before = gap.before * gap.before - 1;
   return gap.after <= limit || (exact && left <= kNearlyNothing * before);
 }
 
-// The first horizon that leaves more than noise; null: none. Errors of values grow at most as fast as the time: what is left beside the
-// noise may be as many times larger as a longer horizon is.
+// The first horizon that leaves more than noise; null: none. Errors of values grow at most in proportion to
+// time, so over a horizon that is longer by a factor, the remainder beside the noise may be larger by that
+// factor.
 const HorizonGap* OpenHorizon(const Diagnosis& d, const HorizonGap& near, bool exact) {
   const double beside = std::sqrt(kNoiseAndAsMuchAgain - 1);
   const auto open = std::find_if(d.horizons.begin(), d.horizons.end(), [&](const HorizonGap& one) {
@@ -54,14 +57,16 @@ bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
       IsClosed(d.held_out, kWholeRunsAtTheNoise, exact) && IsClosed(d.fit, kWholeRunsAtTheNoise, exact);
   const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
   if (near == nullptr) return whole;
-  // That nothing is missing has to hold over whole runs too, where the model can follow them: what is slow shows in no window.
+  // "Nothing is missing" has to hold over whole runs too, where the model can follow them, because slow
+  // effects show in no window.
   const bool found = !proof.Found().changes.empty() || !proof.Found().Free().empty();
   const bool follows = std::isfinite(d.held_out.after + d.fit.after);
   if (!found && follows && !whole) return false;
   return OpenHorizon(d, *near, exact) == nullptr;
 }
 
-// How much of its score a set owes to the effect; nothing where it does not have it, or the rest was not tried.
+// How much of a set's score is due to the effect; nothing where the set does not have it, or where the set
+// without it was not tried.
 double OwedTo(const std::string& id, const ScoredSet& one, const std::vector<ScoredSet>& scores) {
   ChangeSet rest = one.set;
   std::erase_if(rest, [&](const std::string& change) { return EffectOf(change) == id; });
@@ -71,8 +76,8 @@ double OwedTo(const std::string& id, const ScoredSet& one, const std::vector<Sco
   return rest.empty() ? one.score : same == scores.end() ? 0 : one.score - same->score;
 }
 
-// Of the balances: that they do not deny it. One in twenty, by weight, or as far below the likeliest set as weights are tempered: what
-// simulation refutes may have led.
+// Whether the balances do not deny the effect: one in twenty, by weight, or as far below the likeliest set as
+// weights are tempered, because simulation may refute the leading set.
 bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   constexpr double kAWord = 0.05;
   double weight = 0;
@@ -87,21 +92,22 @@ bool IsSpokenFor(const std::string& id, const Diagnosis& d, const std::vector<Sc
          });
 }
 
-// Whether something was found that simulation alone speaks for, though balances see all of the fitted runs.
+// Whether something was found for which only simulation speaks, although balances see all of the fitted runs.
 bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
   if (d.effects.empty() || d.explanations.empty()) return false;
   const auto said = [&](const std::string& id) { return IsSpokenFor(id, d, scores); };
   return std::none_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
     if (IsUnseenByBalances(effect.id) || said(effect.id)) return true;
-    // Where other values do as well, not even the windows say that anything is missing.
+    // Where other values do as well, even the windows do not say that anything is missing.
     const auto values = [](const std::string& tied) { return tied.find('.') == std::string::npos; };
     return std::none_of(effect.tied_with.begin(), effect.tied_with.end(), values) &&
            std::any_of(effect.tied_with.begin(), effect.tied_with.end(), said);
   });
 }
 
-// Whether all that was found are times of a sample or two: means over a sample and filters make the signals late, or the command early.
-// The balances allow for that, a simulation does not, so that what it alone speaks for is the recorder's.
+// Whether everything that was found is a time of a sample or two. Means over a sample and filters make the
+// signals late, or the command early. The balances allow for that and a simulation does not, so if only
+// simulation speaks for such a time, the recorder causes it.
 bool IsTheRecorders(const Diagnosis& d, double sample) {
   constexpr double kSamples = 2;
   return std::all_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
@@ -124,7 +130,8 @@ ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof) {
   const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
   if (near == nullptr) return {d.held_out, 0};
   if (!IsOpen(d.verdict)) return {near->typical, near->seconds};
-  // A gap at the noise would deny an open verdict: what is open may show over longer predictions only, over whole runs or in the fitted ones.
+  // An open verdict should not state a gap at the noise: what is open may show only over longer predictions,
+  // over whole runs or in the fitted runs.
   const HorizonGap* open = OpenHorizon(d, *near, false);
   if (open != nullptr) return {open->typical, open->seconds};
   if (!d.closures.empty()) return {near->typical, near->seconds, true};
@@ -152,11 +159,11 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   bool exact_sensors, double sample) {
   const bool one_witness = HasOneWitness(d, scores);
-  // Other values of a model that leaves nothing but noise are no finding, unless one of them is surely another.
+  // If a model leaves only noise, its other values are no finding, unless one of them has clearly changed.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
                       !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
   const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
-  // A curve is no cause: what it closes stays unexplained.
+  // A curve is no cause, so what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
   if (!IsGapClosed(d, proof, exact_sensors) || !d.closures.empty())
     return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;

@@ -1,4 +1,4 @@
-// The verdict on what was found, by the gaps that are left on held-out data.
+// The verdict on what was found, from the gaps that remain on held-out data.
 #pragma once
 
 #include "diagnose/evidence/set_scan.h"
@@ -8,20 +8,25 @@
 
 namespace hydro::diagnose {
 
-// The typical held-out gap over 0.4 s, or the horizon next to it that has one, where windows judged; else that of whole runs.
+// The typical held-out gap over 0.4 s, or over the nearest horizon that has one, where windows judged;
+// otherwise the gap of whole runs.
 ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof);
 
-// Whether what was found predicts worse than the model as given. A gap that is not finite says nothing.
+// Whether the model that was found predicts worse than the model as given. A gap that is not finite says
+// nothing.
 bool IsWorse(const BeforeAfter& gap);
 
-// Whether the noise of all sensors is below 2e-4 of their range, as in a simulation: no model of a rig comes that near.
+// Whether the noise of all sensors is below 2e-4 of their range, as in a simulation. No model of a real rig
+// comes that close.
 bool ExactSensors(const std::vector<const RunData*>& runs);
 
-// `d` has the effects, parameters, closures and gaps. What was found was proved: it is named where the noise is left, tied where
-// something does as well, and partly where more is left, or where a closure is a part of it. A gap that is left beside effects that
-// simulation alone speaks for, though balances could (IsUnseenByBalances()), is unexplained: by weight or by `scores`, those of the balances
-// with the best first, none of the effects has one in twenty, nor what they are tied with, unless other values do as well too. So are times of at most two samples (`sample`, s) that
-// simulation alone speaks for: recorders make them.
+// `d` already has the effects, parameters, closures and gaps. All that was found was proved. The verdict is
+// "named" where only noise is left, "tied" where an alternative does as well, and "partly" where more than
+// noise is left or a closure is part of what was found. A remaining gap is "unexplained" where only
+// simulation speaks for the effects although balances could (IsUnseenByBalances()): none of the effects, nor
+// what they are tied with, has a probability of one in twenty, by weight or by `scores` (the balances' scores
+// of sets, best first), unless other values do as well too. The same holds for times of at most two samples
+// (`sample`, s) for which only simulation speaks, because recorders cause such times.
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
                   bool exact_sensors, double sample);
 

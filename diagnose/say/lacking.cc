@@ -11,11 +11,11 @@ namespace {
 constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque", "flow_1",  "flow_2",
                                                                   "arm_torque",  "level_1", "level_2"};
 constexpr uint64_t kDrawSeed = 11;
-// Of the direction, -1 to 1: three standard deviations of the speed's noise.
+// A certain direction, on a scale of -1 to 1: three standard deviations of the speed's noise.
 constexpr double kSure = 0.997;
 // s: as smooth as the motion that a balance sees.
 constexpr double kMaskRise = 0.008;
-constexpr size_t kNearBlocks = 16;  // blocks on either side whose noise is averaged
+constexpr size_t kNearBlocks = 16;  // on either side, over which a block's noise is averaged
 
 LackingRun LackingIn(const model::ModelDescription& model, const RunData& run, size_t which,
                      const PressureOffsets& offsets) {
@@ -34,7 +34,7 @@ LackingRun LackingIn(const model::ModelDescription& model, const RunData& run, s
   return lacking;
 }
 
-// Where the pump's direction is not sure, dry friction may have any value: short stops are in no mask.
+// Where the pump's direction is not certain, dry friction may have any value. Short stops are in no mask.
 void MaskReversals(LackingRun* run) {
   std::vector<uint8_t>& mask = run->masks[static_cast<size_t>(BalanceKind::kTorque)];
   for (size_t i = 0; i < mask.size(); ++i) {
@@ -60,7 +60,8 @@ Eigen::VectorXd WeightsOf(const std::vector<uint8_t>& mask, double interval) {
   return weights;
 }
 
-// Appends the blocks of one run. What noise does depends on the motion: a block's noise is that of its neighbours too.
+// Appends the blocks of one run. The effect of noise depends on the motion, so a block's noise is averaged
+// with its neighbours'.
 void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t length,
                std::vector<Block>* blocks) {
   const size_t before = blocks->size(), size = run.masks[static_cast<size_t>(balance)].size();
@@ -83,7 +84,8 @@ void AddBlocks(const LackingRun& run, size_t which, BalanceKind balance, size_t 
   }
 }
 
-// No run counts for more because its sensors happen to be quiet: a machine repeats itself less exactly than they read.
+// No run counts more because its sensors happen to be quiet: a machine repeats itself less exactly than they
+// measure.
 void LevelNoise(std::vector<Block>* blocks) {
   std::vector<double> noise;
   for (const Block& block : *blocks) noise.push_back(block.noise);

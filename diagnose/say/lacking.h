@@ -1,4 +1,5 @@
-// What the balances of measured runs lack, beside what the sensors' noise alone makes of them: over time, and in blocks.
+// What the balances of measured runs lack, and what the sensors' noise alone makes of them: over time, and in
+// blocks.
 #pragma once
 
 #include <algorithm>
@@ -20,44 +21,49 @@ namespace hydro::diagnose {
 std::string NameOf(BalanceKind balance);
 std::string UnitOf(BalanceKind balance, const UnitSystem& units);
 
-// So many times noise is drawn: its size over a block comes from many blocks.
+// How often noise is drawn. Two draws suffice because the size of the noise over a block comes from many
+// blocks.
 inline constexpr size_t kNoiseDraws = 2;
 
-// Everything by every stride-th instant of the run's motion. Series are empty where a balance cannot be formed.
+// All series have one value for every stride-th instant of the run's motion. A series is empty where a
+// balance cannot be formed.
 struct LackingRun {
-  RunMotion motion;  // less what the model's effects add to readings
-  BaseSeries base;   // what the model leaves: the torque or flow that it lacks is minus that
-  std::array<BalanceSeries, kNoiseDraws> noise;                // what noise added once more changes
+  RunMotion motion;  // without what the model's effects add to readings
+  BaseSeries base;   // what the model leaves; the lacking torque or flow is its negative
+  std::array<BalanceSeries, kNoiseDraws> noise;                // the changes from adding noise once more
   std::array<std::vector<uint8_t>, kBalanceKinds> masks = {};  // 1: the balance says nothing
-  // How much an instant counts, 0 to 1: 0 where masked, rising smoothly from there. A derivative's noise averages out under
-  // weights without steps, and hardly under others.
+  // How much an instant counts, from 0 (masked) rising smoothly to 1. Under smooth weights the noise of a
+  // derivative averages out; under weights with steps it hardly does.
   std::array<Eigen::VectorXd, kBalanceKinds> weights = {};
 
   const model::KnownMotion& At(size_t i) const { return motion.at[i * motion.stride]; }
   size_t size() const { return (motion.size() + motion.stride - 1) / motion.stride; }
 };
 
-// What a pressure reads too much, in the model's unit.
+// The error of a pressure reading, in the model's unit; positive: it reads too high.
 struct PressureOffsets {
   double p1 = 0, p2 = 0;
 };
 
-// `offsets` are taken off what was measured. Throws ModelError as Equations does.
+// `offsets` are subtracted from the measured pressures. Throws ModelError as Equations does.
 std::vector<LackingRun> LackingIn(const model::ModelDescription& model,
                                   const std::vector<const RunData*>& runs, int jobs,
                                   const PressureOffsets& offsets = {});
 
-// A stretch of a run over which a balance is averaged. It reaches smoothly half its length into its neighbours.
+// A stretch of a run over which a balance is averaged. Its weights reach smoothly into its neighbours by half
+// its length.
 struct Block {
   size_t run = 0, first = 0, end = 0;  // instants, nominal
   double value = 0, noise = 0;         // mean of what the balance lacks, and its standard error by noise
 };
 
-// Of all runs that have the balance, where it says something in at least half of the block. `duration`: s, nominal.
+// Blocks from all runs that have the balance, where it says something in at least half of the block.
+// `duration`: s, nominal.
 std::vector<Block> BlocksOf(const std::vector<LackingRun>& runs, BalanceKind balance, double duration);
 
-// The mean of any series of the block's run under the block's weights: a raised cosine over twice its length, times the
-// instants' own. `of(i)`: the series at an instant. NaN where that is less than half a block.
+// The mean of any series of the block's run under the block's weights: a raised cosine over twice its length,
+// times the weights of the instants. `of(i)` is the series at an instant. NaN where less than half a block
+// remains.
 template <class Of>
 double MeanOver(const Block& block, const LackingRun& run, BalanceKind balance, const Of& of) {
   const Eigen::VectorXd& weights = run.weights[static_cast<size_t>(balance)];
@@ -75,7 +81,7 @@ double MeanOver(const Block& block, const LackingRun& run, BalanceKind balance, 
   }
   return 2 * count < static_cast<double>(length) ? std::numeric_limits<double>::quiet_NaN() : sum / count;
 }
-// The same of a balance's own series.
+// The same for a balance's own series.
 double MeanOver(const Block& block, const LackingRun& run, BalanceKind balance, const BalanceSeries& series);
 
 }  // namespace hydro::diagnose

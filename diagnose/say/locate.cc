@@ -13,7 +13,7 @@ namespace {
 constexpr BalanceKind kPlaces[] = {BalanceKind::kTorque, BalanceKind::kFlow1, BalanceKind::kFlow2,
                                    BalanceKind::kArm};
 
-// Of the disagreement: less is not worth a line.
+// As a fraction of the disagreement: a smaller share is not worth a line.
 constexpr double kSmallestShare = 0.02;
 
 using AllSeen = std::array<Seen, std::size(kPlaces)>;
@@ -30,13 +30,13 @@ double TotalOf(const AllSeen& seen) {
   return total;
 }
 
-// The index in kPlaces.
+// The index in kPlaces of the largest.
 size_t Largest(const AllSeen& seen) {
   const auto less = [](const Seen& a, const Seen& b) { return a.energy < b.energy; };
   return static_cast<size_t>(std::max_element(seen.begin(), seen.end(), less) - seen.begin());
 }
 
-// Adds up the shares of one place found in several ways; the largest says where.
+// Adds up the shares of one place that was found in several ways. The largest share says where.
 void AddShare(std::vector<Location>* locations, Location more) {
   for (Location& location : *locations) {
     if (location.balance != more.balance) continue;
@@ -50,8 +50,8 @@ void AddShare(std::vector<Location>* locations, Location more) {
 
 std::string WithSign(double value) { return (value < 0 ? "" : "+") + ShortNumber(value, 3); }
 
-// The middle of what the pressures read beyond the level at which one-way valves hold them. Both are 0 where the two agree:
-// then the level itself, p_3, may be what is wrong.
+// The median of what the pressures read above the level at which one-way valves hold them. Both are 0 where
+// the two agree, because the level itself, p_3, may then be wrong.
 PressureOffsets OffsetsOf(const std::vector<LackingRun>& runs) {
   double offset[2] = {}, noise = 0;
   for (int side = 0; side < 2; ++side) {
@@ -70,7 +70,7 @@ PressureOffsets OffsetsOf(const std::vector<LackingRun>& runs) {
   return {offset[0], offset[1]};
 }
 
-// The disagreement, and how much of it has been given a place.
+// The disagreement, and how much of it has been assigned a place.
 struct Placement {
   UnitSystem units;
   std::vector<LackingRun> runs;
@@ -79,8 +79,8 @@ struct Placement {
   Localisation result = {};
 };
 
-// The sensors' share is what correcting their offsets removes, if that is most of the disagreement; what is
-// left is then placed.
+// The sensors' share is what correcting their offsets removes, if that is most of the disagreement. The
+// remainder is then placed.
 void CorrectOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs, int jobs,
                     Placement* placement) {
   const PressureOffsets offsets = OffsetsOf(placement->runs);
@@ -108,7 +108,7 @@ void PlaceBalance(size_t place, Placement* placement) {
   std::vector<Location>& location = placement->result.location;
   const std::vector<Window> windows = WindowsOf(seen.when, runs);
   double own = share;
-  // Moves to `to` the share that its variables explain clearly better than the balance's own do.
+  // Moves to `to` the share that its variables explain clearly better than the balance's own.
   const auto move_share = [&](const char* to, std::vector<Variable> variables) {
     if (variables.empty() || own < share) return;
     const Dependence other = Ranked(seen.where, std::move(variables), runs, balance).front();
@@ -124,7 +124,7 @@ void PlaceBalance(size_t place, Placement* placement) {
   location.push_back({NameOf(balance), own, WhereOf(seen.ranked.front()), windows});
 }
 
-// Tabulates over the two variables that explain most.
+// Tabulates the lack over the two variables that explain most.
 void Tabulate(size_t place, Placement* placement) {
   const std::vector<Dependence>& ranked = placement->seen[place].ranked;
   for (size_t i = 0; i < std::min<size_t>(2, ranked.size()); ++i) {
@@ -140,7 +140,8 @@ void Tabulate(size_t place, Placement* placement) {
   }
 }
 
-// From the first to the last instant at which the signal's error is more than half of its largest, and that.
+// The stretch from the first to the last instant at which the signal's error exceeds half of its largest, and
+// that largest error.
 std::pair<Window, double> WorstStretch(const RunCurves& run, model::Channel channel, bool after) {
   Window window{run.run, 0, 0};
   double largest = 0;
@@ -200,7 +201,7 @@ std::vector<Location> WorstSignal(const std::vector<SignalGap>& signals, const s
     largest = std::max(largest, WorstStretch(run, worst->channel, after).second);
   for (const RunCurves& run : curves) {
     const auto [window, error] = WorstStretch(run, worst->channel, after);
-    // Runs with less are not named beside it.
+    // Runs with a smaller error are not named beside it.
     if (error > 0.5 * largest) location.windows.push_back(window);
   }
   return {location};

@@ -12,10 +12,11 @@ namespace {
 
 using model::Parameters;
 
-// s: noise of a derivative averages out, and a pump hardly changes its speed; but waves of a turn do.
+// s: long enough for the noise of a derivative to average out and for a pump's speed to stay nearly constant.
+// Waves within a turn need shorter blocks.
 constexpr double kCurveBlock = 0.016, kWaveBlock = 0.002;
 
-// A balance, and the sign of what it leaves without the element, as the element counts.
+// A balance, and the sign with which the element counts in what the balance leaves without it.
 struct Part {
   BalanceKind balance;
   double sign;
@@ -27,7 +28,7 @@ struct Element {
   std::vector<Part> parts;
   std::vector<double Parameters::*> values;
   std::string effects;  // the beginning of the ids of effects that may belong to it
-  std::string closure;  // the same of closures over `variable`
+  std::string closure;  // the same for closures over `variable`
 };
 
 std::vector<Element> AllElements() {
@@ -45,8 +46,8 @@ std::vector<Element> AllElements() {
 
 bool IsWave(const model::EffectDescription& effect) { return effect.parameters.contains("periods"); }
 
-// The pump's and the arm's effects, the user's own too, that act at an instant: what repeats with the turn is no friction, and an arm that
-// gives is no load.
+// The pump's and the arm's effects, including the user's own, that act without delay. An effect that repeats
+// with the turn is no friction, and a flexible arm is no load.
 bool Belongs(const Element& element, const model::EffectDescription& effect) {
   if (effect.id.starts_with(element.closure)) {
     const auto against = effect.name_lists.find("against");
@@ -55,8 +56,8 @@ bool Belongs(const Element& element, const model::EffectDescription& effect) {
   return effect.id.starts_with(element.effects) && effect.id != "arm.flexure" && !IsWave(effect);
 }
 
-// What a part of `model` does along the runs' motion: what the model leaves without it and not with it. `base`: what
-// it leaves with it.
+// What a part of `model` does along the runs' motion: what the model leaves without the part and not with it.
+// `base` is what it leaves with the part.
 std::vector<BalanceSeries> AlongRuns(const model::ModelDescription& without,
                                      const std::vector<LackingRun>& runs, const std::vector<BaseSeries>& base,
                                      int jobs) {
@@ -73,19 +74,21 @@ std::vector<BalanceSeries> AlongRuns(const Element& element, model::ModelDescrip
   return AlongRuns(model, runs, base, jobs);
 }
 
-// How points are made of blocks: s, how long one is; rad/s, beyond which speed a block sees too much of a wave to count.
+// How blocks become points: the length of a block, s, and the speed, rad/s, above which a block covers too
+// much of a wave to count.
 struct Sampling {
   double block = kCurveBlock;
   double fastest = std::numeric_limits<double>::infinity();
 };
 
-// Blocks of a wave see a quarter of it at most.
+// A block covers at most a quarter of a wave.
 Sampling SamplingOf(const model::EffectDescription& effect) {
   if (!IsWave(effect)) return {};
   return {kWaveBlock, 0.25 * 2 * std::numbers::pi / (2 * kWaveBlock * effect.parameters.at("periods"))};
 }
 
-// Blocks of one balance over the variable: what is left with the element, and the element itself. `given` may be empty.
+// Blocks of one balance over the variable: what is left with the element, and the element itself. `given` may
+// be empty.
 void AddPoints(const Part& part, const Variable& variable, const Sampling& sampling,
                const std::vector<LackingRun>& runs, const std::vector<BalanceSeries>& given,
                const std::vector<BalanceSeries>& found, std::vector<CurvePoint>* points) {
@@ -120,7 +123,8 @@ MeasuredCurve CurveOf(BinnedCurve curve, const std::string& element, BalanceKind
           std::move(curve.found)};
 }
 
-// Of the square of what the points' `found` adds, the part that is no function of the variable; and how large it is beside the noise.
+// The part of the square of the points' `found` that is no function of the variable, and the size of that
+// square relative to the noise.
 struct OverVariable {
   double left = 1, energy = 0;
 };
@@ -137,7 +141,8 @@ OverVariable LeftOver(std::vector<CurvePoint> points) {
   return {squares > 0 && curve.size() > 0 ? curve.left / squares : 1, squares / noise};
 }
 
-// An angle that no sensor saw begins anywhere in each run, so that runs cannot be laid over each other.
+// An angle that no sensor saw begins anywhere in each run, so that curves of different runs cannot be
+// superposed.
 bool SeeAngles(const std::vector<LackingRun>& runs) {
   return std::all_of(runs.begin(), runs.end(),
                      [](const LackingRun& run) { return run.motion.Of(GridChannel::kAngle).measured(); });

@@ -17,10 +17,10 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kStride = 5;       // one sample in this many is compared
-constexpr double kHeadroom = 1.05;  // over what the rig has seen
-// For each way to hold the shaft: trials that base parameters are fitted to.
+constexpr double kHeadroom = 1.05;  // above what the rig has seen
+// For each way to hold the shaft: the number of trials to which base parameters are fitted.
 constexpr size_t kFinalExperiments = 3;
-constexpr double kWorthwhile = 1;  // noise units; below this the models look the same
+constexpr double kWorthwhile = 1;  // noise units; with less, the models look the same
 
 model::Response Predict(const model::ModelDescription& model, const Trial& trial,
                         const std::vector<model::Unknown>& unknowns) {
@@ -65,9 +65,9 @@ double Rms(const Eigen::VectorXd& values) {
   return values.size() == 0 ? 0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
 
-// The smallest root-mean-square difference between two rivals; with `absorb`, after the base parameters of
-// either have taken up what they can of it. Nothing when the trial leaves the rig's limits or cannot be
-// simulated.
+// The smallest root-mean-square difference between two rivals. With `absorb`, it is computed after the base
+// parameters of either have absorbed what they can of it. Nothing when the trial leaves the rig's limits or
+// cannot be simulated.
 std::optional<double> Separation(const std::vector<model::ModelDescription>& rivals, const Trial& trial,
                                  const Rig& rig, bool absorb) {
   std::vector<model::Unknown> unknowns;

@@ -10,12 +10,12 @@
 
 namespace hydro::diagnose {
 
-// Chooses among voltages over 3 s (squares, sines slow enough to creep through 0, chirps, staircases; each
-// about 0 and about an offset) and ways to hold the shaft the trial under which the rivals' predictions
-// differ most, in noise units, after base parameters have absorbed what they can of the difference. No trial
-// leaves the range of voltage, pressure, speed and arm angle that the runs have seen. `rivals`: two or more,
-// each as fitted. `config` is a stack whose model is "model.toml" beside it; "" when no experiment tells the
-// rivals apart or none can be simulated. `why` is passed on.
+// Chooses a trial among voltages over 3 s (squares, sines slow enough to creep through 0, chirps, staircases;
+// each about 0 and about an offset) and ways to hold the shaft. It takes the trial in which the rivals'
+// predictions differ most, in noise units, after base parameters have absorbed what they can of the
+// difference. No trial leaves the range of voltage, pressure, speed and arm angle that the runs have seen.
+// `rivals` has at least two models, each as fitted. `config` is a stack whose model is "model.toml" beside
+// it; "" when no experiment distinguishes the rivals or none can be simulated. `why` is passed on.
 NextExperiment DesignNextExperiment(const std::vector<model::ModelDescription>& rivals,
                                     const std::vector<const RunData*>& runs, const std::string& why);
 

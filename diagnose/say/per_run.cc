@@ -15,10 +15,11 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Each fourth window of a run judges, and the balances do not see it; with eight of each run, a difference of 5 % shows in a few runs.
+// Every fourth window of a run judges, and the balances do not see it. With eight of each run, a difference
+// of 5 % shows in a few runs.
 constexpr size_t kEach = 4, kJudgingOfARun = 8;
 
-// The run with everything taken out that was measured during the windows.
+// The run without everything that was measured during the windows.
 RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& windows) {
   RunData rest;
   rest.name = run.name;
@@ -38,12 +39,12 @@ RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& wi
   return rest;
 }
 
-// All runs, cut into what is estimated from and what judges.
+// All runs, cut into a part for the estimate and a part that judges.
 struct CutRuns {
   std::vector<const RunData*> runs;
   std::vector<RunData> windows, rest;
   JudgingWindows judging;
-  bool possible = false;  // each run has a window that judges
+  bool possible = false;  // each run has a judging window
 
   explicit CutRuns(const ProofContext& context) : runs(context.runs) {
     runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
@@ -68,7 +69,7 @@ struct CutRuns {
   }
 };
 
-// What windows say of it that the balances did not see.
+// What windows that the balances did not see say about it.
 ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, const RunValues& of, int jobs) {
   const model::BaseParameter& base = model::BaseParameters()[of.base];
   ValueByRun value;
@@ -136,7 +137,7 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
 }
 
 std::string RemarkOn(const ValueByRun& value) {
-  // A single recording was cut into a part to fit and a part to hold out.
+  // A single recording was split into a part to fit and a part to hold out.
   const bool parts = value.values.size() == 2 && value.values[1].name.starts_with(value.values[0].name + ",");
   const std::string between = parts ? "from one part of the recording to the other" : "from run to run";
   if (!value.differs) return value.name + " does not differ " + between;

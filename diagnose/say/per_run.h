@@ -9,15 +9,16 @@
 
 namespace hydro::diagnose {
 
-// The base parameters whose values differ from run to run in `model`, as the balances estimate them: those `asked` for, else the one
-// that the balances say most clearly to differ, if its own value for each run predicts windows of the run that the balances did not
-// see better than one value for all. `allowed`: those that may differ from the model, as in BaseParameters(). Held-out runs have a
-// value too. What balances are measured by (k_1, k_2) has none.
+// The base parameters of `model` whose values differ from run to run, as the balances estimate them: those in
+// `asked`. If it is empty, the parameter that the balances most clearly say differs, provided that its own
+// value for each run predicts windows that the balances did not see better than one value for all does.
+// `allowed` has those that may differ from the model, as in BaseParameters(). Held-out runs have a value too.
+// Parameters in which balances are measured (k_1, k_2) are excluded.
 std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::ModelDescription& model,
                                     const std::vector<std::string>& asked,
                                     const std::vector<size_t>& allowed);
 
-// "T_s differs from run to run by 6 % (3.3 to 3.9 in-lbf)", with what it takes of the gap.
+// "T_s differs from run to run by 6 % (3.3 to 3.9 in-lbf)", followed by its effect on the gap.
 std::string RemarkOn(const ValueByRun& value);
 
 }  // namespace hydro::diagnose

@@ -14,7 +14,7 @@ constexpr size_t kMostPoints = 1200;
 constexpr size_t kStretchesARun = 25;
 constexpr size_t kShortestStretch = 60;  // samples
 
-// Empty where it cannot be simulated.
+// Empty where the run cannot be simulated.
 model::Response ResponseOf(const model::ModelDescription& model, const RunData& run,
                            const model::StartState& start) {
   try {
@@ -24,7 +24,7 @@ model::Response ResponseOf(const model::ModelDescription& model, const RunData& 
   }
 }
 
-// The run as two models predict it, each from its own start.
+// The predictions of the run by two models, each from its own start.
 RunCurves Curves(const RunData& run, bool held_out, const model::Response& before,
                  const model::Response& after) {
   RunCurves curves;
@@ -46,7 +46,7 @@ RunCurves Curves(const RunData& run, bool held_out, const model::Response& befor
   return curves;
 }
 
-// A place in a run, and how far the two models are apart there in noise units.
+// A place in a run, and the distance between the models there, in noise units.
 struct StretchPlace {
   double apart = 0;
   size_t signal = 0, first = 0, end = 0;

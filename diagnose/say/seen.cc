@@ -9,25 +9,26 @@ namespace hydro::diagnose {
 
 namespace {
 
-// s, nominal lengths of blocks: what is small and slow shows best in long ones, what is quick in short ones.
+// s, nominal lengths of blocks: small and slow effects show best in long blocks, quick ones in short blocks.
 constexpr double kBlockLengths[] = {0.002, 0.008, 0.016, 0.032, 0.064, 0.128, 0.256};
 // s: in shorter blocks the derivatives of measured signals are mostly noise.
 constexpr double kSlow = 0.03;
-// To see anything; and a dependence: four for each of two dozen bins.
+// The numbers of blocks needed to see anything, and to see a dependence: four for each of two dozen bins.
 constexpr size_t kFewestBlocks = 3, kEnoughBlocks = 100;
 // The share of the variance that a variable has to explain beyond a simpler one, or beyond none.
 constexpr double kPlainly = 0.06;
-// Of noise's variance, what it may be larger than the draws say: they are few, counted sensors are taken to be noisy ones, and blocks
-// that overlap by half have a third more noise together than they would have alone.
+// How much larger the noise's variance may be than the draws say. There are few draws, sensors that count are
+// treated as noisy ones, and blocks that overlap by half have a third more noise together than alone.
 constexpr double kNoiseMargin = 1.5;
-// The least energy of a curve over a variable, of means over two dozen bins: by chance it is 0 with a standard deviation of 7, and
-// the best of a dozen variables over seven lengths is taken; where the pump turns round it is not quite chance.
+// The least energy of a curve over a variable, from means over two dozen bins. By chance the energy is 0 with
+// a standard deviation of 7, and the best of a dozen variables over seven lengths is taken; near reversals of
+// the pump it is not entirely chance.
 constexpr double kSignificant = 60;
-// The least energy, for each block, where no variable shows anything: sensors that count and differences of slow signals
-// make as much as this.
+// The least energy for each block where no variable shows anything: sensors that count and differences of
+// slow signals produce as much as this.
 constexpr double kPlain = 3;
-constexpr double kMostOfIt = 0.85;    // of what is lacking, in the range that is named
-constexpr double kNoPlace = 0.6;      // of the blocks: a range with more is no place
+constexpr double kMostOfIt = 0.85;    // of the lack, in the range that is named
+constexpr double kNoPlace = 0.6;      // of the blocks: a larger range is no place
 constexpr size_t kMostStretches = 5;  // in each run
 
 double EnergyOfBlock(const Block& block) { return std::pow(block.value / block.noise, 2) - 1; }
@@ -39,7 +40,7 @@ double EnergyOf(const std::vector<Block>& blocks) {
   return energy;
 }
 
-// What means over bins show beyond their scatter; of a line, what it takes of the blocks' scatter.
+// What means over bins show beyond their scatter; for a line, what it removes of the blocks' scatter.
 double EnergyOver(const std::vector<Block>& blocks, const Dependence& d) {
   if (d.variable.line) return d.explained * std::max(0.0, EnergyOf(blocks));
   double energy = 0;
@@ -48,20 +49,20 @@ double EnergyOver(const std::vector<Block>& blocks, const Dependence& d) {
   return energy;
 }
 
-// A run of bins, in some order of them.
+// A sequence of consecutive bins, in some order of them.
 struct Stretch {
   double low = 0, high = 0, count = 0;
   bool from_first = false, to_last = false;
 };
 
-// The shortest run of bins, in order of `at`, with most of the lack's square.
+// The shortest sequence of bins, in order of `at`, with most of the lack's square.
 Stretch Densest(const BinnedCurve& curve, bool by_size) {
   const auto size = [by_size](double at) { return by_size ? std::abs(at) : at; };
   std::vector<size_t> order(curve.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return size(curve.at[a]) < size(curve.at[b]); });
-  // A mean of twice its error may be chance.
+  // A mean of twice its error may be due to chance.
   const auto share = [&](size_t bin) {
     return curve.count[bin] *
            std::max(0.0, std::pow(curve.measured[bin], 2) - std::pow(2 * curve.error[bin], 2));
@@ -82,7 +83,7 @@ Stretch Densest(const BinnedCurve& curve, bool by_size) {
       here.low = std::min({here.low, size(curve.low[bin]), size(curve.high[bin])});
       here.high = std::max({here.high, size(curve.low[bin]), size(curve.high[bin])});
       if (sum < kMostOfIt * all) continue;
-      // One bin more or less at an end is chance.
+      // One bin more or less at an end is due to chance.
       here.from_first = first <= 1;
       here.to_last = i + 2 >= order.size();
       if (here.count < best.count) best = here;
@@ -165,7 +166,7 @@ std::vector<Window> WindowsOf(const std::vector<Block>& blocks, const std::vecto
   for (size_t r = 0; r < runs.size(); ++r) {
     std::vector<std::pair<double, Window>> stretches;  // with their energies
     for (const Block& block : blocks) {
-      // A fifth of the largest is worth a word beside it.
+      // A fifth of the largest deserves mention beside it.
       if (block.run != r || EnergyOfBlock(block) < std::max(kPlain, 0.2 * largest[r])) continue;
       const double from = runs[r].At(block.first).time, to = runs[r].At(block.end - 1).time;
       // Stretches less than two blocks or 20 ms apart count as one.

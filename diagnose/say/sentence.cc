@@ -66,13 +66,14 @@ bool Tied(const Diagnosis& d) {
                      [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
 }
 
-// Whether the gap falls by what a reader sees in its digits. From what a model cannot follow it falls to whatever is left.
+// Whether the gap falls so far that a reader sees it in the digits. From a gap that the model cannot follow,
+// any remainder is a fall.
 bool Falls(const BeforeAfter& gap) {
   if (!std::isfinite(gap.before)) return std::isfinite(gap.after);
   return gap.after < gap.before && ShortNumber(gap.before, 3) != ShortNumber(gap.after, 3);
 }
 
-// "over 0.4 s"; of whole runs nothing, unless windows are what usually decides.
+// "over 0.4 s". For whole runs, "", unless windows usually decide.
 std::string OverWhat(const Diagnosis& d, const ComparedGap& compared) {
   if (compared.seconds > 0) return " over " + ShortNumber(compared.seconds, 2) + " s";
   return d.horizons.empty() ? "" : " over whole runs";
@@ -97,7 +98,7 @@ std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   return " (" + of + " " + before + " to " + after + " noise units).";
 }
 
-// What follows what was found, of a verdict that leaves something.
+// The text after what was found, for a verdict that leaves something open.
 std::string WhatIsLeft(const Diagnosis& d, const ComparedGap& compared) {
   if (!compared.closed) return ", and a significant gap is left";
   return d.closures.empty() ? "" : ", and a curve, which is no cause, closes the rest";
@@ -117,7 +118,7 @@ std::string Unexplained(const Diagnosis& d, const ComparedGap& compared,
     return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the " +
            (compared.of_fitted ? "fitted" : "held-out") + " gap";
   sentence += "; the nearest is " + Enumerated(effects);
-  // Beside noise alone no share says anything.
+  // Where only noise is left, no share says anything.
   if (!std::isfinite(gap.before) || !(gap.before > 1 && gap.after > 1)) return sentence;
   const double left = (gap.after * gap.after - 1) / (gap.before * gap.before - 1);
   return sentence + ", which leaves " + ShortNumber(100 * left, 2) + " % of the squared gap";
@@ -189,7 +190,7 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
 }
 
 std::string ChoiceRemark(const std::vector<ChoiceWithout>& choices) {
-  std::map<std::string, std::vector<std::string>> others;  // runs by what is chosen without them
+  std::map<std::string, std::vector<std::string>> others;  // runs by what the others choose without them
   std::vector<std::string> runs;
   for (const ChoiceWithout& choice : choices) {
     if (choice.same) continue;

@@ -41,7 +41,7 @@ std::vector<Trial> Voltages(double largest) {
               Key("duration_s", kDuration),
           trajectory::MakeChirp(offset, amplitude, 0.5, 30, 0, kDuration));
     }
-    // Up, down past 0 and back: each level lasts long enough to settle, in both directions.
+    // Up, down past 0 and back. Each level lasts long enough to settle, in both directions.
     std::vector<trajectory::Step> steps;
     std::string text = Kind("steps") + "steps = [";
     constexpr double kLevels[] = {0.3, 0.6, 1, 0.5, 0.1, -0.3, -0.6, -1, -0.5, -0.1, 0.8, -0.8};
@@ -102,7 +102,7 @@ std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p) {
   };
   double low = rig.low_angle, high = rig.high_angle;
   if (high - low < 0.1 * p.V_ms / p.c) {
-    // An arm that was clamped in one place can be clamped in others.
+    // An arm that was clamped in one place can also be clamped in others.
     low -= 0.4 * p.V_ms / p.c;
     high += 0.4 * p.V_ms / p.c;
     const double limit = 0.8 * p.V_ms / p.c;
@@ -138,7 +138,7 @@ std::string Configuration(const Trial& trial, const Rig& rig) {
   text += Key("duration_s", kDuration) + "\n[plant]\n" + Key("rate_hz", kRate);
   text += "\n[pressure]\nk_p = 0.0\nk_v = 0.0\n\n";
   text += "[reference]\nsignal = \"voltage\"  # bypasses both loops\n" + trial.reference;
-  // Limits somewhat above the prediction: a fault would end the run.
+  // Limits somewhat above the prediction, because a fault would end the run.
   if (rig.pressure > 0) text += "\n[limits]\n" + Key("pressure", std::ceil(1.2 * rig.pressure));
   return text;
 }

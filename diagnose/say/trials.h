@@ -1,4 +1,4 @@
-// The experiments that a rig may be asked for next, and how each is written as a configuration.
+// The experiments that the user may be asked for next, and the configuration of each.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace hydro::diagnose {
 
-// What the rig has been through, and how precisely its sensors measure.
+// The range that the rig has covered, and the precision of its sensors.
 struct Rig {
   double voltage = 0, pressure = 0, speed = 0;
   double low_angle = std::numeric_limits<double>::infinity(), high_angle = -low_angle;
@@ -33,8 +33,8 @@ struct Trial {
   double separation = 0;
 };
 
-// Steps, sines and chirps of several sizes, as far as the rig has been driven, for each way to hold the
-// shaft.
+// Steps, sines and chirps of several sizes within the range that the rig has been driven, for each way to
+// hold the shaft.
 std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p);
 
 model::Stimulus StimulusOf(const Trial& trial);

@@ -16,7 +16,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The names of an explanation's effects, a curve by one name whatever it acts on: the proof writes one of leakage as two.
+// The names of an explanation's effects. A curve has one name whatever it acts on, because the proof writes
+// one curve of leakage as two.
 std::vector<std::string> EffectsOf(const std::vector<std::string>& changes) {
   std::vector<std::string> effects;
   for (const std::string& change : changes) {
@@ -33,13 +34,13 @@ std::vector<std::string> NamesOf(const ProvedSet& set) {
   return names;
 }
 
-// The weights that sets with the same effects have in the proof: what was chosen, and what predicts nearly as well.
+// The proof's weights of sets with the same effects: the chosen set, and those that predict nearly as well.
 std::map<std::vector<std::string>, double> ProvedWeights(const Proof& proof) {
   std::map<std::vector<std::string>, double> weights;
   double sum = 0;
   for (const ProvedSet& set : proof.sets) {
     if (!set.tested()) continue;
-    // By the effects' prices the balances would have a second say.
+    // With the effects' prices the balances would count twice.
     const double near = set.near.empty() ? 0 : FallOf(proof.Best().near, set.near).logarithm;
     const double fall = near - (set.price_of_values - proof.Best().price_of_values);
     const auto effects = static_cast<double>(set.Effects().size());

@@ -11,17 +11,18 @@ namespace {
 using Known = model::KnownMotion;
 using std::numbers::pi;
 
-constexpr int kMostTurnPeriods = 24;  // a turn
+constexpr int kMostTurnPeriods = 24;  // per turn
 
 constexpr unsigned Bit(BalanceKind balance) { return 1U << static_cast<unsigned>(balance); }
 constexpr unsigned kTorque = Bit(BalanceKind::kTorque), kFlow1 = Bit(BalanceKind::kFlow1),
                    kFlow2 = Bit(BalanceKind::kFlow2), kArm = Bit(BalanceKind::kArm),
                    kPump = kTorque | kFlow1 | kFlow2;
 
-// Whether a balance may depend on it, or names it alone, or is late by it.
+// Whether a balance may depend on the variable, or it only names a dependence, or it belongs to a late
+// reading.
 enum class Use { kMayShow, kOnlyNames, kLate };
 
-// `unit` is the paper's, `arm` the power of the arm's coordinate in it.
+// `unit` is the paper's unit, `arm` the power of the arm's coordinate in it.
 struct MotionRow {
   unsigned balances;
   Use use;
@@ -31,7 +32,7 @@ struct MotionRow {
   double (*of)(const Known&);
 };
 
-// In the order of their simplicity.
+// Simplest variables first.
 constexpr MotionRow kRows[] = {
     {kArm, Use::kMayShow, "arm_speed", "rad/s", 1, [](const Known& at) { return at.arm_speed; }},
     {kArm, Use::kMayShow, "arm_angle", "rad", 1, [](const Known& at) { return at.arm_angle; }},
@@ -143,7 +144,7 @@ std::vector<Variable> CommandVariables(const std::vector<LackingRun>& runs) {
   for (const LackingRun& run : runs) {
     for (const double v : run.motion.voltage) largest = std::max(largest, std::abs(v));
   }
-  // A limit shows only beyond some voltage.
+  // A limit shows only above some voltage.
   for (const double part : {0.5, 0.65, 0.8, 0.9}) {
     const double limit = part * largest;
     all.push_back(OfCommand(runs, "voltage beyond a limit",

@@ -1,4 +1,5 @@
-// Two joints in one arm: what each joint's motion does to the other, and what feed-forward takes away.
+// Two joints in one arm: how each joint's motion affects the other, and how much of that feed-forward
+// removes.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
@@ -145,7 +146,7 @@ Picture CasePicture(const CouplingStudy& study, const Moving& moving, const std:
            .drawing = ""}};
 }
 
-// What feedback has to supply, for each way of telling it ahead.
+// What feedback has to supply with each kind of feed-forward.
 Picture FeedbackPicture(const CouplingStudy& study) {
   page::Panel panel{
       .title = "Largest torque that eq. (17) has to supply",

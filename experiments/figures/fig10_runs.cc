@@ -26,8 +26,8 @@ runs::StepResponse Measure(const design::Response& response, double step) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
 
-// The error at which the pump holds the arm under eqs. (16) and (17), approached from below: leakage keeps
-// the pump turning forward just fast enough to make up for it, so friction acts in full. dp holds the arm's
+// The error at which the pump holds the arm under eqs. (16) and (17), approached from below: the pump keeps
+// turning forward just fast enough to compensate the leakage, so friction acts in full. dp holds the arm's
 // weight.
 double HoldingError(const model::Parameters& p, const pressure_ctrl::PressureLawSettings& law, double c1,
                     double angle) {
@@ -72,7 +72,7 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
     if (!cause.saturation) model.parameters.T_pmax = kNoLimit;
     if (!cause.speed_coupling) settings.push_back("pressure.arm_speed_feedforward=true");
     if (!cause.arm_flow) {
-      // Then both sides compress as well: p_1 stays above p_3.
+      // In this case both sides compress as well: p_1 stays above p_3.
       model.parameters.c *= 1e-9;
       settings.push_back("model.initial_pressure=5000");
     }

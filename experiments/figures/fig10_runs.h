@@ -1,5 +1,6 @@
-// What Figure 10 compares: steps of the arm in the linear design model and in the full model, the full model
-// with single causes of the difference switched off, and the retuned loop against the motor's limits.
+// The runs that Figure 10 compares: steps of the arm in the linear design model and in the full model, the
+// full model with single causes of the difference switched off, and the retuned loop against the motor's
+// limits.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ struct ArmRun {
   double highest_speed = 0;   // rad/s
 };
 
-// Runs a stack (a whole configuration, which steps the arm's reference from 0 to `step`, rad) on a model. Throws
-// std::runtime_error when the reference never steps, and what the runner throws.
+// Runs a stack (a whole configuration, which steps the arm's reference from 0 to `step`, rad) on a model.
+// Throws std::runtime_error when the reference never steps, and what the runner throws.
 ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
               const model::ModelDescription& model, double step);
 
@@ -38,7 +39,7 @@ struct FormRuns {
   ArmRun nonlinear;
 };
 
-// The full model with some of the effects switched off that the linear model lacks.
+// The full model with some of those effects switched off that the linear model lacks.
 struct Cause {
   const char* key;
   const char* label;                                    // in the figure's key

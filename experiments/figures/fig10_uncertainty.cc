@@ -1,5 +1,5 @@
-// The Monte Carlo of Figure 10's retuned loop: how fast gains for Table 1 are on machines that are not
-// exactly Table 1.
+// The Monte Carlo study of Figure 10's retuned loop: how fast gains for Table 1 are on machines that differ
+// from Table 1.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>

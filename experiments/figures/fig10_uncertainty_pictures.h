@@ -1,4 +1,4 @@
-// Figure 10's retuned step on drawn machines, in pictures.
+// Pictures of Figure 10's retuned step on drawn machines.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace hydro::experiments {
 
-// The distributions; what they depend on; the steps of single machines.
+// The distributions, their dependence on parameters, and the steps of single machines.
 std::vector<Picture> UncertaintyPictures(const UncertainSteps& steps, const UncertainSpread& spread);
 
 }  // namespace hydro::experiments

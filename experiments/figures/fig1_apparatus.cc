@@ -32,8 +32,8 @@ struct FreeRun {
   double arm_speed = 0;    // rad/s, at the motor's top speed
 };
 
-// The arm, free and without gravity, from one end of its travel: full torque until the motor reaches
-// `top_speed`, then just the torque that holds it there.
+// The run of the arm, free and without gravity, from one end of its travel: full torque until the motor
+// reaches `top_speed`, then just the torque that holds this speed.
 FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
   const model::Parameters& p = model.parameters;
   constexpr double kTick = 1e-3;
@@ -61,7 +61,7 @@ FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
   return run;
 }
 
-// The arm's torque against a clamp, in-lbf, once a held motor torque has left nothing moving but the leakage.
+// The arm's torque against a clamp, in-lbf, once a held motor torque has stopped everything but the leakage.
 double HeldTorque(const model::ModelDescription& model, double motor_torque) {
   model::Actuator actuator(model, {.shaft = model::Shaft::kClamped});
   for (int i = 1; i <= 40; ++i) actuator.Advance(motor_torque / model.parameters.k_1, i);
@@ -125,7 +125,7 @@ constexpr double kTopSpeed = kMotorRpm * kRpm;
 constexpr double kLowTorque = 8;
 constexpr double kHighTorque = 16;
 
-// What was run, and what Table 1 implies.
+// The results of the runs, and what Table 1 implies.
 struct Apparatus {
   model::Parameters p;
   model::Parameters fast;     // of the 18000 rpm motor
@@ -155,7 +155,8 @@ void SolveInClosedForm(Apparatus* a) {
   const model::Parameters& p = a->p;
   const model::Parameters& fast = a->fast;
   a->torque_ratio_lossless = p.k_2 / p.D;
-  // At rest except for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
+  // When everything but the leakage is at rest, the pump turns at (c_I + c_E) dp / D, and viscous friction
+  // takes its share.
   a->torque_ratio_leaking = p.k_2 / (p.D + p.b * (p.c_I + p.c_E) / p.D);
   a->displacement_ratio = 1.83 * 1.83 * 2.20 / 2 / 0.00796;  // Table 1's r, d and D
   a->needed_k2 = kPrintedRatio * p.D;

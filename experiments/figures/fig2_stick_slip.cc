@@ -49,7 +49,7 @@ Scanned Scan(const model::ModelDescription& model, double torque, double static_
   return {torque, static_torque, run.sticks(), FindCycles(run)};
 }
 
-// The least static friction (in-lbf) that gives sustained cycles at kStickSlipTorque, bracketed.
+// The least static friction (in-lbf) with sustained cycles at kStickSlipTorque, bracketed.
 struct Threshold {
   double none = 0;    // in-lbf, without cycles
   double cycles = 0;  // in-lbf, with cycles
@@ -132,7 +132,7 @@ struct StickSlipStudy {
   double threshold_ratio = 0;
   std::vector<Scanned> at_rest;
 
-  // In closed form.
+  // The results in closed form.
   double creep_dp = 0;        // psi
   double leak_rate = 0;       // 1/s
   double slip_dp = 0;         // psi

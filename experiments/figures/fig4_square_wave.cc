@@ -123,7 +123,7 @@ std::vector<Remainder> HoldAllLevels(const ExperimentOptions& options, const Tra
   return remainders;
 }
 
-// in-lbf, what a jump of the reference demands if dp had settled and the pump stopped before it.
+// in-lbf, the torque that a jump of the reference demands if dp had settled and the pump stopped before it.
 double JumpTorque(const TrackingStudy& study) {
   return 2 * kWaveAmplitude * PressureLoopParameters().k_1 * study.gains.k_p;
 }

@@ -65,7 +65,7 @@ Cases MakeCases(const model::ModelDescription& table1, const pressure_ctrl::Pres
   PressureSweep& free = cases.no_friction.sweep;
   free.model.parameters.T_s = 0;
   free.amplitude = 30;
-  free.initial_pressure = 1500;  // leaks away at (beta/V_ms) c_E = .51/s: stays above p_3 for the whole sweep
+  free.initial_pressure = 1500;  // leaks away at (beta/V_ms) c_E = .51/s: above p_3 for the whole sweep
   free.bands = {{1, 6, 7, 4}, {6, 100, 7, 2}};
   cases.one_sided = make("one_sided", "side 1 held at p_3", Side1Held());
   cases.one_sided.linear = true;

@@ -104,7 +104,7 @@ struct QuarterTurnStudy {
   pressure_ctrl::PressureGains gains, redesigned;
   QuarterTurnCases cases;
 
-  // In closed form.
+  // The results in closed form.
   double limit = 0;         // rad, where Table 1's V_1 is 0
   double V_1 = 0, V_2 = 0;  // in^3, the wide actuator's
   pressure_ctrl::SecondOrder two_sides, large_side, small_side;
@@ -129,7 +129,7 @@ void SolveInClosedForm(QuarterTurnStudy* study) {
   study->V_2 = p.V_ms + p.c * kQuarterTurn;
   study->two_sides = pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 2);
   study->large_side = pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 1);
-  // With V_1 in place of V_2.
+  // The small side: V_1 replaces V_2.
   study->small_side = pressure_ctrl::PressureLoopDynamics(p, -kQuarterTurn, gains, 1);
   // omega_n^2 is proportional to 1/V_1 + 1/V_2 = (2/V_ms)/(1 - (c alpha/V_ms)^2).
   const double displaced = p.c * kQuarterTurn / p.V_ms;

@@ -102,8 +102,8 @@ DesignStudy RunDesignStudy(const ExperimentOptions& options) {
   feedforward.arm_speed_ratio = p.c / p.D;
   const design::LinearArmLoop assisted(table1, feedforward);
   study.exact_assisted = assisted.Poles(c1, c2);
-  // If the displacement does not respond to the arm's motion, Figure 8 must remain: the check that nothing
-  // else differs.
+  // If the displacement does not respond to the arm's motion, the result must be Figure 8. This checks that
+  // nothing else differs.
   model::ModelDescription still = table1;
   still.parameters.c *= 1e-9;
   study.without_motion = design::LinearArmLoop(still, study.law).Poles(c1, c2);

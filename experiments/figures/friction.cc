@@ -32,7 +32,7 @@ constexpr double kSpeedStep = 0.1;                             // rad/s
 constexpr double kVoltages[] = {1.25, 1.625, 2.0, 2.5, 3.0};
 constexpr double kHold = 30;  // s
 
-// The ramps: quickly to a voltage that surely does not move the motor, then slowly on.
+// The ramps: quickly to a voltage that certainly does not move the motor, then slowly further.
 constexpr double kRampStart = 0.8;                                 // V
 constexpr double kRampEnd = 1.1;                                   // V
 constexpr double kRampTime = 15;                                   // s
@@ -95,7 +95,8 @@ const char* Holds(const maths::Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
 }
 
-// The most that acceleration can still take at any of the points, in-lbf, as far as the noise reveals it.
+// The largest torque, in-lbf, that acceleration can still take at any of the points, as far as the noise
+// shows.
 double AccelerationTorque(const PumpFriction& friction, const model::Parameters& p) {
   double most = 0;
   for (const FrictionPoint& point : friction.points) {
@@ -303,7 +304,7 @@ struct RigStudy {
   PumpFriction friction;
   PumpFriction by_angle;              // from the encoder's angles instead of the speeds
   std::vector<RampReading> readings;  // forward, backward
-  double excess = 0;                  // in-lbf, what the ramp adds to T_s before movement shows
+  double excess = 0;                  // in-lbf, added to T_s by the ramp before movement shows
 };
 
 RigStudy MeasureRig(const ExperimentOptions& options) {

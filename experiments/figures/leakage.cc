@@ -188,7 +188,7 @@ StickDecay FitStick(const runs::MeasuredRun& run, const SimulatedRun& model, con
   return decay;
 }
 
-// Mean reading, while the pump creeps before the release, of the side that it draws from.
+// Mean reading of the side that the pump draws from, while the pump creeps before the release.
 double LowSideWhileCreeping(const runs::MeasuredRun& run) {
   const std::vector<double>& low = (run.voltage.values[run.samples() / 4] > 0 ? run.p1 : run.p2).values;
   double sum = 0;

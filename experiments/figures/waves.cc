@@ -1,4 +1,4 @@
-// The pressure waves in the lines, measured at about 300 Hz: where they show, and what gain they allow.
+// The pressure waves in the lines, measured at about 300 Hz: where they appear, and which gain they allow.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>

@@ -21,13 +21,13 @@ inline constexpr double kWaveDamping = 0.01;    // ASSUMED: the paper says nothi
 inline constexpr double kMostFactor = 200;      // largest factor on k_p searched
 inline constexpr double kMostFrequency = 3000;  // rad/s
 
-// What the wave allows in one loop.
+// The limits that the wave sets in one loop.
 struct WaveLimits {
   design::GainLimit gain;        // factor on the design's k_p, k_v unchanged
   double natural_frequency = 0;  // rad/s, when both gains follow from it and zeta = .5
 };
 
-// The loop, run over the stack close to its limit: how a wave grows or decays after a small step.
+// The loop, run over the stack close to its limit, shows how a wave grows or decays after a small step.
 struct GainTrial {
   double factor = 0;  // fraction of the limit
   std::vector<double> time;

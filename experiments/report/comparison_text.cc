@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kLineWidth = 108;
 
 std::optional<SiUnit> SiUnitOf(const Comparison& row) {
-  // NaN compares false, so a missing value decides nothing.
+  // NaN compares false, so a missing value does not decide anything.
   const bool expected = std::abs(row.expected) > std::abs(row.here) || std::isnan(row.here);
   return FindSiUnit(row.unit, expected ? row.expected : row.here);
 }

@@ -8,9 +8,9 @@
 
 namespace hydro::experiments {
 
-// An aligned table: quantity, paper, independent, here, unit, with any remark below its row. With `si`, units
-// that have an SI equivalent are converted. The paper's value is converted when it is a number; otherwise its
-// unit is named beside it.
+// An aligned table with the columns quantity, paper, independent, here, unit, and with any remark below its
+// row. With `si`, units that have an SI equivalent are converted. The paper's value is converted when it is a
+// number; otherwise its unit is named beside it.
 std::string ComparisonsText(const std::vector<Comparison>& comparisons, bool si);
 
 // The same rows in SI units, for --si.

@@ -14,7 +14,7 @@ struct RenderedPicture {
   std::string html;  // for the report's page
 };
 
-// Throws what FigureFile() throws, and std::logic_error for a repeated suffix.
+// Throws as FigureFile() does, and std::logic_error for a repeated suffix.
 std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::vector<Picture>& pictures);
 
 // The result's numbers with name, title, program version, options, conditions, comparisons and findings;
@@ -23,7 +23,7 @@ std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::
 std::string ExperimentJson(const Experiment& experiment, const ExperimentResult& result,
                            const ExperimentOptions& options, bool real_time);
 
-// Writes all of them into `folder`, each whole or not at all. Throws WriteError, or InputError when a file
+// Writes all files into `folder`, each whole or not at all. Throws WriteError, or InputError when a file
 // cannot be created there.
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
                           const tables::Table& table, const std::vector<RenderedPicture>& pictures);

@@ -1,4 +1,4 @@
-// What hydro-experiment is asked to do.
+// What the user asks hydro-experiment to do.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace hydro::experiments {
 struct ExperimentRequest {
   std::string name = "all";                // or an experiment's name
   std::string folder = "out/experiments";  // created if missing
-  int jobs = 2;  // experiments run at the same time, and threads of one that uses several
+  int jobs = 2;  // number of experiments that run at the same time, and of threads of one
   bool si = false;
   bool real_time = false;  // for the record only; options.run_stack decides
   ExperimentOptions options = {};

@@ -13,8 +13,8 @@ namespace hydro::experiments {
 // A bar on a terminal, plain lines in a log. Several threads may report progress.
 class ProgressDisplay {
  public:
-  // `costs`: the cost of each task, in any unit. Writes to `out`, which the caller keeps; the bar is erased
-  // at the end.
+  // `costs` has the cost of each task, in any unit. Writes to `out`, which the caller keeps. The bar is
+  // erased at the end.
   ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names, std::vector<double> costs);
 
   void Start(size_t task);

@@ -64,7 +64,7 @@ size_t OpenLoopRun::sticks(double from) const {
   }));
 }
 
-// A first run finds where something happens; a second one resolves it finely.
+// A first run finds where something happens, and a second one resolves it finely.
 OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, double duration,
                         double sample_interval) {
   const double voltage = torque / model.parameters.k_1;

@@ -1,4 +1,4 @@
-// The clamped actuator under a constant motor torque, with its sticks, slips and extremes located in time.
+// The clamped actuator under a constant motor torque. Its sticks, slips and extremes are located in time.
 #pragma once
 
 #include <cstddef>

@@ -49,7 +49,7 @@ const std::vector<double>& Values(const tables::Table& table, const char* name) 
 }
 
 // Motor torque per psi of dp in a steady creep: what dp itself takes, plus the viscous friction and the k_v
-// term at the speed that makes up for the leakage.
+// term at the speed that compensates the leakage.
 double CreepTorque(const model::Parameters& p, const pressure_ctrl::PressureGains& gains) {
   return p.D + (p.b + p.k_1 * gains.k_p * gains.k_v) * (p.c_E + p.c_I) / p.D;
 }

@@ -48,11 +48,12 @@ PressureLoopRun RunPressureLoop(const StackRunner& run_stack, const PressureLoop
 model::Parameters PressureLoopParameters();
 pressure_ctrl::PressureGains PressureLoopGains();
 
-// Where dp settles under a constant reference > 0 with the arm held, in closed form: the pump creeps forward
-// to make up for the leakage, D theta' = (c_E + c_I) dp with side 1 at p_3, and eq. (4) balances eq. (16).
+// The value at which dp settles under a constant reference > 0 with the arm held, in closed form: the pump
+// creeps forward to compensate the leakage, D theta' = (c_E + c_I) dp with side 1 at p_3, and eq. (4)
+// balances eq. (16).
 double SettledPressure(double reference, double feedforward);
 
-// The range of dp in which friction keeps a standing pump at rest under that reference: |T_p - D dp| <= T_s.
+// The range of dp in which friction keeps a resting pump at rest under that reference: |T_p - D dp| <= T_s.
 struct FrictionBand {
   double low = 0;   // psi
   double high = 0;  // psi

@@ -11,7 +11,7 @@
 namespace hydro::experiments {
 namespace {
 
-// The sine starts this factor below the band, so that the valves have let in what they will, and ends above
+// The sine starts this factor below the band, so that the valves have let in all they will, and ends above
 // the band.
 constexpr double kBelow = 4;
 constexpr double kAbove = 1.4;

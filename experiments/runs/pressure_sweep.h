@@ -38,7 +38,7 @@ struct PressureSweep {
   std::vector<SweptBand> bands = kTwoDecades;
 };
 
-// What the loop did, over all runs. Fractions are of the sweeps' time.
+// What the loop did over all runs. Fractions refer to the sweeps' time.
 struct SweptPressureLoop {
   std::vector<design::ResponsePoint> points;  // dp per dp_ref, samples per samples
   double saturated_fraction = 0;              // voltage at its limit

@@ -36,7 +36,7 @@ int RunToItsEnd(const std::vector<std::string>& command, const std::string& outp
   const pid_t us = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    // Only calls that are safe between fork and exec in a program with threads.
+    // Between fork and exec in a program with threads, only certain calls are safe.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != us) _exit(1);
     dup2(output, STDOUT_FILENO);
@@ -90,7 +90,7 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
                                         "realtime",
                                         "--log",
                                         log,
-                                        "--force",  // what is left there is of a run without results
+                                        "--force",  // what is left there belongs to a run without results
                                         "--set",
                                         "model.file=" + model,
                                         "--set",

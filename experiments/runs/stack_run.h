@@ -1,4 +1,5 @@
-// One run of the control stack for an experiment, as a table of signals. How it is run is exchangeable.
+// One run of the control stack for an experiment, as a table of signals. The way in which it runs is
+// exchangeable.
 #pragma once
 
 #include <functional>
@@ -23,8 +24,8 @@ using StackRunner = std::function<tables::Table(const StackSetup&)>;
 // every time.
 tables::Table RunStackInProcess(const StackSetup& setup);
 
-// Runs separate processes in real time, started by hydro-launch (from `program_folder`); configurations and
-// logs stay in `folder` under the setup's name. Overrides the setup's time.mode, and a command delay of 0.
+// Runs separate processes in real time, started by hydro-launch (from `program_folder`). Configurations and
+// logs stay in `folder` under the setup's name. It overrides the setup's time.mode, and a command delay of 0.
 StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder);
 
 }  // namespace hydro::experiments

@@ -22,7 +22,7 @@ inline constexpr double kPaperBandwidthHz = 200 / (2 * std::numbers::pi);
 
 struct BodeCase {
   std::string key;    // in JSON and in column names
-  std::string title;  // in plots: what sets this case apart
+  std::string title;  // in plots: what distinguishes this case
   PressureSweep sweep;
   model::Mode mode;     // the mode that the linear prediction assumes
   bool linear = false;  // the loop stays in that mode, so the prediction must agree
@@ -50,7 +50,7 @@ void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stac
 
 // A JSON object: conditions, results and the points as arrays.
 nlohmann::json CaseJson(const BodeCase& bode_case);
-// The first case's object without its key and title, with all cases in its `cases`.
+// The first case's object without its key and title. Its `cases` has all cases.
 nlohmann::json CasesJson(const std::vector<const BodeCase*>& cases);
 
 // Columns frequency_hz, gain_db, phase_deg and coherence, their names prefixed by the case's key.
@@ -70,7 +70,7 @@ BodeCurve PredictedCurve(const BodeCase& bode_case, const std::string& label, do
 
 std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
                                     const std::vector<page::Rule>& vertical, double least_db);
-// The panels with one more below them: the coherence of all measured points.
+// The panels, with one more below them for the coherence of all measured points.
 std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
                                        const std::vector<BodeCurve>& measured);
 

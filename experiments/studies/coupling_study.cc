@@ -66,7 +66,7 @@ class Joints {
   std::vector<model::Actuator> rigs_;
 };
 
-// Both loops of one joint as the stack computes them (tune::StepTrial), with what is known ahead.
+// Both loops of one joint as the stack computes them (tune::StepTrial), with a feed-forward.
 class JointLoops {
  public:
   explicit JointLoops(const tune::StepTrial& settings) : settings_(settings), law_(settings.position) {}
@@ -97,7 +97,7 @@ class JointLoops {
   double next_voltage_ = 0;
 };
 
-// The torque that the arm needs of each joint along the reference, as far as this feed-forward knows it.
+// The torque that the arm needs at each joint along the reference, as far as this feed-forward knows it.
 OfEachJoint KnownTorques(const model::PlanarArm& arm, const std::array<model::Parameters, kArmJoints>& own,
                          const Reference& at, FeedForward feed_forward) {
   OfEachJoint coupling{};
@@ -112,7 +112,7 @@ OfEachJoint KnownTorques(const model::PlanarArm& arm, const std::array<model::Pa
   return coupling;
 }
 
-// psi: what the pump itself costs, which eq. (16) would have to pay for by an error of dp.
+// psi: the pump's own need, which eq. (16) would otherwise supply by an error of dp.
 double PumpPressure(const model::Parameters& p, double k_p, double speed, double acceleration) {
   const double friction = speed == 0 ? 0 : std::copysign(p.T_s, speed);
   return (p.c / p.D * (p.J * acceleration + p.b * speed) + friction) / (p.k_1 * k_p);

@@ -1,5 +1,5 @@
-// Two of the paper's actuators in one arm: what each joint's motion does to the other, and what feed-forward
-// takes away.
+// Two of the paper's actuators in one arm: how each joint's motion affects the other, and how much of that
+// feed-forward removes.
 #pragma once
 
 #include <array>
@@ -20,28 +20,28 @@ inline constexpr double kElbow = 0.8;  // rad, between the links at mid-stroke: 
 // An upper arm and a forearm with a payload.
 model::ArmDescription StudiedArm();
 
-// What is added to the pressure command of eq. (17).
+// The addition to the pressure command of eq. (17).
 enum class FeedForward {
   kNone,
-  kOwn,      // what the joint knows of itself: its pump's inertia and friction, J_a and mgl
-  kGravity,  // and the whole arm's gravity in the place of mgl cos(alpha)
-  kWhole,    // and the whole arm's inverse dynamics
+  kOwn,      // what the joint's own model gives: its pump's inertia and friction, J_a and mgl
+  kGravity,  // kOwn, with the whole arm's gravity instead of mgl cos(alpha)
+  kWhole,    // kOwn, with the whole arm's inverse dynamics
 };
 inline constexpr std::array kFeedForwards = {FeedForward::kNone, FeedForward::kOwn, FeedForward::kGravity,
                                              FeedForward::kWhole};
 std::string Name(FeedForward feed_forward);  // "pd", "own", "gravity", "inverse_dynamics"
 
-// Which joints follow the path; the others hold the middle of it.
+// Which joints follow the path. The others hold its middle.
 using Moving = std::array<bool, kArmJoints>;
 inline constexpr std::array<Moving, 3> kCases = {{{true, false}, {false, true}, {true, true}}};
 std::string Name(const Moving& moving);  // "upper_moves", "forearm_moves", "both_move"
 
-// One joint of one run; all signals at each tick, from the start of the path.
+// One joint of one run. All signals have one value per tick, from the start of the path.
 struct JointRun {
   std::vector<double> angle_error;   // rad, alpha - reference
   std::vector<double> torque;        // in-lbf, k_2 dp
-  std::vector<double> torque_error;  // in-lbf, k_2 dp less what the reference motion needs of this joint
-  std::vector<double> feedback;      // in-lbf, k_2 times what eq. (17) asks for
+  std::vector<double> torque_error;  // in-lbf, k_2 dp less the torque for the reference motion
+  std::vector<double> feedback;      // in-lbf, k_2 times the output of eq. (17)
   std::vector<double> coupling;      // in-lbf, k_2 dp less what the joint's own model needs for the reference
 
   double peak_angle_error = 0;
@@ -59,8 +59,8 @@ struct CoupledArmRun {
   std::array<JointRun, kArmJoints> joints;
 };
 
-// What the motion of all does to one joint along the reference, beyond what its own model knows; from the
-// textbook's two links.
+// The effect of all joints' motion on one joint along the reference, beyond what its own model covers, from
+// the textbook's equations for two links.
 struct CouplingAlongPath {
   std::vector<double> inertia;   // in-lbf, of accelerations
   std::vector<double> velocity;  // centrifugal and Coriolis
@@ -82,7 +82,7 @@ struct CouplingStudy {
 
 CouplingStudy RunCouplingStudy();
 
-// For both joints, in this case.
+// For both joints in this case.
 std::array<CouplingAlongPath, kArmJoints> ExpectedCoupling(const CouplingStudy& study, const Moving& moving);
 
 }  // namespace hydro::experiments

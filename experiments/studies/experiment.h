@@ -20,8 +20,8 @@ struct Comparison {
   std::string paper;     // what the paper prints or its figure shows; "" if it is silent
   // The same quantity computed independently from the paper's equations (closed form, Routh, ...); NaN: none.
   double expected = std::numeric_limits<double>::quiet_NaN();
-  double here = std::numeric_limits<double>::quiet_NaN();  // what this run gave; NaN: does not exist
-  std::string remark;                                      // why they differ, what the value depends on
+  double here = std::numeric_limits<double>::quiet_NaN();  // result of this run; NaN: does not exist
+  std::string remark;                                      // why they differ, or what the value depends on
 };
 
 // Where the paper contradicts itself or leaves something open. The project never patches this silently:
@@ -43,7 +43,7 @@ struct ExperimentResult {
   std::string paper_says;               // what the paper reports, in a sentence or two
   std::string explanation;              // why the two differ, or that they agree
   std::vector<Comparison> comparisons;  // in the report's order
-  std::vector<Finding> findings;        // the findings that this experiment gives evidence for
+  std::vector<Finding> findings;        // for which this experiment gives evidence
   std::string numbers = "{}";           // a JSON object: the keys of docs/experiments.md, and more
   tables::Table table;                  // NAME.csv; columns may be padded with NaN
   std::vector<Picture> pictures;        // the first is NAME.svg
@@ -51,9 +51,9 @@ struct ExperimentResult {
 
 struct ExperimentOptions {
   StackRunner run_stack = RunStackInProcess;  // how experiments run the stack
-  int64_t seed = 1;                           // for all noise, and for what is drawn
-  int machines = 10000;                       // fig10_uncertainty: drawn from what is known of Table 1
-  int jobs = 1;                               // threads of an experiment that has use for several
+  int64_t seed = 1;                           // for all noise and all random draws
+  int machines = 10000;                       // fig10_uncertainty: drawn from Table 1 and its uncertainty
+  int jobs = 1;                               // threads of an experiment that can use several
   bool noise = false;                         // sensor noise like the paper's, for figures that show it
   std::string measured_run;                   // friction, leakage: file to analyse; "": simulate a rig
   // Called now and then with the fraction done, 0 to 1. Calls may come from any thread, but never from two at

@@ -64,7 +64,7 @@ double StartOf(const runs::MeasuredSignal& signal, size_t resting) {
   return sum / count;
 }
 
-// A run with what a comparison with a simulation needs.
+// A run, with the data for a comparison with a simulation.
 struct Case {
   const runs::MeasuredRun* run;
   double p1_noise, p2_noise;
@@ -134,7 +134,7 @@ void CheckSwing(const runs::MeasuredRun& run, const model::Parameters& p, double
   }
 }
 
-// Checks that a voltage that overcomes friction raises the pressure of the side that it drives the pump to.
+// Checks that a voltage that overcomes friction raises the pressure of the side to which it drives the pump.
 // (A smaller voltage may oppose what is left from before.)
 void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   double along = 0;  // V psi
@@ -150,8 +150,7 @@ void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   }
 }
 
-// psi, both sides at the start. Missing first values tell nothing about it; p_3 is where the model comes to
-// rest.
+// psi, both sides at the start. Missing first values say nothing about it; the model comes to rest at p_3.
 double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, double noise) {
   if (std::isnan(run.p1.values.front()) || std::isnan(run.p2.values.front())) return p_3;
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
@@ -292,12 +291,12 @@ struct FisherSums {
   }
 };
 
-// What all runs tell about the fitted values.
+// What all runs say about the fitted values.
 struct Evidence {
   FisherSums sums;
   double squares = 0;  // of the residuals
   int64_t count = 0;   // of the residuals
-  // The change of the cost's gradient with 1 % of each parameter taken as known.
+  // The change of the cost's gradient with 1 % of each parameter that is taken as known.
   std::vector<Eigen::Vector2d> pulls = std::vector<Eigen::Vector2d>(kKnown.size(), Eigen::Vector2d::Zero());
 };
 

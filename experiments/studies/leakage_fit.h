@@ -39,8 +39,8 @@ struct LeakageFit {
   maths::Estimate c_I;             // in^3/(s psi)
   maths::Estimate combination;     // in^3/(s psi), c_E + information.c_I_weight c_I
   LeakageInformation information;  // from all measurements
-  // From parts of the measurements: while both sides are above p_3, and while a valve holds one side there;
-  // by p_1 and p_2, or by p_2 - p_1 only.
+  // The same from parts of the measurements: while both sides are above p_3, and while a valve holds one side
+  // there; from p_1 and p_2, or from p_2 - p_1 only.
   LeakageInformation floating, held, floating_difference, held_difference, all_difference;
   std::vector<std::string> not_identifiable;  // "c_E", "c_I" if the interval is wider than +/- 25 %
   double rms = 0;                             // of the residuals, in standard deviations of the noise

@@ -61,7 +61,7 @@ void CheckSupport(const runs::MeasuredRun& run, const SteadySpeeds& found,
   }
 }
 
-// The most that inertia takes of the torque in a window, in-lbf: what is left of the speed difference in the
+// The largest torque that inertia takes in a window, in-lbf: what is left of the speed difference in the
 // hold's first tenth after decaying with the time constant J/b of eq. (4), limited to what the window itself
 // shows.
 double TransientTorque(const SpeedWindow& window, double J, double b) {
@@ -78,7 +78,7 @@ double TransientTorque(const SpeedWindow& window, double J, double b) {
 
 using Regressors = std::vector<std::vector<double>>;
 
-// `errors`, if given: the most that each torque may be off by, besides its scatter.
+// `errors`, if given, has the largest error of each torque besides its scatter.
 maths::Estimate Estimated(const maths::LinearFit& fit, const Regressors& regressors,
                           const std::vector<double>& errors, const std::vector<double>& weights) {
   const double value = fit.Value(weights);

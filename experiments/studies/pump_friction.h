@@ -17,7 +17,7 @@ struct FrictionPoint {
   SpeedWindow window;
   double torque = 0;  // in-lbf, T_p = k_1 v within +/- T_pmax
   double fitted = 0;  // in-lbf, on the line
-  // The most that inertia can still take of it, in-lbf: the approach to a steady speed never ends.
+  // in-lbf, the largest part of it that inertia can still take: the approach to a steady speed never ends.
   double transient = 0;
 };
 
@@ -36,9 +36,10 @@ struct PumpFriction {
 };
 
 // Fits a run with the bypass open; `parameters` gives k_1, T_pmax and J (to judge what is steady). Throws
-// InputError, saying what the run has, when it cannot support the fit: bypass closed; neither speed nor angle
-// of the motor; no steady speed (and then how far from it the longest hold is); steady speeds in one
-// direction only, fewer than three different ones, or fewer than four in all.
+// InputError, saying what the run has, when the run cannot support the fit: the bypass is closed; neither the
+// motor's speed nor its angle was measured; there is no steady speed (the message then says how far from it
+// the longest hold is); there are steady speeds in one direction only, fewer than three different ones, or
+// fewer than four in all.
 PumpFriction FitPumpFriction(const runs::MeasuredRun& run, SpeedSource source,
                              const model::Parameters& parameters);
 

@@ -9,8 +9,8 @@
 
 namespace hydro::experiments {
 
-// A step of `step` rad under a stack's configuration (whole TOML) and model (TOML): gains, rates, limits.
-// What a StepTrial lacks (noise, quantisation) is left out.
+// A step of `step` rad with a stack's configuration (whole TOML) and model (TOML): gains, rates, limits.
+// Features that a StepTrial lacks (noise, quantisation) are left out.
 tune::StepTrial TrialOf(const std::string& config, const std::string& model, double step);
 
 struct Candidate {

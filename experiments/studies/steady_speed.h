@@ -51,8 +51,8 @@ std::vector<Hold> ConstantVoltage(const runs::MeasuredRun& run);
 // Finds in each hold the longest stretch up to its end in which the speed has no significant trend and an
 // inertia `inertia` can take at most 0.5 % of the torque that `torque_per_volt` gives. Where the noise is too
 // small or the drift too slow for the first condition, the second suffices. Returns the later half of the
-// stretch: what is left of a transient hides in the noise of the whole, but is smaller there. The run must
-// have the source's signal.
+// stretch, because a remaining transient hides in the noise of the whole stretch but is smaller in the later
+// half. The run must have the source's signal.
 SteadySpeeds FindSteadySpeeds(const runs::MeasuredRun& run, SpeedSource source, double torque_per_volt,
                               double inertia);
 

@@ -30,8 +30,8 @@ struct TorqueSweep {
   std::vector<design::ResponsePoint> points;  // arm torque per commanded torque
   double bandwidth_hz = 0;        // 3 dB below the gain of the lowest points; NaN: beyond the sweep
   double saturated_fraction = 0;  // fraction of the time
-  // Fraction of the time with both pressures above p_3: a valve that opened in an earlier cycle has let fluid
-  // in.
+  // Fraction of the time with both pressures above p_3, after a valve that opened in an earlier cycle has let
+  // fluid in.
   double both_compress_fraction = 0;
 };
 
@@ -40,7 +40,7 @@ inline constexpr double kSweepLast = 60;    // Hz
 
 TorqueSweep RunTorqueSweep(const StackRunner& run_stack, double mean, double amplitude);
 
-// Half the width of the torque band in which a standing pump stays at rest, whatever is commanded.
+// Half the width of the torque band in which a resting pump stays at rest, whatever is commanded.
 double FrictionBandTorque();
 
 // Closed-form bandwidth of the loop without friction, leakage and saturation. compressed_sides: 2, or 1 when

@@ -8,8 +8,8 @@
 
 namespace hydro::experiments {
 
-// From -reach to +reach and back, each way a quintic with zero speed and acceleration at both ends, and rests
-// before, between and after.
+// A path from -reach to +reach and back. Each way is a quintic with zero speed and acceleration at both ends,
+// and the path rests before, between and after.
 class SmoothPath {
  public:
   SmoothPath(double reach, double largest_speed);
@@ -18,7 +18,7 @@ class SmoothPath {
   double speed(double time) const;         // rad/s
   double acceleration(double time) const;  // rad/s^2
   double duration() const { return 2 * move_ + 3 * kRest; }
-  double middle() const { return kRest + move_ / 2; }  // s, when it first passes 0, at its peak speed
+  double middle() const { return kRest + move_ / 2; }  // s, when the path first passes 0, at its peak speed
 
   static constexpr double kRest = 0.4;  // s
 
@@ -46,7 +46,7 @@ struct TorqueOnPath {
   std::vector<double> closed_form;
   double largest_error = 0;                 // in-lbf, |command - k_2 dp|
   double rms_error = 0;                     // in-lbf
-  double error_at_largest_speed = 0;        // in-lbf, as it first passes alpha = 0
+  double error_at_largest_speed = 0;        // in-lbf, when the arm first passes alpha = 0
   double closed_form_at_largest_speed = 0;  // in-lbf
   double largest_motor_torque = 0;          // in-lbf
   double largest_motor_speed = 0;           // rad/s

@@ -21,7 +21,7 @@ struct TrackingStudy {
   std::string kind;    // of the reference: "square", "sine"
 
   pressure_ctrl::PressureGains gains;
-  double feedforward = 0;  // V/psi, supplies all but T_s in the steady state
+  double feedforward = 0;  // V/psi, supplies everything except T_s in the steady state
   // V/psi, also supplies T_s at a reference of kWaveAmplitude
   double tuned_feedforward = 0;
 
@@ -32,7 +32,7 @@ struct TrackingStudy {
 
   TrackingError error, error_with;
   double steady_state_error = 0, steady_state_error_with = 0;  // psi, of the held reference
-  double largest_demand = 0;  // in-lbf, what eq. (16) demands before the limit, wave without feed-forward
+  double largest_demand = 0;  // in-lbf, demand of eq. (16) before the limit, wave without feed-forward
 
   struct AtFrequency {
     double frequency = 0;  // Hz

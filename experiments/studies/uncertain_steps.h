@@ -1,5 +1,5 @@
-// Figure 10's retuned step on machines that Table 1 allows: gains for Table 1, plants drawn from what is
-// known of it.
+// Figure 10's retuned step on machines that Table 1 allows: gains for Table 1, and plants drawn from its
+// uncertainty.
 #pragma once
 
 #include <cstdint>
@@ -25,20 +25,21 @@ struct UncertainStep {
 };
 
 struct UncertainSteps {
-  tune::StepTrial trial;  // of the model as its file says; only the model differs in the others
+  tune::StepTrial trial;  // of the model as its file says; for the others only the model differs
   uint64_t seed = 1;
   UncertainStep known;
   std::vector<UncertainStep> drawn;  // number i is model::DrawnModel(trial.model, seed, i)
 };
 
-// config/retuned.toml's loop on Table 1 with a step of `step` rad, watched for `duration` s. A shipped
-// configuration says all the rest.
+// config/retuned.toml's loop on Table 1 with a step of `step` rad, observed for `duration` s. A shipped
+// configuration defines everything else.
 tune::StepTrial RetunedTrial(double step, double duration);
 
 // The step on one machine. Throws ModelError, also when the arm runs into its stop.
 UncertainStep StepOf(tune::StepTrial trial, const model::ModelDescription& machine);
 
-// Steps of `count` drawn machines, on up to `jobs` threads. The result does not depend on how many.
+// Steps of `count` drawn machines, on up to `jobs` threads. The result does not depend on the number of
+// threads.
 UncertainSteps StepDrawnModels(const tune::StepTrial& trial, int count, uint64_t seed, int jobs,
                                const std::function<void(double)>& progress);
 

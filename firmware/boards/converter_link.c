@@ -23,7 +23,7 @@ void hydro_converter_link_read(struct hydro_converter_link* link, struct hydro_r
   readings->interlock_closed = link->newest.interlock == 1;
   for (size_t i = 0; i < HYDRO_ANALOG_INPUTS; ++i) readings->analog_V[i] = link->newest.analog_V[i];
   for (size_t i = 0; i < HYDRO_COUNTERS; ++i) readings->counter[i] = link->newest.counter[i];
-  /* What was read back before the newest volts arrived says nothing of them. */
+  /* A value read back before the newest volts arrived does not show them. */
   const bool current = link->outputs > 0 && link->newest.tick == link->outputs - 1;
   readings->read_back_V = current ? link->newest.read_back_V : HYDRO_NOT_A_NUMBER;
 }

@@ -14,7 +14,7 @@
 namespace hydro::launch {
 namespace {
 
-// Assumed for the real-time checks when there is no configuration: the priority in config/realtime.toml.
+// The real-time checks assume this priority, that of config/realtime.toml, when there is no configuration.
 constexpr int kUsualPriority = 80;
 
 bool IsOf(const settings::ProcessSection& process, const std::string& host) {

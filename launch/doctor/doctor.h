@@ -1,7 +1,7 @@
-// hydro-launch --doctor: are this machine and its network fit to run a stack? Each problem comes with the
-// command that fixes it.
+// hydro-launch --doctor: finds out whether this machine and its network are fit to run a stack. Each problem
+// comes with the command that fixes it.
 //
-// Pure: the facts about the machine go in, partly as the kernel's own texts (doctor_facts.h reads them), and
+// Pure: facts about the machine go in, partly as the kernel's own texts (doctor_facts.h reads them), and
 // findings come out.
 #pragma once
 
@@ -26,11 +26,11 @@ struct Finding {
 struct DoctorTask {
   bus::UdpmUrl url;
   std::string channel_suffix;
-  std::vector<std::string> joint_suffixes = {};  // of a limb: those of its joints' channels
+  std::vector<std::string> joint_suffixes = {};  // for a limb: the suffixes of its joints' channels
   bool several_hosts = false;
   bool open_network = false;  // messages may come from other hosts, and nothing authenticates them
-  int priority = 0;           // the highest SCHED_FIFO priority of its processes here; 0: none asks for one
-  std::vector<int> cpus;      // the processors that they ask for
+  int priority = 0;           // the highest SCHED_FIFO priority of its processes here; 0: none requests one
+  std::vector<int> cpus;      // the processors that the processes request
   double stale_input_s = std::numeric_limits<double>::infinity();  // limits.stale_input_s, in real time
   std::string config;                                              // file; empty: none was given
 };
@@ -40,12 +40,12 @@ struct NetworkInterface {
   bool up = false;
   bool loopback = false;
   bool multicast = false;
-  // For a bridge only (bridge/multicast_snooping and multicast_querier under /sys/class/net).
+  // These are for a bridge only (bridge/multicast_snooping and multicast_querier under /sys/class/net).
   std::optional<bool> snooping;
   std::optional<bool> querier;
 };
 
-// A stack that was heard on the port: the suffix of its channels, and its processes as "role on host".
+// A stack that was heard on the port, with the suffix of its channels, and its processes as "role on host".
 struct HeardStack {
   std::string suffix;
   std::vector<std::string> processes;
@@ -66,9 +66,9 @@ struct MachineFacts {
 
   int64_t rtprio_limit = 0;    // RLIMIT_RTPRIO; -1: no limit
   int64_t memlock_limit = 0;   // RLIMIT_MEMLOCK, bytes; -1: no limit
-  std::string process_status;  // /proc/self/status, which has the capabilities
+  std::string process_status;  // /proc/self/status, which lists the capabilities
   std::string user;
-  std::vector<int> cpus;               // the ones this process may run on
+  std::vector<int> cpus;               // those on which this process may run
   std::vector<std::string> governors;  // scaling_governor of each processor that has one
   std::string swaps;                   // /proc/swaps
   bool realtime_kernel = false;        // PREEMPT_RT
@@ -88,8 +88,8 @@ std::string FindingsText(const std::vector<Finding>& findings);
 int Problems(const std::vector<Finding>& findings);
 
 // Examines this machine for the stack of `config_file` (empty: for any real-time stack on the default bus)
-// and prints the findings. `host`: count only the processes of that host; empty: all. Returns 0 when all is
-// well, 1 when there are problems.
+// and prints the findings. `host` restricts this to the processes of that host; empty: all. Returns 0 when
+// all is well, 1 when there are problems.
 int RunDoctor(const std::string& config_file, const std::vector<std::string>& overrides,
               const std::string& host);
 

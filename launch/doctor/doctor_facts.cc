@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kListenTime = 2s;  // every process of a stack reports once a second
 
-// Empty when it cannot be read.
+// Returns an empty text when the file cannot be read.
 std::string TextOf(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -133,7 +133,8 @@ void ReadClock(MachineFacts* facts) {
   facts->clock_error_us = state.maxerror;
 }
 
-// Names the processes that report on their loops. Their messages may end with a seal (a stack with a key).
+// Listens for the names of the processes that report on their loops. Their messages may end with a seal (a
+// stack with a key).
 void Listen(const DoctorTask& task, MachineFacts* facts) {
   const std::string statistics = bus::Channels().Of<loop_statistics_t>();
   std::map<std::string, std::set<std::string>> stacks;

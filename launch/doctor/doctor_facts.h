@@ -1,5 +1,5 @@
-// Gathers the facts that the doctor judges, from files under /proc and /sys, limits and sockets. Changes
-// nothing.
+// Gathers the facts that the doctor judges from files under /proc and /sys, from limits and from sockets.
+// Changes nothing.
 #pragma once
 
 #include "launch/doctor/doctor.h"

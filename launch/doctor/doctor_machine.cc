@@ -11,7 +11,7 @@ namespace {
 constexpr char kNotAsked[] = "no process here asks for a priority";
 // mlockall() locks all present and future memory, most of which is the stacks of LCM's threads and ours.
 constexpr int64_t kLockedBytes = 512LL << 20;
-// linux/capability.h
+// These values are from linux/capability.h.
 constexpr int kCapIpcLock = 14;
 constexpr int kCapSysNice = 23;
 // A general-purpose kernel's wake-ups are late by up to tens of milliseconds.

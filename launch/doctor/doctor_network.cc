@@ -86,7 +86,7 @@ Finding SelfTestFinding(const DoctorTask& task, const MachineFacts& facts) {
   if (facts.self_test_error.empty()) {
     return {kCheck, true, fmt::format("a packet sent to {}:{} came back", task.url.group, task.url.port), ""};
   }
-  // The bus's message ends with its own cure, which is cut off here.
+  // The bus's message ends with its own cure, which this line removes.
   const std::string found = facts.self_test_error.substr(0, facts.self_test_error.find("; "));
   if (found.find("route") != found.npos || found.find("cannot join") != found.npos ||
       found.find("unreachable") != found.npos) {
@@ -145,7 +145,7 @@ Finding NeighbourFinding(const DoctorTask& task, const MachineFacts& facts) {
   return {kCheck, true, found, ""};
 }
 
-// A bridge is a switch inside this machine; switches outside cannot be asked (docs/network.md).
+// A bridge is a switch inside this machine; switches outside cannot be queried (docs/network.md).
 Finding SnoopingFinding(const DoctorTask& task, const MachineFacts& facts) {
   constexpr char kCheck[] = "IGMP snooping";
   const auto route = FindMulticastRoute(facts.routes, task.url.group);

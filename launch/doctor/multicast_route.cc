@@ -9,7 +9,7 @@
 namespace hydro::launch {
 namespace {
 
-// From linux/route.h, which clashes with the C library's header.
+// These values are from linux/route.h, which clashes with the C library's header.
 constexpr uint32_t kUp = 1;
 constexpr uint32_t kReject = 0x200;
 

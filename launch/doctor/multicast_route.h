@@ -1,4 +1,4 @@
-// The interface through which a multicast group leaves the machine.
+// Finds the interface through which a multicast group leaves the machine.
 #pragma once
 
 #include <optional>

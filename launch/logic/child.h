@@ -1,4 +1,4 @@
-// A process that a launch starts: what it is, and how it ended.
+// Describes a process that a launch starts, and how it ended.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@
 
 namespace hydro::launch {
 
-// What a program of the user's own needs besides (process/own_program.h).
+// Further data that a program of the user's own needs (process/own_program.h).
 struct OwnChild {
-  std::string role;                      // whose place it takes, e.g. position_ctrl
+  std::string role;                      // the role that it fills, e.g. position_ctrl
   std::string name;                      // in messages, e.g. "./pid.py (position_ctrl)"
-  std::string folder;                    // that it runs in
+  std::string folder;                    // working folder
   std::vector<std::string> environment;  // "NAME=value", all of it
-  int cpu = -1;                          // as in [[process]]; our programs set theirs themselves
+  int cpu = -1;                          // as in [[process]]; our programs set their own
   int priority = 0;
 };
 
 struct ChildSpec {
-  std::string label;              // precedes each of its lines, e.g. plant
+  std::string label;              // precedes each of its output lines, e.g. plant
   std::vector<std::string> argv;  // argv[0] is the path of the program
   bool last = false;              // is stopped only when all processes without this mark have ended
   std::optional<OwnChild> own = std::nullopt;  // absent: one of our programs
-  std::vector<std::string> joints = {};        // of a limb: those that it runs, or is a part of; else empty
+  // For a limb: the joints that it runs, or of which it is a part; otherwise empty.
+  std::vector<std::string> joints = {};
 
-  std::string program() const;  // the last part of the path, e.g. hydro-plant; of a user's own the name
+  std::string program() const;  // the last part of the path, e.g. hydro-plant; for a user's own, its name
   std::string role() const;     // e.g. pressure_ctrl
 };
 
@@ -42,7 +43,7 @@ struct Ended {
   std::string role;
   int32_t pid = -1;
   ProcessEnd end;
-  bool terminated = false;  // the stop had sent it SIGTERM
+  bool terminated = false;  // the stop sent it SIGTERM
   bool hung = false;        // it did not end on SIGTERM and was sent SIGKILL
 };
 

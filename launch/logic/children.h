@@ -1,4 +1,5 @@
-// The processes that a launch has started, as it sees them: real ones (launch/supervisor.h) or simulated ones (sim/torture/).
+// The processes that a launch has started, as it sees them: real ones (launch/supervisor.h) or simulated ones
+// (sim/torture/).
 #pragma once
 
 #include <cstddef>
@@ -19,11 +20,12 @@ class Children {
   // Starts a process and returns its process id. Throws StartError.
   virtual int32_t Start(const ChildSpec& spec) = 0;
 
-  // Waits until a child ends, a signal comes, or `deadline`, sooner where there is other work. Takes the steps of a stop that are
-  // due. Sends each child a heartbeat, so call it often: without one a plant goes to zero volts (limits.stale_supervisor_s).
+  // Waits until a child ends, a signal comes, or `deadline`; returns sooner when there is other work. Takes
+  // the steps of a stop that are due. Sends each child a heartbeat, so call it often: without heartbeats a
+  // plant goes to zero volts (limits.stale_supervisor_s).
   virtual void Wait(TimePoint deadline) = 0;
 
-  // What Wait() found, oldest first; nothing when there is no more.
+  // Return what Wait() has found, oldest first; nothing when there is no more.
   virtual std::optional<Ended> NextEnded() = 0;
   virtual std::optional<int> NextSignal() = 0;
 
@@ -35,9 +37,9 @@ class Children {
   virtual void KillAll() = 0;
 
   virtual int running() const = 0;  // children that have not ended
-  // Bytes that wait for the reader of this launcher's output.
+  // The number of bytes that wait for the reader of this launcher's output.
   virtual size_t unread() const = 0;
-  // No child is left, and what they have said has been passed on.
+  // Whether no child is left and all their output has been passed on.
   bool finished() const { return running() == 0 && unread() == 0; }
 };
 

@@ -1,4 +1,4 @@
-// What a launch tells people: lines on a terminal, and how the loops kept time in files.
+// What a launch reports to people: lines on a terminal, and files on how well the loops kept time.
 #pragma once
 
 #include <string>
@@ -16,13 +16,15 @@ class LaunchReport {
   virtual void Print(const std::string& text) = 0;
   virtual void PrintError(const std::string& text) = 0;
 
-  // How the processes are doing, about once a second while the run goes on; empty: it is over.
+  // Shows how the processes are doing, about once a second while the run goes on; an empty list means that it
+  // is over.
   virtual void ShowStatus(const std::vector<ProcessStatus>& /*processes*/) {}
 
-  // The launch is over; nothing is printed after it.
+  // Called when the launch is over; nothing is printed after it.
   virtual void End(int /*exit_code*/) {}
 
-  // Writes how the loops kept time and returns a line that says where; empty: it is not kept. Throws std::exception.
+  // Writes how well the loops kept time and returns a line that says where; empty when that is not kept.
+  // Throws std::exception.
   virtual std::string WriteTiming(const timing::TimingRecord& record) = 0;
 };
 

@@ -1,4 +1,4 @@
-// What a launch starts, and how patient it is.
+// Describes what a launch starts, and how patient it is.
 #pragma once
 
 #include <chrono>
@@ -20,16 +20,16 @@ struct LaunchPlan {
 
 struct LaunchTiming {
   Grace grace;
-  // After a stop was heard: how long the processes may take to end by themselves before they get SIGTERM.
+  // After a stop was heard: how long the processes may take to end by themselves before they receive SIGTERM.
   bus::Clock::Duration patience = std::chrono::seconds(3);
   // After a process ended with 0 and no stop was heard: how long the stop may take to arrive.
   bus::Clock::Duration stop_arrival = std::chrono::milliseconds(500);
 };
 
-// The roles of its children.
+// The roles of the plan's children.
 std::vector<std::string> RolesOf(const LaunchPlan& plan);
 
-// The graces of a stop of that plan.
+// The times that a stop of that plan allows its children.
 Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan);
 
 }  // namespace hydro::launch

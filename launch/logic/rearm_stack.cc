@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <hydro/active_faults_t.hpp>
 #include <hydro/arm_plan_t.hpp>
 #include <hydro/rearm_t.hpp>
 #include <hydro/run_description_t.hpp>
@@ -8,11 +9,13 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "bus/channels.h"
 #include "bus/session.h"
 #include "launch/logic/operator_request.h"
+#include "process/fault_codes.h"
 #include "tune/live/rearm_forecast.h"
 
 namespace hydro::launch {
@@ -23,6 +26,15 @@ using namespace std::chrono_literals;
 constexpr auto kListen = 300ms;  // long enough to hear a second plant
 constexpr auto kRearmRepeat = 100ms;
 
+// Of codes with a blank between them.
+bool AnyZeroesVoltage(const std::string& codes) {
+  std::istringstream words(codes);
+  for (std::string code; words >> code;) {
+    if (process::ZeroesVoltage(code)) return true;
+  }
+  return false;
+}
+
 // The plant of a stack, or of a joint, that is asked.
 class Asked {
  public:
@@ -31,7 +43,7 @@ class Asked {
     bus.Subscribe<state_t>(channels_.Of<state_t>(), [this](const state_t& state) {
       plants_.insert(state.session);
       tick_ = state.tick;
-      // The state in which it was asked: later ones may show what the re-arm did.
+      // Keeps the state in which the plant was asked: later ones may show what the re-arm did.
       if (!asked_ || (!answer_ && state.command_tick < 0)) heard_.state = state;
     });
     bus.Subscribe<run_description_t>(channels_.Of<run_description_t>(),
@@ -41,9 +53,14 @@ class Asked {
     });
     bus.Subscribe<arm_plan_t>(channels_.Of<arm_plan_t>(),
                               [this](const arm_plan_t& plan) { heard_.plan = plan; });
+    bus.Subscribe<active_faults_t>(channels_.Of<active_faults_t>(), [this](const active_faults_t& active) {
+      if (plants_.contains(active.session) && !answer_) heard_.holds = AnyZeroesVoltage(active.codes);
+    });
     bus.Subscribe<rearm_t>(channels_.Of<rearm_t>(), [this](const rearm_t& message) {
       const bool ours = message.kind != rearm_t::REQUEST && message.addressee == session_;
-      if (ours && plants_.contains(message.session) && !answer_) answer_ = message;
+      if (!ours || !plants_.contains(message.session) || answer_) return;
+      answer_ = message;
+      heard_.holds = message.kind == rearm_t::ACCEPTED;
     });
   }
 
@@ -51,8 +68,14 @@ class Asked {
   bool heard() const { return !plants_.empty(); }
   size_t plants() const { return plants_.size(); }
   bool answered() const { return answer_.has_value(); }
-  bool described() const { return heard_.run && heard_.in_force; }
+  // All that a forecast is made of. A plant that holds the voltage says so once a second, and one that does
+  // not says nothing.
+  bool described() const {
+    const bool held = answer_ || heard_.holds || (heard_.state && heard_.state->command_tick < 0);
+    return held && heard_.run && heard_.in_force;
+  }
   bool accepted() const { return answer_ && answer_->kind == rearm_t::ACCEPTED; }
+  bool nothing_latched() const { return answer_ && answer_->kind == rearm_t::NOTHING_LATCHED; }
 
   void Ask(int64_t utime, const Asker& asker) {
     asked_ = true;
@@ -67,18 +90,19 @@ class Asked {
     bus_.Publish(channels_.Of<rearm_t>(), request);
   }
 
-  // What came of it, in words.
+  // The outcome in words.
   std::string Text() const {
     if (!answer_) return "the plant does not answer";
-    return accepted() ? answer_->text : "refused by the " + answer_->source + ": " + answer_->text;
+    const bool nothing = nothing_latched() && !joint_.empty();  // of a limb, another joint may have had one
+    return accepted() || nothing ? answer_->text : "refused by the " + answer_->source + ": " + answer_->text;
   }
 
-  // From the last state before an answer, when the voltage was still held at zero.
+  // Uses the last state before an answer, when the voltage was still held at zero.
   tuning::RearmForecast Forecast() const { return tuning::ForecastRearm(heard_); }
 
  private:
   bus::Bus& bus_;
-  std::string joint_;  // empty: it is a stack by itself
+  std::string joint_;  // empty for a single stack
   bus::Channels channels_;
   int64_t session_;
   std::set<int64_t> plants_;
@@ -106,7 +130,7 @@ bool All(const Joints& joints, Is is) {
   return std::all_of(joints.begin(), joints.end(), [&](const auto& joint) { return is(*joint); });
 }
 
-// "hip, knee" of those for which `is` holds.
+// "hip, knee": the joints for which `is` is true.
 template <class Is>
 std::string Names(const Joints& joints, Is is) {
   std::string names;
@@ -116,7 +140,8 @@ std::string Names(const Joints& joints, Is is) {
   return names;
 }
 
-// Why nobody is asked; empty: all are there, each once. Of a limb it is all or nothing: who re-arms it counts on each joint.
+// The reason why no plant is asked; empty when all are heard, each once. A limb is re-armed as a whole or not
+// at all: its operator counts on each joint.
 std::string WhyNot(const Joints& joints, const std::string& url) {
   const auto silent = [](const Asked& joint) { return !joint.heard(); };
   if (All(joints, silent)) return "no plant or driver is heard on " + url;
@@ -132,13 +157,14 @@ std::string WhyNot(const Joints& joints, const std::string& url) {
   return "";
 }
 
-// "hip: ended pressure_limit; knee, ankle: no fault is latched": joints with the same answer together, refusals first.
+// "hip: ended pressure_limit; knee, ankle: no fault is latched": joints with the same answer come together,
+// refusals first.
 std::string Answers(const Joints& joints) {
   std::string text;
-  for (const bool accepted : {false, true}) {
+  for (const bool answers : {false, true}) {
     std::map<std::string, std::string> names;
     for (const auto& joint : joints) {
-      if (joint->accepted() != accepted) continue;
+      if ((joint->accepted() || joint->nothing_latched()) != answers) continue;
       std::string& list = names[joint->Text()];
       list += (list.empty() ? "" : ", ") + joint->joint();
     }
@@ -147,7 +173,7 @@ std::string Answers(const Joints& joints) {
   return text;
 }
 
-// Until `done` holds for all.
+// Listens until `done` is true for all joints.
 template <class Done>
 void Listen(bus::Bus& bus, const bus::Clock& clock, const Joints& joints, bus::Clock::Duration longest,
             Done done) {
@@ -163,7 +189,7 @@ void ListenForAll(bus::Bus& bus, const bus::Clock& clock, const Joints& joints,
   for (const auto until = clock.Now() + kListen; clock.Now() < until;) bus.HandleUntil(until);
 }
 
-// "hip: the arm is at ...; knee: ..."; `all`: also of joints whose voltage is not held.
+// Adds "hip: the arm is at ...; knee: ..."; with `all`, also for joints whose voltage is not held.
 void AddForecasts(const Joints& joints, bool all, OperatorResult* result) {
   for (const auto& joint : joints) {
     result->forecasts.emplace_back(joint->joint(), joint->Forecast());
@@ -201,7 +227,10 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
     for (const auto until = clock.Now() + kRearmRepeat; !All(joints, answered) && clock.Now() < until;)
       bus.HandleUntil(until);
   }
-  const bool accepted = All(joints, [](const Asked& joint) { return joint.accepted(); });
+  const auto refused = [](const Asked& joint) { return !joint.accepted() && !joint.nothing_latched(); };
+  const bool accepted =
+      std::none_of(joints.begin(), joints.end(), [&](const auto& joint) { return refused(*joint); }) &&
+      std::any_of(joints.begin(), joints.end(), [](const auto& joint) { return joint->accepted(); });
   const std::string text = config.joints.empty() ? joints.front()->Text() : Answers(joints);
   OperatorResult result{accepted ? 0 : 1, (accepted ? "re-armed: " : "") + text};
   if (!accepted) return result;

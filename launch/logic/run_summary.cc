@@ -15,17 +15,18 @@ namespace hydro::launch {
 namespace {
 
 constexpr double kMostOfASecond = 0.5;
-// A stack has five processes and some forty codes; a flood of made-up ones is not kept.
+// A stack has five processes and some forty codes; more would come from a flood of made-up ones.
 constexpr size_t kMostLoops = 64;
 constexpr size_t kMostFaults = 256;
 constexpr size_t kMostOutputs = 256;
-constexpr size_t kListedOutputs = 4;  // of more, those at zero are counted
+constexpr size_t kListedOutputs = 4;  // if there are more, those at zero volts are only counted
 constexpr size_t kLongestText = 500;
 constexpr size_t kWidestLine = 79;  // of a terminal of 80 columns
-// The table of loops: with the longest label, "[position_ctrl] ", 79 columns, whatever the numbers are.
+// The widths of the table of loops: with the longest label, "[position_ctrl] ", it has 79 columns, whatever
+// the numbers are.
 constexpr int kCycles = 7, kTime = 6, kLongestTime = 7, kMissed = 7, kLost = 5;
 
-// "18000k" where the digits of a number and a blank before them do not fit into so many columns.
+// Writes "18000k" when the digits of a number and a blank before them do not fit into this many columns.
 std::string Fitted(double value, int columns) {
   std::string text = fmt::format("{:.0f}", value);
   for (const char* unit = "kMGTPE"; static_cast<int>(text.size()) >= columns && *unit != '\0'; ++unit) {
@@ -37,8 +38,8 @@ std::string Fitted(double value, int columns) {
 
 std::string Fitted(int64_t value, int columns) { return Fitted(static_cast<double>(value), columns); }
 
-// A session is one sender; its name in a message that changed on the way may be another's. Only the simulated
-// joints of a limb have no session, and then the names tell them apart.
+// A session identifies one sender; the name in a message that changed on the way may belong to another. Only
+// the simulated joints of a limb have no session, and names then distinguish them.
 bool SameSender(int64_t session, const std::string& name, int64_t other_session,
                 const std::string& other_name) {
   return session == other_session && (session != 0 || name == other_name);

@@ -1,4 +1,4 @@
-// A run's statistics and faults as a table for the end of a launch.
+// Summarises a run's statistics and faults in a table for the end of a launch.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace hydro::launch {
 
-// How a process is doing, for the line that is drawn while the run goes on.
+// The state of a process, for the line that is drawn while the run goes on.
 struct ProcessStatus {
   std::string role;
   double rate_hz = 0;            // of its loop, over its last report
-  double latency_p99_us = 0;     // the same
+  double latency_p99_us = 0;     // of its loop, over its last report
   int64_t missed_deadlines = 0;  // since the run began
   int64_t lost_messages = 0;
-  std::string fault;  // code of one that is active; empty: none
+  std::string fault;  // code of an active fault; empty: none
 };
 
-// "plant           1000 Hz  p99     34 us  missed    0  lost   0  ok": rate, lateness, and a fault; at most 79
-// characters.
+// "plant           1000 Hz  p99     34 us  missed    0  lost   0  ok": rate, lateness, and a fault; at most
+// 79 characters.
 std::string StatusLine(const ProcessStatus& status);
 
 class RunSummary {
@@ -30,13 +30,13 @@ class RunSummary {
   void Add(const fault_t& fault);
   void Add(const output_left_t& left);
 
-  // One line per process, one per kind of fault, and one per plant or driver on what it left. Percentiles come from the process's report on its whole
-  // run or, without one, from its last report that covers most of a second. The largest latency, missed
-  // deadlines and lost messages are those of the whole run. Empty when nothing was reported. Times are in
-  // microseconds, with or without --si.
+  // One line per process, one per kind of fault, and one per plant or driver on what it left. Percentiles
+  // come from the process's report on its whole run or, without one, from its last report that covers most of
+  // a second. The largest latency, missed deadlines and lost messages are those of the whole run. Empty when
+  // nothing was reported. Times are in microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
-  // What to do where a plant, driver or limb has slept through a part of its ticks; empty where it has not.
+  // Advice for when a plant, driver or limb has slept through a part of its ticks; empty when none has.
   std::string SkippedTicksAdvice(const std::string& config) const;
 
   bool says_what_was_left() const { return !outputs_left_.empty(); }
@@ -44,7 +44,7 @@ class RunSummary {
   // A row for each process that has reported, in the order of their first reports.
   std::vector<ProcessStatus> Status() const;
 
-  // "CODE of SOURCE" of every fault that was still active at the end and is more than a warning, each once,
+  // "CODE of SOURCE" for every fault that was still active at the end and is more than a warning, each once,
   // whatever the session.
   std::vector<std::string> FaultsLeft() const;
 

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr auto kBusPeriod = 20ms;
 constexpr auto kStatusPeriod = 500ms;
 constexpr int kQuestions = 3;
-constexpr auto kAnswerTime = 100ms;  // how long a running process may take to say that it is there
+constexpr auto kAnswerTime = 100ms;  // how long a running process may take to answer that it is present
 
 }  // namespace
 
@@ -51,7 +51,7 @@ int StackLaunch::Run() {
   }
   report_.ShowStatus({});
   HearLastReports();
-  OnStopHeard();  // our processes may have heard it, and ended, before this launcher has
+  OnStopHeard();  // our processes may have heard it, and ended, before this launcher heard it
   RepeatStopForOtherHosts();
   PrintSummary();
   WriteTiming();
@@ -60,7 +60,7 @@ int StackLaunch::Run() {
   return exit_code_;
 }
 
-// The processes that do what one of this launch's children would.
+// The processes that fill a role of one of this launch's children.
 std::vector<std::string> StackLaunch::PresentInOurPlace() const {
   std::vector<std::string> present;
   const auto add = [&](const std::vector<std::string>& roles, const std::string& joint) {
@@ -68,7 +68,7 @@ std::vector<std::string> StackLaunch::PresentInOurPlace() const {
   };
   for (const ChildSpec& child : plan_.children) {
     const std::string role = child.role();
-    // Another host's logger or limb was started a moment before.
+    // On another host, the logger or limb may have been started a moment before.
     const bool elsewhere_too = plan_.spread && (role == "logger" || role == "limb");
     if (!elsewhere_too && (child.joints.empty() || role == "limb")) add({role}, "");
     for (const std::string& joint : child.joints) {
@@ -79,7 +79,7 @@ std::vector<std::string> StackLaunch::PresentInOurPlace() const {
 }
 
 // Two stacks on the same channels drive each other to zero volts, and their messages end up in each other's
-// logs. Asked several times, because UDP may lose a message.
+// logs. The question is repeated because UDP may lose a message.
 void StackLaunch::RefuseIfOneRuns() {
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();

@@ -1,5 +1,5 @@
-// One launch of a stack: starts its processes, watches them until the run has ended, and ends them in order. It decides; what it
-// starts, hears and prints is given to it.
+// One launch of a stack: starts its processes, watches them until the run has ended, and ends them in order.
+// This class only decides; the objects that start, hear and print are passed in.
 #pragma once
 
 #include <optional>
@@ -21,11 +21,12 @@ class StackLaunch {
  public:
   using TimePoint = bus::Clock::TimePoint;
 
-  // All must outlive it. `children` stop with GraceFor(timing, plan).
+  // All arguments must outlive this object. `children` stop with GraceFor(timing, plan).
   StackLaunch(bus::Bus& bus, bus::Clock& clock, Children& children, LaunchReport& report,
               const settings::StackConfig& config, const LaunchPlan& plan, const LaunchTiming& timing);
 
-  // Runs until no process is left; returns the exit code. Throws InputError when a process with one of its roles is there already.
+  // Runs until no process is left; returns the exit code. Throws InputError when a process with one of its
+  // roles is present already.
   int Run();
 
  private:
@@ -63,21 +64,21 @@ class StackLaunch {
   StackWatch watch_;
 
   TimePoint started_;
-  TimePoint asked_;  // who is there, while not all are ready
+  TimePoint asked_;  // when it last asked who is present, while not all are ready
   TimePoint next_status_;
   bool ready_ = false;
   bool plant_heard_ = false;
   bool bus_failed_ = false;
   bool stop_seen_ = false;     // another process's stop has been acted upon
-  bool failing_ = false;       // the run has failed: consequences of that are not reported again
-  bool joints_ended_ = false;  // of a process here, while others go on
+  bool failing_ = false;       // the run has failed; consequences are not reported again
+  bool joints_ended_ = false;  // the joints of a process here have ended, while others go on
   bool killed_ = false;
-  bool plant_killed_ = false;  // a plant or driver ended by a signal, and could say no more
-  bool told_ = false;          // by a signal: somebody waits for this launcher's end
+  bool plant_killed_ = false;  // a plant or driver was ended by a signal and could report no more
+  bool told_ = false;          // told to end by a signal: somebody waits for this launcher's end
   int interrupts_ = 0;
   int exit_code_ = 0;
   std::string early_end_;      // a program that ended with 0 although no stop was heard
-  TimePoint early_end_until_;  // until when the stop may still arrive
+  TimePoint early_end_until_;  // the time until which the stop may still arrive
   StopAnnouncer stop_announcer_;
 };
 

@@ -1,4 +1,4 @@
-// What ends a launch: signals, a stop, a child's end, and what does not come in time.
+// Handles what ends a launch: signals, a stop, a child's end, and what does not come in time.
 #include <signal.h>
 #include <spdlog/fmt/fmt.h>
 #include <string.h>
@@ -14,17 +14,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kPlantMargin_s = 1;      // its own launch may have begun that much later
+constexpr double kPlantMargin_s = 1;      // the plant's own launch may have begun this much later
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
 
-constexpr auto kUnreadTime = 2s;  // how long a reader may take nothing when the launcher has been told to end
+constexpr auto kUnreadTime = 2s;  // how long a reader may take nothing once the launcher has been told to end
 
-constexpr auto kQuestionPeriod = 300ms;  // while a process is not ready
+constexpr auto kQuestionPeriod = 300ms;  // between questions while a process is not ready
 
 }  // namespace
 
-// The reader may be slow, or a pager that waits for its user. Who has told the launcher to end is not kept
-// waiting by one that takes nothing any more.
+// The reader may be slow, or a pager that waits for its user. Whoever has told the launcher to end is not
+// kept waiting by a reader that takes nothing any more.
 void StackLaunch::WriteRemainingOutput() {
   TimePoint until = TimePoint::max();
   std::optional<size_t> unread;
@@ -78,14 +78,15 @@ void StackLaunch::OnEnded(const Ended& ended) {
     return;
   }
   if (end.signal == 0 && !failing_) {
-    // It has most likely published the reason: its stop is on the way.
+    // The process has most likely published the reason: its stop is on the way.
     const TimePoint until = clock_.Now() + kFinalMessageTime;
     while (!watch_.stop() && clock_.Now() < until && !bus_failed_) HearBus(until);
     OnStopHeard();
   }
   if (end.signal == 0 && end.exit_code == 1 && failing_) return;  // because the run has failed
   std::string text = DescribeEnd(ended.program, end);
-  // A joint that has failed ends alone, and its process with the last of its joints (limb.on_joint_fault).
+  // A joint that has failed ends alone, and its process ends with the last of its joints
+  // (limb.on_joint_fault).
   const bool of_joints = !config_.joints_concern_each_other && process::IsPlant(ended.role);
   if (of_joints && end.signal == 0 && end.exit_code == 1 && watch_.HasPlant()) {
     PrintError(text + ": its joints have ended; the others go on (limb.on_joint_fault)");
@@ -101,9 +102,9 @@ void StackLaunch::OnStopHeard() {
   if (stop_seen_ || !watch_.stop()) return;
   stop_seen_ = true;
   early_end_.clear();
-  if (children_.stopping()) return;  // it follows from this launcher's own stop
+  if (children_.stopping()) return;  // the end follows from this launcher's own stop
   const stop_t& stop = *watch_.stop();
-  // Its sender leaves at once, and for another host the network may have lost that one message.
+  // The stop's sender leaves at once, and the network may have lost its one message to another host.
   if (plan_.spread) stop_announcer_.Announce(stop.source + ": " + stop.reason, stop.exit_code);
   const std::string text = "stopped by " + stop.source + ": " + stop.reason;
   if (stop.exit_code == 0) {
@@ -130,7 +131,7 @@ void StackLaunch::CheckReady() {
                      fmt::join(missing, ", ")),
          1);
   } else if (clock_.Now() >= asked_ + kQuestionPeriod) {
-    // A process that runs says so once: what was lost of that must not end it.
+    // A running process announces this only once; the loss of that message must not end the process.
     asked_ = clock_.Now();
     AskWhoIsThere();
   }
@@ -146,8 +147,8 @@ void StackLaunch::AskWhoIsThere() {
   }
 }
 
-// A part of a stack whose plant is on another host, and never heard, would wait forever: it has not been started, the network does
-// not carry it, or it has another key.
+// If the plant is on another host and is never heard, this part of the stack would wait forever: the plant
+// has not been started, the network does not carry its messages, or it has another key.
 void StackLaunch::CheckPlantIsHeard() {
   if (plant_heard_ || !plan_.spread || children_.stopping()) return;
   plant_heard_ = watch_.HasPlant();
@@ -163,7 +164,7 @@ void StackLaunch::CheckPlantIsHeard() {
        1);
 }
 
-// The loggers of this host, when the last joint on any host has failed too.
+// Ends the loggers of this host when the last joint on any host has failed too.
 void StackLaunch::CheckJointsLeft() {
   if (joints_ended_ && !children_.stopping() && !watch_.HasPlant()) Fail("no joint is left", 1);
 }
@@ -187,8 +188,8 @@ void StackLaunch::BeginStop(const std::string& reason, int exit_code) {
   stop_announcer_.Announce(reason, exit_code);
 }
 
-// The repetitions that are left when this host's processes have ended: processes of other hosts may not have
-// heard.
+// Sends the repetitions that are left when this host's processes have ended: processes of other hosts may not
+// have heard the stop.
 void StackLaunch::RepeatStopForOtherHosts() {
   while (plan_.spread && stop_announcer_.repeating() && !bus_failed_ && !killed_) {
     HearBus(stop_announcer_.next_repeat());

@@ -10,7 +10,7 @@
 namespace hydro::launch {
 namespace {
 
-// A stack has five processes, and so has each joint; a flood of made-up ones is not kept.
+// A stack has five processes, and so has each joint; more would come from a flood of made-up ones.
 constexpr size_t kMostStatuses = 256;
 constexpr size_t kMostStatusesOfAJoint = 8;
 
@@ -44,7 +44,7 @@ void StackWatch::Listen(size_t stack, bool keep_timing) {
         if (statuses_.size() < most || statuses_.contains(key)) statuses_[key] = {stack, status};
       });
   bus_.Subscribe<stop_t>(channels.Of<stop_t>(), [this, joint](const stop_t& stop) {
-    // In lockstep the joints inside a limb have no session; the limb says why it ends.
+    // In lockstep the joints inside a limb have no session; the limb states why it ends.
     const bool inside_a_limb = !joint.empty() && stop.session == 0 && process::IsPlant(stop.source);
     const bool of_one_joint = !joint.empty() || (stop.source == "limb" && stop.addressee != 0);
     if (of_one_joint && !joints_concern_each_other_ && stop.exit_code != 0) return;  // the others go on
@@ -165,7 +165,7 @@ bool StackWatch::IsForThisStack(const stop_t& stop) const {
   });
 }
 
-// The plants, which stand for their runs; while none has been heard, each process by itself.
+// The plants, each of which stands for its run; while no plant has been heard, each process by itself.
 std::vector<const StackWatch::Heard*> StackWatch::Addressees() const {
   std::vector<const Heard*> all, plants;
   for (const auto& [key, heard] : statuses_) {

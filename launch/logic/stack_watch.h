@@ -1,5 +1,5 @@
-// What the processes of a stack report about themselves on the bus: who is ready, that the run ends, what
-// went wrong.
+// Collects what the processes of a stack report about themselves on the bus: which are ready, that the run
+// ends, what went wrong.
 #pragma once
 
 #include <cstdint>
@@ -25,43 +25,44 @@ namespace hydro::launch {
 
 class StackWatch {
  public:
-  // Subscribes to the channels of the stack or limb that `config` describes, and to those of its joints. Create it before the
-  // processes are started, so that no announcement is missed. `spread`: processes on other hosts belong to the stack too.
-  // `keep_timing`: for timing(), which grows by a report a second and process.
+  // Subscribes to the channels of the stack or limb that `config` describes, and to those of its joints.
+  // Create it before the processes are started, so that no announcement is missed. With `spread`, processes
+  // on other hosts belong to the stack too. `keep_timing` is for timing(), which grows by one report a second
+  // for each process.
   StackWatch(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config, bool spread,
              bool keep_timing);
 
-  // Asks every process on the bus to say that it is there. Answers come within milliseconds.
+  // Asks every process on the bus to announce that it is present. Answers come within milliseconds.
   void AskWhoIsThere();
 
-  // The processes with one of these roles that have been heard and have not left, by name. `joint`: on whose channels; empty: on those
-  // of the stack or limb itself; none: on any.
+  // The names of the processes with one of these roles that have been heard and have not left. `joint` names
+  // whose channels count; empty: those of the stack or limb itself; none: any.
   std::vector<std::string> Present(const std::vector<std::string>& roles,
                                    const std::optional<std::string>& joint = std::nullopt) const;
 
-  // Adds a process of this launch to wait for. One of the user's own may be a script that starts another: whoever
-  // announces itself under its role is it.
+  // Adds a process of this launch to wait for. A program of the user's own may be a script that starts
+  // another: whichever process announces itself under its role counts as that program.
   void Expect(const ChildSpec& child, int32_t pid);
 
   // The expected programs that have not announced that they are ready, in the order given.
   std::vector<std::string> NotReady() const;
 
-  // Whether a plant or driver has been heard, on whatever host, and has not left.
+  // Whether a plant or driver has been heard, on any host, and has not left.
   bool HasPlant() const { return !Present({"plant", "driver", "limb"}).empty(); }
 
-  // Why a process of this launch failed, in its own words; empty when it gave no reason.
+  // The reason why a process of this launch failed, in its own words; empty when it gave none.
   std::string FailureText(const std::string& program, int32_t pid) const;
 
   // The first stop of this stack that another process has published.
   const std::optional<stop_t>& stop() const { return stop_; }
 
-  // Tells every process of this stack, on every host, to end; a stack that it does not belong to does not heed
-  // it. exit_code: 0 in order, 1 something failed.
+  // Tells every process of this stack, on every host, to end; stacks to which this process does not belong
+  // ignore it. `exit_code` is 0 for an end in order, 1 when something failed.
   void PublishStop(const std::string& reason, int exit_code);
 
   const RunSummary& summary() const { return summary_; }
 
-  // The processes' reports on how their loops kept time; empty unless they are kept.
+  // The processes' reports on how well their loops kept time; empty unless they are kept.
   const timing::TimingRecord& timing() const { return timing_; }
 
  private:
@@ -73,21 +74,22 @@ class StackWatch {
   };
 
   static bool Is(const Expected& expected, const process_status_t& status);
-  const process_status_t* StatusOf(const Expected& expected) const;  // null: it has said nothing
+  const process_status_t* StatusOf(const Expected& expected) const;  // null: it has announced nothing
 
-  // A stack that this one consists of: its own channels, or those of a joint.
+  // A stack of which this one consists: its own channels, or those of a joint.
   struct Stack {
     std::string joint;  // empty: the stack itself
     bus::Channels channels;
-    bool reports =
-        true;  // its loops say how they keep time; of joints inside a hydro-limb the limb's own does
+    // Its loops report how they keep time; for joints inside a hydro-limb, the limb's own loop does.
+    bool reports = true;
   };
   // A process that has been heard.
   struct Heard {
-    size_t stack = 0;  // on whose channels
+    size_t stack = 0;  // index of the stack on whose channels it was heard
     process_status_t status;
   };
-  // A process of another role may have the same id on another host, and one process may have several joints.
+  // A process with another role may have the same id on another host, and one process may have several
+  // joints.
   using Key = std::tuple<size_t, std::string, int32_t>;  // stack, role, process id
 
   void Listen(size_t stack, bool keep_timing);

@@ -25,7 +25,7 @@ class StopAnnouncer {
   void Repeat();
 
   bool announced() const { return !reason_.empty(); }
-  // Repetitions are left, and when the next is due.
+  // Whether repetitions are left, and when the next is due.
   bool repeating() const { return repeats_left_ > 0; }
   TimePoint next_repeat() const { return next_repeat_; }
 

@@ -21,11 +21,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr size_t kMostProcesses = 256;  // a stack has five; a flood of made-up ones is not kept
+constexpr size_t kMostProcesses = 256;  // a stack has five; more would come from a flood of made-up ones
 constexpr size_t kMostPartsOfAJoint = 8;
-constexpr auto kStopRepeat = 50ms;       // UDP may lose a message
-constexpr auto kUnheard = 500ms;         // for this long also when no process has been heard
-constexpr auto kLocalPatience = 1500ms;  // for processes of this machine to end because of the bus
+constexpr auto kStopRepeat = 50ms;  // UDP may lose a message
+constexpr auto kUnheard = 500ms;    // stops are sent for this long even if no process has been heard
+// For processes of this machine to end because of the stop on the bus.
+constexpr auto kLocalPatience = 1500ms;
 
 // The processes that are heard, until they announce their end.
 class Presence {
@@ -40,7 +41,7 @@ class Presence {
   }
 
   bool anybody() const { return !processes_.empty(); }
-  // How many of them were not found on this machine. The joints of a limb are one.
+  // The number of processes that were not found on this machine. All joints of a limb's process count as one.
   size_t others() const {
     std::set<std::pair<std::string, int32_t>> known;
     size_t nameless = 0;
@@ -69,8 +70,8 @@ class Presence {
   struct Process {
     std::string name;
     bool left = false;
-    bool local = false;                                 // it was found on this machine
-    std::optional<std::pair<std::string, int32_t>> id;  // host and process id, where it has said so
+    bool local = false;                                 // whether it was found on this machine
+    std::optional<std::pair<std::string, int32_t>> id;  // host and process id, if it has announced them
   };
 
   void Listen(bus::Bus& bus, const bus::Channels& channels) {
@@ -79,7 +80,7 @@ class Presence {
       Heard(s.session, s.role + " on " + s.host);
     });
     bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
-      if (s.role == process::kLaunchRole) return;  // it only asked
+      if (s.role == process::kLaunchRole) return;  // it only asks who is present
       Heard(s.session, process::ProcessName(s));
       const auto found = processes_.find(s.session);
       if (found == processes_.end()) return;
@@ -122,7 +123,7 @@ OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const setting
   stop_t stop;
   stop.tick = -1;
   stop.session = bus::IdentityOn(bus, clock).session;
-  stop.addressee = 0;  // whoever hears it: an operator who stops is not asked which run
+  stop.addressee = 0;  // every process that hears it: an operator who stops need not name the run
   stop.source = asker.role;
   stop.reason = asker.stop;
   stop.exit_code = 0;

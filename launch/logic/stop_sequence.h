@@ -1,4 +1,4 @@
-// In which order, and with how much patience, the children of a launch are stopped.
+// Decides in which order, and with how much patience, the children of a launch are stopped.
 #pragma once
 
 #include <chrono>
@@ -25,30 +25,31 @@ class Stoppable {
   virtual void Signal(int signal_number) = 0;
 };
 
-// SIGTERM goes to the children that are not `last`, then to the `last` ones when the others have ended, and SIGKILL to any that
-// has not ended within its grace. Sends nothing by itself: TakeSteps() does what is due.
+// SIGTERM goes to the children that are not `last`, and then to the `last` ones when the others have ended.
+// SIGKILL goes to any child that has not ended within its grace. This class sends nothing by itself:
+// TakeSteps() takes the steps that are due.
 class StopSequence {
  public:
   using TimePoint = bus::Clock::TimePoint;
 
   explicit StopSequence(const Grace& grace) : grace_(grace) {}
 
-  // `child` must outlive this.
+  // `child` must outlive this object.
   void Add(Stoppable* child) { children_.push_back({child, std::nullopt, false}); }
 
-  // SIGTERM goes out at `first_signal`, which leaves children that are about to end by themselves time to do so. A later call can
-  // only bring it forward.
+  // Begins the stop. SIGTERM goes out at `first_signal`, which leaves children that are about to end by
+  // themselves time to do so. A later call can only bring it forward.
   void Begin(TimePoint first_signal);
   bool begun() const { return stop_at_.has_value(); }
 
   void TakeSteps(TimePoint now);
-  // When the next step is due; TimePoint::max(): none.
+  // The time at which the next step is due; TimePoint::max(): none.
   TimePoint NextStep() const;
 
   int running() const;        // children that have not ended
   int running_first() const;  // those of them that are not `last`
 
-  // Whether it was sent SIGTERM; whether that did not end it, so that it was sent SIGKILL.
+  // Whether the child was sent SIGTERM, and whether that did not end it, so that it was sent SIGKILL.
   bool terminated(const Stoppable* child) const;
   bool hung(const Stoppable* child) const;
 
@@ -66,7 +67,7 @@ class StopSequence {
   const Grace grace_;
   std::vector<Step> children_;
   std::optional<TimePoint> stop_at_;
-  std::optional<TimePoint> first_gone_at_;  // during a stop: when only the `last` children were left
+  std::optional<TimePoint> first_gone_at_;  // during a stop: when only the `last` children remained
 };
 
 }  // namespace hydro::launch

@@ -49,7 +49,7 @@ void ArmCoupling::Accelerate(std::vector<double>* torques) const {
   SolveFactored(joints(), factors_, *torques);
 }
 
-// Only what lies on and below the diagonal is read from now on.
+// From here on only entries on and below the diagonal are read.
 void ArmCoupling::TakeOutHeld(JointCoupling* at) {
   const int n = joints();
   held_matrix_ = factors_;
@@ -60,7 +60,7 @@ void ArmCoupling::TakeOutHeld(JointCoupling* at) {
   }
 }
 
-// Of a held joint: what it has once it moves while the other held ones stay.
+// The inertia of a held joint once it moves while the other held ones stay.
 void ArmCoupling::FindHeldInertias(JointCoupling* at) {
   const int n = joints();
   for (int i = 0; i < n; ++i) {
@@ -73,7 +73,7 @@ void ArmCoupling::FindHeldInertias(JointCoupling* at) {
   }
 }
 
-// A held joint's load is what holds it, reversed.
+// A held joint's load is the negative of the torque that holds it.
 void ArmCoupling::FindHeldLoads(JointCoupling* at) {
   arm_.JointTorques(pose_, at->speed, at->acceleration, work_);
   for (int i = 0; i < joints(); ++i) {

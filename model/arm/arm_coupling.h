@@ -1,5 +1,5 @@
-// What the joints of an arm do to each other at one instant, joint by joint: what each joint's actuator needs
-// to know of the rest.
+// How the joints of an arm affect each other at one instant: for each joint, what its actuator needs to know
+// about the rest of the arm.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace hydro::model {
 
-// Of each joint, from the base outwards.
+// One entry for each joint, from the base outwards.
 struct JointCoupling {
   explicit JointCoupling(int joints);
 
-  // Given: the motion; the actuator's torque tau with its rate; whether something holds the joint at rest,
+  // Given: the motion; the actuator's torque tau with its rate; and whether something holds the joint at rest
   // whatever its load.
   std::vector<double> angle, speed;
   std::vector<double> torque, torque_rate;
@@ -21,9 +21,9 @@ struct JointCoupling {
   // Found: alpha'' and alpha''' of the whole arm, M alpha'' + bias = tau, where held joints rest.
   std::vector<double> acceleration, jerk;
 
-  // Found: inertia alpha'' = tau + load describes the joint while the others' torques are what they are.
-  // inertia = 1/(M^-1)_ii over the joints that are not held and this one; load with its rate is what the
-  // others' torques, gravity and motion do to it.
+  // Found: inertia alpha'' = tau + load describes the joint as long as the others' torques stay as they are.
+  // inertia = 1/(M^-1)_ii over this joint and those that are not held. The load, given with its rate, is the
+  // effect of the others' torques, of gravity and of the motion.
   std::vector<double> inertia;
   std::vector<double> load, load_rate;
 };
@@ -34,11 +34,11 @@ class ArmCoupling {
 
   int joints() const { return arm_.links(); }
 
-  // First, from angle, speed, torque and held: acceleration and inertia.
+  // Step 1: from angle, speed, torque and held, finds acceleration and inertia.
   void FindAccelerations(JointCoupling* at);
-  // Then, from these and torque_rate, for the same instant: the rest.
+  // Step 2: from these and torque_rate, for the same instant, finds everything else.
   void FindLoads(JointCoupling* at);
-  // M^-1 torques in place, at this instant; held joints stand alone, with inertia 1.
+  // Replaces `torques` by M^-1 torques at this instant. Held joints stand alone, with inertia 1.
   void Accelerate(std::vector<double>* torques) const;
 
  private:
@@ -51,7 +51,7 @@ class ArmCoupling {
   ArmPose pose_;
   bool any_held_ = false;
   std::vector<double> factors_;      // of M, where held joints stand alone
-  std::vector<double> held_matrix_;  // M whole, where any joint is held
+  std::vector<double> held_matrix_;  // all of M, where any joint is held
   std::vector<double> work_;
 };
 

@@ -1,14 +1,15 @@
-// A planar arm as data: what a reader of a configuration fills.
+// A planar arm as data, filled from a configuration.
 #pragma once
 
 #include <vector>
 
 namespace hydro::model {
 
-// The most links of an arm.
+// The largest number of links.
 inline constexpr int kMostLinks = 64;
 
-// Units need only be coherent, and those of the joints' models; the paper's are given.
+// Units only need to be coherent, and equal to those of the joints' models. The comments give the paper's
+// units.
 struct ArmLink {
   double mass = 0;     // lbf-s^2/in
   double length = 0;   // in, from this link's joint to the next joint, the last one's to the tip
@@ -23,8 +24,8 @@ struct ArmDescription {
   double payload = 0;  // lbf-s^2/in, a point mass at the tip
   std::vector<ArmLink> links = {};
 
-  // Throws ModelError for a value that no arm has: "arm.link 2: mass = -0.1; allowed is above 0". Links count
-  // from 1, from the base.
+  // Throws ModelError for an impossible value: "arm.link 2: mass = -0.1; allowed is above 0". Links count
+  // from 1, starting at the base.
   void Check() const;
 };
 

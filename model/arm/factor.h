@@ -1,13 +1,14 @@
-// M = L D L^T of a small symmetric, positive definite matrix: no allocation, and the same bits wherever it is
-// compiled.
+// M = L D L^T for a small symmetric, positive definite matrix, without allocation, and with the same bits
+// however it is compiled.
 #pragma once
 
 #include <span>
 
 namespace hydro::model {
 
-// In place, entry (i, j) at matrix[i + j n]: afterwards D^-1 on the diagonal and L (without its ones) below
-// it; what lies above is neither read nor written. False: not positive definite, to rounding.
+// Factors in place, with entry (i, j) at matrix[i + j n]. Afterwards the diagonal has D^-1, and below it is L
+// without its ones. Entries above the diagonal are neither read nor written. Returns false if the matrix is
+// not positive definite, to rounding.
 bool Factor(int n, std::span<double> matrix);
 
 // Solves M x = b in place with the factors.

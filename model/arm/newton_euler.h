@@ -5,7 +5,7 @@
 
 namespace hydro::model {
 
-// A number with its rate: with these in the place of numbers, the recursion gives the torques' rates too.
+// A number with its rate. With these instead of plain numbers, the recursion also gives the torques' rates.
 struct Moving {
   double value = 0;
   double rate = 0;
@@ -30,14 +30,14 @@ struct LinkMotion {
   T speed, acceleration;
 };
 
-// `motion(i)` gives the LinkMotion of link i; `give(i, torque)` takes the torque of joint i. Outwards the
-// links' accelerations, with gravity as an acceleration of the base; inwards the forces and moments at the
-// joints.
+// `motion(i)` gives the LinkMotion of link i; `give(i, torque)` receives the torque of joint i. The outward
+// pass computes the links' accelerations, with gravity as an acceleration of the base; the inward pass
+// computes the forces and moments at the joints.
 template <class T, class Motion, class Give>
 void NewtonEuler(int links, const ArmLink* link, double gravity, const Motion& motion, const Give& give) {
   Planar<T> direction[kMostLinks];
   Planar<T> force[kMostLinks];  // mass times acceleration of the centre of mass
-  T moment[kMostLinks];         // the same of the inertia
+  T moment[kMostLinks];         // inertia times angular acceleration
   T turn{};                     // speed and acceleration of the link's direction
   T turn_rate{};
   Planar<T> joint{T{}, T{gravity}};  // acceleration
@@ -46,7 +46,7 @@ void NewtonEuler(int links, const ArmLink* link, double gravity, const Motion& m
     turn = turn + at.speed;
     turn_rate = turn_rate + at.acceleration;
     direction[i] = {at.cosine, at.sine};
-    // A point at distance 1 along the link accelerates by this against the joint.
+    // A point at distance 1 along the link has this acceleration relative to the joint.
     const T square = turn * turn;
     const Planar<T> along = {T{} - turn_rate * at.sine - square * at.cosine,
                              turn_rate * at.cosine - square * at.sine};
@@ -55,7 +55,7 @@ void NewtonEuler(int links, const ArmLink* link, double gravity, const Motion& m
     moment[i] = l.inertia * turn_rate;
     joint = {joint.x + l.length * along.x, joint.y + l.length * along.y};
   }
-  Planar<T> outer{T{}, T{}};  // what the next joint asks of this link
+  Planar<T> outer{T{}, T{}};  // force that the next joint needs from this link
   T torque{};
   for (int i = links - 1; i >= 0; --i) {
     const ArmLink& l = link[i];

@@ -95,7 +95,7 @@ void PlanarArm::MassMatrix(const ArmPose& pose, std::span<double> matrix) const 
     first.x += (mass * l.length + l.mass * l.centre) * c;
     first.y += (mass * l.length + l.mass * l.centre) * s;
     mass += l.mass;
-    // Turned about joint j, it asks for this torque at joint j and at those before.
+    // Accelerating the body about joint j needs this torque at joint j and at the joints before it.
     double torque = inertia;
     matrix[j + j * n] = torque;
     for (int i = j - 1; i >= 0; --i) {

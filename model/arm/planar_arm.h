@@ -9,16 +9,16 @@
 
 namespace hydro::model {
 
-// cos and sin of each link's direction against the horizontal, which all functions of one position share.
+// cos and sin of each link's direction from the horizontal, shared by all functions of one position.
 struct ArmPose {
   double cosine[kMostLinks];
   double sine[kMostLinks];
 };
 
 // Angles, speeds, accelerations and torques are those of the joints, from the base outwards: alpha_i is the
-// angle between links i - 1 and i (the first: the base), and torque i acts from link i - 1 on link i. With
-// one link this is eq. (15) with J_a = inertia + mass centre^2 and mgl = mass gravity centre. Each span holds
-// links() numbers; none may overlap a result.
+// angle between links i - 1 and i (for the first link, the base), and torque i acts from link i - 1 on link
+// i. With one link this is eq. (15) with J_a = inertia + mass centre^2 and mgl = mass gravity centre. Each
+// span holds links() numbers; no input may overlap a result.
 class PlanarArm {
  public:
   // Throws ModelError (ArmDescription::Check).
@@ -28,7 +28,8 @@ class PlanarArm {
 
   ArmPose PoseAt(std::span<const double> angles) const;
 
-  // The torques that give these accelerations: recursive Newton-Euler (Luh, Walker, Paul 1980), in O(links).
+  // Inverse dynamics: the torques for these accelerations, by recursive Newton-Euler (Luh, Walker, Paul 1980)
+  // in O(links).
   void JointTorques(const ArmPose& pose, std::span<const double> speeds,
                     std::span<const double> accelerations, std::span<double> torques) const;
   void JointTorques(std::span<const double> angles, std::span<const double> speeds,

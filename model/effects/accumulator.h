@@ -1,16 +1,17 @@
-// An accumulator whose pressure moves with what it takes in, for the effects that say how stiff it is. One state: p3, which starts at
-// the base parameter p_3.
+// An accumulator whose pressure changes with the volume that it takes in, for the effects that define its
+// stiffness. It adds one state: p3, which starts at the base parameter p_3.
 //
-// An open ideal valve holds its side at the moving p3 and passes the flow that this takes,
+// An open ideal valve holds its side at the changing p3 and passes the flow that this needs,
 //   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
-// so p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for it.
+// so the equation p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for
+// it.
 #pragma once
 
 #include "model/effects/effect.h"
 
 namespace hydro::model {
 
-// Law::Stiffness(x, p_3): psi/in^3, what the pressure rises by per volume that is returned.
+// Law::Stiffness(x, p_3): psi/in^3, the rise of pressure per returned volume.
 template <class Law>
 class Accumulator : public EffectOf<Accumulator<Law>> {
  public:

@@ -1,6 +1,6 @@
-// accumulator.gas: the accumulator is loaded by gas that fills `volume` at the pressure `precharge`. With absolute pressures,
-// p V_gas^exponent stays, so p3' = exponent p3/V_gas per volume returned. Below the precharge, where a bladder would rest on its
-// valve, the same law goes on.
+// accumulator.gas: the accumulator is loaded by gas that fills `volume` at the pressure `precharge`. With
+// absolute pressures, p V_gas^exponent stays constant, so p3' = exponent p3/V_gas per volume returned. Below
+// the precharge, where a bladder would rest on its valve, the same law continues.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ struct LoadedByGas {
   static T Stiffness(const Terms<T>& x, const T& p_3) {
     using std::exp, std::log;
     const T charged = x.own[0] + x.atmosphere;
-    const T pressure = std::max<T>(p_3 + x.atmosphere, 1e-3 * charged);  // of a trial step that goes astray
+    const T pressure = std::max<T>(p_3 + x.atmosphere, 1e-3 * charged);  // in case a trial step goes astray
     const T gas = x.own[1] * exp(log(charged / pressure) / x.own[2]);
     return x.own[2] * pressure / gas;
   }
@@ -47,7 +47,7 @@ struct LoadedByGas {
                               .starts = {1.2},
                               .example = 1.2}},
               .remembers_flow = true,
-              // Over the small changes of pressure of most runs it is accumulator.stiffness.
+              // Over the small changes of pressure in most runs it is the same as accumulator.stiffness.
               .on_request = true},
      .make = MakeEffect<Accumulator<LoadedByGas>>});
 

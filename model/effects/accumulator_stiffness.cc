@@ -1,5 +1,5 @@
 // accumulator.stiffness: p3 rises by `stiffness` per volume returned to the accumulator, and falls by as much
-// per volume that the one-way valves take from it, as where a spring loads it.
+// per volume that the one-way valves take from it, as with a spring-loaded accumulator.
 
 #include "model/effects/accumulator.h"
 
@@ -15,20 +15,20 @@ struct LoadedBySpring {
 };
 
 [[maybe_unused]] const bool kAccumulatorStiffnessAdded = AddToCatalogue(
-    {.info =
-         {.id = "accumulator.stiffness",
-          .summary = "the accumulator's pressure rises with what is returned to it",
-          .equation = "p3 rises by stiffness per volume returned to the accumulator",
-          .confused_with = "parameter p3, accumulator.gas",
-          .parameters = {{.name = "stiffness",
-                          .unit = "psi/in^3",
-                          .meaning = "pressure per volume",
-                          // From hardly felt to nearly as stiff as the oil: the pressure then settles where
-                          // what leaks in leaks out, which a small stiffness does not foretell.
-                          .starts = {0.003, 0.03, 0.3},
-                          .scale = Scale::kOilStiffness,
-                          .example = 3000}},
-          .remembers_flow = true},
+    {.info = {.id = "accumulator.stiffness",
+              .summary = "the accumulator's pressure rises with what is returned to it",
+              .equation = "p3 rises by stiffness per volume returned to the accumulator",
+              .confused_with = "parameter p3, accumulator.gas",
+              .parameters = {{.name = "stiffness",
+                              .unit = "psi/in^3",
+                              .meaning = "pressure per volume",
+                              // From hardly noticeable to nearly as stiff as the oil. With a stiff
+                              // accumulator the pressure settles where leakage into it equals leakage out of
+                              // it, which a fit with a small stiffness does not predict.
+                              .starts = {0.003, 0.03, 0.3},
+                              .scale = Scale::kOilStiffness,
+                              .example = 3000}},
+              .remembers_flow = true},
      .make = MakeEffect<Accumulator<LoadedBySpring>>});
 
 }  // namespace

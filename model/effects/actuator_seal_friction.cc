@@ -20,7 +20,7 @@ class SealFriction : public EffectOf<SealFriction> {
     mode->effects[first_switch()] = x.arm_speed > T(0.0) ? 1 : (x.arm_speed < T(0.0) ? -1 : 0);
   }
 
-  // Applied when every torque on the arm is known.
+  // Applied once every torque on the arm is known.
   template <class T>
   void OwnStates(Terms<T>& x, T* /*rate*/) const {
     if (!x.arm_free) return;

@@ -1,6 +1,7 @@
-// actuator.unequal_areas: a cylinder with its rod on one side. Of what the actuator displaces, side 1 has c (1 - difference)
-// and side 2 c (1 + difference), in the flows, the volumes and the torque alike. The base parameters c and k_2 are the means of
-// the sides. What one side takes and the other does not give comes from the accumulator, through leakage and the valves.
+// actuator.unequal_areas: a cylinder with its rod on one side. Of the actuator's displacement, side 1 has c
+// (1 - difference) and side 2 c (1 + difference), in the flows, the volumes and the torque alike. The base
+// parameters c and k_2 are the means of the two sides. The accumulator supplies the difference between what
+// one side takes and the other gives, through leakage and the valves.
 
 #include "model/effects/effect.h"
 

@@ -1,5 +1,5 @@
-// actuator.unequal_volumes: at mid-stroke side 1 has V_ms (1 - difference) and side 2 V_ms (1 + difference), as where a cylinder
-// has its rod, or the longer line, on one side.
+// actuator.unequal_volumes: at mid-stroke side 1 has V_ms (1 - difference) and side 2 V_ms (1 + difference),
+// for example because a cylinder's rod, or the longer line, is on one side.
 
 #include "model/effects/effect.h"
 
@@ -29,7 +29,7 @@ class UnequalVolumes : public EffectOf<UnequalVolumes> {
                               .meaning = "(V_2 - V_1)/(V_1 + V_2) at mid-stroke",
                               .example = 0.3}},
               .needs_oil = true,
-              // An arm whose zero is not mid-stroke shows the same.
+              // An arm whose zero is not at mid-stroke looks the same.
               .on_request = true},
      .make = MakeEffect<UnequalVolumes>});
 

@@ -1,5 +1,5 @@
-// amp.bias: a constant torque on the pump, of an amplifier whose zero is off or of the load. It acts whatever
-// the command is: neither the limit T_pmax nor a lag of the amplifier changes it.
+// amp.bias: a constant torque on the pump, from an amplifier whose zero is off or from the load. It acts
+// whatever the command is: neither the limit T_pmax nor a lag of the amplifier changes it.
 
 #include "model/effects/effect.h"
 

@@ -1,5 +1,6 @@
-// amp.input_dead_band: the amplifier does nothing within +/- `width` of its command, and acts on what exceeds that: v -/+ width. It
-// comes after amp.delay and before amp.lag. The voltage is held between commands, so its corner is no event.
+// amp.input_dead_band: the amplifier ignores commands within +/- `width`, and acts on the excess of larger
+// ones: v -/+ width. It comes after amp.delay and before amp.lag. The voltage is held between commands, so
+// the corner is no event.
 
 #include <algorithm>
 
@@ -27,7 +28,8 @@ class DeadBand : public EffectOf<DeadBand> {
                                              .unit = "V",
                                              .meaning = "command up to which nothing happens",
                                              .example = 0.2}},
-                             // Commands that never come to rest on one side of it show a larger T_s.
+                             // With commands that never come to rest on one side of the band, it looks like a
+                             // larger T_s.
                              .on_request = true},
                     .make = MakeEffect<DeadBand>});
 

@@ -1,5 +1,6 @@
-// amp.input_rate_limit: the amplifier follows its command no faster than `rate`: u' = rate sgn(v - u), and acts on u. It comes after
-// amp.delay and before amp.lag. One state, u. One switch: 0, u is the command; +1 and -1, u moves towards it in that direction.
+// amp.input_rate_limit: the amplifier follows its command no faster than `rate`: u' = rate sgn(v - u), and
+// acts on u. It comes after amp.delay and before amp.lag. One state, u. One switch: 0, u is the command; +1
+// and -1, u moves towards it in that direction.
 
 #include <cmath>
 
@@ -37,7 +38,7 @@ class RateLimit : public EffectOf<RateLimit> {
         side == 0 ? T(Near(x) - abs(Behind(x))) : T(side * Behind(x));
   }
 
-  // A command that changes while u is on its way may turn it back.
+  // A command that changes while u is moving towards it may turn u back.
   template <class T>
   void OwnCross(int /*which*/, const Terms<T>& x, T* state, Mode* mode) const {
     using std::abs;
@@ -61,7 +62,7 @@ class RateLimit : public EffectOf<RateLimit> {
   T Behind(const Terms<T>& x) const {
     return x.voltage_asked - x.state[first_state()];
   }
-  // What rounding makes of a command that has been reached.
+  // The rounding error of a command that has been reached.
   template <class T>
   static T Near(const Terms<T>& x) {
     return 1e-6 * x.parameters->T_pmax / x.parameters->k_1;
@@ -80,7 +81,7 @@ class RateLimit : public EffectOf<RateLimit> {
                                              .starts = {0.03, 0.3},
                                              .scale = Scale::kRate,
                                              .example = 2000}},
-                             // When it reaches a command is known between samples only.
+                             // The time at which it reaches a command is known only to within a sample.
                              .unseen_by_balances = true,
                              .on_request = true},
                     .make = MakeEffect<RateLimit>});

@@ -57,7 +57,7 @@ class Flexure : public EffectOf<Flexure> {
                                              .min_allowed = false,
                                              .meaning = "torque per twist",
                                              .arm = -2,
-                                             // What is much stiffer than the oil does not show.
+                                             // A connection much stiffer than the oil does not show.
                                              .starts = {0.01, 0.06, 0.4},
                                              .scale = Scale::kArmStiffness,
                                              .example = 6000},

@@ -18,7 +18,7 @@ int Count(const EffectInfo& info, Role role) {
                     [&](const ParameterInfo& parameter) { return parameter.role == role; }));
 }
 
-// What is wrong with a parameter by itself, or "".
+// What is wrong with a parameter on its own, or "".
 std::string Fault(const ParameterInfo& parameter) {
   if (parameter.name.empty() || parameter.unit.empty() || parameter.meaning.empty()) {
     return "needs a name, a unit (\"1\" where it has none) and a meaning";

@@ -1,6 +1,6 @@
-// closure.pump_torque, closure.flow_1, closure.flow_2, closure.arm_torque: a smooth curve of one variable, or a
-// surface over two, that is added to a balance. It stands for what no effect of the catalogue explains: the gap
-// finder makes it, and never looks for it as for a cause.
+// closure.pump_torque, closure.flow_1, closure.flow_2, closure.arm_torque: a smooth curve of one variable, or
+// a surface over two, that is added to a balance. It represents what no effect of the catalogue explains. The
+// gap finder makes it, but never looks for it as a cause.
 
 #include <cstddef>
 #include <memory>
@@ -93,7 +93,7 @@ class Closure : public EffectOf<Closure<kBalance>> {
 
   void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
     const double value = Value(x);
-    // A torque on the pump is among the loads.
+    // A torque on the pump counts among the loads.
     if constexpr (kBalance == Balance::kFlow1) power->effects_dissipated -= value * (x.p1 - x.p_3);
     if constexpr (kBalance == Balance::kFlow2) power->effects_dissipated -= value * (x.p2 - x.p_3);
     if constexpr (kBalance == Balance::kArmTorque) {

@@ -1,5 +1,5 @@
 // How a physical effect plugs into the equations. One effect is one file in model/effects/: a small class
-// with its equation as templates on the scalar, and its entry in the catalogue. Nothing else lists it.
+// with its equation as templates on the scalar type, and its entry in the catalogue. No other file lists it.
 //
 // The right-hand side is evaluated in this order:
 //   properties from the base parameters        -> SetProperties of each effect
@@ -23,11 +23,10 @@
 
 namespace hydro::model {
 
-// Periods per revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons
-// and vanes.
+// Periods per revolution from which fits of ripples start: small numbers of poles, teeth, pistons and vanes.
 const std::vector<double>& PeriodsTried();
 
-// Sizes of states of a model, in its units, below which absolute rather than relative errors count.
+// Sizes of a model's states, in its units, below which absolute rather than relative errors count.
 struct StateSizes {
   double pressure = 0;
   double flow = 0;
@@ -41,8 +40,8 @@ class Effect {
  public:
   virtual ~Effect() = default;
 
-  // The states and switches that the effect adds, and where they and its parameters lie: in the state vector,
-  // in Mode::effects and among the parameters of all effects.
+  // The states and switches that the effect adds, and their places and those of its parameters: in the state
+  // vector, in Mode::effects and among the parameters of all effects.
   virtual int states() const { return 0; }
   virtual int switches() const { return 0; }
   int first_state() const { return first_state_; }
@@ -54,30 +53,30 @@ class Effect {
     first_parameter_ = first_parameter;
   }
 
-  // For each state it adds: the name with its unit, and the size below which absolute rather than relative
-  // errors count.
+  // The name and unit of each added state, and the size below which absolute rather than relative errors
+  // count.
   virtual std::vector<std::string> StateNames() const { return {}; }
   virtual void Scales(const StateSizes& /*of*/, double* /*scale*/) const {}
 
-  // True when its valves replace the ideal one-way valves.
+  // True when the effect's valves replace the ideal one-way valves.
   virtual bool replaces_valves() const { return false; }
-  // Which of its states replaces p_3, and which the arm's angle in V_1 and V_2; -1: none.
+  // Which of the effect's states replaces p_3, and which replaces the arm's angle in V_1 and V_2; -1: none.
   virtual int p_3_state() const { return -1; }
   virtual int actuator_angle_state() const { return -1; }
 
-  // The functions below exist for plain numbers and for numbers with derivatives. An effect writes each
+  // The functions below exist both for plain numbers and for numbers with derivatives. An effect writes each
   // formula once, as a template named Own... (EffectOf).
 
-  // Volume of each side that lies outside the actuator: V_1 and V_2 must stay above it.
+  // Volume of each side outside the actuator. V_1 and V_2 must stay above it.
   virtual double FixedVolume(const ParametersOf<double>& base, const double* own) const = 0;
   virtual Jet FixedVolume(const ParametersOf<Jet>& base, const Jet* own) const = 0;
 
-  // Its states at the start; `x` holds the base quantities at that time.
+  // The effect's states at the start; `x` holds the base quantities at that time.
   virtual void Start(const Terms<double>& x, double* state) const = 0;
   virtual void Start(const Terms<Jet>& x, Jet* state) const = 0;
 
-  // Where its switches stand when the run starts in motion. Switches that settle by their margins need
-  // nothing here.
+  // The positions of the effect's switches when a run starts in motion. Switches that settle by their margins
+  // need no code here.
   virtual void StartMode(const Terms<double>& x, Mode* mode) const = 0;
   virtual void StartMode(const Terms<Jet>& x, Mode* mode) const = 0;
 
@@ -91,8 +90,8 @@ class Effect {
   virtual void AddBalances(Terms<double>&, double* rate) const = 0;
   virtual void AddBalances(Terms<Jet>&, Jet* rate) const = 0;
 
-  // For each switch it adds: a margin, which is positive while the switch may stay as it is and falls through
-  // 0 when it must change, and the change itself.
+  // For each added switch: a margin, which is positive while the switch may keep its position and falls
+  // through 0 when it must change, and the change itself.
   virtual void Margins(const Terms<double>& x, double* margin) const = 0;
   virtual void Margins(const Terms<Jet>& x, Jet* margin) const = 0;
   virtual void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const = 0;
@@ -104,8 +103,9 @@ class Effect {
   virtual void Sense(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
   virtual void Sense(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
 
-  // For an effect that makes a channel read late: by how much, and the substitution of the channel's earlier
-  // reading for its present one. `reach` is the same lateness, for the history of states (StateHistory).
+  // For an effect that makes a channel read late: how late it is, and the substitution of the channel's
+  // earlier reading for its current one. `reach` is the same lateness, for the history of states
+  // (StateHistory).
   virtual bool reads_late() const { return false; }
   virtual double reach() const { return 0; }
   virtual double Lateness(const double* own) const = 0;
@@ -113,16 +113,17 @@ class Effect {
   virtual void Replace(const MeasurementOf<double>& then, MeasurementOf<double>*) const = 0;
   virtual void Replace(const MeasurementOf<Jet>& then, MeasurementOf<Jet>*) const = 0;
 
-  // For an effect that remembers earlier commands or changes at known times: Command gives it the voltage
-  // from `time` on, NextStop is the next time at which its equation jumps, and PassStop says that this time
-  // has been reached. Between stops the effect does not change. StopShift carries the derivatives of the
-  // stops' times with respect to the parameters; its value is 0.
+  // For an effect that remembers earlier commands or changes at known times. Command gives it the voltage
+  // from `time` on. NextStop is the next time at which its equation jumps, and PassStop says that this time
+  // has been reached. Between stops the effect does not change. StopShift has value 0 and carries the
+  // derivatives of the stops' times with respect to the parameters.
   virtual void Command(double /*time*/, double /*voltage*/) {}
   virtual double NextStop(double /*time*/) const { return kUnbounded; }
   virtual void PassStop(double /*time*/) {}
   virtual Jet StopShift(const Jet* own) const = 0;
 
-  // Energy that the effect's states store and its equation dissipates, beyond the base terms.
+  // The energy that the effect's states store and that its equation dissipates, in addition to the base
+  // terms.
   virtual void AddPower(const Terms<double>& /*x*/, const double* /*rate*/, Power*) const {}
 
  private:
@@ -131,7 +132,7 @@ class Effect {
   int first_parameter_ = 0;
 };
 
-// Implements the virtual functions for both scalars with E's templates.
+// Implements the virtual functions for both scalar types with E's templates.
 template <class E>
 class EffectOf : public Effect {
  public:
@@ -242,22 +243,22 @@ class EffectOf : public Effect {
   }
 };
 
-// Makes an effect that needs nothing but its parameters, for CatalogueEntry.
+// For CatalogueEntry: makes an effect that needs only its parameters.
 template <class E>
 std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
   return std::make_unique<E>();
 }
 
-// A row of the catalogue: what is known of the effect, and how to build it from its description, which has
+// A row of the catalogue: what is known about the effect, and how to build it from its description, which has
 // already been checked.
 struct CatalogueEntry {
   EffectInfo info;
   std::unique_ptr<Effect> (*make)(const EffectDescription& description) = nullptr;
-  std::shared_ptr<const EffectFormulas> formulas = nullptr;  // of one that is written as text
+  std::shared_ptr<const EffectFormulas> formulas = nullptr;  // for an effect written as text
 };
 
-// Adds an effect to the catalogue, so that models can have it and the gap finder looks for it. Call once in
-// the effect's file at namespace scope; the result exists to allow that:
+// Adds an effect to the catalogue, so that models can have it and the gap finder looks for it. Call it once
+// in the effect's file at namespace scope, which is possible because it returns a value:
 //   [[maybe_unused]] const bool kAdded =
 //       AddToCatalogue({.info = {.id = "arm.spring", ...}, .make = MakeEffect<Spring>});
 // The order of linking or initialisation makes no difference. Returns true. Throws std::logic_error when the

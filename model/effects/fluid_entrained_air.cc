@@ -14,7 +14,7 @@ namespace {
 
 class EntrainedAir : public EffectOf<EntrainedAir> {
  public:
-  // Applied when every property of the liquid is known.
+  // Applied once every property of the liquid is known.
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
     const double atmosphere = x.atmosphere;
@@ -25,7 +25,7 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
  private:
   static constexpr double kExponent = 1.4;
 
-  // For air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
+  // For air that has volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
   // smoothly and stays above it, so a vacuum is soft but not an error; at p = 100 psi this adds 1e-5.
   template <class T>
   static T Compressibility(const T& p, double atmosphere) {
@@ -39,21 +39,21 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
 };
 
 [[maybe_unused]] const bool kFluidEntrainedAirAdded = AddToCatalogue(
-    {.info =
-         {.id = "fluid.entrained_air",
-          .summary = "air bubbles make the fluid soft at low pressure",
-          .equation = "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at "
-                      "atmospheric "
-                      "pressure, compressed polytropically",
-          .confused_with = "parameter beta, fluid.stiffening",
-          // The less air there is, the more each bit of it matters: a fit that starts from none does not find
-          // 1 part in 500.
-          .parameters = {{.name = "air_fraction",
-                          .unit = "1",
-                          .max = 1,
-                          .meaning = "volume of the air at atmospheric pressure over the fluid's",
-                          .starts = {0, 5e-4, 5e-3},
-                          .example = 0.02}}},
+    {.info = {.id = "fluid.entrained_air",
+              .summary = "air bubbles make the fluid soft at low pressure",
+              .equation =
+                  "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at "
+                  "atmospheric "
+                  "pressure, compressed polytropically",
+              .confused_with = "parameter beta, fluid.stiffening",
+              // The less air there is, the more each small amount of it matters: a fit that starts from none
+              // does not find 1 part in 500.
+              .parameters = {{.name = "air_fraction",
+                              .unit = "1",
+                              .max = 1,
+                              .meaning = "volume of the air at atmospheric pressure over the fluid's",
+                              .starts = {0, 5e-4, 5e-3},
+                              .example = 0.02}}},
      .make = MakeEffect<EntrainedAir>});
 
 }  // namespace

@@ -1,6 +1,8 @@
-// fluid.viscosity: warm oil is thinner. With the oil's temperature theta: b exp(-rate (theta - 40 degC)), c_E and c_I exp(+rate (theta - 40
-// degC)), as viscosity grades of ISO 3448 count from 40 degC. Over some tens of kelvin the logarithm of the viscosity of a mineral oil
-// falls in a straight line (Walther's equation, ASTM D341, is nearly that). The temperature is what a run has recorded, else 20 degC.
+// fluid.viscosity: warm oil is thinner. With the oil's temperature theta: b exp(-rate (theta - 40 degC)), c_E
+// and c_I exp(+rate (theta - 40 degC)); the reference is 40 degC, as for the viscosity grades of ISO 3448.
+// Over some tens of kelvin the logarithm of the viscosity of a mineral oil falls linearly (Walther's
+// equation, ASTM D341, is nearly linear there). The temperature is the recorded one, or 20 degC if a run has
+// none.
 
 #include <cmath>
 

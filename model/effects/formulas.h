@@ -1,4 +1,4 @@
-// An effect written as text, among the equations (model/formula).
+// Connects an effect written as text to the equations (model/formula).
 #pragma once
 
 #include <memory>
@@ -8,10 +8,11 @@
 
 namespace hydro::model {
 
-// For CatalogueEntry: the effect of a description that has formulas, or whose id the catalogue knows with formulas.
+// For CatalogueEntry: makes the effect of a description that has formulas, or whose id has formulas in the
+// catalogue.
 std::unique_ptr<Effect> MakeFormulaEffect(const EffectDescription& description);
 
-// Its row in the catalogue.
+// The catalogue row of these formulas.
 CatalogueEntry EntryOf(std::shared_ptr<const EffectFormulas> formulas);
 
 }  // namespace hydro::model

@@ -1,6 +1,7 @@
-// gear.backlash: play between the motor's shaft and a load of its own inertia. With twist = theta - theta_load, the two touch where
-// |twist| > gap/2, and then a spring and damper pass on stiffness (twist -/+ gap/2) + damping twist'. load.gravity and load.spring
-// act on the load. Two states, the load's angle and speed. One switch: 0, apart; +1 and -1, the motor pushes forward or backward.
+// gear.backlash: play between the motor's shaft and a load with its own inertia. With twist = theta -
+// theta_load, the two touch where |twist| > gap/2; a spring and damper then transmit stiffness (twist -/+
+// gap/2) + damping twist'. load.gravity and load.spring act on the load. Two states, the load's angle and
+// speed. One switch: 0, apart; +1 and -1, the motor pushes forward or backward.
 
 #include <cmath>
 
@@ -31,7 +32,7 @@ class Backlash : public EffectOf<Backlash> {
     x.shaft_angle = x.state[first_state()];
   }
 
-  // What passes through the gear takes the place of what the shaft carries.
+  // The torque through the gear replaces the load that the shaft carries.
   template <class T>
   void OwnStates(Terms<T>& x, T* rate) const {
     const T passed = Passed(x);
@@ -57,7 +58,7 @@ class Backlash : public EffectOf<Backlash> {
     position = static_cast<int8_t>(position != 0 ? 0 : (forward ? 1 : -1));
   }
 
-  // The loads count their work as if the motor's shaft carried them.
+  // The loads compute their work as if the motor's shaft carried them.
   void AddPower(const Terms<double>& x, const double* rate, Power* power) const override {
     const double speed = x.state[first_state() + 1], slip = x.motor_speed - speed;
     const double side = Side(x), passed = Passed(x), damped = side == 0 ? 0 : x.own[2] * slip;

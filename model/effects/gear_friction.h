@@ -1,4 +1,4 @@
-// Coulomb friction that grows with a torque that a gear passes on, of the motor's side or of the load's.
+// Coulomb friction that grows with a torque that a gear transmits, on the motor's side or on the load's.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace hydro::model {
 
-// Side::Torque(x): that torque, once every torque on the shaft is known. |y| is taken as sqrt(y^2 + w^2) - w with w = 1e-3 T_pmax,
-// whose slope at y = 0 does not jump.
+// Side::Torque(x) is that torque, once every torque on the shaft is known. |y| is approximated by sqrt(y^2 +
+// w^2) - w with w = 1e-3 T_pmax, whose slope at y = 0 does not jump.
 template <class Side>
 class GearFriction : public EffectOf<GearFriction<Side>> {
  public:

@@ -1,5 +1,5 @@
-// gear.friction_ripple: friction that varies over a turn, as with a bent shaft or an eccentric gear: T_s becomes
-// T_s (1 + amplitude sin(periods theta + phase)).
+// gear.friction_ripple: friction that varies over a turn, as with a bent shaft or an eccentric gear: T_s
+// becomes T_s (1 + amplitude sin(periods theta + phase)).
 
 #include <cmath>
 #include <numbers>
@@ -44,7 +44,7 @@ class FrictionRipple : public EffectOf<FrictionRipple> {
                                              .meaning = "phase at theta = 0",
                                              .starts = {0, std::numbers::pi / 2},
                                              .example = 0.4}},
-                             // In one direction it is cogging.
+                             // In motion in one direction it is the same as cogging.
                              .on_request = true},
                     .make = MakeEffect<FrictionRipple>});
 

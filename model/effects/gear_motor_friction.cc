@@ -1,5 +1,6 @@
-// gear.motor_friction: Coulomb friction that grows with the motor's torque, + motor |T_p| sgn(theta'): the motor's side of a gear. While the
-// motor drives it takes the same part of its torque as a smaller k_1 would.
+// gear.motor_friction: Coulomb friction that grows with the motor's torque, + motor |T_p| sgn(theta'), on the
+// motor's side of a gear. While the motor drives, it takes the same part of the torque as a smaller k_1
+// would.
 
 #include "model/effects/gear_friction.h"
 
@@ -24,7 +25,7 @@ struct MotorSide {
                                              .max = 1,
                                              .meaning = "friction per torque of the motor",
                                              .example = 0.1}},
-                             // Most runs drive, where it is a smaller k_1.
+                             // In most runs the motor drives, and there it looks like a smaller k_1.
                              .on_request = true},
                     .make = MakeEffect<GearFriction<MotorSide>>});
 

@@ -1,7 +1,8 @@
-// Curves and surfaces through values at knots, for closures. Between two knots a curve is the cubic whose slope
-// at each of them is that of the straight line between its neighbours; beyond the first and last knot it goes on
-// straight. So it has no jump in its slope, which an integrator with exact switch times needs, is linear in its values,
-// which a fit likes, moves only near a value that moves, and costs a few multiplications.
+// Curves and surfaces through values at knots, for closures. Between two knots a curve is a cubic whose slope
+// at each knot is that of the straight line between the knot's neighbours. Beyond the first and the last knot
+// it continues straight. Its slope therefore has no jump, as an integrator with exact switch times requires.
+// It is linear in its values, which suits a fit, it changes only near a value that changes, and it costs a
+// few multiplications.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 
 namespace hydro::model {
 
-// What the values at the four knots around a place weigh there: value = sum of weight[i] * values[first + i],
-// for i in [begin, end).
+// The weights of the four knots around a place: value = sum of weight[i] * values[first + i], for i in
+// [begin, end).
 template <class T>
 struct KnotWeights {
   std::array<T, 4> weight{};
@@ -43,7 +44,8 @@ class Knots {
     w.begin = 1;
     w.end = 3;
     if (x < T(at_.front()) || x > T(at_.back())) return w;
-    // The cubic is the straight line, bent by how far the slope at each end differs from the line's.
+    // The cubic is the straight line plus a bend, given by how far the slope at each end differs from the
+    // line's.
     const T rest = 1.0 - t;
     const T from_left = t * rest * rest, from_right = -(t * t * rest);
     if (i > 0) {
@@ -58,8 +60,8 @@ class Knots {
   }
 
  private:
-  // Adds `by` times the slope at a knot less that of the interval, both over the interval; the knot's slope is that
-  // of the line from `left` to `right`, times `part` over the interval.
+  // Adds `by` times the slope at a knot less that of the interval, both multiplied by the interval's length.
+  // The knot's slope times that length is `part` times the difference of the values from `left` to `right`.
   template <class T>
   static void Bend(const T& by, double part, size_t left, size_t right, KnotWeights<T>* w) {
     const T turned = by * part;

@@ -116,7 +116,7 @@ class Wave : public EffectOf<Wave> {
                               .meaning = "damping ratio of the resonance",
                               .starts = {0.03},
                               .example = 0.05}},
-              // Behind an open bypass, oil in a line is inertia and friction of the motor.
+              // Behind an open bypass, the oil in a line acts as inertia and friction of the motor.
               .needs_oil = true},
      .make = MakeEffect<Wave>});
 

@@ -1,5 +1,6 @@
-// load.gravity: a weight on an arm that the motor's shaft carries, torque sin(theta + phase) against forward rotation: m g l for
-// `torque`. Behind gear.backlash it is theta of the load. A weight at the hydraulic arm is the base parameter mgl.
+// load.gravity: a weight on an arm that the motor's shaft carries, with the torque m g l sin(theta + phase)
+// against forward rotation; m g l is the parameter `torque`. With gear.backlash, theta is the load's. A
+// weight at the hydraulic arm is the base parameter mgl.
 
 #include <cmath>
 #include <numbers>
@@ -38,7 +39,8 @@ struct ShaftWeight {
                               .meaning = "angle of the weight from hanging down at theta = 0",
                               .starts = {0, std::numbers::pi / 2},
                               .example = 0.4}},
-              // Behind oil, the weight is the arm's (mgl), and once a turn is an eccentric shaft.
+              // With oil, the weight is the arm's (mgl), and a torque once a turn comes from an eccentric
+              // shaft.
               .of_bare_motors = true},
      .make = MakeEffect<ShaftTorque<ShaftWeight>>});
 

@@ -1,5 +1,5 @@
-// load.spring: a spring at the motor's shaft, stiffness (theta - rest) against forward rotation. Behind gear.backlash it is theta
-// of the load.
+// load.spring: a spring at the motor's shaft, stiffness (theta - rest) against forward rotation. With
+// gear.backlash, theta is the load's.
 
 #include "model/effects/shaft_torque.h"
 
@@ -32,7 +32,7 @@ struct ShaftSpring {
                               .min = -kUnbounded,
                               .meaning = "theta at which the spring is slack",
                               .example = 1}},
-              // Clamped, the oil is such a spring.
+              // With a clamped shaft, the oil is such a spring.
               .on_request = true},
      .make = MakeEffect<ShaftTorque<ShaftSpring>>});
 

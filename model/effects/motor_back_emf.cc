@@ -1,6 +1,7 @@
-// motor.back_emf: a motor that is driven by a voltage, without a current loop: tau dT/dt + T = k_1 (v - k_e theta'), at most T_pmax in
-// size. With the winding's resistance R, inductance L and torque constant k_t, k_1 = k_t/R and tau = L/R; tau = 0 leaves the
-// inductance out. One state, T. One switch: 0, T is within the limit; +1 and -1, T_p is at that limit. amp.lag has no place beside it.
+// motor.back_emf: a motor driven by a voltage, without a current loop: tau dT/dt + T = k_1 (v - k_e theta'),
+// limited to T_pmax in magnitude. With the winding's resistance R, inductance L and torque constant k_t, k_1
+// = k_t/R and tau = L/R; tau = 0 leaves the inductance out. One state, T. One switch: 0, T is within the
+// limit; +1 and -1, T_p is at that limit. amp.lag cannot be combined with it.
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
-// motor.current_limit: the amplifier's current limit holds up to `corner_speed` and falls from there to nothing over
-// `speed_range`: abs(T) <= T_max (1 - (abs(theta') - corner_speed)/speed_range) while driving, T_max = T_pmax (torque_line.h).
+// motor.current_limit: the amplifier's current limit is constant up to `corner_speed` and falls from there to
+// zero over `speed_range`: abs(T) <= T_max (1 - (abs(theta') - corner_speed)/speed_range) while driving,
+// T_max = T_pmax (torque_line.h).
 
 #include "model/effects/torque_line.h"
 

@@ -1,5 +1,5 @@
-// A valve that opens gradually: from closed at 0 to wide open at 1 of what drives it. Its switch has three positions: 0 closed,
-// 1 between, 2 wide open. And two such valves, from each side to the accumulator.
+// A valve that opens gradually: closed at a drive of 0, wide open at 1. Its switch has three positions: 0
+// closed, 1 between, 2 wide open. Also two such valves, from each side to the accumulator.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +23,15 @@ T OpeningMargin(int position, const T& drive) {
 template <class T>
 int8_t NextOpening(int position, const T& drive) {
   if (position == 1) return drive < T(0.5) ? 0 : 2;
-  // At a start, and where a motion is known at samples only, the drive may be beyond the ramp.
+  // At a start, and where a motion is known only at samples, the drive may lie beyond the ramp.
   if (position <= 0) return drive < T(1.0) ? 1 : 2;
   return drive > T(0.0) ? 1 : 0;
 }
 
-// Law::Drive(x, side): what opens the valve of side 0 or 1. Law::kConductance: the place among the effect's numbers of the flow per
-// pressure where a valve is wide open. Law::kReplacesValves: whether they stand in the place of the ideal ones. The flow out of a side is
-// conductance opening (p - p3). One switch for each side.
+// Law::Drive(x, side) is what opens the valve of side 0 or 1. Law::kConductance is the place, among the
+// effect's numbers, of the flow per pressure through a wide-open valve. Law::kReplacesValves says whether
+// these valves replace the ideal ones. The flow out of a side is conductance opening (p - p3). There is one
+// switch for each side.
 template <class Law>
 class GradualValves : public EffectOf<GradualValves<Law>> {
  public:

@@ -1,4 +1,5 @@
-// pump.flow_ripple: D (1 + amplitude cos(periods theta)) in flow and torque, as the pistons deliver in turn.
+// pump.flow_ripple: D (1 + amplitude cos(periods theta)) in flow and torque, because the pistons deliver in
+// turn.
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-// pump.friction_asymmetry: T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0. Also at rest: the
-// pump breaks away at T_s + coulomb forward and at T_s - coulomb backward. Both follow from a constant torque
-// `coulomb` against forward rotation.
+// pump.friction_asymmetry: T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0. It also acts at
+// rest: the pump breaks away at T_s + coulomb forward and at T_s - coulomb backward. Both follow from a
+// constant torque `coulomb` against forward rotation.
 
 #include "model/effects/effect.h"
 

@@ -1,7 +1,7 @@
 // pump.turbulent_leakage: cross-port flow + k sgn(dp) sqrt(abs(dp)), an orifice beside the laminar leakage
-// c_I. The root's slope at dp = 0 is infinite, but any orifice is laminar there. So it is taken as dp/(dp^2 +
-// w^2)^(1/4) with w = 2e-4 T_pmax/D, which is 1 psi for Table 1: 0.25 % below the root at 10 psi, 0.0025 % at
-// 100 psi.
+// c_I. The root's slope at dp = 0 is infinite, but any orifice is laminar there. The root is therefore
+// replaced by dp/(dp^2 + w^2)^(1/4) with w = 2e-4 T_pmax/D, which is 1 psi for Table 1: 0.25 % below the root
+// at 10 psi, 0.0025 % at 100 psi.
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
-// pump.unequal_displacements: a pump whose ports displace unequal volumes, or two pumps on one shaft, to drive a cylinder with its
-// rod on one side: D (1 - difference) at port 1, D (1 + difference) at port 2. A third port at p_3 takes what is left over.
+// pump.unequal_displacements: a pump whose ports displace unequal volumes, or two pumps on one shaft, to
+// drive a cylinder with its rod on one side: D (1 - difference) at port 1, D (1 + difference) at port 2. A
+// third port at p_3 takes the remainder.
 
 #include "model/effects/effect.h"
 
@@ -9,7 +10,8 @@ namespace {
 
 class UnequalDisplacements : public EffectOf<UnequalDisplacements> {
  public:
-  // Torque D_2 p2 - D_1 p1 - (D_2 - D_1) p_3; what leaves side 1 beyond D theta' and does not enter side 2 passes the third port.
+  // Torque D_2 p2 - D_1 p1 - (D_2 - D_1) p_3. The flow that leaves side 1 beyond D theta' and does not enter
+  // side 2 passes the third port.
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
     x.load += x.own[0] * x.D * Pressures(x);
@@ -45,7 +47,7 @@ class UnequalDisplacements : public EffectOf<UnequalDisplacements> {
                               .meaning = "(D_2 - D_1)/(D_1 + D_2)",
                               .example = 0.2}},
               .needs_oil = true,
-              // A pump with three ports is a rarity that its owner knows of.
+              // Pumps with three ports are rare, and the owner of one knows about it.
               .on_request = true},
      .make = MakeEffect<UnequalDisplacements>});
 

@@ -1,5 +1,5 @@
-// sensor.pressure_drift: the measured p1, p2 are shifted by rate t, with t from the run's first sample on. The
-// equations do not change.
+// sensor.pressure_drift: the measured p1, p2 are shifted by rate t, with t from the run's first sample on.
+// The equations do not change.
 
 #include "model/effects/effect.h"
 

@@ -30,7 +30,8 @@ class Sign : public EffectOf<Sign> {
                                              .meaning = "the channel that is inverted",
                                              .names = SignalNames(),
                                              .role = Role::kChannel}},
-                             // Signs are settled before balances are formed: these would have the wrong one.
+                             // Signs are settled before balances are formed, which would otherwise have the
+                             // wrong sign.
                              .unseen_by_balances = true},
                     .make = [](const EffectDescription& description) -> std::unique_ptr<Effect> {
                       return std::make_unique<Sign>(SignalOf(description));

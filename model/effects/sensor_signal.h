@@ -25,7 +25,7 @@ inline Signal SignalOf(const EffectDescription& description) {
   return static_cast<Signal>(i);
 }
 
-// measured = change(source) for the channel. The arm's speed comes from the same sensor as its angle.
+// Applies measured = change(source) to the channel. The arm's speed comes from the same sensor as its angle.
 template <class T, class Change>
 void ChangeSignal(Signal signal, const MeasurementOf<T>& source, MeasurementOf<T>* measured, Change change) {
   switch (signal) {

@@ -1,4 +1,4 @@
-// sensor.skew: one channel is recorded late: it reads what it would have read `delay` earlier or, before the
+// sensor.skew: one channel is recorded late: it reads what it should have read `delay` earlier or, before the
 // start, the first value. The equations do not change.
 
 #include "model/effects/effect.h"

@@ -1,12 +1,13 @@
-// A torque on the motor's shaft that depends on its angle alone, against forward rotation: what it takes it gives back.
+// A torque on the motor's shaft, against forward rotation, that depends only on the shaft's angle: it returns
+// the energy that it takes.
 #pragma once
 
 #include "model/effects/effect.h"
 
 namespace hydro::model {
 
-// Law::Torque(x): the torque. Law::Load(x): what it loads, the motor itself (Terms::load) or what hangs on its shaft
-// (Terms::shaft_load).
+// Law::Torque(x) is the torque. Law::Load(x) is what it loads: the motor itself (Terms::load) or what is
+// attached to its shaft (Terms::shaft_load).
 template <class Law>
 class ShaftTorque : public EffectOf<ShaftTorque<Law>> {
  public:

@@ -1,11 +1,11 @@
-// Parameters that several effects have, described once.
+// Parameters that several effects have, each described once.
 #pragma once
 
 #include "model/effects/effect.h"
 
 namespace hydro::model {
 
-// tau: a first-order lag.
+// tau, of a first-order lag.
 inline ParameterInfo TimeConstant(double example) {
   return {.name = "tau",
           .unit = "s",
@@ -17,12 +17,12 @@ inline ParameterInfo TimeConstant(double example) {
           .example = example};
 }
 
-// No motor, pump or gear has so many poles, teeth or pistons.
+// No motor, pump or gear has this many poles, teeth or pistons.
 inline constexpr double kMostPeriods = 1000;
 inline constexpr char kOfMorePeriods[] =
     "at a usual speed more would pass within each tick, which none could follow";
 
-// periods: of a ripple over the motor's revolution.
+// periods, of a ripple over the motor's revolution.
 inline ParameterInfo PeriodsPerRevolution(double example) {
   return {.name = "periods",
           .unit = "1/rev",

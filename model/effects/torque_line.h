@@ -1,6 +1,7 @@
-// A limit of the motor's torque that falls with speed while the motor drives, for the effects that say along which line. It acts on
-// T_p after every other limit, lag and delay. While braking (torque against speed) only T_pmax limits. One switch: 0, not limited;
-// +1 and -1, on the line in that direction; +2 and -2, turning so fast in that direction that no torque is left to drive with.
+// A limit of the motor's torque that falls with speed while the motor drives, for the effects that define the
+// line. It acts on T_p after every other limit, lag and delay. While braking (torque against speed) only
+// T_pmax limits. The switch has these positions: 0, not limited; +1 and -1, on the line in that direction; +2
+// and -2, turning so fast in that direction that no driving torque is left.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 
 namespace hydro::model {
 
-// LimitLine::Torque(x, speed): the largest torque in the direction of a speed; T_pmax or more where it does not limit.
+// LimitLine::Torque(x, speed) is the largest torque in the direction of a speed; T_pmax or more where it does
+// not limit.
 template <class LimitLine>
 class TorqueLine : public EffectOf<TorqueLine<LimitLine>> {
  public:
@@ -64,7 +66,7 @@ class TorqueLine : public EffectOf<TorqueLine<LimitLine>> {
   int Position(const Terms<T>& x) const {
     return x.mode->effects[first_switch()];
   }
-  // The direction of the limit that acts, or of the one that could.
+  // The direction of the limit that acts, or of the one that may act next.
   template <class T>
   double Side(const Terms<T>& x) const {
     const int position = Position(x);

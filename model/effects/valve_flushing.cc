@@ -1,6 +1,6 @@
-// valve.flushing: a shuttle that connects the side of the lower pressure to the accumulator, as it is used to exchange hot oil and to
-// take the surplus of unequal areas. Of side 1, opening = (p2 - p1 - shift)/range from 0 to 1, and the flow out of the side is
-// conductance opening (p1 - p3). One switch for each side.
+// valve.flushing: a shuttle that connects the side of the lower pressure to the accumulator, used to exchange
+// hot oil and to drain the surplus of unequal areas. For side 1, opening = (p2 - p1 - shift)/range from 0 to
+// 1, and the flow out of the side is conductance opening (p1 - p3). One switch for each side.
 
 #include "model/effects/opening.h"
 
@@ -44,7 +44,8 @@ struct Flushing {
                                              .meaning = "flow per pressure where it is wide open",
                                              .example = 0.002}},
                              .needs_oil = true,
-                             // Its owner knows of it, and one-way valves hold the lower side near p3 as well.
+                             // The owner of such a valve knows about it, and one-way valves also hold the
+                             // lower side near p3.
                              .on_request = true},
                     .make = MakeEffect<GradualValves<Flushing>>});
 

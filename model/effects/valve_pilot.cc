@@ -1,10 +1,11 @@
-// valve.pilot: pilot-operated check valves between each side and the accumulator, as circuits for cylinders with a rod on one side
-// have them. A valve opens to a side that falls below p3, and, pushed by the other side's pressure, lets oil out of its own. Of
-// side 1, with a pilot piston of `ratio` times the seat's area,
+// valve.pilot: pilot-operated check valves between each side and the accumulator, as in circuits for
+// cylinders with a rod on one side. A valve opens to a side that falls below p3. Pushed by the other side's
+// pressure, it also lets oil out of its own side. For side 1, with a pilot piston of `ratio` times the seat's
+// area,
 //   drive = (p3 - p1 + ratio (p2 - p3) - cracking)/range,
-// from closed at 0 to wide open at 1, and the flow out of the side is conductance opening (p1 - p3). The piston pushes and never
-// pulls: p2 below p3 counts as p3, a corner of what opens the valve and not of its flow. They replace the ideal valves. One switch
-// for each side.
+// from closed at 0 to wide open at 1, and the flow out of the side is conductance opening (p1 - p3). The
+// piston pushes and never pulls: p2 below p3 counts as p3. This is a corner in the valve's drive, not in its
+// flow. The valves replace the ideal ones. One switch for each side.
 
 #include <algorithm>
 
@@ -59,7 +60,7 @@ struct Pilot {
                               .scale = Scale::kFlow,
                               .example = 0.005}},
               .needs_oil = true,
-              // A symmetric actuator has no use for them.
+              // A symmetric actuator does not need such valves.
               .on_request = true},
      .make = MakeEffect<GradualValves<Pilot>>});
 

@@ -57,7 +57,8 @@ class Relief : public EffectOf<Relief> {
                                              .unit = "in^3/s/psi",
                                              .meaning = "flow per pressure above set",
                                              .example = 0.001}},
-                             // Where it regulates, the pressure stands and the flow is whatever is left.
+                             // Where it regulates, the pressure is constant and the flow is the remainder of
+                             // the other flows.
                              .unseen_by_balances = true},
                     .make = MakeEffect<Relief>});
 

@@ -32,11 +32,11 @@ void CheckBounds(const ParameterInfo& info, const UnitSystem& units, double valu
 }
 
 // The only number with a unit in the equations. It is 14.6959 psi in every system, so that the same rig moves
-// in the same way whatever its units; 101325 Pa is that to 4 in a million.
+// in the same way whatever its units; 101325 Pa differs from this by 4 in a million.
 double Atmosphere(const ModelDescription& description) {
   constexpr double kPsiOfAir = 14.6959;
   const bool named = description.units != UnitSystem{};
-  // A model that does not say its units may be in SI all the same: no liquid has a beta of 1e7 psi.
+  // A model that does not state its units may still be in SI: no liquid has a beta of 1e7 psi.
   const double unit = named                               ? ParseUnit(description.units.UnitFor("psi"))->size
                       : description.parameters.beta > 1e7 ? 1
                                                           : kPsi;
@@ -52,7 +52,7 @@ double Atmosphere(const ModelDescription& description) {
   EvaluateTerms<Form::kGeneral, Jet>(m, *m.constants, time, voltage, mode, state, rate, x);
 }
 
-// The same numbers as scalars of type Jet, without derivatives.
+// The same numbers as scalars of type Jet, with derivatives of 0.
 std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& data) {
   Parameters parameters = data.parameters;
   auto constants = std::make_shared<NumbersOf<Jet>>();
@@ -147,7 +147,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   const StateSizes sizes = {.pressure = pressure,
                             .flow = p.D * speed,
                             .torque = 0.01 * p.T_pmax,
-                            // An angle has its own size; a stroke has that of its cylinder.
+                            // An angle has a size of its own; a stroke has the size of its cylinder.
                             .arm = data_.linear_arm ? 1e-3 * p.V_ms / p.c : 1e-3,
                             .angle = 0.01 * p.V_ms / p.D,
                             .speed = speed,
@@ -243,6 +243,16 @@ void Equations::Start(double pressure, double* state, Mode* mode) const {
   }
 }
 
+void Equations::SwitchEffects(const double* state, Mode* mode) const {
+  double rate[kMaxStates];
+  Terms<double> x;
+  Evaluate(0, 0, *mode, state, rate, &x);
+  for (const auto& effect : data_.effects) {
+    x.own = data_.own.data() + effect->first_parameter();
+    effect->StartMode(x, mode);
+  }
+}
+
 void Equations::Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
                       double* margin) const {
   EvaluatePoint<Form::kGeneral>(data_, time, voltage, mode, state, rate, margin);
@@ -319,7 +329,7 @@ Equations::ArmTorque Equations::FindArmTorque(double time, double voltage, const
   Evaluate(time, voltage, mode, state, rate, &x);
   ArmTorque found{.torque = x.arm_torque - LoadTorque(data_, time)};
   if (x.arm_torque != 0) return found;
-  // Held, or just in balance? What holds it gives way to no other load either.
+  // Decides between held and just in balance: what holds the arm does not yield to another load either.
   const double torque = data_.load.torque;
   data_.load.torque += std::max(data_.parameters.k_2 * scales_[kP1], std::abs(torque));
   Evaluate(time, voltage, mode, state, rate, &x);
@@ -377,7 +387,8 @@ Measurement Equations::Measure(double time, const double* state, const StateHist
   return ReadSensors<double>(data_, data_, time, state, history);
 }
 
-// The effects may change the volumes and what the arm displaces, so they are asked at rest, with the arm at 0.
+// The effects may change the volumes and the actuator's displacement, so they are evaluated at rest, with the
+// arm at 0.
 void Equations::FindMidVolumes() {
   double state[kMaxStates] = {};
   const Mode mode;
@@ -422,7 +433,7 @@ double Equations::NextStop(double time) const {
 
 void Equations::PassStop(double time) {
   for (const auto& effect : data_.effects) effect->PassStop(time);
-  // Up to its next break the motion keeps its formula, also for a stage that lies on the break.
+  // Up to its next break the motion keeps its formula, even for a stage that lies on the break.
   if (data_.motion != nullptr) data_.motion_limit = std::nextafter(data_.motion->NextBreak(time), time);
 }
 

@@ -1,4 +1,4 @@
-// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For code that
+// The equations under Actuator: state vectors, modes, rates, exact Jacobians, switches. This is for code that
 // linearises, estimates or integrates in its own way; for the actuator's motion alone, use actuator.h.
 #pragma once
 
@@ -25,28 +25,28 @@ struct StateSizes;
 template <class T>
 class StateHistory;
 
-// The numbers in the right-hand side: parameters, and what follows from them alone.
+// The numbers in the right-hand side: parameters, and values that follow from them alone.
 template <class T>
 struct NumbersOf {
   ParametersOf<T> parameters;
   std::vector<T> own;  // the effects' parameters, each effect's from Effect::first_parameter() on
   T inverse_J{};
   T inverse_J_a{};
-  T fixed_volume{};  // in^3, of each side, not at the actuator
+  T fixed_volume{};  // in^3, part of each side outside the actuator
   T stiffness_1{};   // beta/V_1 at arm_angle, psi/in^3
   T stiffness_2{};
 };
 
-// What the right-hand side needs besides time, state, mode and voltage.
+// What the right-hand side needs in addition to time, state, mode and voltage.
 struct EquationData : NumbersOf<double> {
   Shaft shaft = Shaft::kFree;
   bool bypass = false;
-  bool linear_arm = false;                         // a cylinder: its weight is the same wherever it stands
+  bool linear_arm = false;                         // a cylinder: its weight is the same in every position
   double atmosphere = 0;                           // in the model's unit of pressure
   double arm_angle = 0;                            // clamped
   double mid_volume_1 = 0, mid_volume_2 = 0;       // in^3, at the actuator, where the arm is at 0
-  double c_1 = 0, c_2 = 0;                         // what the arm displaces of each
-  double begin = 0;                                // s, where the time of effects is 0
+  double c_1 = 0, c_2 = 0;                         // the volume of each side that the arm displaces
+  double begin = 0;                                // s, the zero of the effects' time
   const trajectory::Trajectory* motion = nullptr;  // driven
   // s: `motion` is evaluated at times below this.
   double motion_limit = std::numeric_limits<double>::infinity();
@@ -58,8 +58,8 @@ struct EquationData : NumbersOf<double> {
   bool reads_late = false;   // some channel does, by at most `reach`
   double reach = 0;          // s
   int p_3_state = -1;        // the accumulator's pressure, where it is a state
-  int actuator_angle_state = kArmAngle;  // free shaft: what V_1 and V_2 depend on
-  // Free shaft: the arm is part of something larger, and `load` stands for J_a and gravity.
+  int actuator_angle_state = kArmAngle;  // free shaft: the angle that V_1 and V_2 depend on
+  // Free shaft: the arm is part of something larger, and `load` replaces J_a and gravity.
   bool loaded = false;
   ArmLoad load;
   double load_since = 0;  // s
@@ -79,14 +79,19 @@ class Equations {
   bool plain() const { return data_.effects.empty() && !data_.bypass && data_.shaft != Shaft::kDriven; }
   std::vector<std::string> StateNames() const;
 
-  // Size per state below which absolute errors count: error weights are relative_tolerance * (|y| + scale).
+  // The size of each state below which absolute errors count: error weights are relative_tolerance * (|y| +
+  // scale).
   const std::vector<double>& scales() const { return scales_; }
 
-  // State with both pressures at `pressure`, and its mode: all at rest, valves closed.
+  // The state with both pressures at `pressure`, and its mode: at rest, with the valves closed.
   void Start(double pressure, double* state, Mode* mode) const;
 
+  // Sets the effects' switches of `mode` to where they are in this state: an arm that moves does not stick.
+  // Without a voltage.
+  void SwitchEffects(const double* state, Mode* mode) const;
+
   // d state/dt. `margin` (may be null) receives switches() numbers. Each is positive while its switch may
-  // stay as it is and falls through 0 when it must change:
+  // keep its position and falls through 0 when it must change:
   //   pump slips: speed in its direction; pump sticks: friction limit less net torque
   //   valve closed: p - p_3
   //   valve open: p_3' (0 unless an effect moves p_3) less the rate that p would have with the valve closed
@@ -96,8 +101,8 @@ class Equations {
   // d rate_i/d state_j at jacobian[i + j * states()], exact (automatic derivatives).
   void Jacobian(double time, double voltage, const Mode& mode, const double* state, double* jacobian) const;
 
-  // Rates and Measure with the derivatives along the kJetWidth directions that `voltage` and `state` carry,
-  // for Linearise. The voltage is the acting one: amp.delay passes it on at once.
+  // Rates and Measure, with the derivatives along the kJetWidth directions that `voltage` and `state` carry,
+  // for Linearise. `voltage` is the acting voltage: amp.delay passes it on at once.
   void Differentiate(double time, const Jet& voltage, const Mode& mode, const Jet* state, Jet* rate,
                      MeasurementOf<Jet>* measured) const;
 
@@ -114,15 +119,14 @@ class Equations {
   // the last data().reach seconds; without a history it is not late.
   Measurement Measure(double time, const double* state, const StateHistory<double>* history = nullptr) const;
 
-  // What the actuator gives a loaded arm, in-lbf: k_2 dp as the effects change it, without the load.
+  // in-lbf, what the actuator gives a loaded arm: k_2 dp as changed by effects, without the load.
   struct ArmTorque {
     double torque = 0;
-    bool held =
-        false;  // by friction of the arm's own, at rest: then the torque is what the arm does not feel
+    bool held = false;  // at rest by the arm's own friction: the arm then does not feel this torque
   };
   ArmTorque FindArmTorque(double time, double voltage, const Mode& mode, const double* state);
-  // d/dt of that torque where the state moves with `rate`. Exact, but for what effects change with time by
-  // itself.
+  // d/dt of that torque where the state moves with `rate`. It is exact, except for what effects change
+  // explicitly with time.
   double ArmTorqueRate(double time, double voltage, const Mode& mode, const double* state,
                        const double* rate) const;
 
@@ -130,26 +134,26 @@ class Equations {
   // places elsewhere).
   void CheckVolumes(double arm_angle) const;
 
-  // From `time` on the arm has this load; before the first integration step this makes the arm a loaded one.
+  // Sets the arm's load from `time` on. A call before the first integration step makes the arm a loaded one.
   // Throws ModelError.
   void SetLoad(double time, const ArmLoad& load);
 
-  // What acts from outside from now on. An integrator then evaluates afresh, as for another voltage. Simulations of the plain
-  // equations do not see it.
+  // Sets the outside influences from now on. An integrator must then evaluate afresh, as for another voltage.
+  // Simulations of the plain equations ignore them.
   void Surround(const Surroundings& around) { data_.around = around; }
 
-  // Whether V_1 and V_2 are above 0 there.
+  // Whether V_1 and V_2 are above 0 at `arm_angle`.
   bool HasVolumes(double arm_angle) const {
     return arm_angle * data_.c_1 < data_.mid_volume_1 && -arm_angle * data_.c_2 < data_.mid_volume_2;
   }
 
-  // Puts a free arm nearby. The fluid is compressed as by that motion, but where a valve is open, or the arm
-  // is not what compresses it (bypass, arm.flexure).
+  // Moves a free arm to a nearby position. That motion compresses the fluid, except where a valve is open or
+  // where the arm does not compress the fluid (bypass, arm.flexure).
   void MoveArm(double time, double voltage, const Mode& mode, double angle, double speed,
                double* state) const;
 
-  // Known stops: times at which the right-hand side jumps by itself. An integrator calls Command when the
-  // voltage changes, steps no further than NextStop, and calls PassStop there; until then the earlier
+  // Known stops: times at which the right-hand side itself jumps. An integrator calls Command when the
+  // voltage changes, steps no further than NextStop, and calls PassStop there. Until then the earlier
   // formulas hold.
   void Command(double time, double voltage);
   double NextStop(double time) const;  // the first one after `time`; infinity if there is none

@@ -16,7 +16,7 @@ inline double ValueOf(const Jet& x) { return x.a; }
 // Which terms are compiled in. The plain forms have no effects and no bypass; the fast path inlines them.
 enum class Form { kPlainClamped, kPlainFree, kPlainLoaded, kGeneral };
 
-// The state, and the arm as its shaft moves it.
+// The state, and the arm's motion as its shaft imposes it.
 template <Form kForm, class T>
 [[gnu::always_inline]] inline void ReadState(const EquationData& m, double time, const T* y, Terms<T>& x) {
   x.motor_angle = y[kMotorAngle];
@@ -45,7 +45,7 @@ template <Form kForm>
   return kForm != Form::kPlainClamped;
 }
 
-// The arm's load takes the place of its inertia and gravity.
+// The arm's load replaces its inertia and gravity.
 template <Form kForm>
 [[gnu::always_inline]] inline bool ArmIsLoaded(const EquationData& m) {
   if constexpr (kForm == Form::kGeneral) return m.loaded;
@@ -67,7 +67,7 @@ template <class T, class Change>
   }
 }
 
-// The properties of the oil, the pump and the friction: the base parameters as the effects change them.
+// The properties of the oil, the pump and the friction: the base parameters as changed by the effects.
 template <Form kForm, class T>
 [[gnu::always_inline]] inline void SetProperties(const EquationData& m, const NumbersOf<T>& n, double time,
                                                  const T& voltage, const Mode& mode, const T* y,
@@ -164,7 +164,7 @@ template <Form kForm, class T>
     const ParametersOf<T>& p = n.parameters;
     const T arm_flow_1 = kGeneralForm ? x.c_1 * x.actuator_speed : p.c * x.arm_speed;
     const T arm_flow_2 = kGeneralForm ? x.c_2 * x.actuator_speed : arm_flow_1;
-    if (kGeneralForm && m.bypass) {  // one pressure; what both sides displace circulates
+    if (kGeneralForm && m.bypass) {  // one pressure; the flow that both sides displace circulates
       x.free_rate_1 = x.free_rate_2 =
           -(x.q_1 + x.q_2 + (arm_flow_2 - arm_flow_1)) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
     } else {

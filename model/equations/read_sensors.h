@@ -1,4 +1,4 @@
-// What the sensors read of a state. A template, for .cc files of model/ only.
+// What the sensors read in a given state. A template, for .cc files of model/ only.
 #pragma once
 
 #include "model/effects/effect.h"
@@ -8,7 +8,7 @@
 
 namespace hydro::model {
 
-// The motion at a time that may carry derivatives.
+// The value of the motion at a time that may carry derivatives.
 inline double MotionAt(const trajectory::Trajectory& motion, double time) { return motion.Value(time); }
 inline Jet MotionAt(const trajectory::Trajectory& motion, const Jet& time) {
   Jet angle(motion.Value(time.a));

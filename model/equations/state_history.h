@@ -12,16 +12,16 @@
 namespace hydro::model {
 
 // Between the recorded times, states follow the cubic through both ends with their rates. T is double, or a
-// scalar with derivatives: those of the states are at fixed time, and a requested time may carry derivatives
-// too.
+// scalar with derivatives. The derivatives of the states are at fixed time; a requested time may carry
+// derivatives too.
 template <class T>
 class StateHistory {
  public:
-  // Keeps what is needed for times up to `reach` seconds before the last one.
+  // Keeps what is needed for times up to `reach` seconds before the last recorded time.
   StateHistory(int states, double reach) : states_(states), reach_(reach) {}
 
-  // Adds the next accepted state, in order of time. Where state or rate jumps (a switch, a new voltage), add
-  // two for the same time, one from before and one from after.
+  // Adds the next accepted state, in order of time. Where the state or its rate jumps (a switch, a new
+  // voltage), add two states for the same time, one from before the jump and one from after it.
   void Add(double time, const T* state, const T* rate) {
     if (!times_.empty() && time < times_.back()) Forget();
     times_.push_back(time);
@@ -39,8 +39,8 @@ class StateHistory {
 
   bool empty() const { return times_.empty(); }
 
-  // The state at `*time`. Before the first recorded state: that state, and `*time` becomes its time. After
-  // the last one, continues at the last rate. The history must not be empty.
+  // The state at `*time`. Before the first recorded state, it returns that state and sets `*time` to its
+  // time. After the last one, it continues at the last rate. The history must not be empty.
   void At(T* time, T* state) const {
     if (*time < T(times_[first_])) *time = T(times_[first_]);
     const auto after = std::upper_bound(times_.begin() + static_cast<std::ptrdiff_t>(first_), times_.end(),
@@ -77,7 +77,7 @@ class StateHistory {
   double reach_;
   std::vector<double> times_;
   std::vector<T> numbers_;  // at each time the states, then the rates
-  size_t first_ = 0;        // what lies before is no longer needed
+  size_t first_ = 0;        // entries before this are no longer needed
 };
 
 }  // namespace hydro::model

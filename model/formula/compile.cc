@@ -22,8 +22,8 @@ const std::vector<std::string>& BaseNames() {
   return names;
 }
 
-// A parameter of the paper under its own name or as base_NAME. An effect may change D, b and others: their own name is what
-// they are at this instant, base_D what the model's file says.
+// A parameter of the paper under its own name or as base_NAME. An effect may change D, b and others: the
+// plain name is the current value, and base_D is the value in the model's file.
 std::optional<size_t> BasePlaceOf(const std::string& name) {
   if (name.starts_with(kBasePrefix)) return PlaceOf(BaseNames(), name.substr(sizeof(kBasePrefix) - 1));
   return PlaceOf(BaseNames(), name);
@@ -50,7 +50,7 @@ std::optional<size_t> PlaceIn(const std::vector<Named>& list, const std::string&
 
 bool ReadsSensors(Hook hook) { return hook == Hook::kTransducers || hook == Hook::kReadings; }
 
-// Comparisons become switches where the equations are evaluated over and over between events.
+// Comparisons become switches at those hooks that are evaluated repeatedly between events.
 bool IsLocated(Hook hook) { return hook >= Hook::kProperties && hook <= Hook::kBalances; }
 
 constexpr char kBuiltIn[] = "dp";  // p2 - p1
@@ -132,7 +132,7 @@ void FormulaCompiler::CheckNewName(const std::string& key, const std::string& na
   if (count > 1) throw EffectTextError(key, "found \"" + name + "\" twice, allowed one meaning for a name");
   try {
     if (ParseExpression(name).operation == Operation::kName && name.back() != '\'') return;
-  } catch (const FormulaError&) {  // said below
+  } catch (const FormulaError&) {  // reported below
   }
   throw EffectTextError(key,
                         "found the name \"" + name + "\", allowed letters, digits and _, a letter first");
@@ -223,7 +223,7 @@ bool FormulaCompiler::IsFixed(const Expression& expression, Context& context) co
     if (OwnPlace(info_, expression.name, false)) return true;
     const NameMeaning meaning = MeaningOf(expression.name, expression.column, context.hook);
     if (meaning.formula == nullptr) return meaning.fixed;
-    // Names may stand for each other many times over: each is looked at once.
+    // Names may stand for each other many times over, so each is examined once.
     if (const auto asked = context.fixed.find(expression.name); asked != context.fixed.end())
       return asked->second;
     if (!context.within.insert(expression.name).second) return false;  // reported where it is emitted

@@ -1,4 +1,5 @@
-// From an effect's text to programs: what names mean, what is known where, and which comparisons are switches.
+// Compiles an effect's text into programs: decides what names mean, what is known at each hook, and which
+// comparisons are switches.
 #pragma once
 
 #include <map>
@@ -13,37 +14,40 @@
 
 namespace hydro::model {
 
-// What a name stands for in a formula.
+// The meaning of a name in a formula.
 struct NameMeaning {
   Source source = Source::kConstant;
   size_t place = 0;
   double number = 0;                    // kConstant
-  const Expression* formula = nullptr;  // of `where`: the name stands for this
-  bool fixed = false;                   // it changes at events only, if at all
+  const Expression* formula = nullptr;  // of `where`: the name stands for this formula
+  bool fixed = false;                   // it changes at events only, or never
 };
 
-// A comparison of quantities that change, found in an equation: an event is located where it begins or ceases to hold.
+// A comparison in an equation between quantities that change. The simulation locates the event at which it
+// begins or ceases to hold.
 struct FoundComparison {
   Expression low, high;  // it holds while low < high
 };
 
 class FormulaCompiler {
  public:
-  // Checks the names that the effect adds. `info` and `text` must outlive the compiler. Throws EffectTextError.
+  // Checks the names that the effect adds. `info` and `text` must outlive the compiler. Throws
+  // EffectTextError.
   FormulaCompiler(const EffectInfo& info, const EffectText& text);
 
-  // Compiles a formula that acts at `hook`, whose key in the file is `key`: a value, left in Access::result ...
+  // Compiles a formula that acts at `hook`: a value, which it leaves in Access::result. `key` is its key in
+  // the file.
   Program Value(const std::string& key, const std::string& text, Hook hook);
-  // ... or a statement, appended to a program.
+  // Compiles a statement and appends it to a program.
   void Append(const std::string& key, const std::string& statement, Hook hook, Program* program);
-  // A value that is stored to the effect's state or its rate.
+  // Compiles a value that is stored in the effect's state or its rate, and appends it.
   void AppendValue(const std::string& key, const std::string& text, Hook hook, Source to, size_t place,
                    Program* program);
 
-  // Where a statement acts that has no hook of its own: where what it changes becomes known.
+  // The hook for a statement that names none: the place where the quantity that it changes becomes known.
   Hook HookOf(const std::string& key, const std::string& statement) const;
 
-  // The comparisons found in what was compiled, in order; the switches after the effect's own.
+  // The comparisons found in what was compiled, in order. Their switches follow the effect's own.
   const std::vector<FoundComparison>& comparisons() const { return comparisons_; }
   // Programs for the margin and the next position of the switch of a comparison.
   SwitchPrograms ComparisonPrograms(size_t comparison);
@@ -52,9 +56,9 @@ class FormulaCompiler {
   struct Context {
     Hook hook = Hook::kProperties;
     Program* program = nullptr;
-    std::map<std::string, uint16_t> known;   // what has been computed, by its text; forgotten at each store
+    std::map<std::string, uint16_t> known;   // computed values, by their text; forgotten at each store
     std::set<std::string> within;            // names of `where` that are being expanded
-    std::map<std::string, bool> fixed = {};  // of `where`, as far as it was asked
+    std::map<std::string, bool> fixed = {};  // of `where`, as far as determined
   };
 
   void AddWhere();
@@ -76,7 +80,7 @@ class FormulaCompiler {
   const EffectInfo& info_;
   const EffectText& text_;
   std::map<std::string, Expression> where_;
-  std::set<std::string> scratch_;  // quantities that effects alone set, and this one does
+  std::set<std::string> scratch_;  // quantities that only effects set, and that this one sets
   std::vector<FoundComparison> comparisons_;
 };
 

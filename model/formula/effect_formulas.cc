@@ -26,7 +26,7 @@ EffectFormulas::EffectFormulas(EffectInfo info, EffectText text)
 
 void EffectFormulas::CompileEquations(FormulaCompiler& compiler) {
   const auto program = [&](Hook hook) { return &hooks_[static_cast<size_t>(hook)]; };
-  // Rates first: an equation may replace what they see, as the flow from the pump.
+  // Rates come first, because an equation may replace what they depend on, such as the flow from the pump.
   for (size_t i = 0; i < text_.states.size(); ++i) {
     const StateText& state = text_.states[i];
     const std::string key = "states." + state.name;

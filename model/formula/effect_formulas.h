@@ -1,4 +1,4 @@
-// The formulas of an effect, compiled: what model/effects/formulas.cc runs.
+// The compiled formulas of an effect, which model/effects/formulas.cc runs.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class EffectFormulas {
   const Program& stored() const { return stored_; }
   const Program& dissipated() const { return dissipated_; }
   const Program& viscous() const { return viscous_; }
-  // The place among the states of the one that is that quantity; -1: none.
+  // The place, among the effect's states, of the state that replaces this quantity; -1: none.
   int StateThatIs(const std::string& quantity) const;
 
  private:

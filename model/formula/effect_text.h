@@ -1,4 +1,4 @@
-// An effect written as text: its formulas as in its file, and its entry for the catalogue.
+// An effect written as text: its formulas as its file has them, and its entry for the catalogue.
 #pragma once
 
 #include <stdexcept>
@@ -17,13 +17,14 @@ struct StateText {
   std::string unit;
   std::string rate;   // "(k_1 * voltage - lagged) / tau"
   std::string start;  // "0" where empty
-  // Below this size absolute rather than relative errors count: "pressure", "flow", "torque", "arm", "angle", "speed", "voltage" (those of the model), or a
-  // number in the state's unit.
+  // The size below which absolute rather than relative errors count: "pressure", "flow", "torque", "arm",
+  // "angle", "speed", "voltage" (the model's sizes), or a number in the state's unit.
   std::string scale = "0.001";
   std::string is;  // "p_3" or "actuator_angle" where it takes that quantity's place
 };
 
-// A switch that the effect adds: positions are whole numbers from -100 to 100, and formulas know its position by its name.
+// A switch that the effect adds. Its positions are whole numbers from -100 to 100, and formulas read its
+// position by its name.
 struct SwitchText {
   std::string name;
   std::string margin;             // positive while the position may stay, falls through 0 when it must change
@@ -33,9 +34,9 @@ struct SwitchText {
 };
 
 struct EffectText {
-  // Statements; each acts where what it changes becomes known.
+  // Statements. Each acts where the quantity that it changes becomes known.
   std::vector<std::string> equation;
-  // Statements that act at a place of their own.
+  // Statements with an explicit hook.
   std::vector<std::pair<Hook, std::vector<std::string>>> equations;
   std::vector<std::pair<std::string, std::string>> where;  // name, what it stands for
   std::vector<StateText> states;
@@ -45,10 +46,10 @@ struct EffectText {
   bool replaces_valves = false;
 };
 
-// "equations.torques_and_flows": the key of a hook that has statements of its own.
+// The key of each hook that can have its own statements: "equations.torques_and_flows".
 const std::vector<std::pair<std::string, Hook>>& EquationKeys();
 
-// A formula of an effect cannot work: the key in its file, and what() without it.
+// A formula of an effect cannot work. Holds the key in the file, and the message without the key.
 class EffectTextError : public std::runtime_error {
  public:
   EffectTextError(std::string key, const std::string& what)

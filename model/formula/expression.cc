@@ -11,8 +11,8 @@
 namespace hydro::model {
 namespace {
 
-constexpr size_t kLongest = 8192;  // characters; what is longer has too many operations anyway
-// No formula that a person writes nests deeper; a text that does must not exhaust the stack.
+constexpr size_t kLongest = 8192;  // characters; a longer text has too many operations anyway
+// No formula written by a person nests deeper, and a text that does must not exhaust the stack.
 constexpr int kDeepest = 64;
 
 struct Function {
@@ -58,7 +58,7 @@ class Parser {
                                                                                {"/=", Assignment::kDivide}};
     for (const auto& [sign, assignment] : kAssignments) {
       if (token_ != sign) continue;
-      // "x =- y" sets x; who writes it means "x -= y".
+      // "x =- y" sets x, but its author means "x -= y".
       if (sign == "=" && next_ < text_.size() && (text_[next_] == '-' || text_[next_] == '+')) {
         token_ += text_[next_];
         throw Unexpected("-= or +=, or a blank between = and the sign");

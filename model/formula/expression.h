@@ -1,5 +1,5 @@
-// Formulas as text: "arm_torque -= stiffness * (alpha - rest)", read into a tree. Names keep their text; what they mean is
-// decided where the tree is compiled (compile.h).
+// Formulas as text: "arm_torque -= stiffness * (alpha - rest)" is read into a tree. Names keep their text;
+// the compiler of the tree decides what they mean (compile.h).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace hydro::model {
 
-// A formula cannot be read or compiled: what was found at which column (from 1), and what is allowed.
+// A formula cannot be read or compiled. The message says what was found at which column (from 1), and what is
+// allowed.
 class FormulaError : public std::runtime_error {
  public:
   FormulaError(size_t column, const std::string& found, const std::string& allowed)
@@ -57,7 +58,7 @@ struct Expression {
   size_t column = 1;
 };
 
-// The binary operations that join a value to what stands: =, +=, -=, *=, /=.
+// The operations that combine a value with the target's current value: =, +=, -=, *=, /=.
 enum class Assignment : uint8_t { kSet, kAdd, kSubtract, kMultiply, kDivide };
 
 // "target operation expression".
@@ -67,15 +68,15 @@ struct Statement {
   Expression value;
 };
 
-// Sums, products, powers (^), comparisons, and, or, not, if(condition, a, b), clamp(x, low, high), functions and pi.
-// Throws FormulaError.
+// Reads sums, products, powers (^), comparisons, and, or, not, if(condition, a, b), clamp(x, low, high),
+// functions and pi. Throws FormulaError.
 Expression ParseExpression(const std::string& text);
 Statement ParseStatement(const std::string& text);
 
-// The names of the functions, for messages and documents.
+// The names of the functions, for messages and documentation.
 const std::vector<std::string>& FunctionNames();
 
-// The expression with every operation in brackets: equal text, equal meaning.
+// The expression with every operation in parentheses: equal texts have equal meaning.
 std::string Written(const Expression& expression);
 
 }  // namespace hydro::model

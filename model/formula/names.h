@@ -1,4 +1,5 @@
-// What formulas call the quantities of the equations, from when on each is known, and where it may be changed.
+// The names of the equations' quantities in formulas, from which hook on each is known, and where it may be
+// changed.
 #pragma once
 
 #include <optional>
@@ -10,9 +11,9 @@
 
 namespace hydro::model {
 
-// The places in the evaluation where an effect's formulas act, in their order (model/effects/effect.h).
+// The places in the evaluation at which an effect's formulas act, in order (model/effects/effect.h).
 enum class Hook {
-  kFixedVolume,  // before everything: only parameters
+  kFixedVolume,  // before everything else: only parameters are known
   kProperties,
   kTorquesAndFlows,
   kStates,
@@ -84,12 +85,13 @@ T& FieldOf(Terms<T>& x, size_t place) {
   };
   return x.*kMembers[place];
 }
-// Those from here on are the state, which no formula changes; the three before are what the effects alone set.
+// The quantities from this index on are the state, which no formula changes. The three before them are set
+// only by effects.
 inline constexpr size_t kFirstScratch = 36;
 inline constexpr size_t kFirstFixed = 39;
 inline constexpr size_t kFields = 45;
 
-// What a channel reads, in FormulaReadings().
+// The names of the channels' readings, in the order of FormulaReadings().
 const std::vector<std::string>& ReadingNames();
 template <class T>
 T& ReadingOf(MeasurementOf<T>& measured, size_t place) {
@@ -99,14 +101,16 @@ T& ReadingOf(MeasurementOf<T>& measured, size_t place) {
   return measured.*kMembers[place];
 }
 
-// Numbers that only the mode or the run decides: no derivative, constant between events.
+// Numbers that only the mode or the run determines: they have no derivative and are constant between events.
 enum class Fact { kDirection, kArmFree, kBypass, kValve1Open, kValve2Open };
 const std::vector<std::string>& FactNames();
 
-// At the start alone: what is under way in the lines, and what the accumulator has taken in already.
+// Available only at the start: the waves under way in the lines, and what the accumulator has already taken
+// in.
 const std::vector<std::string>& StartNames();
 
-// The name that an alias stands for: "alpha" for arm_angle, "theta'" for motor_speed; other names unchanged.
+// The name that an alias stands for: arm_angle for "alpha", motor_speed for "theta'". Other names are
+// returned unchanged.
 std::string FullName(const std::string& name);
 
 std::optional<size_t> PlaceOf(const std::vector<std::string>& names, const std::string& name);

@@ -22,14 +22,14 @@ double ArcTangent(double x) { return std::atan(x); }
 Jet ArcTangent(const Jet& x) { return {std::atan(x.a), x.v * (1 / (1 + x.a * x.a))}; }
 
 double RaisedTo(double x, double y) { return std::pow(x, y); }
-// A base of 0 has no logarithm: its derivative by the exponent is 0 there, as far as the power is.
+// A base of 0 has no logarithm. The derivative by the exponent is 0 there, as far as the power is.
 Jet RaisedTo(const Jet& x, const Jet& y) {
   const double value = std::pow(x.a, y.a);
   const double by_exponent = x.a > 0 ? value * std::log(x.a) : 0;
   return {value, (y.a * std::pow(x.a, y.a - 1)) * x.v + by_exponent * y.v};
 }
 
-// Room for numbers that are not set to 0 first: a Jet is nine of them.
+// Room for numbers without first setting them to 0: a Jet has nine of them.
 template <class T>
 union Place {
   Place() {}  // NOLINT(modernize-use-equals-default): a union with a member that has a constructor needs one

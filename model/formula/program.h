@@ -1,5 +1,5 @@
-// A formula as instructions on numbers in numbered places: what runs in the right-hand side, for plain numbers and for those
-// with derivatives.
+// A formula as instructions on numbers in numbered places. The right-hand side runs it, for plain numbers and
+// for numbers with derivatives.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace hydro::model {
 
-// Where an instruction takes a number from, or leaves one.
+// Where an instruction reads a number, or stores one.
 enum class Source : uint8_t {
   kConstant,
   kTime,
@@ -28,7 +28,7 @@ enum class Source : uint8_t {
   kAtStart,  // StartNames()
   kReading,  // of the measurement
   kChoice,   // 1 where the effect's parameter number `a` is its name number `b`, else 0
-  kResult,   // only to leave a number: Access::result
+  kResult,   // for stores only: Access::result
 };
 
 struct Instruction {
@@ -36,20 +36,21 @@ struct Instruction {
   Kind kind = Kind::kOperate;
   Operation operation = Operation::kNumber;
   Source source = Source::kConstant;
-  uint16_t a = 0, b = 0, c = 0;  // of operands, in `places`; kLoad, kStore: `a` is which of the source
+  uint16_t a = 0, b = 0, c = 0;  // operands, in `places`; for kLoad, kStore: `a` is the index in the source
   double constant = 0;
 };
 
-// Instruction i leaves its number in place i. At most kLargestProgram.
+// Instruction i leaves its number in place i. A program has at most kLargestProgram instructions.
 using Program = std::vector<Instruction>;
 inline constexpr size_t kLargestProgram = 256;
 
-// One switch: the effect's own, or one that a comparison in its equation makes, which is 1 while it holds.
+// One switch: either the effect's own, or one from a comparison in its equation, which is 1 while the
+// comparison holds.
 struct SwitchPrograms {
   Program margin, next, start, sets;  // empty: none
 };
 
-// What a program reads and changes. What it does not use may be null.
+// What a program reads and changes. Pointers that it does not use may be null.
 template <class T>
 struct Access {
   Terms<T>* x = nullptr;
@@ -58,7 +59,7 @@ struct Access {
   const T* state = nullptr;  // the whole vector
   T time{};
   T* rate = nullptr;       // the whole vector
-  T* new_state = nullptr;  // the whole vector, kOwnState and kBaseState are stored to
+  T* new_state = nullptr;  // the whole vector; stores to kOwnState and kBaseState go here
   MeasurementOf<T>* measured = nullptr;
   const Mode* mode = nullptr;
   const std::vector<int>* choices = nullptr;

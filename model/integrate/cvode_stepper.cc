@@ -6,7 +6,7 @@ namespace hydro::model {
 
 namespace {
 
-// Backward differences accumulate more of the local errors than the other paths do. With this share of the
+// Backward differences accumulate more of the local errors than the other methods do. With this share of the
 // tolerance all three agree equally well.
 constexpr double kErrorShare = 0.03;
 
@@ -89,7 +89,8 @@ void CvodeStepper::Interpolate(const Point& now, const Point& /*next*/, double t
 
 void CvodeStepper::TakeState(const Point& now, Point* at) const {
   CopyFromSolver(at);
-  // What the mode holds still stays still to the last bit, whatever the linear solver's rounding.
+  // Whatever the mode keeps constant must stay constant to the last bit, regardless of the linear solver's
+  // rounding.
   const Mode& mode = *problem_.mode;
   if (mode.pump == 0) {
     at->state[kMotorAngle] = now.state[kMotorAngle];

@@ -17,8 +17,8 @@ class CvodeStepper : SundialsStepper {
   using SundialsStepper::Trusts;
   Integrator in_use() const { return Integrator::kCvode; }
   void Restart(const Point& now);
-  // Measured: keeping the history over a jump of the voltage is cheaper than starting afresh at order 1, and
-  // no less accurate, because the error test sees the jump.
+  // Keeping the history over a jump of the voltage was measured to be cheaper than a fresh start at order 1.
+  // It is no less accurate, because the error test sees the jump.
   void NewVoltage(const Point&) {}
   void Step(const Point& now, double stop, Point* next);
   void Interpolate(const Point& now, const Point& next, double time, Point* at);

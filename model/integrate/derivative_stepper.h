@@ -1,5 +1,5 @@
-// Runge-Kutta steps for Respond: short enough to keep derivatives finite, and counted, so that a fit of a far
-// too stiff model ends. A template, for .cc files of model/ only.
+// Runge-Kutta steps for Respond. They are short enough to keep derivatives finite, and they are counted, so
+// that a fit of a far too stiff model ends. A template, for .cc files of model/ only.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace hydro::model {
 
-// T is double or Jet. The values alone decide on the length of a step.
+// T is double or Jet. Only the values determine the length of a step.
 template <class T>
 class DerivativeStepper {
  public:
@@ -55,7 +55,7 @@ class DerivativeStepper {
     }
   }
 
-  // One step from `now` to `time`, with derivatives or, for the event search, on the values alone.
+  // Steps from `now` to `time`, with derivatives or, for the event search, with the values alone.
   void Interpolate(const PointOf<T>& now, const PointOf<T>& /*next*/, double time, PointOf<T>* at) {
     at->time = time;
     RungeKuttaStep(n(), now.time, time - now.time, now.state, now.rate, k2_, k3_, k4_, stage_, at->state,
@@ -79,8 +79,8 @@ class DerivativeStepper {
   }
 
  private:
-  // The motor's speed needs a fine step where friction is a narrow curve of it. At the same tolerance, a wave
-  // in a line or a stiff valve would take ten steps per sample to avoid errors that nobody would see.
+  // The motor's speed needs a fine step where friction is a narrow curve over it. At the same tolerance, a
+  // wave in a line or a stiff valve would take ten steps per sample to avoid invisible errors.
   static constexpr double kOtherStates = 30;     // times the tolerance
   static constexpr double kStable = 2.0;         // h |eigenvalue|; the method is stable up to 2.78
   static constexpr int kFastestEvery = 10;       // steps
@@ -104,8 +104,8 @@ class DerivativeStepper {
     return excess;
   }
 
-  // The largest |eigenvalue| by power iteration. The error control of the values keeps steps near the limit
-  // of stability; beyond it, derivatives grow without limit where the values do not show it.
+  // The largest |eigenvalue|, by power iteration. The error control of the values keeps steps near the limit
+  // of stability. Beyond that limit derivatives grow without bound, although the values do not show it.
   void FindFastest(const PointOf<T>& now) {
     constexpr double kSmall = 1e-5;
     double y[kMaxStates], stage[kMaxStates], moved[kMaxStates], rate[kMaxStates];

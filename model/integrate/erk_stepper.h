@@ -14,7 +14,7 @@ class ErkStepper : SundialsStepper {
   using SundialsStepper::Trusts;
   Integrator in_use() const { return Integrator::kErk; }
   void Restart(const Point& now);
-  // An explicit pair keeps nothing from earlier steps that is worth more than a fresh start.
+  // An explicit pair gains no more from earlier steps than from a fresh start.
   void NewVoltage(const Point& now) { Restart(now); }
   void Step(const Point& now, double stop, Point* next);
   void Interpolate(const Point& now, const Point& next, double time, Point* at);

@@ -1,5 +1,5 @@
-// Where in a step a switch reaches its boundary. Pure: functions of numbers and of a margin g(t), which is
-// not negative while the switch may stay as it is.
+// Finds where in a step a switch reaches its boundary. Pure functions of numbers and of a margin g(t), which
+// is not negative while the switch may keep its position.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct MarginEnds {
 };
 
 // For a margin that falls at the start and rises at the end: the time from the start at which the cubic
-// through both ends is least, if it is below 0 there; otherwise infinity.
+// through both ends has its minimum, if the minimum is below 0; otherwise infinity.
 inline double DipWithin(double h, const MarginEnds& ends) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (!(ends.slope_0 < 0 && ends.slope_1 > 0)) return kNever;
@@ -29,10 +29,10 @@ inline double DipWithin(double h, const MarginEnds& ends) {
   return ends.g_0 + s * (a + s * (b + s * c)) < 0 ? s * h : kNever;
 }
 
-// Given g(start) = g_start >= 0 and g(end) = g_end < 0: a time t in (start, end] with g(t) < 0 and g >= 0
-// within `width` before it (or within the clock's resolution at such times). Uses the Illinois method, regula
-// falsi that halves the value at an end that stays, with a bisection whenever two steps have not halved the
-// interval.
+// Given g(start) = g_start >= 0 and g(end) = g_end < 0, finds a time t in (start, end] with g(t) < 0 and with
+// g >= 0 within `width` before it (or within the resolution of floating-point times). It uses the Illinois
+// method, a regula falsi that halves the value at an end that stays, and a bisection whenever two steps have
+// not halved the interval.
 template <class Margin>
 double TimeJustPast(double start, double g_start, double end, double g_end, double width, Margin g) {
   width = std::max(width, 8 * std::numeric_limits<double>::epsilon() * std::abs(end));

@@ -59,8 +59,8 @@ class FastStepper {
     }
   }
 
-  // True when one step from `now` to `at`, where everything is known, is accurate enough. Step checks the
-  // whole step only, and an event may lie just where the step bends.
+  // Whether one step from `now` to `at`, where everything is known, is accurate enough. Step checks only the
+  // whole step, and an event may lie just where the step bends.
   bool Trusts(const Point& now, const Point& at) const {
     if constexpr (!kMayBend) return true;
     double k2[kMaxStates];
@@ -90,13 +90,15 @@ class FastStepper {
 
   // The plain forms are smooth on the scale of their steps; effects may not be.
   static constexpr bool kMayBend = kForm == Form::kGeneral;
-  static constexpr double kErrorShare = 0.1;  // of the tolerance, for one step: the errors of steps add up
+  // The share of the tolerance for one step, because the errors of the steps add up.
+  static constexpr double kErrorShare = 0.1;
   static constexpr int kStiffAfter = 50;
   static constexpr double kNearlyUnstable = 2.0;  // h |lambda|; the method is stable up to 2.78
 
-  // (2/15) h d^2/k is also h z^4/120 k, when d is k3 - k2 or the second difference k1 - k2 - k3 + k4, both
-  // z^2/4 k. It sees what k4 and k5 can both miss by lying beyond it or both inside it, such as friction that
-  // rises within a small part of the step. To avoid the division, the callers multiply the other side by k.
+  // (2/15) h d^2/k equals h z^4/120 k, where d is k3 - k2 or the second difference k1 - k2 - k3 + k4, both
+  // z^2/4 k. It detects what k4 and k5 miss when they both lie beyond it or both before it, such as friction
+  // that rises within a small part of the step. To avoid the division, the callers multiply the other side by
+  // k.
   static double Bend(int i, double h, const double* k1, const double* k2, const double* k3,
                      const double* k4) {
     const double d = std::max(std::abs(k3[i] - k2[i]), std::abs((k1[i] - k2[i]) + (k4[i] - k3[i])));
@@ -106,9 +108,9 @@ class FastStepper {
     return std::max(std::max(std::abs(k1[i]), std::abs(k2[i])), std::abs(k4[i]));
   }
 
-  // Error over allowed error. For a mode with z = lambda h, the embedded result is off by h z^3/72 k1 and the
-  // one that is kept by h z^4/120 k1, so the difference of the two counts by 0.6 z. z is the largest that any
-  // component shows.
+  // Error over allowed error. For a mode with z = lambda h, the embedded result has an error of h z^3/72 k1,
+  // and the result that is kept has an error of h z^4/120 k1. The difference of the two results is therefore
+  // multiplied by 0.6 z, where z is the largest that any component shows.
   double Excess(const Point& now, const Point& next, double h, const double* k2, const double* k3,
                 const double* k4) const {
     double z = 0;
@@ -154,7 +156,8 @@ class FastStepper {
     if constexpr (kMayBend) stage[0] = 0;  // GCC 12 does not see that it is written first
     RungeKuttaStep(
         n(), now.time, h, now.state, now.rate, k2, k3, k4, stage, y,
-        // Measured with a free arm: 0.24 us a tick; as a call, which GCC would make of it, 0.27.
+        // Measured with a free arm: 0.24 us a tick. As a function call, which GCC would otherwise make of it:
+        // 0.27 us.
         [this](double time, const double* at, double* rate) __attribute__((always_inline)) {
           if constexpr (kForm == Form::kGeneral) {
             Rates(time, at, rate);

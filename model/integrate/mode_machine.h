@@ -1,4 +1,4 @@
-// The mode machine: runs any stepper from event to event, for the simulated plant and for Respond alike. A
+// The mode machine: runs any stepper from event to event, for the simulated plant and for Respond. A
 // template, for .cc files of model/ only.
 //
 // A stepper integrates one smooth mode. Its constructor takes pointers to the mode and the voltage, which the
@@ -44,8 +44,8 @@ struct FormSize {
   }
 };
 
-// T is double or Jet. Jet carries along all derivatives seeded in the numbers and in the start, also past
-// events whose times depend on them. Values alone decide on steps and events, so both types compute the same
+// T is double or Jet. A Jet carries all derivatives seeded in the numbers and in the start, also past events
+// whose times depend on them. Only the values determine steps and events, so both types compute the same
 // bits.
 template <class T, Form kForm, class Stepper>
 class ModeMachine {
@@ -53,7 +53,7 @@ class ModeMachine {
   static_assert(!kDerivatives || kForm == Form::kGeneral);
 
  public:
-  // `numbers`: those of the equations, seeded when T is Jet. All arguments must outlive the machine, and
+  // `numbers` are those of the equations, seeded when T is Jet. All arguments must outlive the machine, and
   // nothing else may use the equations while it runs (Equations::Command, PassStop). `options` go to the
   // stepper.
   template <class... StepperOptions>
@@ -65,7 +65,8 @@ class ModeMachine {
   ModeMachine(const ModeMachine&) = delete;  // the stepper has pointers into it
   ModeMachine& operator=(const ModeMachine&) = delete;
 
-  // Call once, first. `state` has all states; `mode` is settled when the first voltage is known.
+  // Call this once, before anything else. `state` has all states; `mode` settles when the first voltage is
+  // known.
   void Start(double time, const T* state, const Mode& mode) {
     now_->time = time;
     std::copy_n(state, equations_.states(), now_->state);
@@ -80,14 +81,14 @@ class ModeMachine {
   int64_t mode_changes() const { return mode_changes_; }
   Integrator in_use() const { return stepper_.in_use(); }
 
-  // As Simulation. The next Advance begins afresh.
+  // As Simulation::MoveArm. The next Advance starts afresh.
   void MoveArm(double angle, double speed) requires(!kDerivatives) {
     equations_.MoveArm(now_->time, voltage_, mode_, angle, speed, now_->state);
     started_ = false;
   }
   void NewLoad() { started_ = false; }
 
-  // What acts from outside until the next call.
+  // Sets the outside influences until the next call.
   void Surround(const Surroundings& around) {
     if (around == data().around) return;
     equations_.Surround(around);
@@ -105,7 +106,7 @@ class ModeMachine {
       double stop = std::min(until, known_stop_);
       if (remembers()) stop = std::min(stop, now_->time + kLongestStepToRead);
       CountStep();
-      // A switch on its boundary gets a moment to show which way it goes.
+      // Gives a switch on its boundary a moment to show which way it goes.
       if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       fresh_ = false;
       stepper_.Step(*now_, stop, next_);
@@ -130,13 +131,13 @@ class ModeMachine {
   static constexpr double kMoment = 1e-6;       // s
   static constexpr double kEventWidth = 1e-11;  // s, within which an event is located
   static constexpr int kMostEvents = 10000;     // within kLongestStep of time
-  static constexpr int kMostSteps = 200000;     // the same: twenty times slower than real time
+  static constexpr int kMostSteps = 200000;     // within kLongestStep too: twenty times slower than real time
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   struct Nothing {};
 
   const EquationData& data() const { return equations_.data(); }
-  // Without derivatives these are the equations' own numbers, which the compiler then knows.
+  // Without derivatives these are the equations' own numbers, so the compiler knows them.
   const NumbersOf<T>& numbers() const {
     if constexpr (kDerivatives) {
       return *numbers_;
@@ -169,7 +170,7 @@ class ModeMachine {
     EvaluateHere();
     const bool settled = Settle();
     if constexpr (kDerivatives) {
-      if (!started_ && mode_.pump == 0) {  // at rest, or about to be
+      if (!started_ && mode_.pump == 0) {  // at rest, or about to be at rest
         now_->state[kMotorSpeed] = T(0.0);
         EvaluateHere();
       }
@@ -195,8 +196,8 @@ class ModeMachine {
     CheckMargins(at);
   }
 
-  // A load that is not a number would hold the pump for ever: nothing exceeds its friction, and nothing moves that would show it.
-  // Only an effect's formula can give one.
+  // A load that is not a number would hold the pump for ever: it never exceeds the friction, and nothing that
+  // moves would reveal it. Only an effect's formula can produce one.
   void CheckMargins(const PointOf<T>& at) const {
     if constexpr (kForm == Form::kGeneral) {
       for (int i = 0; i < switches(); ++i) {
@@ -231,7 +232,7 @@ class ModeMachine {
     ++mode_changes_;
   }
 
-  // Changes the switches that contradict the present state. True when any did.
+  // Changes the switches that contradict the current state. Returns true when any changed.
   bool Settle() {
     bool changed = false;
     CheckMargins(*now_);
@@ -285,7 +286,7 @@ class ModeMachine {
     Evaluate(at);
   }
 
-  // Where to look for an event: values are enough.
+  // The point used to search for an event, where the values suffice.
   Point& probe() {
     if constexpr (kDerivatives) {
       return probe_;
@@ -294,8 +295,8 @@ class ModeMachine {
     }
   }
 
-  // Bounds the work by counts, not by the clock, so that no model's numbers hang who simulates it, and the same
-  // model ends at the same step everywhere.
+  // Limits the work by counts, not by the clock, so that no model's numbers can hang a simulation, and the
+  // same model ends at the same step everywhere.
   void CountStep() {
     if (now_->time > counted_since_ + kLongestStep) [[unlikely]] {
       counted_since_ = now_->time;
@@ -307,7 +308,7 @@ class ModeMachine {
                          Where(equations_, *now_));
   }
 
-  // More events than any machine's switches have: two of them undo each other.
+  // Throws when there are more events than the switches of any machine produce: two of them undo each other.
   void CountEvent() {
     if (++events_ > kMostEvents) throw ModelError("the switches chatter" + Where(equations_, *now_));
   }
@@ -328,7 +329,7 @@ class ModeMachine {
                                       });
     At(event, spare_);  // just past the boundary
     if (event - now_->time > kMoment && !stepper_.Trusts(*now_, *spare_)) {
-      // Halfway first, so that a shorter step goes to the event.
+      // Stops halfway first, so that a shorter step reaches the event.
       stepper_.Step(*now_, now_->time + 0.5 * (event - now_->time), next_);
       CheckFinite(*next_);
       if (LeastMargin(*next_) >= 0) {
@@ -367,7 +368,7 @@ class ModeMachine {
     Resume(later);
   }
 
-  // Continues in a right-hand side that has jumped.
+  // Continues after the right-hand side has jumped.
   void Resume(const T& later) {
     fresh_ = true;
     EvaluateHere();
@@ -380,8 +381,9 @@ class ModeMachine {
     Remember();
   }
 
-  // Shifts the state to the true time of an event, `later` than the present one. Shifted back in the mode
-  // that follows, the state has gained what the event's time adds to the derivatives. The values stay.
+  // Shifts the state to the true time of an event, `later` than the current one. When it is shifted back in
+  // the mode that follows, the state has gained what the event's time adds to the derivatives. The values do
+  // not change.
   void Shift(const T& later) {
     for (int i = 0; i < data().states; ++i) now_->state[i] += now_->rate[i] * later;
   }
@@ -402,9 +404,9 @@ class ModeMachine {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
-  bool commanded_ = false;   // the equations know a voltage
-  bool fresh_ = true;        // mode or voltage is new
-  bool surrounded_ = false;  // what acts from outside is new
+  bool commanded_ = false;   // the equations have received a voltage
+  bool fresh_ = true;        // the mode or the voltage is new
+  bool surrounded_ = false;  // the outside influences are new
   double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
   int steps_ = 0;  // since counted_since_, s, as are the events

@@ -1,4 +1,4 @@
-// A state with everything known at it.
+// A state together with everything that is known at it.
 #pragma once
 
 #include "model/terms/mode.h"
@@ -16,10 +16,10 @@ struct PointOf {
 };
 using Point = PointOf<double>;
 
-// No step is longer, so that no step misses a switch that changes and changes back.
+// The longest step. A longer one could miss a switch that changes and changes back.
 inline constexpr double kLongestStep = 1e-2;  // s
 
-// The same when states between the steps are read.
+// The longest step when states between the steps are read.
 inline constexpr double kLongestStepToRead = 2e-3;  // s
 
 }  // namespace hydro::model

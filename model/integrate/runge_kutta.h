@@ -1,4 +1,4 @@
-// The classical Runge-Kutta method, which stands here only; each stepper adds its own error control. A
+// The classical Runge-Kutta method. It is implemented only here; each stepper adds its own error control. A
 // template, for .cc files only.
 #pragma once
 

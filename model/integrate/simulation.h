@@ -1,4 +1,4 @@
-// What Actuator holds: one model in motion, by whichever integrator.
+// What Actuator holds: one model in motion, with any integrator.
 #pragma once
 
 #include <cstdint>
@@ -16,31 +16,32 @@ class Simulation {
   // As Actuator::Advance.
   virtual void Advance(double voltage, double until) = 0;
 
-  // Of a free shaft: puts the arm nearby (Equations::MoveArm); has it take up the load that the equations have
-  // been given (SetLoad).
+  // For a free shaft. MoveArm moves the arm to a nearby position (Equations::MoveArm). NewLoad makes the
+  // simulation use the load that the equations have received (SetLoad).
   virtual void MoveArm(double angle, double speed) = 0;
   virtual void NewLoad() = 0;
 
   virtual const Point& now() const = 0;
   virtual const Mode& mode() const = 0;
-  virtual double voltage() const = 0;  // that is held
+  virtual double voltage() const = 0;  // the voltage that is held
 
-  // The states that late channels need; null when there are none.
+  // The states that late channels need; null when no channel is late.
   virtual const StateHistory<double>* history() const = 0;
 
-  // Switches that have changed since the start.
+  // The number of switch changes since the start.
   virtual int64_t mode_changes() const = 0;
 
   // The integrator in use: kFast, kErk or kCvode.
   virtual Integrator in_use() const = 0;
 };
 
-// `equations` must outlive the simulation, which alone uses them while it runs: it calls Equations::Command
-// and PassStop. Throws ModelError.
+// `equations` must outlive the simulation. While the simulation runs, only it may use the equations: it calls
+// Equations::Command and PassStop. Throws ModelError.
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);
 
-// The same from any state: `state` has all of the equations' states; `mode` is settled with the first voltage.
+// The same from any state: `state` has all of the equations' states, and `mode` settles with the first
+// voltage.
 std::unique_ptr<Simulation> MakeSimulationFrom(Equations* equations, Integrator integrator, double time,
                                                const double* state, const Mode& mode,
                                                double relative_tolerance);

@@ -1,4 +1,4 @@
-// SUNDIALS, as its two steppers use it. For .cc files of model/ only.
+// The part of SUNDIALS that its two steppers use. For .cc files of model/ only.
 #pragma once
 
 #include <nvector/nvector_serial.h>
@@ -12,7 +12,7 @@
 
 namespace hydro::model {
 
-// User data of SUNDIALS' callbacks, and its last complaint.
+// User data of SUNDIALS' callbacks, and its last error message.
 struct SundialsProblem {
   const Equations* equations;
   const Mode* mode;
@@ -30,21 +30,21 @@ struct NVectorDeleter {
 };
 using NVector = std::unique_ptr<_generic_N_Vector, NVectorDeleter>;
 
-// Callbacks: the right-hand side of the present mode (returns 1, "try a smaller step", when it is not
-// finite), and the messages.
+// Callbacks: the right-hand side of the current mode (returns 1, "try a smaller step", when it is not
+// finite), and the handler of messages.
 int SundialsRates(double time, N_Vector state, N_Vector rate, void* problem);
 void KeepComplaint(int code, const char* module, const char* function, char* message, void* problem);
 
-// What both steppers share: the solver's state vector, steps that are too short for it, and failures.
+// What both steppers share: the solver's state vector, steps that are too short for the solver, and failures.
 class SundialsStepper {
  public:
   SundialsStepper(const SundialsStepper&) = delete;
   SundialsStepper& operator=(const SundialsStepper&) = delete;
 
-  bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as its steps
+  bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as the steps
 
  protected:
-  // `name`: of the solver, for errors.
+  // `name` is the solver's name, for errors.
   SundialsStepper(const char* name, const Mode* mode, const double* voltage, const Equations* equations);
   ~SundialsStepper() = default;
 
@@ -54,21 +54,22 @@ class SundialsStepper {
   void CopyToSolver(const Point& now);
   void CopyFromSolver(Point* at) const;
 
-  // Takes the step by Euler's rule when it is too short for the solver to start with; the rule's error, of
-  // the order of the step's square, is then below rounding. False: it is not, and nothing has been done.
+  // Takes the step by Euler's rule when it is too short for the solver to start with. The rule's error, of
+  // the order of the step's square, is then below rounding. Returns false when the step is long enough, and
+  // has then done nothing.
   bool StepsByEuler(const Point& now, double stop, Point* next);
-  // The same within the step that was taken last.
+  // The same for a time within the last step.
   bool InterpolatesByEuler(const Point& now, double time, Point* at) const;
 
   void FillPoint(Point* at) const;  // rate and margin, from its time and state
 
-  // Throws when `flag`, which a function of the solver has returned, is an error.
+  // Throws when `flag`, returned by a function of the solver, is an error.
   void CheckFlag(int flag, const Point& now) const;
 
   SundialsProblem problem_;
   SundialsContext context_;
   NVector state_;
-  void* memory_ = nullptr;  // the solver's
+  void* memory_ = nullptr;  // owned by the solver
 
  private:
   const char* name_;

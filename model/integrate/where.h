@@ -1,4 +1,5 @@
-// "... at t = 0.25 s, state motor_angle = 0, ...": where a simulation stands, for its error messages.
+// "... at t = 0.25 s, state motor_angle = 0, ...": describes where a simulation stands, for its error
+// messages.
 #pragma once
 
 #include <sstream>

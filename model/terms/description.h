@@ -12,8 +12,8 @@ namespace hydro::model {
 
 class EffectFormulas;
 
-// Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those given are the paper's. T
-// is double, or a scalar with derivatives.
+// Base parameters of eqs. (1) to (15), Table 1. Units only need to be coherent; the comments give the
+// paper's. T is double, or a scalar with derivatives.
 template <class T>
 struct ParametersOf {
   T k_1{};     // in-lbf/V, torque per volt, eq. (1)
@@ -31,7 +31,7 @@ struct ParametersOf {
   T p_3{};     // psi, accumulator pressure
   T k_2{};     // in-lbf/psi, arm torque per pressure difference, eq. (15)
   T J_a{};     // lbf-in-s^2, inertia of the arm, eq. (15)
-  T mgl{};  // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); of a linear arm its weight along its path
+  T mgl{};     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15); linear arm: weight along its path
 };
 using Parameters = ParametersOf<double>;
 
@@ -40,10 +40,11 @@ struct EffectDescription {
   std::string id;                            // as in docs/effects.md
   std::map<std::string, double> parameters;  // name -> value
   std::map<std::string, std::string> names;  // parameters whose value is a name (a signal)
-  // Parameters whose value is a list, of numbers and of names.
+  // Parameters whose value is a list of numbers or of names.
   std::map<std::string, std::vector<double>> lists = {};
   std::map<std::string, std::vector<std::string>> name_lists = {};
-  // Of an effect that is written as text in the model's file; null: the catalogue knows it.
+  // The formulas of an effect that is written as text in the model's file; null: the catalogue has the
+  // effect.
   std::shared_ptr<const EffectFormulas> formulas = nullptr;
 };
 
@@ -51,9 +52,9 @@ struct ModelDescription {
   std::string name;
   Parameters parameters;
   std::vector<EffectDescription> effects;  // in the file's order
-  UnitSystem units = {};                   // of all values; the equations need to know what the arm's is
-  // How well base parameters are known, where stated: name -> relative standard deviation. The equations do not
-  // use it; fits do.
+  UnitSystem units = {};                   // of all values; the equations need the arm's
+  // How well base parameters are known, where stated: name -> relative standard deviation. Fits use it; the
+  // equations do not.
   std::map<std::string, double> uncertainty = {};
 };
 

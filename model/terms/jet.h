@@ -1,7 +1,7 @@
 // A number with its derivatives along kJetWidth directions (a dual number). ceres::Jet is as fast here, but
-// its division rounds differently from that of numbers. With this one the values are those of double to the
-// last bit, so a response with derivatives takes the same steps and events as one without. It also spares
-// some thirty files Eigen's headers.
+// its division rounds differently from that of plain numbers. With this class the values equal those of
+// double to the last bit, so a response with derivatives takes the same steps and events as one without. It
+// also saves about thirty files from including Eigen's headers.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,9 @@ namespace hydro::model {
 
 inline constexpr int kJetWidth = 8;
 
-// The derivatives. GCC handles a vector wider than the processor's registers number by number, through memory, in twice
-// the time, so there are four narrow ones unless the file is compiled for AVX-512.
+// The derivatives. GCC handles a vector that is wider than the processor's registers number by number,
+// through memory, in twice the time. There are therefore four narrow vectors, unless the file is compiled for
+// AVX-512.
 #if defined(__AVX512F__)
 // NOLINTNEXTLINE(modernize-use-using): the attribute is of GCC's and Clang's C++
 using JetVector [[gnu::vector_size(kJetWidth * sizeof(double)), gnu::aligned(16)]] = double;
@@ -26,7 +27,7 @@ struct JetVector {
 };
 static_assert(sizeof(JetVector) == kJetWidth * sizeof(double));
 
-// A vector whose pieces are of(0) to of(3).
+// A vector made of the pieces of(0) to of(3).
 template <class Of>
 [[gnu::always_inline]] inline JetVector Pieces(const Of& of) {
   return {{of(0), of(1), of(2), of(3)}};

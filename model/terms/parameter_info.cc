@@ -11,7 +11,7 @@ namespace hydro::model {
 
 namespace {
 
-// What is known of a parameter before its rig is measured.
+// Relative uncertainty of a parameter before its rig is measured.
 constexpr double kGeometry = 0.01;
 constexpr double kDataSheet = 0.05;
 constexpr double kFriction = 0.3;  // friction, leakage, damping
@@ -20,7 +20,7 @@ struct Meaning {
   const char* name;
   const char* unit;
   const char* text;
-  double example;  // of Table 1, or of a machine like it where that has none
+  double example;  // of Table 1, or of a similar machine where Table 1 has none
   int arm = 0;
 };
 
@@ -84,7 +84,7 @@ const std::vector<BaseParameter>& BaseParameters() {
 
 namespace {
 
-// A value that stands out, and by how many powers of ten.
+// A value that is unusual, and by how many powers of ten.
 struct Outlier {
   double decades = 3;
   std::string text;

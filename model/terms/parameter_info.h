@@ -1,5 +1,5 @@
-// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked
-// against it, reports print it, and the gap finder uses it in fits.
+// What is known about each parameter: name, unit, physical bounds, meaning. Model files are checked against
+// it, reports print it, and the gap finder uses it in fits.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace hydro::model {
 // The bound of an unbounded parameter.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// The yardstick for a parameter's size when a fit starts from it: quantities of the model and of the runs, so
-// that nothing depends on the units.
+// The yardstick for a parameter's size when a fit starts from it. These are quantities of the model and of
+// the runs, so that nothing depends on the units.
 enum class Scale {
   kOne,           // the number itself
   kTorque,        // T_pmax
@@ -25,37 +25,38 @@ enum class Scale {
   kCharge,        // p_3
   kSample,        // the median time between samples
   kRate,          // one over kSample
-  kFlow,          // D kSpeed over kPressure: a conductance that passes all of the pump's flow
-  kArmStiffness,  // 2 beta c^2 / V_ms: what the oil of both sides holds the arm with
-  kArmDamping,    // 2 sqrt(J_a kArmStiffness): critical, of the arm on its oil
+  kFlow,          // D kSpeed over kPressure: a conductance that passes the pump's whole flow
+  kArmStiffness,  // 2 beta c^2 / V_ms: the stiffness of the oil on both sides of the arm
+  kArmDamping,    // 2 sqrt(J_a kArmStiffness): critical damping of the arm on its oil
   kOilStiffness,  // beta over V_ms: pressure per volume of one side's oil
 };
 
 // A parameter's role in its effect's equation, where the gap finder treats that role specially. Nothing else
-// about a parameter (unit, name, effect) makes a difference to the gap finder.
+// about a parameter (unit, name, effect) matters to the gap finder.
 enum class Role {
   // An amount of something: fitted from `starts`.
   kSize,
   // A delay or time constant, in the model's unit of time. Its interval allows for what runs cannot show:
-  // what the model takes to be immediate takes a small part of a sample.
+  // what the model takes to be immediate takes a small fraction of a sample.
   kTime,
-  // The frequency of something that resonates. A fit may end where another ringing is nearly in step, so it
-  // is restarted around its end.
+  // The frequency of a resonance. A fit may end where a different ringing is nearly in step, so it is
+  // restarted around its end.
   kFrequency,
-  // Whole periods per turn of the motor: read off the torque balance together with the amplitude and phase.
+  // Whole periods per turn of the motor. They are read off the torque balance together with the amplitude and
+  // phase.
   kPeriods,
   kTorqueWave,        // amplitude in: torque of the motor -= amplitude sin(periods theta + phase)
   kDisplacementWave,  // amplitude in: D (1 + amplitude cos(periods theta + phase))
-  kPhase,             // of either, rad; there need not be one
-  // The name of a measured channel. Tried for each channel that the runs have.
+  kPhase,             // of either wave, rad; optional
+  // The name of a measured channel. The gap finder tries each channel that the runs have.
   kChannel,
 };
 
-// What a parameter's value is a list of.
+// The kind of list that a parameter's value is.
 enum class List {
-  kNone,    // it is no list: one number or one name
+  kNone,    // not a list: one number or one name
   kNames,   // of ParameterInfo::names
-  kPlaces,  // increasing numbers, two or more, which no fit moves
+  kPlaces,  // two or more increasing numbers, which no fit moves
   kValues,  // numbers, each of which a fit may move
 };
 
@@ -66,25 +67,25 @@ struct ParameterInfo {
   double max = kUnbounded;  // largest physical value
   bool min_allowed = true;  // false: must be above min
   std::string meaning;      // one line
-  // The power of the arm's coordinate in the unit: -2 for an inertia of the arm. It shows where that is a
-  // length.
+  // The power of the arm's coordinate in the unit: -2 for an inertia of the arm. It matters where that
+  // coordinate is a length.
   int arm = 0;
-  // If not empty, the value is a name, one of these.
+  // If this is not empty, the value is one of these names.
   std::vector<std::string> names = {};
-  // Where a fit of the effect starts, in `scale`s: each of these combined with each of the other parameters'.
+  // Where a fit of the effect starts, in `scale`s. Each value is combined with each of the other parameters'.
   // A parameter in which the effect is linear at 0 needs only 0.
   std::vector<double> starts = {0};
   Scale scale = Scale::kOne;
   Role role = Role::kSize;
-  // The base parameter to which it is added as the same term. The gap finder frees one of the two: the base
-  // parameter where that is not 0.
+  // The base parameter to which this parameter is added as the same term. The gap finder frees one of the
+  // two: the base parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
-  // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there; tests run every
-  // effect of the catalogue with it.
+  // A size at which the effect shows on the paper's rig (Table 1), or that a base parameter has there. Tests
+  // run every effect of the catalogue with it.
   double example = 0;
   List list = List::kNone;
-  bool optional = false;  // a list that need not be there
-  // Why a value above max is refused, where that is not obvious.
+  bool optional = false;  // the list may be absent
+  // Why a value above max is refused, if that is not obvious.
   const char* beyond_max = "";
 
   bool is_name() const { return list == List::kNone && !names.empty(); }
@@ -92,22 +93,23 @@ struct ParameterInfo {
   std::string UnitIn(const UnitSystem& units) const { return units.UnitFor(unit, arm); }
 };
 
-// A base parameter and where it lies.
+// A base parameter and its place.
 struct BaseParameter {
   ParameterInfo info;
   double Parameters::*member;
   double uncertainty;  // relative standard deviation where a model states none
 };
 
-// The parameter whose value is farthest from what is usual for a machine, by a factor of at least a thousand, in the direction that
-// makes a model hard to simulate: "effects.amp.lag.tau = 1e-25 s, where 0.0004 is usual". "" when there is none.
+// The parameter whose value is farthest from the usual value of a machine, by a factor of at least a
+// thousand, in the direction that makes a model hard to simulate: "effects.amp.lag.tau = 1e-25 s, where
+// 0.0004 is usual". "" when there is none.
 std::string MostUnusual(const ModelDescription& model);
 
-// How well the model knows a base parameter (an index in BaseParameters()): its relative standard deviation, as
-// stated or by kind.
+// How well the model knows a base parameter (an index in BaseParameters()): its relative standard deviation,
+// as stated or by kind.
 double UncertaintyOf(const ModelDescription& model, size_t base);
 
-// The member of ParametersOf<T> that BaseParameters() has at `index`.
+// The member of ParametersOf<T> for the entry of BaseParameters() at `index`.
 template <class T>
 T& BaseValue(ParametersOf<T>& parameters, size_t index) {
   using P = ParametersOf<T>;
@@ -119,48 +121,51 @@ T& BaseValue(ParametersOf<T>& parameters, size_t index) {
 // All base parameters, in the order of Parameters.
 const std::vector<BaseParameter>& BaseParameters();
 
-// The position of that name in BaseParameters(). Throws ModelError when there is none.
+// The position of the name in BaseParameters(). Throws ModelError when there is none.
 size_t BasePlace(const std::string& name);
 
-// What is wrong with an effect's lists beside each other: of which parameter, what was found, what is allowed.
+// A fault in how an effect's lists fit together: in which parameter, what was found, and what is allowed.
 struct ListFault {
   std::string parameter, found, allowed;
 };
 
-// What the catalogue knows of an effect. The table in docs/effects.md is generated from it.
+// What the catalogue knows about an effect. The table in docs/effects.md is generated from it.
 struct EffectInfo {
   std::string id;                         // "pump.stribeck"
   std::string summary;                    // "static friction above kinetic"
   std::string equation;                   // what it changes in the model's equations, one line
-  std::string confused_with;              // what its traces in data are easily taken for
-  std::vector<ParameterInfo> parameters;  // all required but those that are optional
-  // Checks lists that are each in order by themselves; null: nothing to check.
+  std::string confused_with;              // what produces similar traces in data
+  std::vector<ParameterInfo> parameters;  // all required except those marked optional
+  // Checks how lists fit together that are each in order by themselves; null: there is nothing to check.
   std::optional<ListFault> (*fault)(const EffectDescription& effect) = nullptr;
-  // What flowed before a run begins shows in its states: kReturned of the start.
+  // The effect's states depend on what flowed before a run begins: kReturned of the start.
   bool remembers_flow = false;
-  // Balances of measured torques and flows cannot speak for it: what it acts through is not measured, or it makes an inequality of a
-  // balance, or it was settled before any was formed. Each effect that sets it says why.
+  // Balances of measured torques and flows cannot speak for the effect: the quantity through which it acts is
+  // not measured, or it makes an inequality of a balance, or it was settled before any balance was formed.
+  // Each effect that sets this flag says why.
   bool unseen_by_balances = false;
-  // Runs that all have the bypass open and no pressure recorded, as of a bare motor, cannot show it: it would stand there for what is the
-  // motor's.
+  // Set if the effect cannot be shown by runs that all have the bypass open and no recorded pressure, as runs
+  // of a bare motor have. There it would only take the place of the motor's own effects.
   bool needs_oil = false;
-  // Runs without a recorded temperature say nothing of it.
+  // Runs without a recorded temperature say nothing about the effect.
   bool needs_temperature = false;
-  // The gap finder looks for it only where it is asked for by name: most machines do not have it, or runs tell it from what it is
-  // confused with only on a machine that is known to have it.
+  // The gap finder looks for the effect only when it is asked for by name. Either most machines do not have
+  // it, or runs distinguish it from the effects that it is confused with only on a machine that is known to
+  // have it.
   bool on_request = false;
-  // The same where the oil takes part in some run: pressures and seals then make much of what the effect would stand for.
+  // The same for runs in which the oil takes part: pressures and seals then cause much of what the effect
+  // would explain.
   bool of_bare_motors = false;
-  // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
+  // False: model files may contain it, but it is no known cause, and the gap finder does not look for it.
   bool listed = true;
 };
 
 // The listed effects that this program knows, ordered by id.
 const std::vector<EffectInfo>& EffectCatalogue();
 
-// Listed or not. Null for an unknown effect.
+// Finds an effect, listed or not. Null for an unknown effect.
 const EffectInfo* FindEffect(const std::string& id);
-// The same of one in a model, which may bring its own.
+// The same for an effect of a model, which may bring its own.
 const EffectInfo* FindEffect(const EffectDescription& effect);
 
 // Whether one of the effect's parameters has the role; false for an unknown effect.

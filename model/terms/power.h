@@ -1,12 +1,12 @@
-// Where the power goes: the balance of eqs. (4), (13), (14), (15) at one instant.
+// The power balance of eqs. (4), (13), (14), (15) at one instant: where the power goes.
 #pragma once
 
 namespace hydro::model {
 
 // in-lbf/s in the paper's units. in + shaft_in = stored() + dissipated() + mismatch, exactly.
 //
-// Pressures count from p_3: fluid that passes a valve at p_3, or leaks to the accumulator, carries no power
-// of its own. Compression is (p - p_3) V p'/beta, the energy that eq. (5) with constant beta stores.
+// Pressures count from p_3: fluid that passes a valve at p_3, or leaks to the accumulator, carries no power.
+// Compression is (p - p_3) V p'/beta, the rate of the energy that eq. (5) with constant beta stores.
 struct Power {
   double in = 0;        // T_p theta'
   double shaft_in = 0;  // from whatever drives a driven shaft: -k_2 dp alpha'
@@ -21,7 +21,7 @@ struct Power {
   double leakage = 0;  // c_I dp^2 + c_E ((p1 - p_3)^2 + (p2 - p_3)^2)
   double effects_dissipated = 0;
 
-  // (c - k_2) dp alpha': eqs. (13), (14) take c dp alpha' from the fluid, and eq. (15) gives k_2 dp alpha' to
+  // (c - k_2) dp alpha'. Eqs. (13), (14) take c dp alpha' from the fluid, and eq. (15) gives k_2 dp alpha' to
   // the arm. The paper's c = 3.68379 and k_2 = 3.68 differ, and the difference is lost (or gained) between
   // the two.
   double mismatch = 0;

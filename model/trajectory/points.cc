@@ -66,8 +66,8 @@ class Points : public Trajectory {
       // Hermite form about the first point: slope m0 there, m1 at the second.
       value = from.value + since * (m0 + s * ((3 * rise - 2 * m0 - m1) + s * (m0 + m1 - 2 * rise)));
     }
-    // Rounding must not leave the range of the two points: Min and Max serve to check a driven shaft's
-    // volumes.
+    // Rounding must not leave the range of the two points, because Min and Max are used to check a driven
+    // shaft's volumes.
     return std::clamp(value, std::min(from.value, to.value), std::max(from.value, to.value));
   }
 

@@ -33,7 +33,7 @@ class Sine : public Trajectory {
 
  private:
   double Angle(double t) const {
-    // Whole periods are dropped before taking the sine, so that it is as exact late as early.
+    // Whole periods are dropped before the sine is taken, so that it stays as exact after a long time.
     const double cycles = frequency_ * (t - start_);
     return 2 * M_PI * (cycles - std::floor(cycles)) + phase_;
   }

@@ -30,8 +30,8 @@ class Square : public Trajectory {
   double Max() const override { return offset_ + std::abs(amplitude_); }
 
  private:
-  // Start of half period k. A sample taken "at" an edge may lie a rounding error before it. Edges are early
-  // by more than that, so that they fall on the sample that a person would expect.
+  // Start of half period k. A sample taken "at" an edge may lie a rounding error before it. Edges are moved
+  // forward in time by more than that error, so that they fall on the sample that a person expects.
   double Edge(double k) const {
     if (k == 0) return start_;
     const double since_start = k / (2 * frequency_);

@@ -1,4 +1,4 @@
-// A prescribed signal over time: what the position loop follows, and what moves a driven shaft. Pure: a
+// A prescribed signal over time, which the position loop follows or which moves a driven shaft. It is a pure
 // function of time, built once from its specification.
 #pragma once
 
@@ -13,7 +13,7 @@ class Trajectory {
  public:
   virtual ~Trajectory() = default;
 
-  // The signal at time t (s); before its start, its initial value.
+  // The signal at time t (s). Before its start, it has its initial value.
   virtual double Value(double t) const = 0;
 
   // d Value/dt; 0 at a jump.
@@ -26,7 +26,7 @@ class Trajectory {
   // True when Value has no jumps, so that a shaft can be driven along it.
   virtual bool continuous() const = 0;
 
-  // Smallest and largest value it ever takes.
+  // The smallest and the largest value that the signal ever takes.
   virtual double Min() const = 0;
   virtual double Max() const = 0;
 };
@@ -42,24 +42,25 @@ enum class Interpolation {
   kCubic,   // monotone cubic (Fritsch-Carlson): smooth, never outside the points' range between two points
 };
 
-// initial before the first step, then each step's value from its time on. Times strictly increase. Like the
-// functions below, throws std::invalid_argument naming the offending step or the non-finite number.
+// `initial` before the first step, then each step's value from its time on. Times strictly increase. Like the
+// functions below, it throws std::invalid_argument naming the offending step or the non-finite number.
 std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps);
 
-// offset before start; then offset + amplitude sin(2 pi frequency (t - start) + phase).
+// `offset` before `start`; then offset + amplitude sin(2 pi frequency (t - start) + phase).
 std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double frequency_hz, double start,
                                      double phase_rad);
 
-// offset before start; then offset + amplitude for the first half of each period and offset - amplitude for
-// the second.
+// `offset` before `start`; then offset + amplitude for the first half of each period and offset - amplitude
+// for the second.
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start);
 
-// offset before start; then a sine whose frequency changes linearly from first_hz to last_hz over duration s
-// and then stays.
+// `offset` before `start`; then a sine whose frequency changes linearly from first_hz to last_hz over
+// duration s and then stays.
 std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
                                       double start, double duration);
 
-// Through points (times strictly increase); the first value before them and the last after them.
+// A curve through points (times strictly increase). It has the first value before them and the last value
+// after them.
 std::unique_ptr<Trajectory> MakePoints(std::vector<Step> points, Interpolation interpolation);
 
 }  // namespace hydro::trajectory

@@ -31,11 +31,13 @@ CheckedDevice::CheckedDevice(const settings::StackConfig& config)
   request.argv.front() = process::FindOwnProgram(name_, folder, config.file + ": " + kKey);
   request.folder = folder;
   int in[2], out[2];
-  if (pipe2(in, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
+  if (pipe2(in, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe: " + process::ReasonOf(errno));
   if (pipe2(out, O_CLOEXEC) != 0) {
+    const int error = errno;
     close(in[0]);
     close(in[1]);
-    throw std::runtime_error("cannot make a pipe");
+    errno = error;
+    throw std::runtime_error("cannot make a pipe: " + process::ReasonOf(errno));
   }
   request.in = in[0];
   request.out = out[1];

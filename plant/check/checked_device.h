@@ -1,5 +1,5 @@
-// The simulated device of a driver under test, told what goes wrong and asked for what it puts out
-// (plant/driver/simulated_device.h).
+// The simulated device of a driver under test. The check tells it what goes wrong and asks it for the voltage
+// that it puts out (plant/driver/simulated_device.h).
 #pragma once
 
 #include <sys/types.h>
@@ -17,19 +17,20 @@ class CheckedDevice {
   // Starts driver.simulated_device in the configuration's folder and waits for its line "ready". Throws
   // InputError when there is no such program, or when it does not become ready.
   explicit CheckedDevice(const settings::StackConfig& config);
-  // Kills it, and what it has started.
+  // Kills the device and every process that it has started.
   ~CheckedDevice();
   CheckedDevice(const CheckedDevice&) = delete;
   CheckedDevice& operator=(const CheckedDevice&) = delete;
 
-  // "silent", "nan", "lies", "slow", "none". Returns whether it can do that.
+  // Orders a trouble: "silent", "nan", "lies", "slow" or "none". Returns whether the device can do that.
   bool Order(const std::string& trouble);
   // The voltage of eq. (1) at the machine. Throws std::runtime_error when the device has ended or does not
   // answer.
   double Output();
 
  private:
-  // Its next line; empty when none has come in time. Throws std::runtime_error for one without an end.
+  // The device's next line; empty when none has come in time. Throws std::runtime_error for a line without an
+  // end.
   std::string Answer();
   void Say(const std::string& line) const;
   void End();

@@ -1,10 +1,11 @@
 #include "plant/check/checked_stack.h"
 
-#include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -67,13 +68,15 @@ void CheckedStack::Start(const std::vector<std::string>& overrides, bool verbose
       request.argv.insert(request.argv.end(), {"--set", override});
     }
   }
-  const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  request.out = request.err = verbose ? STDERR_FILENO : nothing;
+  if (!verbose) said_ = memfd_create("driver", MFD_CLOEXEC);
+  if (!verbose && said_ < 0)
+    throw std::runtime_error("nowhere to keep what the driver says: " + process::ReasonOf(errno));
+  request.out = request.err = verbose ? STDERR_FILENO : said_;
   started_ = process::Spawn(request).pid;
-  close(nothing);
 }
 
 CheckedStack::~CheckedStack() {
+  if (said_ >= 0) close(said_);
   if (Ended()) return;
   if (driver_pid_ > 0) kill(driver_pid_, SIGCONT);
   kill(-started_, SIGKILL);
@@ -141,6 +144,17 @@ bool CheckedStack::Ended() {
   if (waitpid(started_, &status, WNOHANG) != started_) return false;
   end_ = process::EndOf(status);
   return true;
+}
+
+std::string CheckedStack::LastLine() const {
+  constexpr off_t kMost = 1000;
+  if (said_ < 0) return "";
+  std::string text(kMost, ' ');
+  const off_t size = lseek(said_, 0, SEEK_END);
+  const ssize_t got = pread(said_, text.data(), text.size(), std::max<off_t>(0, size - kMost));
+  text.resize(static_cast<size_t>(std::max<ssize_t>(0, got)));
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
 }
 
 bool CheckedStack::Heard(const std::string& code) const {

@@ -14,8 +14,8 @@ namespace {
 
 using Verdict = CaseResult::Verdict;
 
-constexpr double kMachine_s = 0.25;  // what a shared machine adds to a limit
-constexpr double kEnd_s = 5;         // in which a driver ends
+constexpr double kMachine_s = 0.25;  // what a shared machine's load adds to a limit
+constexpr double kEnd_s = 5;         // for a driver to end
 constexpr double kTicks = 5;         // after the detection of a fault (docs/safety.md)
 
 CaseResult Kept(const std::string& found) { return {Verdict::kKept, found}; }
@@ -27,7 +27,7 @@ std::string Held(DriverTrial& trial) {
   return fmt::format("the machine has {:.3g} V", trial.device().Output());
 }
 
-// Zero volts within `limit_s`, and then `then`, which says what is wrong.
+// Requires zero volts within `limit_s`; then returns the result of `then`, which says what is wrong.
 template <class Then>
 CaseResult ZeroThen(DriverTrial& trial, double limit_s, const Then& then) {
   const std::optional<double> zero = trial.AwaitZero(limit_s + kMachine_s);
@@ -36,7 +36,7 @@ CaseResult ZeroThen(DriverTrial& trial, double limit_s, const Then& then) {
   return wrong.empty() ? Kept(AfterMs(*zero)) : Broken(AfterMs(*zero) + ", but " + wrong);
 }
 
-// The driver ends with this exit code, or of this signal.
+// Requires that the driver ends with this exit code, or by this signal.
 std::string Ends(DriverTrial& trial, int exit_code, int signal = 0) {
   if (!trial.AwaitEnd(kEnd_s)) return "it does not end";
   const process::ProcessEnd& end = trial.stack().end();
@@ -122,7 +122,7 @@ CaseResult GuardianGone(DriverTrial& trial) {
   return ZeroThen(trial, kTicks * trial.tick_s(), [&] { return Ends(trial, 1); });
 }
 
-// Zero volts while what is commanded is none to obey, and the voltage again after it.
+// Requires zero volts while the command is one that must not be obeyed, and a voltage again after it.
 CaseResult BadCommand(DriverTrial& trial, std::optional<double> voltage, double limit_s) {
   trial.stack().set_voltage(voltage);
   trial.stack().set_silent(!voltage);
@@ -146,8 +146,8 @@ CaseResult HugeCommand(DriverTrial& trial) {
   return BadCommand(trial, 1e6, kTicks * trial.tick_s());
 }
 
-// The device is in trouble: zero volts and a fault, and when it is well again the driver goes on, or has
-// ended with 1.
+// Requires zero volts and a fault while the device is in trouble. When the device is well again, the driver
+// must go on or have ended with exit code 1.
 CaseResult Trouble(DriverTrial& trial, const char* trouble, double limit_s) {
   trial.Drive();
   trial.stack().Forget();
@@ -171,8 +171,8 @@ CaseResult Silent(DriverTrial& trial) {
 }
 CaseResult NoNumbers(DriverTrial& trial) { return Trouble(trial, "nan", kTicks * trial.tick_s()); }
 
-// A driver that reads its output back in each tick finds the lie at once; one that reads it at the end says
-// it then.
+// A driver that reads its output back in each tick finds the lie at once; one that reads it back at the end
+// reports it then.
 CaseResult Lies(DriverTrial& trial) {
   const CaseResult at_once = Trouble(trial, "lies", trial.stale_s() + kTicks * trial.tick_s());
   if (at_once.verdict != Verdict::kBroken || !trial.stack().HeardFault().empty()) return at_once;

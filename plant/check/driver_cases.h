@@ -1,4 +1,4 @@
-// What docs/safety.md promises of a driver, tried one after the other.
+// Tries what docs/safety.md promises of a driver, one promise after the other.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct DriverCase {
 
 const std::vector<DriverCase>& DriverCases();
 
-// A stack's configuration for trials: its overrides, on a network of its own.
+// A stack's configuration for the trials, with the overrides that give it a network of its own.
 struct TrialSettings {
   std::string file;
   std::vector<std::string> overrides;

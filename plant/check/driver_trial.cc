@@ -14,7 +14,8 @@ constexpr double kReady_s = 10, kDriven_s = 10;
 
 std::vector<std::string> OverridesFor(const TrialSettings& settings, const std::string& url) {
   std::vector<std::string> overrides = settings.overrides;
-  // Without end; and what begins by itself must be seen to end by itself.
+  // The run has no end; and with "restart", the cases can see a fault that began by itself also end by
+  // itself.
   for (const std::string& more : {"bus.url=" + settings::TomlString(url), std::string("time.duration_s=0"),
                                   std::string("limits.rearm=\"restart\"")})
     overrides.push_back(more);
@@ -38,9 +39,11 @@ bool DriverTrial::IsZero(double voltage) { return std::fabs(voltage) < kZero_V; 
 void DriverTrial::AwaitReady() {
   if (stack_->Await([this] { return stack_->ready() || stack_->Ended(); }, kReady_s) && !stack_->Ended())
     return;
-  throw std::runtime_error(stack_->Ended()
-                               ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
-                               : "the driver has not said that it is ready");
+  const std::string said = stack_->LastLine();
+  throw std::runtime_error((stack_->Ended()
+                                ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
+                                : "the driver has not said that it is ready") +
+                           (said.empty() ? "" : "; it said: " + said));
 }
 
 void DriverTrial::Drive() {
@@ -61,7 +64,8 @@ std::optional<double> DriverTrial::AwaitZero(double limit_s) {
         const double now = stack_->Now();
         if (!IsZero(device_->Output())) {
           since.reset();
-          // Zero that begins after the limit is not looked for: only what has begun may go on.
+          // A zero that begins after the limit does not count: after the limit, only a zero that has already
+          // begun is watched.
           return now - begin > limit_s;
         }
         if (!since) since = now;

@@ -1,4 +1,4 @@
-// A device and its driver, both fresh, for one case.
+// A fresh device and a fresh driver, for one case.
 #pragma once
 
 #include <optional>
@@ -20,16 +20,17 @@ class DriverTrial {
   double stale_s() const { return stale_s_; }
   double tick_s() const { return tick_s_; }
 
-  // Waits until the driver has said that it is there. Throws std::runtime_error when it does not.
+  // Waits until the driver has announced that it is ready. Throws std::runtime_error when it does not.
   void AwaitReady();
-  // The same, then lets the loops begin and waits for a voltage at the machine.
+  // Does the same, then lets the loops begin and waits for a voltage at the machine.
   void Drive();
   bool AwaitVoltage(double limit_s);
 
   // Waits until the machine has had zero volts for longer than the alternating voltage holds a value. Returns
-  // when that began, in seconds from now; nothing when it has not within the limit.
+  // the time in seconds from the call until that zero began, or nothing when it did not begin within the
+  // limit.
   std::optional<double> AwaitZero(double limit_s);
-  // The same for the end of the driver.
+  // Waits in the same way for the end of the driver.
   bool AwaitEnd(double limit_s) {
     return stack_->Await([this] { return stack_->Ended(); }, limit_s);
   }

@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using Source = settings::SensorSection::Source;
 
-// Readings are more frequent than tables, so that low passes and rates behave as in a run.
+// Readings are more frequent than tables so that low passes and rates behave as in a run.
 constexpr auto kReadPeriod = 5ms;
 constexpr auto kTablePeriod = 500ms;
 

@@ -11,8 +11,9 @@
 namespace hydro::plant {
 
 // Prints a table of all signals to stdout twice a second, until time.duration_s has passed or a stop signal
-// was caught. Has the device put out nothing, not even a zero. Returns the exit code: 0, or 1 when a sensor
-// was at fault, or the device silent, in the last table. Throws InputError and RigError like DeviceSensors.
+// was caught. The device puts out nothing during that time, not even a zero. Returns the exit code: 0, or 1
+// when the last table showed a fault of a sensor or a silent device. Throws InputError and RigError like
+// DeviceSensors.
 int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock, Device& device);
 
 // One line of that table: the signal's name, its source, the device's own number, the value with its unit,

@@ -12,25 +12,25 @@
 
 namespace hydro::plant {
 
-// One channel of the board, checked to exist.
+// One channel of the board, which was checked to exist.
 struct BoardChannel {
-  std::string key;  // of the configuration, e.g. driver.p1; for errors
+  std::string key;  // configuration key, e.g. driver.p1; for errors
   unsigned subdevice = 0;
   unsigned channel = 0;
   unsigned range = 0;
   unsigned reference = 0;
-  ConverterRange converter;  // for a counter or a digital line only max_code
+  ConverterRange converter;  // a counter or a digital line has only max_code
 };
 
 class ComediBoard {
  public:
-  // `file`: the configuration file, for errors. Throws InputError when the device cannot be opened.
+  // `file` is the configuration file, for errors. Throws InputError when the device cannot be opened.
   ComediBoard(const std::string& file, const std::string& device, int settle_ns);
   ~ComediBoard();
   ComediBoard(const ComediBoard&) = delete;
   ComediBoard& operator=(const ComediBoard&) = delete;
 
-  // These check that the board has such a channel, and throw an InputError that names `key` when it has not.
+  // These check that the board has such a channel, and throw an InputError that names `key` when it does not.
   // DigitalOutput() also configures a bidirectional line as an output.
   BoardChannel AnalogInput(const std::string& key, const settings::SensorSection& section);
   BoardChannel Counter(const std::string& key, const settings::BoardLine& line);
@@ -39,7 +39,7 @@ class ComediBoard {
 
   // An analog input's code or a counter's count. Throws RigError "board_error".
   uint32_t Read(const BoardChannel& channel);
-  // Throw RigError "board_error".
+  // These throw RigError "board_error".
   void Write(const BoardChannel& output, uint32_t code);
   void WriteLine(const BoardChannel& line, bool high);
 

@@ -1,4 +1,4 @@
-// A data-acquisition board as a Device: the channels that [driver] names, as inputs with the names of the
+// A data-acquisition board as a Device: the channels that [driver] names become inputs with the names of the
 // signals.
 #pragma once
 
@@ -13,12 +13,12 @@ namespace hydro::plant {
 
 class ComediDevice : public Device {
  public:
-  // Opens the board and checks the channels that the configuration names; with `drives` also those that are
-  // written. Throws InputError when the board lacks what the configuration names.
+  // Opens the board and checks the channels that the configuration names; with `drives`, it also checks those
+  // that are written. Throws InputError when the board lacks a channel that the configuration names.
   ComediDevice(const settings::StackConfig& config, const bus::Clock& clock, bool drives);
 
   DeviceDescription Describe() const override;
-  // The clock is read right beside the board, channel by channel.
+  // Reads the clock right beside the board, channel by channel.
   void Read(DeviceReadings& readings) override;
   // Toggles the watchdog line once the board has accepted the output.
   void Drive(double output) override;

@@ -20,14 +20,15 @@ namespace hydro::plant {
 struct DeviceInput {
   enum class Kind { kValue, kCount };
 
-  std::string name;  // what the configuration calls it: [driver.p1] input = "ai0"; without the key, "p1"
+  std::string name;  // its name in the configuration: [driver.p1] input = "ai0"; without the key, "p1"
   Kind kind = Kind::kValue;
-  std::string unit = "V";  // kValue
-  double low = -std::numeric_limits<
-      double>::infinity();  // kValue: the ends of its range, where readings are not credible
+  std::string unit = "V";                                 // kValue
+  double low = -std::numeric_limits<double>::infinity();  // kValue: the ends of its range, where readings are
+                                                          // not credible
   double high = std::numeric_limits<double>::infinity();  // unless the configuration says which readings are
-  uint32_t highest_count = 0xffffffff;                    // kCount: the counter goes on from there at 0
-  std::string place = {};                                 // for --check-sensors, e.g. "analog 0/3"
+  // kCount: the highest count, after which the counter wraps to 0.
+  uint32_t highest_count = 0xffffffff;
+  std::string place = {};  // for --check-sensors, e.g. "analog 0/3"
 };
 
 // What the device puts out to the amplifier or motor.
@@ -35,7 +36,7 @@ struct DeviceOutput {
   std::string unit = "V";
   double low = -10;  // what it can put out
   double high = 10;
-  double tolerance = 0.05;  // how far what it reads back may be from what was put out
+  double tolerance = 0.05;  // allowed difference between the output read back and the one put out
 };
 
 struct DeviceDescription {
@@ -48,14 +49,14 @@ struct DeviceDescription {
 
 struct Reading {
   double value = std::numeric_limits<double>::quiet_NaN();  // NaN: the device gives no number
-  bus::Clock::TimePoint at{};  // when it was measured, or else arrived; rates and silence are told from it
+  bus::Clock::TimePoint at{};  // time of the measurement, or else of its arrival; gives rates and silence
   std::optional<int64_t> raw = std::nullopt;  // the device's own number, for --check-sensors
 };
 
 struct DeviceReadings {
   std::vector<Reading> inputs;  // one for each of DeviceDescription::inputs
-  Reading output;     // what the output holds, where the device says so with each reading; NaN: it does not
-  std::string fault;  // what the device says is wrong with itself; empty: nothing
+  Reading output;     // what the output holds, if the device reports it with each reading; NaN: it does not
+  std::string fault;  // the device's own description of its fault; empty: none
 };
 
 // The device does not answer, or refuses: the run ends with zero volts and the fault "board_error".
@@ -68,35 +69,35 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // What it is and has. It does not change.
+  // Describes what the device is and has. The description does not change.
   virtual DeviceDescription Describe() const = 0;
 
-  // The newest reading of each input. On a network or bus that is what has arrived; waiting is for a small
-  // part of a tick at most. What keeps its old time grows old, and is a fault after limits.stale_input_s.
-  // Throws RigError, of which DeviceError is one.
+  // Fills in the newest reading of each input. For a device on a network or bus, that is what has arrived; it
+  // may wait for a small part of a tick at most. A reading that keeps its old time grows old, and is a fault
+  // after limits.stale_input_s. Throws RigError, of which DeviceError is one.
   virtual void Read(DeviceReadings& readings) = 0;
 
-  // Puts out `output`, in the output's unit and within its ends, until the next call. Once a tick. Throws
-  // RigError.
+  // Puts out `output`, in the output's unit and within its ends, until the next call. Called once a tick.
+  // Throws RigError.
   virtual void Drive(double output) = 0;
 
-  // Puts out `output`, at which the voltage of eq. (1) is zero (0 but for an offset of the configuration).
-  // Returns whether the device took it, as far as is known. It is also called in a signal handler, and in a
-  // second process once this one is dead: it may use system calls on the descriptors of `files` and nothing
-  // that allocates, locks or throws.
+  // Puts out `output`, at which the voltage of eq. (1) is zero (`output` is 0 unless the configuration states
+  // an offset). Returns whether the device took it, as far as is known. It is also called in a signal
+  // handler, and in a second process once this one is dead: it may use system calls on the descriptors of
+  // `files`, and nothing that allocates, locks or throws.
   virtual bool Zero(double output) noexcept = 0;
 
-  // What the output holds, asked at the end of a run; NaN: it cannot be read.
+  // What the output holds, read at the end of a run; NaN: it cannot be read.
   virtual double ReadBack() noexcept { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-// What a device is made from.
+// The settings from which a device is made.
 struct DeviceSettings {
   const settings::StackConfig& config;
   std::string device;  // driver.device
   settings::SectionReader&
-      own;  // [driver.own]: the keys of the driver's own; a key that it does not ask for is an error
-  const bus::Clock& clock;  // steady, for the time of readings
+      own;  // [driver.own]: the driver's own keys; a key that the driver does not ask for is an error
+  const bus::Clock& clock;  // steady; gives the time of readings
   bool drives = true;       // false for --check-sensors: nothing is put out, enabled or configured
 };
 

@@ -40,7 +40,7 @@ DeviceRig::DeviceRig(const settings::StackConfig& config, const bus::Clock& cloc
   max_voltage_ = std::min(reach_high, amplifier_.limit_V);
 
   if (!WriteZero()) {
-    device_->Drive(zero_);  // throws, with the reason that Zero() cannot give
+    device_->Drive(zero_);  // throws with the reason, which Zero() cannot give
     throw DeviceError(description_.name + " does not accept zero volts");
   }
   guardian_ = std::make_unique<ZeroGuardian>(*device_, description_.files, zero_);
@@ -56,8 +56,8 @@ DeviceRig::~DeviceRig() {
   guardian_->Dismiss();
 }
 
-// Since the rig was made the loops may have kept us waiting for long. Many a device answers only to what is
-// put out.
+// Since the rig was made, this process may have waited long for the loops. Many devices answer only when
+// something is put out.
 void DeviceRig::AwaitReadings() {
   const auto fresh = [&](const Reading& reading) { return clock_.Now() - reading.at <= watch_.patience(); };
   for (int i = 0; i < kFirstTries; ++i) {
@@ -77,7 +77,7 @@ model::Measurement DeviceRig::Read(int64_t /*tick*/) {
   faults_.clear();
   const bus::Clock::TimePoint now = clock_.Now();
   const bool silent = watch_.Look(readings_, now, &faults_);
-  // What a silent device has said last is no measurement of now.
+  // The last readings of a silent device do not measure the present.
   const model::Measurement measured = silent ? sensors_.Nothing() : sensors_.Take(readings_, now);
   for (const DeviceSensor* sensor : sensors_.all()) {
     if (sensor->fault()) faults_.push_back(*sensor->fault());
@@ -96,12 +96,7 @@ OutputLeft DeviceRig::Zero() noexcept {
 double DeviceRig::Drive(double voltage) {
   if (!std::isfinite(voltage)) voltage = 0;
   voltage = std::clamp(voltage, min_voltage_, max_voltage_);
-  if (!guardian_->Watches()) {
-    throw RigError(
-        "guardian_gone",
-        "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
-        "stands still; allowed is a run with one: find out what ended it, and start again");
-  }
+  guardian_->Require();
   const double output = Terminal(voltage);
   watch_.OnDriven(output, clock_.Now());
   device_->Drive(output);

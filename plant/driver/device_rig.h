@@ -1,5 +1,5 @@
-// A rig behind a Device: its readings conditioned and judged, its output limited, and zero volts on every way
-// out.
+// A rig behind a Device: the rig conditions and judges the readings, limits the output, and puts out zero
+// volts on every way out.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ class DeviceRig : public Rig {
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return faults_; }
   // Throws RigError "guardian_gone", before any voltage is put out, when a kill of this process would leave
-  // it.
+  // that voltage standing.
   double Drive(double voltage) override;
   OutputLeft Zero() noexcept override;
 
@@ -48,7 +48,7 @@ class DeviceRig : public Rig {
   DeviceSensors sensors_;
   DeviceWatch watch_;
   DeviceReadings readings_;
-  double min_voltage_;  // V of eq. (1), what limit and range allow
+  double min_voltage_;  // V of eq. (1), allowed by limit and range
   double max_voltage_;  // V
   double zero_;         // the output at which the voltage is zero
   bool begun_ = false;

@@ -16,22 +16,23 @@ namespace hydro::plant {
 
 class DeviceSensor {
  public:
-  // `name`: of its section, e.g. "p1". `angle`: for source "derivative" the sensor whose rate this one is; it
-  // must outlive this one and be read before it. Throws InputError when the device has no such input.
+  // `name` is that of its section, e.g. "p1". `angle`, for source "derivative", is the sensor whose rate this
+  // one is; it must outlive this one and be read before it. Throws InputError when the device has no such
+  // input.
   DeviceSensor(const DeviceDescription& device, const settings::StackConfig& config, const std::string& name,
                const settings::SensorSection& section, const DeviceSensor* angle = nullptr);
 
-  // The signal of these readings. Rates and low passes use the time of the reading, so that a late wake-up
-  // causes no false speed. NaN: not measured, or not credible (no number, older than limits.stale_input_s, at
-  // an end of the input's range or outside what the configuration allows). Throws RigError "encoder_lost"
-  // when a counter has moved too far to be followed.
+  // The signal that these readings give. Rates and low passes use the time of the reading, so that a late
+  // wake-up causes no false speed. NaN: not measured, or not credible (no number, older than
+  // limits.stale_input_s, at an end of the input's range or outside what the configuration allows). Throws
+  // RigError "encoder_lost" when a counter has moved too far to be followed.
   double Take(const DeviceReadings& readings, bus::Clock::TimePoint now);
 
-  // The device is silent: no signal, and filters and rates start again.
+  // Call it when the device is silent: there is no signal, and filters and rates start again.
   void Interrupt();
 
-  // The fault "sensor_NAME": lasts from the first reading that is not credible until kGoodReadings good ones
-  // in a row.
+  // The fault "sensor_NAME". It lasts from the first reading that is not credible until kGoodReadings good
+  // ones have come in a row.
   const std::optional<RigFault>& fault() const { return fault_; }
   static constexpr int kGoodReadings = 10;
 
@@ -60,7 +61,7 @@ class DeviceSensor {
   LowPass low_pass_;
   Reading reading_;
   std::optional<bus::Clock::TimePoint> read_at_;
-  double elapsed_s_ = 0;  // between the last two readings; of a rate, those of its angle
+  double elapsed_s_ = 0;  // s, between the last two readings; for a rate, those of its angle
   double unfiltered_ = NAN;
   RigFault wrong_;  // what is wrong with the last reading
   std::optional<RigFault> fault_;

@@ -14,9 +14,9 @@ class DeviceSensors {
   // Throws InputError when the device lacks an input.
   DeviceSensors(const DeviceDescription& device, const settings::StackConfig& config);
 
-  // What these readings mean. Throws RigError.
+  // The measurement that these readings give. Throws RigError.
   model::Measurement Take(const DeviceReadings& readings, bus::Clock::TimePoint now);
-  // The device is silent: every signal is NaN.
+  // For a silent device: every signal is NaN.
   model::Measurement Nothing();
 
   std::array<const DeviceSensor*, 6> all() const {

@@ -38,7 +38,7 @@ bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now
 void DeviceWatch::LookAtOutput(const Reading& output, bus::Clock::TimePoint now,
                                std::vector<RigFault>* faults) {
   if (!std::isfinite(output.value) || driven_.empty()) return;
-  // A device answers a little later, so anything that was put out of late may be what it holds.
+  // A device answers a little later, so it may hold any output that was put out within the patience.
   while (driven_.size() > 1 && now - driven_[1].first > patience_) driven_.pop_front();
   const auto [least, most] = std::minmax_element(
       driven_.begin(), driven_.end(), [](const auto& a, const auto& b) { return a.second < b.second; });

@@ -1,4 +1,4 @@
-// Whether a device still answers, and whether its output is what was put out.
+// Watches whether a device still answers, and whether its output is the one that was put out.
 #pragma once
 
 #include <deque>
@@ -12,18 +12,18 @@ namespace hydro::plant {
 
 class DeviceWatch {
  public:
-  // `patience`: how old a device's newest reading may become, and how long its output may take
+  // `patience` is how old a device's newest reading may become, and how long its output may take to follow
   // (limits.stale_input_s).
   DeviceWatch(const DeviceDescription& description, bus::Clock::Duration patience, bus::Clock::TimePoint now);
 
   bus::Clock::Duration patience() const { return patience_; }
 
-  // An output was put out.
+  // Records that `output` was put out.
   void OnDriven(double output, bus::Clock::TimePoint now);
 
-  // Adds what is wrong: "device_silent" while no reading is newer than the patience, "device_fault" while the
-  // device reports one, "output_differs" while the output that it reads back is none that was put out within
-  // the patience. Returns whether it is silent.
+  // Adds the faults that it finds: "device_silent" while no reading is newer than the patience,
+  // "device_fault" while the device reports one, "output_differs" while the output that the device reads back
+  // is none of those put out within the patience. Returns whether the device is silent.
   bool Look(const DeviceReadings& readings, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
  private:
@@ -34,7 +34,7 @@ class DeviceWatch {
   bus::Clock::Duration patience_;
   bus::Clock::TimePoint heard_;
   std::deque<std::pair<bus::Clock::TimePoint, double>>
-      driven_;  // those within the patience, and the one before
+      driven_;  // the outputs within the patience, and the one before
 };
 
 }  // namespace hydro::plant

@@ -28,7 +28,7 @@ std::vector<std::string> LinesOf(const char* variable) {
   return lines;
 }
 
-// What hydro-launch tells a program of the user's own, whose command line is the user's.
+// Reads what hydro-launch passes to a program of the user's own, whose command line belongs to the user.
 void AddFromEnvironment(settings::CommonOptions* options, std::vector<std::string>* expected) {
   if (!options->config.empty()) return;
   if (const char* config = std::getenv("HYDRO_CONFIG")) options->config = config;
@@ -41,8 +41,8 @@ void AddFromEnvironment(settings::CommonOptions* options, std::vector<std::strin
   expected->insert(expected->end(), awaited.begin(), awaited.end());
 }
 
-// hydro-launch sets the processor and the priority of a program of the user's own; memory can only be locked
-// from within.
+// hydro-launch sets the processor and the priority of a program of the user's own; but only the program
+// itself can lock its memory.
 void LockMemory(const settings::StackConfig& config) {
   const settings::ProcessSection* section = settings::OwnProgramFor(config, "driver");
   if (section == nullptr || section->priority == 0) return;
@@ -75,7 +75,7 @@ int RunStack(const RigProgram& program, const settings::CommonOptions& options,
       program.name, options, [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
         settings::CheckDriver(config, program.name);
         if (program.name != kOurs) LockMemory(config);
-        const StandIn stand_in(config);  // outlives the rig, which leaves it at zero volts
+        const StandIn stand_in(config);  // must outlive the rig, which leaves it at zero volts
         const std::unique_ptr<Rig> rig = program.make_rig(config, clock);
         PlantApp app(bus, clock, config, *rig, expected, described, process::HeartbeatArrived);
         const std::function<void()> end_beside =

@@ -13,7 +13,24 @@ GuardedFrontEnd::GuardedFrontEnd(const settings::StackConfig& config, const bus:
   ArmZero(zero_, 0);
 }
 
-GuardedFrontEnd::~GuardedFrontEnd() { DisarmZero(); }
+GuardedFrontEnd::~GuardedFrontEnd() {
+  ZeroAtOnce();
+  DisarmZero();
+}
+
+double GuardedFrontEnd::Drive(double voltage) {
+  if (guardian_) guardian_->Require();
+  return FrontEndRig::Drive(voltage);
+}
+
+// A guardian that held a cut link open would keep its port from being opened again.
+void GuardedFrontEnd::OnLink(int descriptor) {
+  if (descriptor == guarded_) return;
+  guardian_.reset();
+  if (descriptor >= 0)
+    guardian_ = std::make_unique<ZeroGuardian>(guardians_zero_, std::vector{descriptor}, 0);
+  guarded_ = descriptor;
+}
 
 std::function<void()> LeadLoopOnDevice(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                                        Rig& rig) {

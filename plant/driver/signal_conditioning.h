@@ -1,4 +1,4 @@
-// Turns a board's numbers into signals: scales, encoder counts, low passes. Pure: time is passed in.
+// Turns a board's numbers into signals with scales, encoder counts and low passes. Pure: time is passed in.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct ConverterRange {
   double maximum_V = 0;
 
   double Volts(uint32_t code) const;
-  // The nearest code; beyond the range, the code at its end. NaN gives the code of 0 V.
+  // The nearest code; beyond the range, the code at that end of it. NaN gives the code of 0 V.
   uint32_t Code(double volts) const;
 };
 
@@ -22,9 +22,9 @@ class EncoderCount {
  public:
   explicit EncoderCount(uint32_t max_count) : modulus_(int64_t{max_count} + 1) {}
 
-  // The unwrapped count. The first reading counts as signed: just below the wrap means just below zero.
-  // Between two readings the counter must move by less than a quarter of its range; after a larger move the
-  // direction is uncertain and nothing is returned.
+  // The unwrapped count. The first reading counts as signed: a reading just below the wrap means just below
+  // zero. Between two readings the counter must move by less than a quarter of its range; after a larger move
+  // the direction is uncertain, and the function returns nothing.
   std::optional<int64_t> Update(uint32_t reading);
 
  private:
@@ -38,10 +38,11 @@ class EncoderCount {
 // however far apart they are. Its output starts at the first input.
 class LowPass {
  public:
-  // `corner_hz` 0: the input passes unchanged.
+  // With `corner_hz` 0 the input passes unchanged.
   explicit LowPass(double corner_hz) : corner_hz_(corner_hz) {}
 
-  // `elapsed_s`: since the last update. NaN passes through, and the filter starts again at the next number.
+  // `elapsed_s` is the time since the last update. NaN passes through, and the filter starts again at the
+  // next number.
   double Update(double input, double elapsed_s);
 
  private:
@@ -52,7 +53,7 @@ class LowPass {
 // The rate of a signal from one sample to the next: 0 at the first sample, NaN for NaN.
 class Derivative {
  public:
-  // `elapsed_s`: since the last update. When it is not above 0 the rate stays as it was.
+  // `elapsed_s` is the time since the last update. When it is not above 0, the rate stays as it was.
   double Update(double input, double elapsed_s);
 
  private:

@@ -32,7 +32,9 @@ StandIn::StandIn(const settings::StackConfig& config) {
       process::FindOwnProgram(command.front(), folder, config.file + ": driver.simulated_device");
   request.folder = folder;
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw DeviceError("driver.simulated_device: cannot make a pipe for it");
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw DeviceError("driver.simulated_device: cannot make a pipe for it: " + process::ReasonOf(errno));
+  }
   request.out = ends[1];
   try {
     pid_ = process::Spawn(request).pid;
@@ -44,7 +46,7 @@ StandIn::StandIn(const settings::StackConfig& config) {
   close(ends[1]);
   const std::string instead =
       process::ChildLines(ends[0]).Await("ready", std::chrono::steady_clock::now() + kStart);
-  close(ends[0]);  // it ignores SIGPIPE; what else it says is lost
+  close(ends[0]);  // the program ignores SIGPIPE; its further output is lost
   if (!instead.empty()) {
     End();
     throw DeviceError("driver.simulated_device: " + command.front() + " must say \"ready\" within " +

@@ -1,4 +1,4 @@
-// driver.simulated_device: a program that stands for a device, started and ended with the driver.
+// driver.simulated_device: a program that stands for a device and that the driver starts and ends.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,7 @@ namespace hydro::plant {
 
 class StandIn {
  public:
-  // Starts the program, if the configuration names one, in the configuration's folder, and waits for its line
+  // If the configuration names a program, starts it in the configuration's folder and waits for its line
   // "ready". Throws InputError when there is no such program, RigError when it does not become ready.
   explicit StandIn(const settings::StackConfig& config);
   ~StandIn() { End(); }

@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "plant/driver/zero_output.h"
+#include "plant/rig.h"
+#include "process/spawn.h"
 
 namespace hydro::plant {
 namespace {
@@ -22,8 +23,8 @@ namespace {
 constexpr char kDismissed = 'd';
 constexpr int kExitTimeout_ms = 500;  // for a dismissed guardian
 
-// Closes every descriptor but these, in rising order: a pipe or socket that the guardian held open would make
-// the driver look alive.
+// Closes every descriptor but these, which are in rising order: a pipe or socket that the guardian held open
+// would make the driver look alive.
 void CloseAllBut(const std::vector<int>& files) {
   unsigned next = 0;
   for (const int file : files) {
@@ -34,10 +35,10 @@ void CloseAllBut(const std::vector<int>& files) {
   close_range(next, ~0U, 0);
 }
 
-// Runs in the fork of a process that may have threads: only system calls from here on.
+// Runs in the fork of a process that may have threads, so only system calls are allowed from here on.
 [[noreturn]] void Guard(Device& device, const std::vector<int>& files, double zero, int pipe) {
   prctl(PR_SET_NAME, "hydro-zero");
-  // Only the driver's end may end the guardian.
+  // Only the end of the driver may end the guardian.
   for (int signal = 1; signal < NSIG; ++signal) {
     if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
   }
@@ -56,8 +57,7 @@ void CloseAllBut(const std::vector<int>& files) {
 ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double zero) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
-    throw std::runtime_error(std::string("cannot create the output guardian's pipe: ") +
-                             std::strerror(errno));
+    throw std::runtime_error("cannot create the output guardian's pipe: " + process::ReasonOf(errno));
   }
   std::vector<int> kept = files;  // the child allocates nothing
   kept.push_back(ends[0]);
@@ -67,14 +67,15 @@ ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double
     const int error = errno;
     close(ends[0]);
     close(ends[1]);
-    throw std::runtime_error(std::string("cannot start the output guardian: ") + std::strerror(error));
+    throw std::runtime_error("cannot start the output guardian: " + process::ReasonOf(error));
   }
   if (pid_ == 0) {
     close(ends[1]);
     Guard(device, kept, zero, ends[0]);
   }
-  // It must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends what a
-  // program of the user's own has left. From here, because the child may not run for a while.
+  // The guardian must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends
+  // the remaining processes of a user's own program. The parent sets the group because the child may not run
+  // for a while.
   setpgid(pid_, pid_);
   close(ends[0]);
   pipe_ = ends[1];
@@ -86,9 +87,18 @@ bool ZeroGuardian::Watches() {
   const pid_t changed = waitpid(pid_, &status, WNOHANG | WUNTRACED);
   if (changed == 0) return true;
   watches_ = false;
-  // Its number may soon be another process's. A guardian that stands still is left for Dismiss().
+  // The guardian's process number may soon belong to another process. A guardian that stands still is left
+  // for Dismiss().
   if (changed < 0 || !WIFSTOPPED(status)) pid_ = -1;
   return false;
+}
+
+void ZeroGuardian::Require() {
+  if (Watches()) return;
+  throw RigError(
+      "guardian_gone",
+      "the guardian (hydro-zero), which writes zero volts should this process be killed, has ended or "
+      "stands still; allowed is a run with one: find out what ended it, and start again");
 }
 
 void ZeroGuardian::Dismiss() {

@@ -12,18 +12,21 @@ namespace hydro::plant {
 
 class ZeroGuardian {
  public:
-  // Forks a child that shares the open device and sleeps until this process has gone. It then has `device`
-  // put out `zero`, unless Dismiss() was called before, and exits. It outlives this process by no more than
-  // that, ignores signals, also those to this process's group, and keeps none of this process's descriptors
-  // except `files`. Throws std::runtime_error when it cannot be started.
+  // Forks a child that shares the open device and sleeps until this process has gone. The child then has
+  // `device` put out `zero`, unless Dismiss() was called before, and exits. It outlives this process by no
+  // more than that. It ignores signals, also those to this process's group, and keeps none of this process's
+  // descriptors except `files`. Throws std::runtime_error when the child cannot be started.
   ZeroGuardian(Device& device, const std::vector<int>& files, double zero);
   ~ZeroGuardian() { Dismiss(); }
   ZeroGuardian(const ZeroGuardian&) = delete;
   ZeroGuardian& operator=(const ZeroGuardian&) = delete;
 
-  // False from when the guardian has ended, or stood still (SIGSTOP), and so would not write: for the loop,
-  // in each tick.
+  // Returns false from when the guardian has ended, or stood still (SIGSTOP), and so would not write. The
+  // loop calls it in each tick.
   bool Watches();
+
+  // Throws RigError "guardian_gone" from then on.
+  void Require();
 
   // Ends the guardian: the output is at zero and the device is about to be closed.
   void Dismiss();

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kTries = 10;
 
-// What the handlers see: while the pointer is not null, the number beside it is the device's.
+// The handlers read these two: while the pointer is not null, the number beside it belongs to the device.
 double armed_zero = 0;
 std::atomic<Device*> armed{nullptr};
 static_assert(std::atomic<Device*>::is_always_lock_free, "signal handlers need it lock-free");
 
 std::terminate_handler previous_terminate = nullptr;
-alignas(16) char handler_stack[64 * 1024];  // separate, because the normal stack may be what has overflowed
+alignas(16) char handler_stack[64 * 1024];  // separate, because the normal stack may have overflowed
 
 void WriteArmed() noexcept {
   if (Device* const device = armed.load()) WriteZeroTo(*device, armed_zero);
@@ -35,14 +35,14 @@ void OnSignal(int signal) {
   WriteArmed();
   if (Stops(signal)) {
     raise(SIGSTOP);
-    return;  // after SIGCONT the run goes on with the commands that come then
+    return;  // after SIGCONT the run goes on with the commands that then arrive
   }
-  // The handler was reset on entry and does not block the signal, so this ends the process as the signal
+  // The handler was reset on entry and does not block the signal, so this call ends the process as the signal
   // would have, core dump included.
   raise(signal);
 }
 
-// Signals whose default action is to do nothing, or that cannot be caught.
+// Signals whose default action is to do nothing, and signals that cannot be caught.
 bool LeftAlone(int signal) {
   switch (signal) {
     case SIGKILL:

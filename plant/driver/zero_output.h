@@ -5,14 +5,14 @@
 
 namespace hydro::plant {
 
-// Has `device` put out `zero`, and tries again when it refuses. Async-signal-safe as far as Device::Zero()
-// is; preserves errno. Returns whether the device took it.
+// Has `device` put out `zero`, and tries again when the device refuses. As async-signal-safe as
+// Device::Zero(); preserves errno. Returns whether the device took it.
 bool WriteZeroTo(Device& device, double zero) noexcept;
 
 // From now on every way out of this process in which it can still act has `device` put out `zero` first:
 // exit(), quick_exit(), std::terminate (an uncaught exception) and every signal that ends or stops a process,
 // except SIGKILL, SIGSTOP and those that already have a handler. The signal then takes its default action.
-// Lasts until DisarmZero(). One device per process; call it after CatchStopSignals().
+// This lasts until DisarmZero(). A process can arm one device; call ArmZero() after CatchStopSignals().
 void ArmZero(Device& device, double zero);
 void DisarmZero();
 

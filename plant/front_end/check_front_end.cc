@@ -70,7 +70,7 @@ int CheckFrontEnd(const settings::StackConfig& config, const bus::Clock& clock) 
   auto next_table = start + kTablePeriod;
   for (int64_t tick = 1;; ++tick) {
     const model::Measurement measured = rig.Read(tick);
-    rig.Drive(0);  // nothing is obeyed: it keeps the session, no more
+    rig.Drive(0);  // the device obeys nothing; this only keeps the session
     const auto now = clock.Now();
     const bool last = process::StopSignal() != 0 || (config.time.duration_s > 0 && now - start >= duration);
     if (last || now >= next_table) {

@@ -7,8 +7,8 @@
 namespace hydro::plant {
 
 // Gives the device its settings, does not arm it, and prints a table of all signals to stdout twice a second,
-// until time.duration_s has passed or a stop signal was caught. Returns the exit code: 0, or 1 when a sensor
-// or the device was at fault in the last table. Throws InputError and RigError like FrontEndRig.
+// until time.duration_s has passed or a stop signal was caught. Returns the exit code: 0, or 1 when the last
+// table showed a fault of a sensor or the device. Throws InputError and RigError like FrontEndRig.
 int CheckFrontEnd(const settings::StackConfig& config, const bus::Clock& clock);
 
 }  // namespace hydro::plant

@@ -14,11 +14,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRequestPeriod = 50ms;  // of what is asked again until the answer comes
+constexpr auto kRequestPeriod = 50ms;  // for requests that are repeated until the answer comes
 constexpr auto kOpenPeriod = 100ms;
 constexpr auto kKeepAlivePeriod = 100ms;  // the device gives up on a session after 250 ms
 constexpr size_t kChunk = 4096;
-constexpr int kMostChunks = 64;  // in one turn: whoever floods the link does not stop the loop
+constexpr int kMostChunks = 64;  // in one call: a flood on the link must not stop the loop
 
 bool SameSettings(const hydro_settings& a, const hydro_settings& b) {
   std::array<uint8_t, HYDRO_WIRE_MAX> wires[2] = {};
@@ -59,7 +59,7 @@ void Connection::Poll(TimePoint now) {
     frame.body.settings = settings_;
     Send(&frame);
   }
-  // No samples: the device may have reset itself, and then knows nobody until it is greeted.
+  // No samples come: the device may have reset itself, and then knows no session until it is greeted.
   if (phase_ == Phase::kUp && now - sampled_at_ > kRequestPeriod && Due(now, kRequestPeriod))
     Send(HYDRO_HELLO);
 }
@@ -82,7 +82,7 @@ void Connection::Receive(TimePoint now) {
     for (size_t at = 0; at < got; ++at) {
       if (hydro_receive(&receiver_, chunk[at], &frame)) Take(frame, now);
     }
-    if (got + Link::kLargestDatagram <= chunk.size()) return;
+    if (got < chunk.size()) return;
   }
 }
 
@@ -116,7 +116,7 @@ void Connection::OnIdentity(const hydro_frame& frame) {
   }
   const hydro_identity& identity = frame.body.identity;
   const bool another = !identified_ || identity.boot != identity_.boot;
-  if (another) heard_ = false;  // it counts from the beginning
+  if (another) heard_ = false;  // the device's sequence begins anew
   if (!IsNewer(frame)) {
     ++counts_.refused;
     return;
@@ -132,7 +132,7 @@ void Connection::OnIdentity(const hydro_frame& frame) {
   settings_ = settings_for_(identity);
   fingerprint_ = hydro_fingerprint(&settings_);
   sampled_ = false;
-  // After a cut link the device still holds them, and may even be armed.
+  // After a cut link the device may still hold the settings, and may even be armed.
   phase_ = identity.fingerprint == fingerprint_ ? Phase::kUp : Phase::kSettings;
   next_request_ = {};
 }
@@ -161,7 +161,7 @@ void Connection::OnSample(const hydro_sample& sample, TimePoint now) {
   ++counts_.samples;
 }
 
-// The device's counts go round at 2^16.
+// The device's counts wrap at 2^16.
 void Connection::CountOfDevice(const hydro_sample& sample) {
   if (!sampled_) return;
   counts_.device_damaged += static_cast<uint16_t>(sample.frames_bad - sample_.frames_bad);
@@ -208,7 +208,7 @@ uint32_t Connection::CommandVoltage(int64_t host_tick, float voltage) {
   return sent_;
 }
 
-void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {
+uint32_t Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains) {
   hydro_frame frame{};
   frame.kind = HYDRO_PRESSURE;
   frame.body.command.fingerprint = fingerprint_;
@@ -216,6 +216,13 @@ void Connection::CommandPressure(int64_t host_tick, float pressure_ref, const hy
   frame.body.command.pressure_ref = pressure_ref;
   frame.body.command.gains = gains;
   Send(&frame);
+  return sent_;
+}
+
+void Connection::AskForZero(TimePoint now) {
+  if (now < next_zero_) return;
+  next_zero_ = now + kRequestPeriod;
+  Send(HYDRO_ZERO);
 }
 
 void Connection::KeepAlive(TimePoint now) {

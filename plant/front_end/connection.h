@@ -1,5 +1,5 @@
-// The conversation with a front end (docs/front_end.md): who is there, its settings, and then samples one way
-// and commands the other. Time is passed in; nothing waits.
+// The conversation with a front end (docs/front_end.md): the device identifies itself and gets its settings;
+// then samples go one way and commands the other. Time is passed in; nothing waits.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace hydro::plant {
 
-// What has become of the frames, since the start.
+// Counts what has become of the frames since the start.
 struct FrameCounts {
   int64_t samples = 0;         // taken
-  int64_t lost = 0;            // of the device's, by gaps in its sequence
+  int64_t lost = 0;            // of the device's frames, by gaps in their sequence
   int64_t damaged = 0;         // that arrived here
-  int64_t refused = 0;         // whole, but of another session, old or repeated
-  int64_t left_out = 0;        // commands that the link was too slow for
+  int64_t refused = 0;         // intact, but of another session, old or repeated
+  int64_t left_out = 0;        // commands for which the link was too slow
   int64_t device_damaged = 0;  // that the device reports
   int64_t device_refused = 0;  // that the device reports
 };
@@ -29,28 +29,28 @@ class Connection {
  public:
   using TimePoint = bus::Clock::TimePoint;
 
-  // The settings that a device gets; throws InputError when it is the wrong one for the configuration.
+  // Returns the settings for a device; throws InputError when it is the wrong device for the configuration.
   using SettingsFor = std::function<hydro_settings(const hydro_identity&)>;
 
-  // `file`: the configuration's, for errors. `session`: at random, not 0.
+  // `file` is the configuration file, for errors. `session` is a random number other than 0.
   Connection(std::string file, std::unique_ptr<Link> link, uint32_t session, SettingsFor settings_for);
 
-  // Takes all that has come, and goes on with the handshake where one is due: also again, after the link was
+  // Takes everything that has come, and goes on with the handshake where one is due, also after the link was
   // cut or the device has reset itself. Throws InputError like SettingsFor, or when the device refuses its
   // settings.
   void Poll(TimePoint now);
 
-  // The device holds the settings, and a sample of it has come since.
+  // Whether the device holds the settings and has sent a sample since.
   bool is_up() const { return link_->is_open() && phase_ == Phase::kUp && sampled_; }
   bool link_is_open() const { return link_->is_open(); }
 
-  // Meaningful once is_up() was true.
+  // These are meaningful once is_up() was true.
   const hydro_identity& identity() const { return identity_; }
   const hydro_settings& settings() const { return settings_; }
   const hydro_sample& sample() const { return sample_; }
   TimePoint sampled_at() const { return sampled_at_; }  // when the newest sample came
 
-  // How often the device has begun anew while this connection was up.
+  // How often the device has restarted while this connection was up.
   int64_t resets() const { return resets_; }
   const FrameCounts& counts() const { return counts_; }
   const Link& link() const { return *link_; }
@@ -58,16 +58,17 @@ class Connection {
   // Why there is no connection yet, for a message: what was found and what is allowed.
   LinkTrouble WhyNot() const;
 
-  // Asks the device to arm, unless it was asked a moment ago. It does so only where it has tripped `trips`
-  // times.
+  // Asks the device to arm, unless it was asked a moment ago. The device arms only if it has tripped exactly
+  // `trips` times.
   void AskToArm(TimePoint now, uint32_t trips);
-  // Commands for the computer's tick. The device's samples name that of a voltage by the sequence that is
-  // returned.
+  // Commands for the computer's tick. The device's samples name them by the sequence that is returned.
   uint32_t CommandVoltage(int64_t host_tick, float voltage);
-  void CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
+  uint32_t CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
+  // Asks the device to disarm, unless it was asked a moment ago.
+  void AskForZero(TimePoint now);
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);
-  // Zero volts, until re-armed. Async-signal-safe.
+  // Asks for zero volts until re-armed. Async-signal-safe.
   void Zero() const noexcept { link_->WriteAtOnce({zero_frame_.data(), zero_bytes_}); }
 
  private:
@@ -97,10 +98,11 @@ class Connection {
   TimePoint next_open_{};
   TimePoint next_request_{};  // of HELLO, SETTINGS
   TimePoint next_arm_{};
+  TimePoint next_zero_{};
   uint32_t sent_ = 0;  // sequence of the newest frame sent
   hydro_receiver receiver_{};
   int64_t damaged_before_ = 0;  // by receivers before
-  bool heard_ = false;          // a frame of this device, by whose sequence the next is judged
+  bool heard_ = false;          // whether a frame of this device came; the next is judged by its sequence
   uint32_t newest_ = 0;         // its sequence
   int64_t bytes_ = 0;
   int64_t echoes_ = 0;  // our own frames that came back

@@ -21,12 +21,12 @@ namespace {
 using namespace std::chrono_literals;
 using Source = settings::SensorSection::Source;
 
-constexpr auto kTurn = 1ms;           // between two turns of what waits
+constexpr auto kTurn = 1ms;           // between two turns of a waiting function
 constexpr auto kZeroRepeat = 10ms;    // a lost ZERO is sent again
-constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of it
-constexpr double kNearZero = 0.05;    // V: offsets of converters are below it
+constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of this
+constexpr double kNearZero = 0.05;    // V; offsets of converters are below it
 constexpr double kSampleBytes = 107;  // on the wire
-constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop
+constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop bits
 
 uint32_t RandomSession() {
   std::random_device random;
@@ -49,7 +49,7 @@ FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& 
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       ticks_per_s_(config.plant.rate_hz),
       voltage_limit_(config.driver->voltage.limit_V),
-      output_(*config.driver, stale_time_) {
+      output_(*config.driver, stale_time_, bus::FromSeconds(config.limits.transfer_s)) {
   CheckSpeed();
 }
 
@@ -73,7 +73,7 @@ std::string FrontEndRig::Describe() const {
                      identity.tick_rate_hz);
 }
 
-// A line that cannot carry all samples would be behind by more and more of them.
+// A line that is too slow to carry all samples would fall further and further behind.
 void FrontEndRig::CheckSpeed() const {
   const int baud = config_.driver->front_end.address.baud;
   const double needed = kSampleBytes * kBitsPerByte * ticks_per_s_;
@@ -86,7 +86,9 @@ void FrontEndRig::CheckSpeed() const {
 
 bool FrontEndRig::Poll() {
   now_ = clock_.Now();
+  OnLink(connection_.link().descriptor());
   connection_.Poll(now_);
+  OnLink(connection_.link().descriptor());
   return connection_.is_up();
 }
 
@@ -110,7 +112,7 @@ void FrontEndRig::Connect() {
 }
 
 model::Measurement FrontEndRig::Read(int64_t tick) {
-  // This process stood still: nothing was commanded meanwhile. Ordinary late wake-ups must not hide a device
+  // This process stood still and commanded nothing meanwhile. Ordinary late wake-ups must not hide a device
   // that lags behind.
   if (static_cast<double>(tick - tick_) > 0.5 * config_.limits.stale_input_s * ticks_per_s_)
     driving_since_ = tick;
@@ -127,12 +129,13 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   read_ = connection_.sample();
   FindSensorFaults(read_);
   FindDeviceFaults(read_);
+  FindUnaskedArming(read_);
   FindOldCommands(read_);
   trips_ = read_.trips;
   return Measured();
 }
 
-// A turn within the run, where another device is no error of the configuration.
+// Takes a turn within the run, when another device is no longer an error of the configuration.
 void FrontEndRig::TakeTurn() {
   try {
     Poll();
@@ -150,7 +153,7 @@ std::optional<int64_t> FrontEndRig::Arrived() {
   return static_cast<int64_t>(connection_.sample().tick / connection_.settings().sample_interval_ticks);
 }
 
-// Another program shall not take the device meanwhile, nor old samples wait.
+// Meanwhile, no other program shall take the device, and no old samples shall queue up.
 void FrontEndRig::Attend() {
   Poll();
   connection_.KeepAlive(now_);
@@ -160,7 +163,7 @@ void FrontEndRig::Attend() {
 model::Measurement FrontEndRig::Measured() {
   const hydro_sample& sample = read_;
   const settings::DriverSection& driver = *config_.driver;
-  // A count is exact where an angle in single precision is not.
+  // A count is exact; an angle in single precision is not.
   const auto angle = [](const settings::SensorSection& section, float value, int32_t count,
                         DeviceCount* counted) {
     if (section.source != Source::kCounter || std::isnan(value)) return static_cast<double>(value);
@@ -186,7 +189,7 @@ void FrontEndRig::Add(std::string code, std::string text, double value, double l
   faults_.push_back({std::move(code), std::move(text), value, limit});
 }
 
-// True: what the newest sample says no longer counts.
+// Returns true when the newest sample no longer counts.
 bool FrontEndRig::FindSilence() {
   const double silence = bus::ToSeconds(now_ - connection_.sampled_at());
   const double allowed = config_.limits.stale_input_s;
@@ -216,8 +219,8 @@ bool FrontEndRig::FindSilence() {
   return true;
 }
 
-// A signal that is no number is missing, whatever the device says of it. That of a rate is the fault of its
-// angle.
+// A signal that is not a number is missing, whatever the device reports. A rate that is missing is a fault of
+// its angle.
 void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
   const bool answered = (sample.faults_present & HYDRO_FAULT_CONVERTER) == 0;
   for (int i = 0; i < HYDRO_SENSORS; ++i) {
@@ -234,14 +237,14 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
       Add(code, fmt::format("the front end gives {} for {} and reports no fault of it; allowed is a number",
                             sample.value[i], SensorName(i)));
     }
-    // Not to be taken for a signal by anyone.
+    // No process shall take this value for a signal.
     if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
   }
 }
 
 void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
-    output_.Look(sample, connection_.settings().sample_interval_ticks, now_, &faults_);
+    output_.Look(sample, Range(), connection_.settings().sample_interval_ticks, now_, &faults_);
   } else {
     Add("output_differs",
         fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,
@@ -257,6 +260,21 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
             "the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
             DescribeDeviceFaults(static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U)))));
   }
+}
+
+// Armed, it may drive at any moment. The answer to a request may be late, and is then a fault of its own.
+void FrontEndRig::FindUnaskedArming(const hydro_sample& sample) {
+  if (sample.state != HYDRO_ARMED) {
+    if (asked_to_arm_at_ && now_ - *asked_to_arm_at_ > 2 * stale_time_) asked_to_arm_at_.reset();
+    return;
+  }
+  if (asked_to_arm_at_) return;
+  Add("device_fault",
+      fmt::format("the front end says that it is armed with {:.4g} V and was not asked to arm; allowed is "
+                  "one that arms "
+                  "when it is asked: cut the amplifier's supply",
+                  sample.voltage),
+      sample.voltage, 0);
 }
 
 // Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that
@@ -282,7 +300,7 @@ void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
 
 double FrontEndRig::Drive(double voltage) {
   // The motor command of a loop on the device is its answer to the very state that was read.
-  acting_command_tick_ = read_.source == HYDRO_SOURCE_LAW ? tick_ : output_.CommandTick(read_);
+  acting_command_tick_ = output_.ActsByLaw(read_) ? tick_ : output_.CommandTick(read_);
   if (!connection_.is_up()) {
     arming_since_.reset();
     return read_.voltage;
@@ -291,11 +309,14 @@ double FrontEndRig::Drive(double voltage) {
   const bool obeys = MayDrive() && std::isfinite(voltage);
   if (!armed && obeys) {
     if (!arming_since_) arming_since_ = now_;
-    // As it was read: a trip that has come since is a fault first, and whether to go on is not decided here.
+    // Uses the trip count of the sample that was read: a trip that has come since must first become a fault,
+    // and this is not the place to decide whether to go on.
     connection_.AskToArm(now_, read_.trips);
+    asked_to_arm_at_ = now_;
   } else {
     arming_since_.reset();
   }
+  if (armed && !asked_to_arm_at_) connection_.AskForZero(now_);
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
@@ -304,10 +325,17 @@ double FrontEndRig::Drive(double voltage) {
     if (!followed_->sent) SendFollowed();
     followed_->sent = false;
   } else {
-    // Zero until it is known to be armed.
+    // Sends zero until the device is known to be armed.
     SendVoltage(armed && obeys ? std::clamp(voltage, -voltage_limit_, voltage_limit_) : 0.0);
   }
   return read_.voltage;
+}
+
+hydro_voltage_range FrontEndRig::Range() const {
+  hydro_board_facts facts{};
+  facts.output_min_V = connection_.identity().output_min_V;
+  facts.output_max_V = connection_.identity().output_max_V;
+  return hydro_reachable_voltages(&connection_.settings(), &facts);
 }
 
 void FrontEndRig::SendVoltage(double voltage) {
@@ -317,7 +345,8 @@ void FrontEndRig::SendVoltage(double voltage) {
 }
 
 void FrontEndRig::SendFollowed() {
-  connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  const uint32_t sequence = connection_.CommandPressure(tick_, followed_->pressure_ref, followed_->gains);
+  output_.OnTold(sequence, followed_->pressure_ref, followed_->gains, now_);
   followed_->sent = true;
 }
 
@@ -330,7 +359,7 @@ pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, 
                                  .arm_speed_ratio = static_cast<float>(law.arm_speed_ratio)}};
   if (!Armed() || !MayDrive()) return {};
   SendFollowed();
-  // The sample that the state was made from has the voltage that the device computed from it.
+  // The sample from which the state was made contains the voltage that the device computed from it.
   return {.by_law = read_.source == HYDRO_SOURCE_LAW,
           .voltage = read_.voltage,
           .pressure_ref = read_.pressure_ref,
@@ -339,7 +368,7 @@ pressure_ctrl::DeviceLoop::Answer FrontEndRig::Follow(const state_t& /*state*/, 
 
 OutputLeft FrontEndRig::Zero() noexcept {
   OutputLeft left{.accepted = false, .voltage = NAN};
-  std::optional<int64_t> obeyed;  // the first sample that is seen to
+  std::optional<int64_t> obeyed;  // number of the first sample that shows it
   try {
     const auto asked = clock_.Now();
     auto next = asked;
@@ -348,21 +377,22 @@ OutputLeft FrontEndRig::Zero() noexcept {
         connection_.Zero();
         next = clock_.Now() + kZeroRepeat;
       }
+      if (when_late_ && clock_.Now() - asked > stale_time_ / 2) std::exchange(when_late_, {})();
       if (!clock_.simulated()) bus::SleepUntil(clock_.Now() + kTurn);
       const bool up = Poll();
       const hydro_sample& sample = connection_.sample();
       if (up && connection_.sampled_at() >= asked) {
         left.voltage = std::isfinite(sample.read_back) ? sample.read_back : sample.voltage;
         left.accepted = sample.state != HYDRO_ARMED && std::fabs(left.voltage) <= output_.tolerance();
-        // The sample in which a device obeys has what its output read just before: a later one tells what it
-        // left.
+        // The sample in which a device first obeys contains a read-back from just before: only a later sample
+        // shows the voltage that was left.
         const int64_t samples = connection_.counts().samples;
         if (!obeyed && sample.state != HYDRO_ARMED) obeyed = samples;
         if (left.accepted && samples > *obeyed && std::fabs(left.voltage) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);
-  } catch (const std::exception&) {  // another device has taken its place
+  } catch (const std::exception&) {  // another device has taken the place of the first
   }
   return left;
 }

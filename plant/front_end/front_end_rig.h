@@ -20,7 +20,7 @@
 
 namespace hydro::plant {
 
-// A count that the device unwraps modulo 2^32, on without an end.
+// Extends a count that the device wraps modulo 2^32 to one that never wraps.
 class DeviceCount {
  public:
   int64_t Update(int32_t count) {
@@ -38,12 +38,12 @@ class DeviceCount {
 
 class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLoop {
  public:
-  // `config` has a [driver] of kind "front_end". `link` and `session` are the configuration's and a random
-  // one, except in tests.
+  // `config` has a [driver] of kind "front_end". By default, `link` is the configuration's and `session` is
+  // random; tests pass their own.
   FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock);
   FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock, std::unique_ptr<Link> link,
               uint32_t session);
-  // Zero volts, and what became of the frames.
+  // Puts out zero volts and reports what became of the frames.
   ~FrontEndRig() override;
 
   // Opens the link and waits until the device holds its settings and sends samples, for time.start_timeout_s
@@ -51,23 +51,23 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   // one, or another program has it.
   void Connect();
 
-  // A turn of the handshake. Returns whether it is done.
+  // Takes one turn of the handshake. Returns whether the handshake is done.
   bool Poll();
 
-  // What else this process does is called in each tick, and while the run has not begun.
+  // Sets what else this process does; it is called in each tick, and while the run has not begun.
   void set_beside(std::function<void()> beside) { beside_ = std::move(beside); }
 
   std::string role() const override { return "driver"; }
-  // The newest sample. Throws RigError "board_error" when another device has taken the place of the one that
-  // the run began with.
+  // The newest sample. Throws RigError "board_error" when another device has taken the place of the one with
+  // which the run began.
   model::Measurement Read(int64_t tick) override;
-  // "device_silent", "device_fault", "output_differs", "sensor_NAME". Those that tripped the device are here
-  // in one reading at least.
+  // "device_silent", "device_fault", "output_differs", "sensor_NAME". Faults that tripped the device are
+  // listed in at least one reading.
   const std::vector<RigFault>& faults() const override { return faults_; }
   void Attend() override;
   void Obey(int64_t command_tick) override { command_tick_ = command_tick; }
-  // Arms the device with the first command that is obeyed. Returns what the device says: the voltage that
-  // acts from the sample of the last Read() on, until the device takes this one.
+  // Arms the device with the first command that is obeyed. Returns what the device reports: the voltage that
+  // acts from the sample of the last Read() on, until the device takes the new one.
   double Drive(double voltage) override;
   int64_t lost_messages() const override { return connection_.counts().lost; }
 
@@ -76,19 +76,31 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   int descriptor() const override { return connection_.link().descriptor(); }
   int64_t acting_command_tick() const override { return acting_command_tick_; }
 
-  // With the pressure loop on the device (driver.mode = "loop_on_device"): the reference goes out at once,
-  // and again in each Drive().
+  // With the pressure loop on the device (driver.mode = "loop_on_device"), sends the reference at once, and
+  // again in each Drive().
   Answer Follow(const state_t& state, double pressure_ref,
                 const pressure_ctrl::PressureLawSettings& law) override;
   void Release() override { followed_.reset(); }
 
-  // Waits for up to half a second until the device says that its output is at zero.
+  // Asks for zero volts, and waits for up to half a second until the device reports that its output is at
+  // zero.
   OutputLeft Zero() noexcept override;
-  // The same request, once, and nothing awaited. Async-signal-safe.
+  // Sends the same request once and waits for nothing. Async-signal-safe.
   void ZeroAtOnce() const noexcept { connection_.Zero(); }
+
+  // The same, and returns when the frame has left this machine. Async-signal-safe.
+  void ZeroAndDrain() const noexcept {
+    connection_.Zero();
+    connection_.link().AwaitGone();
+  }
 
   const Connection& connection() const { return connection_; }
   std::string Describe() const;  // "serial:/dev/ttyACM0 (posix, firmware 1.0.0, 5000 ticks/s)"
+
+ protected:
+  // Called before and after each turn: the link's descriptor, -1 while it is cut. Between two calls it is not
+  // closed and opened again.
+  virtual void OnLink(int /*descriptor*/) {}
 
  private:
   struct Followed {
@@ -100,6 +112,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void CheckSpeed() const;
   bool MayDrive() const { return command_tick_ >= 0 && faults_.empty(); }
   bool Armed() const { return connection_.is_up() && read_.state == HYDRO_ARMED; }
+  hydro_voltage_range Range() const;
   void SendVoltage(double voltage);
   void SendFollowed();
   model::Measurement Measured();
@@ -107,6 +120,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void TakeTurn();
   void FindSensorFaults(const hydro_sample& sample);
   void FindDeviceFaults(const hydro_sample& sample);
+  void FindUnaskedArming(const hydro_sample& sample);
   void FindOldCommands(const hydro_sample& sample);
   void Add(std::string code, std::string text, double value = NAN, double limit = NAN);
 
@@ -122,16 +136,17 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
 
   int64_t tick_ = 0;
   bus::Clock::TimePoint now_{};
-  int64_t command_tick_ = -1;         // of what Drive() puts out; -1: zero
+  int64_t command_tick_ = -1;         // of the command that Drive() puts out; -1: zero
   int64_t acting_command_tick_ = -1;  // of what the device puts out
-  hydro_sample read_{};               // of the last Read(); the connection's may be newer
+  hydro_sample read_{};               // of the last Read(); the connection may have a newer one
   bool polled_ = false;               // since the last Read()
-  int64_t arrived_before_ = 0;        // samples, at the last Arrived()
+  int64_t arrived_before_ = 0;        // number of samples, at the last Arrived()
   std::optional<Followed> followed_;
-  std::optional<int64_t> driving_since_;  // tick of the first command since the device was armed last
+  std::optional<int64_t> driving_since_;  // tick of the first command since the device was last armed
   std::optional<bus::Clock::TimePoint> arming_since_;
-  std::optional<uint32_t> trips_;  // of the device, at the last reading
-  int64_t resets_ = 0;             // at the last reading
+  std::optional<bus::Clock::TimePoint> asked_to_arm_at_;  // of late; while it is armed, when that was
+  std::optional<uint32_t> trips_;                         // of the device, at the last reading
+  int64_t resets_ = 0;                                    // at the last reading
   DeviceCount motor_count_, arm_count_;
 };
 

@@ -19,7 +19,8 @@ namespace {
 using settings::KeyError;
 using Source = settings::SensorSection::Source;
 
-// The device judges in single precision: what is just within a limit here shall not be beyond it there.
+// The device judges in single precision: a value that is just within a limit here shall not be beyond it
+// there.
 float RoundedUp(double limit) {
   const auto rounded = static_cast<float>(limit);
   return static_cast<double>(rounded) < limit
@@ -27,7 +28,7 @@ float RoundedUp(double limit) {
              : rounded;
 }
 
-// What the device says that it puts out shall not be beyond the limit here.
+// The voltage that the device reports shall not be beyond the limit that holds here.
 float RoundedDown(double limit) {
   const auto rounded = static_cast<float>(limit);
   return static_cast<double>(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded;
@@ -104,7 +105,7 @@ uint32_t WatchdogTicks(const settings::StackConfig& config, const hydro_identity
                              ShortestNumber(1.0 / identity.tick_rate_hz)));
 }
 
-// What the output can reach, V of eq. (1), must hold zero volts.
+// The range that the output can reach, V of eq. (1), must contain zero volts.
 void CheckOutput(const settings::StackConfig& config, const hydro_identity& identity) {
   const settings::AmplifierSection& amplifier = config.driver->voltage;
   const double zero_V = -amplifier.offset / amplifier.scale;

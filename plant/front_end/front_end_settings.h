@@ -1,4 +1,4 @@
-// From the configuration to the settings of a front end.
+// Converts the configuration to the settings of a front end.
 #pragma once
 
 #include "firmware/frames.h"
@@ -6,9 +6,9 @@
 
 namespace hydro::plant {
 
-// What the device gets: its wiring, and the limits that it holds on its own. Throws InputError when the
-// device that says `identity` is not one for this configuration: its modes, its ticks, its channels or the
-// range of its output.
+// The settings that the device gets: its wiring, and the limits that it holds on its own. Throws InputError
+// when the device that sent `identity` does not suit this configuration by its modes, its ticks, its channels
+// or the range of its output.
 hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro_identity& identity);
 
 }  // namespace hydro::plant

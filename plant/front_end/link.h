@@ -1,4 +1,4 @@
-// The way to a front end: bytes to and from a serial port or a socket. Nothing here waits.
+// The way to a front end: it carries bytes to and from a serial port or a socket. Nothing here waits.
 #pragma once
 
 #include <sys/types.h>
@@ -14,7 +14,7 @@
 
 namespace hydro::plant {
 
-// What is wrong with a link that cannot be opened, in the words of an error message.
+// The reason why a link cannot be opened, in the words of an error message.
 struct LinkTrouble {
   std::string found;    // "\"/dev/ttyACM0\" (Permission denied)"
   std::string allowed;  // what is allowed, and what to do
@@ -29,30 +29,33 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() says why. Takes no
-  // longer than the system call, also with nobody at the other end.
+  // Opens the link, or opens it again. Returns whether that succeeded; if not, trouble() gives the reason.
+  // Takes no longer than the system call, even when nothing is connected at the other end.
   bool Open();
   void Close();
   bool is_open() const { return descriptor_ >= 0; }
   int descriptor() const { return descriptor_; }  // to wait on; -1: closed
   const LinkTrouble& trouble() const { return trouble_; }
 
-  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other, each
-  // whole: there may be more where less than kLargestDatagram is left of `into`. A link whose other end has
-  // gone is closed.
+  // All bytes that have come, but no more than `into` holds; 0: none. Datagrams come one after the other,
+  // whole: what `into` has no room for comes with the next call. A call takes a bounded number of them, so
+  // that no flood of empty ones holds it. A link whose other end has gone is closed.
   size_t Read(std::span<uint8_t> into);
-  static constexpr size_t kLargestDatagram = 1500;  // that Ethernet carries whole
 
-  // Hands over one frame. At most one is on its way: while the one before it has not left this machine, the
-  // new one replaces any other that waits, and the one that it replaced is counted. Sends what waits, too.
-  // What is not a command of each tick `must_leave`: commands do not replace it.
+  // Hands over one frame, and sends any frame that waits. At most one frame is on its way: while the previous
+  // one has not left this machine, the new frame replaces the one that waits, and the replaced frame is
+  // counted. A frame that is not one tick's command `must_leave`: commands do not replace it.
   void Write(std::span<const uint8_t> frame, bool must_leave = false);
   void Flush();
-  // The tick of what waits is over: unless it must leave, it is left out.
+  // The tick of the waiting frame is over: the frame is left out unless it must leave.
   void ForgetOld();
 
-  // For signal handlers: the frame as one system call, whatever waits.
+  // For signal handlers: writes the frame with one system call, even if another one waits.
   void WriteAtOnce(std::span<const uint8_t> frame) const noexcept;
+
+  // Until what this machine has to send on a port has left, a tenth of a second at most: its last close drops
+  // the rest. For signal handlers, too.
+  void AwaitGone() const noexcept;
 
   // Frames that Write() had to leave out because the link was too slow for them.
   int64_t frames_left_out() const { return frames_left_out_; }
@@ -61,10 +64,11 @@ class Link {
   // The open, non-blocking descriptor; -1 after Trouble().
   virtual int OpenDescriptor() = 0;
   // Bytes that the kernel still has to send; 0 where it does not tell.
-  virtual size_t BytesOnTheirWay(int) const { return 0; }
+  virtual size_t BytesOnTheirWay(int) const noexcept { return 0; }
   int Trouble(std::string found, std::string allowed);
 
  private:
+  size_t TakeRest(std::span<uint8_t> into);
   void Send(std::span<const uint8_t> bytes);
   ssize_t Put(std::span<const uint8_t> bytes) const noexcept;
   bool datagrams() const { return kind_ == Kind::kDatagrams; }
@@ -72,13 +76,15 @@ class Link {
   const Kind kind_;
   int descriptor_ = -1;
   LinkTrouble trouble_;
-  std::vector<uint8_t> begun_;    // the rest of a frame that has partly left
-  std::vector<uint8_t> waiting_;  // the newest frame that has not begun to leave
+  std::vector<uint8_t> datagram_;  // the last one; empty for other kinds
+  std::span<const uint8_t> rest_;  // of it, what was not handed over yet
+  std::vector<uint8_t> begun_;     // the rest of a frame that has partly left
+  std::vector<uint8_t> waiting_;   // the newest frame that has not begun to leave
   bool waiting_must_leave_ = false;
   int64_t frames_left_out_ = 0;
 };
 
-// Not yet open.
+// Makes a link that is not yet open.
 std::unique_ptr<Link> MakeLink(const settings::FrontEndUrl& url);
 
 }  // namespace hydro::plant

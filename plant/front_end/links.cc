@@ -23,13 +23,13 @@
 namespace hydro::plant {
 namespace {
 
-constexpr int kPriority = 6;  // of packets, above all others on this machine's way out
+constexpr int kPriority = 6;  // priority of packets, above all others that leave this machine
 
 std::string Found(const std::string& what, int error) {
   return Quoted(what) + " (" + std::strerror(error) + ")";
 }
 
-// Raw bytes, both ways, no modem lines; the speed where one is asked for.
+// Sets raw bytes in both directions, no modem lines, and the speed if one is asked for.
 bool MakeRaw(int port, int baud) {
   termios settings = {};
   if (tcgetattr(port, &settings) != 0) return false;
@@ -45,24 +45,24 @@ bool MakeRaw(int port, int baud) {
   return tcsetattr(port, TCSANOW, &settings) == 0;
 }
 
-// tcsetattr() succeeds when any of what it was asked for was done.
+// tcsetattr() succeeds when any one of the requested changes was made.
 bool HasSpeed(int port, int baud) {
   termios settings = {};
   return tcgetattr(port, &settings) == 0 && cfgetospeed(&settings) == *settings::BaudConstant(baud);
 }
 
-// USB converters collect what comes for up to 16 ms otherwise. Where a port does not know this, nothing is
-// lost.
+// USB converters otherwise collect incoming bytes for up to 16 ms. A port that does not know this request
+// loses nothing.
 void AskForLowLatency(int port) {
   serial_struct serial = {};
   if (ioctl(port, TIOCGSERIAL, &serial) != 0) return;
   serial.flags |= ASYNC_LOW_LATENCY;
   ioctl(port, TIOCSSERIAL, &serial);
   serial.closing_wait = ASYNC_CLOSING_WAIT_NONE;  // close() must not wait for a device that takes nothing
-  ioctl(port, TIOCSSERIAL, &serial);              // on its own: only root may set it
+  ioctl(port, TIOCSSERIAL, &serial);              // in a call of its own: only root may set it
 }
 
-// TIOCEXCL would outlive us on a pseudo terminal, whose other end stays open.
+// On a pseudo terminal, TIOCEXCL would outlive this process because its other end stays open.
 bool IsPseudoTerminal(int port) {
   constexpr unsigned kFirst = 136, kLast = 143;  // majors of the kernel's list of devices
   struct stat status = {};
@@ -82,7 +82,7 @@ class SerialLink : public Link {
     return result;
   }
 
-  size_t BytesOnTheirWay(int port) const override {
+  size_t BytesOnTheirWay(int port) const noexcept override {
     int bytes = 0;
     return ioctl(port, TIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
   }
@@ -93,7 +93,7 @@ class SerialLink : public Link {
       return Trouble(Quoted(path_) + ", which is no serial port",
                      "the port of the front end; ls -l /dev/serial/by-id lists those of USB");
     }
-    // TIOCEXCL keeps out everybody but root; the lock, those who ask for it.
+    // TIOCEXCL keeps out every process but root's; the lock keeps out those that ask for it.
     if (flock(port, LOCK_EX | LOCK_NB) != 0) return CannotOpen(EBUSY);
     if (!IsPseudoTerminal(port)) ioctl(port, TIOCEXCL);
     if (!MakeRaw(port, baud_)) {
@@ -138,11 +138,11 @@ class UdpLink : public Link {
   }
 
  protected:
-  // The name is looked up once: what a name server takes is too long for a run.
+  // The name is looked up once: a name server takes too long for a run.
   int OpenDescriptor() override {
     if (addresses_ == nullptr && !LookUp()) return -1;
     const int opened = socket(addresses_->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    // Connected, so that the kernel drops what others than the device send.
+    // The socket is connected so that the kernel drops packets that do not come from the device.
     if (opened < 0 || connect(opened, addresses_->ai_addr, addresses_->ai_addrlen) != 0) {
       const int error = errno;
       if (opened >= 0) close(opened);
@@ -192,7 +192,7 @@ class UnixLink : public Link {
   }
 
   // What the device has not read yet, with what the kernel adds to it: nothing, or more than a frame.
-  size_t BytesOnTheirWay(int opened) const override {
+  size_t BytesOnTheirWay(int opened) const noexcept override {
     int bytes = 0;
     return ioctl(opened, SIOCOUTQ, &bytes) == 0 && bytes > 0 ? static_cast<size_t>(bytes) : 0;
   }

@@ -11,34 +11,74 @@ namespace {
 constexpr int kInARow = 2;
 constexpr double kUsualTolerance = 0.1;  // V at the terminal: converters' offsets are below it
 
-// All within the patience, and the one before, which acted until the first of them.
+// Keeps all entries within the patience, and the one before, which acted until the first of them.
 template <class Entries>
 void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
 }
 
-bool Acts(const hydro_sample& sample) {
-  return sample.state == HYDRO_ARMED && sample.source == HYDRO_SOURCE_VOLTAGE;
+// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
+// and never the other sign.
+bool IsLess(const hydro_sample& sample, double told) {
+  const auto voltage = static_cast<double>(sample.voltage);
+  return sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
+}
+
+// What eq. (16) gives for the readings of a sample, and by how much rounding on another processor may change
+// it.
+struct Computed {
+  double voltage;
+  double rounding;
+};
+Computed ByEq16(const hydro_sample& sample, float pressure_ref, const hydro_gains& gains) {
+  constexpr double kRounding = 1e-6;  // of the largest terms: a few steps of single precision
+  const hydro_law_input input = {.pressure_ref = pressure_ref,
+                                 .p1 = sample.value[HYDRO_P1],
+                                 .p2 = sample.value[HYDRO_P2],
+                                 .motor_speed = sample.value[HYDRO_MOTOR_SPEED],
+                                 .arm_speed = sample.value[HYDRO_ARM_SPEED]};
+  const auto size = [](double value) { return std::isfinite(value) ? std::fabs(value) : 0; };
+  const double speeds = size(input.motor_speed) + size(gains.arm_speed_ratio) * size(input.arm_speed);
+  const double terms =
+      size(gains.k_p) * (size(pressure_ref) + size(input.p1) + size(input.p2) + size(gains.k_v) * speeds) +
+      size(gains.reference_feedforward) * size(pressure_ref) + size(sample.transfer);
+  return {static_cast<double>(hydro_law(&gains, &input) + sample.transfer), kRounding * (1 + terms)};
 }
 
 }  // namespace
 
-OutputWatch::OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience)
+OutputWatch::OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience,
+                         bus::Clock::Duration transfer)
     : own_loop_(driver.front_end.mode == settings::FrontEndMode::kLoopOnDevice),
       patience_(patience),
+      transfer_(transfer),
       tolerance_(std::fabs(driver.voltage.scale) * (driver.front_end.read_back_tolerance_V > 0
                                                         ? driver.front_end.read_back_tolerance_V
                                                         : kUsualTolerance)) {}
 
 void OutputWatch::OnTold(uint32_t sequence, double voltage, int64_t command_tick, bus::Clock::TimePoint now) {
-  told_.push_back({sequence, voltage, command_tick, now});
-  Forget(&told_, now - patience_);
+  Keep({sequence, voltage, command_tick, now});
 }
 
+void OutputWatch::OnTold(uint32_t sequence, float pressure_ref, const hydro_gains& gains,
+                         bus::Clock::TimePoint now) {
+  if (gains_ && !hydro_same_gains(&*gains_, &gains)) gains_changed_at_ = now;
+  gains_ = gains;
+  Keep({sequence, 0, -1, now, ByLaw{pressure_ref, gains}});
+}
+
+void OutputWatch::Keep(const Told& told) {
+  told_.push_back(told);
+  Forget(&told_, told.at - patience_);
+}
+
+// Of a voltage that was told, and of one by eq. (16), only a command of the same kind is the reason.
 const OutputWatch::Told* OutputWatch::Find(const hydro_sample& sample) const {
-  if (!Acts(sample)) return nullptr;
-  const auto found = std::find_if(told_.rbegin(), told_.rend(),
-                                  [&](const Told& told) { return told.sequence == sample.command_sequence; });
+  if (sample.state != HYDRO_ARMED || sample.source == HYDRO_SOURCE_ZERO) return nullptr;
+  const bool law = sample.source == HYDRO_SOURCE_LAW;
+  const auto found = std::find_if(told_.rbegin(), told_.rend(), [&](const Told& told) {
+    return told.sequence == sample.command_sequence && told.by_law.has_value() == law;
+  });
   return found != told_.rend() ? &*found : nullptr;
 }
 
@@ -47,39 +87,80 @@ int64_t OutputWatch::CommandTick(const hydro_sample& sample) const {
   return told != nullptr ? told->command_tick : -1;
 }
 
-void OutputWatch::Look(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
-                       std::vector<RigFault>* faults) {
+bool OutputWatch::ActsByLaw(const hydro_sample& sample) const {
+  const Told* const told = Find(sample);
+  return told != nullptr && told->by_law.has_value();
+}
+
+void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
+                       bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
   const size_t before = faults->size();
-  LookAtReport(sample, faults);
+  const Told* const told = Find(sample);
+  if (told != nullptr && told->by_law) {
+    LookAtLaw(sample, *told->by_law, range, now, faults);
+  } else {
+    LookAtReport(sample, faults);
+  }
   if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
 
-// By its own loop, where it has one; or by a command so old that this is the fault, unless all of late told it zero.
+// The device's own loop may do so, if it was told recently to act by it. So may a command so old that its age
+// is the fault, unless all recent commands told zero volts.
 bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
-  if (sample.source == HYDRO_SOURCE_LAW) return own_loop_;
-  return std::any_of(told_.begin(), told_.end(), [](const Told& told) { return told.voltage != 0; });
+  const bool law = sample.source == HYDRO_SOURCE_LAW;
+  if (law && !own_loop_) return false;
+  return std::any_of(told_.begin(), told_.end(),
+                     [&](const Told& told) { return law ? told.by_law.has_value() : told.voltage != 0; });
 }
 
-// A device may put out less than it was told, where its range ends, and says so; never more, and never the
-// other sign.
+// Holds for an arm that stands still as for one that moves: the sample has all that the law was computed
+// from. What a change of gains adds is the device's own word, and only believed while one passes.
+void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
+                            bus::Clock::TimePoint now, std::vector<RigFault>* faults) const {
+  const auto voltage = static_cast<double>(sample.voltage);
+  const auto [law, rounding] = ByEq16(sample, told.pressure_ref, told.gains);
+  const double expected = std::clamp(law, static_cast<double>(range.low), static_cast<double>(range.high));
+  const bool passes = gains_changed_at_ && now - *gains_changed_at_ <= transfer_ + patience_;
+  if (sample.pressure_ref != told.pressure_ref) {
+    faults->push_back(
+        {"output_differs",
+         fmt::format("the front end says that it acts by a reference of {:.6g}; it was told {:.6g}",
+                     sample.pressure_ref, told.pressure_ref),
+         sample.pressure_ref, told.pressure_ref});
+  } else if (sample.transfer != 0 && !passes) {
+    faults->push_back(
+        {"output_differs",
+         fmt::format(
+             "the front end adds {:.4g} V to eq. (16) for a change of its gains; they have not changed",
+             sample.transfer),
+         sample.transfer, 0});
+  } else if (!(std::fabs(voltage - expected) <= rounding) && !IsLess(sample, law)) {
+    faults->push_back(
+        {"output_differs",
+         fmt::format("the front end says that it puts out {:.4g} V; eq. (16) gives {:.4g} V for the readings "
+                     "that it sends",
+                     voltage, expected),
+         voltage, expected});
+  }
+}
+
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
   const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
   if (armed && found == nullptr && MayPutOut(sample)) return;
   const double told = found != nullptr ? found->voltage : 0;
-  const bool less = sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
-  if (voltage == told || less) return;
+  if (voltage == told || IsLess(sample, told)) return;
   faults->push_back(
       {"output_differs",
        fmt::format("the front end says that it puts out {:.4g} V; it was told {:.4g} V", voltage, told),
        voltage, told});
 }
 
-// What it reads back was measured before it put out the voltage of this sample. Anything that it reported of
-// late may be what it holds, as the output takes a while to follow. What it held is not known where the sample
-// before was lost, or where a loop on the device has had ticks between the two: a swing of its voltage that no
-// sample shows is short, a wrong output is not.
+// The read-back was measured before the device put out the voltage of this sample. The output takes a while
+// to follow, so it may hold anything that the device reported recently. Its earlier voltage is not known when
+// the sample before was lost, or when a loop on the device has had ticks between the two samples. A swing of
+// that loop's voltage that no sample shows is short; a wrong output is not.
 void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                                  std::vector<RigFault>* faults) {
   reported_.push_back({sample.voltage, now});

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<const char*, HYDRO_SENSORS> kSensorNames = {"p1",          "p2",        "motor_angle",
                                                                  "motor_speed", "arm_angle", "arm_speed"};
 
-// By bit.
+// In the order of the bits.
 constexpr std::array<const char*, 11> kFaultNames = {"no valid command within driver.watchdog_s (watchdog)",
                                                      "a command that is not finite or beyond its limit",
                                                      "a command made for other settings",

@@ -1,4 +1,4 @@
-// What a front end says in numbers, in words.
+// Puts into words what a front end says in numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hydro::plant {
 
-// The device does not take the settings: which key of the configuration it is about.
+// Names the key of the configuration because of which the device does not take the settings.
 InputError RefusalError(const std::string& file, const hydro_settings_held& held);
 
 // The bits of enum hydro_fault, one after the other: "pressure limit, watchdog".

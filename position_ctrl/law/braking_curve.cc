@@ -5,7 +5,8 @@
 
 namespace hydro::position_ctrl {
 
-// The parabola sqrt(2 a e) has the line's slope k at e = a/(2 k^2), where it is twice as high as the line: a/k against a/(2 k).
+// The parabola sqrt(2 a e) has the line's slope k at e = a/(2 k^2), where it is twice as high as the line:
+// a/k against a/(2 k).
 BrakingCurve::BrakingCurve(double c1_per_c2, double deceleration, double largest_speed)
     : slope_(c1_per_c2),
       deceleration_(deceleration),

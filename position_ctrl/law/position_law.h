@@ -20,21 +20,21 @@ class PositionLaw {
  public:
   explicit PositionLaw(const PositionLawSettings& settings) : settings_(settings) {}
 
-  // Eq. (17), limited: dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref. `intervals`: how many
-  // sample intervals have passed since the previous call (more than 1 when samples were missed). The first
+  // Eq. (17), limited: dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref. `intervals` is the
+  // number of sample intervals since the previous call (more than 1 when samples were missed). The first
   // sample after Reset() has no derivative term.
   double Update(double arm_angle, double arm_ref, int64_t intervals) {
     return Limited(UpdateUnlimited(arm_angle, arm_ref, intervals));
   }
 
-  // The same without the limit, and the limit.
+  // UpdateUnlimited() does the same without the limit; Limited() applies the limit.
   double UpdateUnlimited(double arm_angle, double arm_ref, int64_t intervals);
   double Limited(double pressure_ref) const;
 
-  // What UpdateUnlimited() would give, by other settings: the law itself stays as it is.
+  // The result that UpdateUnlimited() would give with other settings; the law itself stays unchanged.
   double Preview(const PositionLawSettings& other, double arm_angle, double arm_ref, int64_t intervals) const;
 
-  // Acts by other settings from the next Update() on. The previous sample stays known.
+  // Acts by other settings from the next Update() on. The previous sample is kept.
   void Retune(const PositionLawSettings& settings);
 
   void Reset() { has_previous_ = false; }
@@ -46,8 +46,9 @@ class PositionLaw {
   bool has_previous_ = false;
 };
 
-// `value` as a D/A converter of `bits` bits and a range of +/- full_scale puts it out: the nearest of its
-// 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: `value` itself.
+// The output of a D/A converter of `bits` bits and a range of +/- full_scale for `value`: the nearest of its
+// 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. With `bits` = 0, `value`
+// itself.
 double QuantiseDac(double value, int bits, double full_scale);
 
 }  // namespace hydro::position_ctrl

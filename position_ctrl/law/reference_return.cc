@@ -5,7 +5,7 @@
 namespace hydro::position_ctrl {
 
 void ReferenceReturn::ObserveChange(int64_t tick, bool driven, double present) {
-  // At every state, so that a hold that falls between two samples starts from where the arm is, too.
+  // Stored at every state, so that a hold between two samples also starts at the arm's present angle.
   const bool hold = held_ || (begun_ && !driven);
   if (hold && std::isfinite(present)) from_ = present;
   if (driven && held_) {
@@ -19,7 +19,7 @@ void ReferenceReturn::ObserveChange(int64_t tick, bool driven, double present) {
 }
 
 void ReferenceReturn::Depart(double from, int64_t tick) {
-  if (held_) return;  // it comes back to the new one
+  if (held_) return;  // after the hold, the reference comes back to the new one
   from_ = from;
   returning_ = ticks_ > 0;
   returned_ = tick;

@@ -1,5 +1,5 @@
-// How the reference comes back after the plant has held the motor at zero volts. The arm may have moved far in that time, and nobody
-// expects a jump: the reference starts from where the arm is. Pure.
+// Brings the reference back after the plant has held the motor at zero volts. The arm may have moved far in
+// that time, and nobody expects a jump: the reference starts at the arm's present angle. Pure.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,29 @@ namespace hydro::position_ctrl {
 
 class ReferenceReturn {
  public:
-  // `ticks`: in how many plant ticks the reference goes from where the arm is to where it is wanted; 0: at once.
+  // `ticks` is the number of plant ticks in which the reference goes from the arm's angle to the wanted one;
+  // 0: at once.
   explicit ReferenceReturn(int64_t ticks) : ticks_(ticks) {}
 
-  // Once for each state. `driven`: a command is in force that may move the motor. Before the first one, nothing is held:
-  // the run begins. `present`: what the reference refers to, as it is measured.
+  // Call it once for each state. `driven` means that a command is in force that may move the motor. Before
+  // the first such command nothing is held: the run only begins. `present` is the measured value of the
+  // quantity to which the reference refers.
   void Observe(int64_t tick, bool driven, double present) {
     if (!driven || held_ || !begun_) ObserveChange(tick, driven, present);
   }
 
-  // This loop joins a run that has gone on without it: as after a hold.
+  // This loop joins a run that has gone on without it; the reference behaves as after a hold.
   void Join() { begun_ = held_ = true; }
 
-  // The reference for the sample at `tick`: `wanted` in normal operation; what was measured last while the motor is
-  // held; in between, a straight line from one to the other.
+  // The reference for the sample at `tick`: `wanted` in normal operation; the last measured value while the
+  // motor is held; in between, a straight line from one to the other.
   double Reference(double wanted, int64_t tick);
 
-  // Another reference is followed from `tick` on: it is reached in the same way, from where the one before was.
+  // Another reference is followed from `tick` on. It is reached in the same way, starting at `from`, the
+  // value of the previous one.
   void Depart(double from, int64_t tick);
 
-  // Another run begins.
+  // Begins another run.
   void Reset() { *this = ReferenceReturn(ticks_); }
 
  private:
@@ -35,8 +38,8 @@ class ReferenceReturn {
 
   int64_t ticks_;
   bool begun_ = false;      // a command has been in force
-  bool held_ = false;       // none is any more
-  bool returning_ = false;  // one is again
+  bool held_ = false;       // no command is in force any more
+  bool returning_ = false;  // a command is in force again
   int64_t returned_ = 0;    // since this tick
   double from_ = 0;
 };

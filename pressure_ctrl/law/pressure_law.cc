@@ -7,10 +7,10 @@
 namespace hydro::pressure_ctrl {
 namespace {
 
-// Per rad of pump rotation, from eqs. (13) and (14).
+// Stiffness per rad of pump rotation, from eqs. (13) and (14).
 struct Stiffness {
-  double pressure = 0;  // psi/rad: how steeply dp rises, with unequal sides the load pressure
-  double D = 0;         // in^3/rad: the torque on the pump by that pressure
+  double pressure = 0;  // psi/rad: the slope of dp, or of the load pressure with unequal sides
+  double D = 0;         // in^3/rad: the pump torque that this pressure causes
 };
 
 Stiffness StiffnessAt(const model::Parameters& p, double arm_angle, int compressed_sides,

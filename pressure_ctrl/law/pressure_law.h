@@ -15,13 +15,13 @@ struct PressureGains {
 
 // The gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle,
 // without leakage and Coulomb friction) the requested natural frequency (rad/s) and damping ratio.
-// compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
+// `compressed_sides` is 2 when both volumes compress, and 1 when side 1 is held at p_3 by its one-way valve.
 // Throws std::invalid_argument when that needs k_p <= 0 (a natural frequency at or below the open loop's).
 PressureGains DerivePressureGains(const model::Parameters& parameters, double arm_angle,
                                   double natural_frequency, double damping_ratio, int compressed_sides,
                                   const model::Differences& differ = {});
 
-// The inverse of DerivePressureGains: the loop that given gains produce.
+// The inverse of DerivePressureGains: the second-order loop that given gains produce.
 struct SecondOrder {
   double natural_frequency = 0;  // rad/s
   double damping_ratio = 0;
@@ -31,17 +31,17 @@ SecondOrder PressureLoopDynamics(const model::Parameters& parameters, double arm
                                  const model::Differences& differ = {});
 
 // V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a
-// clamped actuator up to Coulomb friction. It supplies the torque that holds dp_ref, D dp / k_1, and what the
-// pump speed that replaces the leakage costs in viscous friction and in the k_v term. One side is assumed to
-// be at p_3.
+// clamped actuator up to Coulomb friction. It supplies the torque that holds dp_ref, D dp / k_1, and the
+// cost, in viscous friction and in the k_v term, of the pump speed that replaces the leakage. One side is
+// assumed to be at p_3.
 double SteadyStateFeedforward(const model::Parameters& parameters, const PressureGains& gains);
 
-// Of an actuator whose sides are unequal (model/sides.h): its load pressure (c_2 p2 - c_1 p1)/c takes the place of dp, and dp_ref is
-// the load pressure wanted. All 0: the sides are equal.
+// An actuator whose sides are unequal (model/sides.h): its load pressure (c_2 p2 - c_1 p1)/c takes the place
+// of dp, and dp_ref is the wanted load pressure. All 0: the sides are equal.
 struct UnequalSides {
   double areas = 0;          // model::Differences
-  double displacements = 0;  // the same
-  double charge = 0;         // psi, p_3, at which the side without load is
+  double displacements = 0;  // model::Differences
+  double charge = 0;         // psi, p_3, the pressure of the side without load
 };
 
 struct PressureLawSettings {
@@ -59,7 +59,7 @@ struct PressureLawInput {
   double p2 = 0;            // psi
   double motor_speed = 0;   // rad/s
   double arm_speed = 0;     // rad/s, used only with arm_speed_ratio
-  double transfer = 0;      // V, added: what is left of the law before a change of gains
+  double transfer = 0;      // V, added: the remainder of the law before a change of gains
 };
 
 struct PressureLawOutput {
@@ -67,8 +67,9 @@ struct PressureLawOutput {
   bool saturated = false;  // the law asked for more
 };
 
-// What a load pressure asks of the pump, whose loaded side alone is above p_3: its pressure difference and, as a factor on c/D, its
-// speed. Both are those of equal sides where they are equal.
+// The share of a load pressure that the pump, whose loaded side alone is above p_3, must supply: its pressure
+// difference and, as a factor on c/D, its speed. When the sides are equal, the values are those of equal
+// sides.
 struct PumpShare {
   double pressure = 0;
   double speed = 1;
@@ -84,7 +85,7 @@ inline PumpShare ShareOf(const UnequalSides& sides, double load_pressure) {
 
 // Eq. (16) with the optional feed-forwards, V, without a limit:
 //   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref + transfer
-// With unequal sides, dp is the load pressure, and the feed-forwards act on the pump's share of the reference.
+// With unequal sides, dp is the load pressure, and the feed-forwards act on the pump's share of dp_ref.
 inline double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
   const double pressure_error =
       input.pressure_ref - model::LoadPressure(settings.sides.areas, input.p1, input.p2);
@@ -96,7 +97,7 @@ inline double UnlimitedPressureLaw(const PressureLawSettings& settings, const Pr
   return input.transfer == 0 ? voltage : voltage + input.transfer;
 }
 
-// The same, limited to +/- voltage_limit.
+// The same voltage, limited to +/- voltage_limit.
 inline PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
   const double voltage = UnlimitedPressureLaw(settings, input);
   PressureLawOutput output;

@@ -1,4 +1,4 @@
-// Commands without a seal, and motor commands that are not what they should be.
+// Commands without a seal, and invalid motor commands.
 #include <array>
 
 #include "process/safety/safety_table.h"

@@ -1,4 +1,4 @@
-// The network, and who else is on it.
+// The network, and other senders on it.
 #include <array>
 
 #include "process/safety/safety_table.h"

@@ -1,4 +1,4 @@
-// Pressure commands that are not what they should be.
+// Invalid pressure commands.
 #include <array>
 
 #include "process/safety/safety_table.h"

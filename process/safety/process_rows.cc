@@ -1,4 +1,4 @@
-// Processes that die, hang, come too late or do not belong together.
+// Processes that die, hang, come too late or do not match the others.
 #include <array>
 
 #include "process/safety/safety_table.h"
@@ -82,13 +82,15 @@ constexpr std::array kProcessRows{
         .output = SafeOutput::kZeroVolts,
         .output_text =
             "one command of 0 V. The driver's output: 0 V by its guardian, else by the hardware watchdog "
-            "([hardware.md](hardware.md))",
+            "([hardware.md](hardware.md)), or that of the front end",
         .restart = Cleared::kByItself,
-        // One that is started anew has nothing latched.
+        // A process that is started anew has nothing latched.
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "by itself, when a plant is back; with `\"explicit\"` too: somebody has started it",
-        .tests = "fault_loops.FaultLoopsTest.test_plant_dies driver.WaysOutTest.test_guardian "
-                 "driver.LaunchedDriverTest.test_killed",
+        .tests =
+            "fault_loops.FaultLoopsTest.test_plant_dies driver.WaysOutTest.test_guardian "
+            "driver.LaunchedDriverTest.test_killed front_end.LastLineTest.test_killed "
+            "front_end.LastLineTest.test_killed_on_a_terminal front_end.LastLineTest.test_killed_on_a_socket",
         .injected = "crash:plant",
     },
     SafetyRow{

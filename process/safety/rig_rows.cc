@@ -91,7 +91,9 @@ constexpr std::array kRigRows{
     },
     SafetyRow{
         .id = "front_end_hears_nothing",
-        .fault = "a front end hears no command: the computer is killed or frozen, the cable is cut",
+        .fault = "a front end hears no command: the computer is frozen or loses its power, the cable is cut, "
+                 "driver and "
+                 "guardian are killed at once",
         .detected = "the front end itself, by its own ticks",
         .within = {"`driver.watchdog_s`, in whole ticks of the device"},
         .output = SafeOutput::kZeroVolts,
@@ -99,7 +101,7 @@ constexpr std::array kRigRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by the driver, which arms it again with the next command that is obeyed",
-        .tests = "front_end.LastLineTest.test_killed front_end.LastLineTest.test_frozen "
+        .tests = "front_end.LastLineTest.test_killed_with_its_guardian front_end.LastLineTest.test_frozen "
                  "front_end.LastLineTest.test_unplugged front_end.LastLineTest.test_explicit_rearm "
                  "plant/front_end/FrontEndRigTest.PulledCable",
         .not_injected = kNoDevice,
@@ -164,7 +166,8 @@ constexpr std::array kRigRows{
         .restart = Cleared::kRunEnds,
         .explicit_rearm = Cleared::kRunEnds,
         .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
-        .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/ComediRigTest.WithoutAGuardianNoVoltage",
+        .tests = "driver.WaysOutTest.test_guardian_gone plant/driver/ComediRigTest.WithoutAGuardianNoVoltage "
+                 "front_end.LastLineTest.test_guardian_gone",
         .injected = "guardian_gone",
     },
     SafetyRow{

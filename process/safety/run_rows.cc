@@ -91,7 +91,7 @@ constexpr std::array kRunRows{
         .cleared_text = "-",
         .tests = "fault_limits.RearmTest.test_refused_while_the_cause_persists "
                  "fault_limits.RearmTest.test_requests_of_another_run "
-                 "fault_limits.RearmTest.test_nothing_to_rearm",
+                 "fault_limits.RearmTest.test_nothing_to_rearm fault_limits.RearmTest.test_no_latched_fault",
         .injected = "rearm",
     },
     SafetyRow{

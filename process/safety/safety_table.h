@@ -1,5 +1,6 @@
-// What happens when something goes wrong: a row for each situation. docs/safety.md shows the table (tests/process
-// writes it there), the tests hold the code against it, and hydro-torture says which rows its runs have reached.
+// What happens when something goes wrong: one row for each situation. docs/safety.md shows the table
+// (tests/process writes it there), the tests compare the code with it, and hydro-torture reports which rows
+// its runs have reached.
 #pragma once
 
 #include <optional>
@@ -15,11 +16,11 @@ inline constexpr int kZeroVoltsWithinTicks = 5;
 enum class SafeOutput {
   kZeroVolts,
   kReferenceRamped,  // the pressure reference goes to zero first, then the voltage
-  kNotObeyed,        // what is wrong has no effect; control goes on
+  kNotObeyed,        // the wrong input has no effect; control goes on
   kControlGoesOn,
 };
 
-// How a row's output ends.
+// How the output is released after a row's situation.
 enum class Cleared {
   kByItself,
   kByRearm,
@@ -28,13 +29,14 @@ enum class Cleared {
 
 struct Within {
   std::string_view text;
-  // What a program can check: at most so many plant ticks ...
+  // The limit that a program can check: at most this number of plant ticks ...
   std::optional<int> ticks = {};
-  // ... after the time of this key of [limits] has passed, counted from what happened; empty: after its detection.
+  // ... after the time of this key of [limits] has passed, counted from the event; when the key is empty,
+  // after its detection.
   std::string_view after = {};
 };
 
-// Texts are Markdown, for a cell of docs/safety.md. Lists are words with one space between.
+// Texts are Markdown, for a cell of docs/safety.md. Lists are words separated by one space.
 struct SafetyRow {
   std::string_view id;
   std::string_view fault;     // what happens
@@ -46,12 +48,13 @@ struct SafetyRow {
   Cleared restart;         // with limits.rearm = "restart"
   Cleared explicit_rearm;  // with "explicit"
   std::string_view cleared_text;
-  // tests/e2e: fault_loops.FaultLoopsTest.test_plant_dies; other folders of tests/: plant/PlantAppTest.ModelErrorEndsTheRun.
+  // Tests in tests/e2e: fault_loops.FaultLoopsTest.test_plant_dies; in other folders of tests/:
+  // plant/PlantAppTest.ModelErrorEndsTheRun.
   std::string_view tests = {};
-  // Kinds of faults that hydro-torture injects (sim/torture/schedule/fault_kinds.cc), each enough by itself to reach the
-  // row in some run: "slow", or "slow:plant" where it matters to whom.
+  // Kinds of faults that hydro-torture injects (sim/torture/schedule/fault_kinds.cc), each enough by itself
+  // to reach the row in some run: "slow", or "slow:plant" where the process that it hits matters.
   std::string_view injected = {};
-  std::string_view not_injected = {};  // why there are none
+  std::string_view not_injected = {};  // the reason for injecting none
 };
 
 // In the order of docs/safety.md.
@@ -59,13 +62,13 @@ const std::vector<SafetyRow>& SafetyTable();
 
 // Throws std::invalid_argument for an id that no row has.
 const SafetyRow& SafetyRowOf(std::string_view id);
-// Its ticks. Throws the same when the row states none.
+// The row's ticks. Throws std::invalid_argument when there is no such row or it states none.
 int TicksWithin(std::string_view id);
 
-// "a b" is a, b.
+// Splits "a b" into a, b.
 std::vector<std::string_view> WordsOf(std::string_view list);
 
-// The parts of the table, a file each.
+// The parts of the table, one file each.
 std::span<const SafetyRow> ProcessRows();
 std::span<const SafetyRow> LoggerRows();
 std::span<const SafetyRow> RigRows();

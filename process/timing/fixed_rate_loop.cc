@@ -38,7 +38,7 @@ int64_t FixedRateLoop::Wait() {
 
   const double late_ns = std::chrono::duration<double, std::nano>(now - due).count();
   int64_t elapsed = 1 + static_cast<int64_t>(late_ns / period_ns_);
-  // The quotient may be off by one where due times were rounded.
+  // The quotient may be off by one, because due times are rounded.
   while (DueTime(tick_ + elapsed) > now) --elapsed;
   while (DueTime(tick_ + elapsed + 1) <= now) ++elapsed;
 

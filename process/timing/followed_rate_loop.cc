@@ -9,9 +9,10 @@
 namespace hydro::timing {
 namespace {
 
-constexpr double kGrace = 0.5;  // periods: what a sample may be late by
-// Of what the arrival of one sample says about when the next one is expected: quartz clocks differ by far
-// less than the most, and a device whose clock is wrong by more is not followed.
+constexpr double kGrace = 0.5;  // periods by which a sample may be late
+// kGain is the share of a sample's deviation by which the expected time of the next sample is corrected;
+// kMost bounds that correction. Quartz clocks differ by far less than kMost, and a device whose clock is
+// wrong by more is not followed.
 constexpr double kGain = 0.125, kMost = 0.005;  // periods
 
 }  // namespace
@@ -31,8 +32,8 @@ FollowedRateLoop::TimePoint FollowedRateLoop::deadline() const {
   return start_ + std::chrono::nanoseconds(std::llround(since_start_ns_ + (1 + kGrace) * period_ns_));
 }
 
-// The device's count is right where it agrees with the time that has passed here. A device that has begun
-// anew, or whose clock is wrong by far, is followed by this clock.
+// The device's count is right when it agrees with the time that has passed here. When a device has restarted,
+// or its clock is far wrong, this computer's clock counts the ticks.
 int64_t FollowedRateLoop::Count(double periods, std::optional<int64_t> arrived) {
   if (!arrived) {
     const auto due = static_cast<int64_t>(std::floor(periods - kGrace + 1e-6));

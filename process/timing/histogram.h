@@ -10,8 +10,8 @@ namespace hydro::timing {
 
 // Counts whole numbers from 0 to kHighest, in any one unit (1 ns to 1 h in ns, for example). Each power of
 // two is divided into 128 buckets; a percentile is the middle of its bucket, so it is wrong by at most 1/256
-// (0 below 256). Lower values count as 0, higher ones as kHighest. Takes 37 KB; recording takes a few ns and
-// allocates nothing.
+// (0 below 256). Lower values count as 0, higher ones as kHighest. A histogram takes 37 KB; recording takes a
+// few ns and allocates nothing.
 class Histogram {
  public:
   static constexpr int64_t kHighest = 3'600'000'000'000;
@@ -19,7 +19,7 @@ class Histogram {
   void Record(int64_t value) {
     value = std::clamp<int64_t>(value, 0, kHighest);
     ++count_;
-    if (value == newest_) {  // as simulated time has it, tick for tick
+    if (value == newest_) {  // usual in simulated time, tick for tick
       ++counts_[newest_bucket_];
       return;
     }
@@ -30,8 +30,8 @@ class Histogram {
     max_ = std::max(max_, value);
   }
 
-  // The value that `percent` (0 to 100) of the records do not exceed; 0 when nothing was recorded. 100 gives
-  // Max().
+  // The value that `percent` (0 to 100) of the records do not exceed; 0 when nothing was recorded. A
+  // `percent` of 100 gives Max().
   int64_t Percentile(double percent) const;
 
   int64_t Count() const { return count_; }
@@ -54,7 +54,7 @@ class Histogram {
 
   static constexpr int kBuckets = 34 * kSub + 2 * kSub;  // BucketOf(kHighest) is among the last
 
-  // Below 2 kSub one bucket for each value; above, the leading kSub + 1 bits choose it.
+  // Below 2 kSub there is one bucket for each value; above, the leading kSub + 1 bits choose the bucket.
   static constexpr int BucketOf(int64_t value) {
     const int shift =
         std::max(0, static_cast<int>(std::bit_width(static_cast<uint64_t>(value))) - kSubBits - 1);
@@ -73,7 +73,7 @@ class Histogram {
   int64_t min_ = kHighest;
   int64_t max_ = 0;
   int64_t newest_ = -1;    // the newest record; -1: none
-  int newest_bucket_ = 0;  // and where it is counted
+  int newest_bucket_ = 0;  // the bucket that counts it
   std::array<int64_t, kBuckets> counts_{};
 };
 

@@ -106,7 +106,7 @@ loop_histogram_t* LoopStatistics::PollHistogram(bus::Clock::TimePoint now) {
 loop_histogram_t* LoopStatistics::TotalHistogram(LoopQuantity quantity, bus::Clock::TimePoint now) {
   const bool by_interval = quantity == LoopQuantity::kPeriod || quantity == LoopQuantity::kLatency;
   Histogram& whole = Whole(quantity);
-  const Histogram before = whole;  // what has not been reported yet still belongs into the next report
+  const Histogram before = whole;  // what has not been reported yet still belongs in the next report
   if (by_interval) whole.Merge(quantity == LoopQuantity::kPeriod ? current_.period : current_.latency);
   loop_histogram_t* const total = FillHistogram(static_cast<int>(quantity), now);
   whole = before;

@@ -1,5 +1,5 @@
-// How well a loop keeps time: reported once a second on HYDRO_LOOP_STATISTICS, summarised over the whole run,
-// and as histograms on HYDRO_LOOP_HISTOGRAM.
+// Measures how well a loop keeps time. It reports once a second on HYDRO_LOOP_STATISTICS, summarises the
+// whole run, and gives histograms on HYDRO_LOOP_HISTOGRAM.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace hydro::timing {
 
-// The quantities that have a histogram; loop_histogram_t says what each is.
+// The quantities that have a histogram; loop_histogram_t explains each.
 enum class LoopQuantity { kPeriod, kLatency, kRoundTrip, kQueueDepth, kGap, kSkipped };
 inline constexpr int kLoopQuantities = 6;
 const char* NameOf(LoopQuantity quantity);
@@ -27,8 +27,8 @@ class LoopStatistics {
   // `role`, `host` and `session` go into each report; the first interval begins at `start`.
   LoopStatistics(std::string role, std::string host, int64_t session, bus::Clock::TimePoint start);
 
-  // The loop ran: it began at `began`, and `latency` is what loop_statistics_t says of the role. The period
-  // is the time since the previous one began.
+  // Records a cycle of the loop that began at `began`; loop_statistics_t says what `latency` is for the role.
+  // The period is the time since the previous cycle began.
   void RecordCycle(bus::Clock::TimePoint began, bus::Clock::Duration latency) {
     ++current_.cycles;
     if (previous_began_) current_.period.Record(Nanoseconds(began - *previous_began_));
@@ -36,10 +36,10 @@ class LoopStatistics {
     current_.latency.Record(Nanoseconds(latency));
   }
 
-  // The first command for a state has arrived so long after that state was sent.
+  // Records that the first command for a state arrived this long after the state was sent.
   void RecordRoundTrip(bus::Clock::Duration duration);
 
-  // Counters of the whole run; a report holds what was added since the previous one. What one call adds
+  // Counters of the whole run; a report holds what was added since the previous one. The increase in one call
   // counts as missed, or lost, in a row.
   void set_missed_deadlines(int64_t total) { Count(total, &total_missed_, LoopQuantity::kSkipped); }
   void set_lost_messages(int64_t total) { Count(total, &total_lost_, LoopQuantity::kGap); }
@@ -47,23 +47,25 @@ class LoopStatistics {
   void AddMissedDeadlines(int64_t count) { set_missed_deadlines(SaturatingSum(total_missed_, count)); }
   void AddLostMessages(int64_t count) { set_lost_messages(SaturatingSum(total_lost_, count)); }
 
-  // Messages that are waiting now; a report holds the largest number since the previous one.
+  // Records the number of messages that are waiting now; a report holds the largest number since the previous
+  // one.
   void RecordQueueDepth(int64_t depth);
 
-  // When Poll() has a report next.
+  // The time at which Poll() has its next report.
   bus::Clock::TimePoint report_due() const { return current_.start + kReportPeriod; }
 
-  // The report that is due, once a second; null in between. The sender adds utime. Valid until the next call.
+  // Returns the report that is due, once a second; null in between. The sender adds utime. Valid until the
+  // next call.
   loop_statistics_t* Poll(bus::Clock::TimePoint now);
 
-  // The same over the whole run so far, whenever it is asked for; marked as whole_run.
+  // The same over the whole run so far, available at any time; marked as whole_run.
   loop_statistics_t Total(bus::Clock::TimePoint now) const;
 
-  // The histogram that is due, or null. Every two seconds all take their turn, one a call, so that no call of
-  // a loop has to send them all; empty ones are left out.
+  // Returns the histogram that is due, or null. Every two seconds all histograms take their turn, one a call,
+  // so that no call of a loop has to send them all; empty ones are left out.
   loop_histogram_t* PollHistogram(bus::Clock::TimePoint now);
 
-  // When PollHistogram() has one next; in the past while a turn goes on.
+  // The time at which PollHistogram() has its next histogram; in the past while a turn goes on.
   bus::Clock::TimePoint histogram_due() const {
     return next_histogram_ < kLoopQuantities ? bus::Clock::TimePoint::min() : next_round_;
   }
@@ -105,11 +107,12 @@ class LoopStatistics {
   std::optional<bus::Clock::TimePoint> previous_began_;
   bus::Clock::TimePoint start_;
   Interval current_;
-  int64_t cycles_ = 0;                            // of the reported intervals
-  int64_t queue_depth_ = 0;                       // the same
-  std::array<Histogram, kLoopQuantities> whole_;  // period and latency: of the reported intervals; else all
-  int next_histogram_ = kLoopQuantities;          // kLoopQuantities: all have been sent
-  bus::Clock::TimePoint next_round_;              // when they are due again
+  int64_t cycles_ = 0;       // of the reported intervals
+  int64_t queue_depth_ = 0;  // of the reported intervals
+  // Period and latency: of the reported intervals; others: of all.
+  std::array<Histogram, kLoopQuantities> whole_;
+  int next_histogram_ = kLoopQuantities;  // kLoopQuantities: all have been sent
+  bus::Clock::TimePoint next_round_;      // when they are due again
 };
 
 }  // namespace hydro::timing

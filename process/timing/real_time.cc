@@ -41,7 +41,7 @@ bool SetCpu(int cpu, RealTimeResult* result) {
 
 bool LockMemory(RealTimeResult* result) {
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
-    // What was freed is kept for the next allocation: pages given back would have to be faulted in again.
+    // Freed memory is kept for the next allocation: pages given back would have to be faulted in again.
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
     return true;
@@ -61,7 +61,7 @@ RealTimeResult ApplyRealTime(const RealTimeRequest& request) {
   if (request.cpu >= 0) result.cpu = SetCpu(request.cpu, &result);
   if (request.priority > 0) result.priority = SetPriority(request.priority, &result);
   if (!result.warnings.empty()) {
-    // Not the default logger, which writes to stdout unless the program has set it up.
+    // Does not use the default logger, which writes to stdout unless the program has set it up.
     spdlog::logger log("real_time", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     for (const std::string& warning : result.warnings) log.warn("{}", warning);
   }

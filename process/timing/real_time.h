@@ -1,4 +1,4 @@
-// Real-time scheduling of the calling thread and of those that it starts afterwards.
+// Sets real-time scheduling of the calling thread and of the threads that it starts afterwards.
 #pragma once
 
 #include <string>
@@ -20,7 +20,8 @@ struct RealTimeResult {
 };
 
 // Does what is asked for and nothing else. Logs a warning to stderr for each thing that is refused, and the
-// program goes on without it. Call this before opening the bus: LCM's receiving thread inherits the settings.
+// program goes on without it. Call this before opening the bus: threads that start later inherit the
+// settings.
 RealTimeResult ApplyRealTime(const RealTimeRequest& request);
 
 }  // namespace hydro::timing

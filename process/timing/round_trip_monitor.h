@@ -1,4 +1,4 @@
-// Measures how long a state takes to be answered, on the clock of the process that sends the states.
+// Measures how long a state waits for its answer, on the clock of the process that sends the states.
 #pragma once
 
 #include <array>
@@ -14,13 +14,15 @@ class RoundTripMonitor {
  public:
   static constexpr int64_t kRemembered = 1024;
 
-  // The state of `tick` was sent at `now`. One that is sent again counts from the first time.
+  // Records that the state of `tick` was sent at `now`. A state that is sent again counts from the first
+  // time.
   void OnSent(int64_t tick, bus::Clock::TimePoint now) {
     Sent& sent = sent_[Index(tick)];
     if (sent.tick != tick) sent = {tick, now, false};
   }
 
-  // How long the first answer to `tick` took; nothing for a later one, or for a tick that was not sent.
+  // The time that the first answer to `tick` took; nothing for a later answer, or for a tick that was not
+  // sent.
   std::optional<bus::Clock::Duration> OnAnswer(int64_t tick, bus::Clock::TimePoint now) {
     Sent& sent = sent_[Index(tick)];
     if (sent.tick != tick || sent.answered) return std::nullopt;

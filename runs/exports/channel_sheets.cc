@@ -16,11 +16,11 @@ namespace {
 using definitions::MessageDefinition;
 using definitions::Value;
 
-// A sheet while it is read.
+// A sheet while its log is being read.
 struct OpenSheet {
   const MessageDefinition* definition = nullptr;
   std::string channel;
-  int tick = -1;  // places of the fields; -1: it has none
+  int tick = -1;  // places of the fields; -1: there is none
   int utime = -1;
   Sheet sheet;
   std::vector<RowTimes::Mark> marks;

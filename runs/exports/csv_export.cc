@@ -1,5 +1,5 @@
-// A file of CSV holds one table: the run's, or the messages of one channel; of several runs with a first column that names the run. A
-// folder holds a file for each.
+// A CSV file holds one table: the run's, or the messages of one channel. With several runs, a first column
+// names the run. A folder holds one file for each table.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kWriteChunk = 1u << 20;
 
-// In quotes where a reader would take it for something else.
+// Adds quotes where a reader would otherwise misread the text.
 void AppendText(const std::string& value, std::string* text) {
   if (value.find_first_of(",\"\r\n") == std::string::npos) {
     *text += value;
@@ -68,14 +68,15 @@ class CellWriter {
   std::string& text_;
 };
 
-// A channel's column with its unit, as there is no other place for it; the table's columns have theirs.
+// The column's heading. A channel's column includes its unit, because a CSV file has no other place for it;
+// the names of the table's columns already do.
 std::string Heading(const Sheet& sheet, const definitions::Field& field) {
   if (sheet.is_table || field.unit.empty()) return field.name;
   const std::string unit = "_" + UnitInName(field.unit);
   return field.name.ends_with(unit) ? field.name : field.name + unit;
 }
 
-// The sheet's columns, each name once: a state has time_s of its own.
+// The sheet's columns, each name once, because a state has a time_s of its own.
 std::vector<SheetColumn> ColumnsOf(const Sheet& sheet) {
   std::vector<SheetColumn> columns;
   for (SheetColumn& column : WithTimes(sheet)) {
@@ -98,7 +99,7 @@ std::string HeadLine(const std::vector<SheetColumn>& columns, bool several) {
 void WriteRows(const ExportedRun& run, const std::vector<SheetColumn>& columns, bool several, size_t rows,
                Missing missing, Output* out) {
   std::string text;
-  // A line with nothing but an empty cell would be an empty line.
+  // With only one column, a line with an empty cell would be an empty line.
   if (columns.size() == 1) missing = Missing::kNan;
   for (size_t row = 0; row < rows; ++row) {
     if (several) AppendText(run.name, &text);
@@ -125,7 +126,7 @@ void CheckOneSheet(const std::vector<ExportedRun>& runs) {
   }
 }
 
-// The sheets of that name, of the runs that have one.
+// Writes the sheets of that name, from all runs that have one.
 void WriteTable(const std::vector<ExportedRun>& runs, const std::string& name, Missing missing,
                 const std::string& file) {
   Output out(file, true);

@@ -23,7 +23,7 @@ using Say = std::function<void(const std::string&)>;
 
 struct Recording {
   std::vector<std::string> files;
-  runs::RunLog log;  // all of them
+  runs::RunLog log;  // all messages of the log
   std::vector<std::string> cautions;
 };
 
@@ -54,7 +54,7 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
   to->events += log.events;
 }
 
-// More of a recording that is there, or a new one.
+// Adds the log to the recording that it continues, or starts a new one.
 void AddRecording(const std::string& file, runs::RunLog&& log, const Say& say,
                   std::vector<Recording>* recordings) {
   const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
@@ -87,7 +87,8 @@ std::vector<Recording> ReadRecordings(const std::vector<std::string>& files, con
   return recordings;
 }
 
-// The stem of the log, of a limb with the joint's name, and a number where another run has that name.
+// The stem of the log, followed by the joint's name for a limb, and by a number where another run already has
+// that name.
 std::string NameFor(const Recording& recording, const std::vector<ExportedRun>& others) {
   const std::string stem = std::filesystem::path(recording.files.front()).stem().string() +
                            (recording.log.joint.empty() ? "" : "_" + recording.log.joint);
@@ -134,7 +135,7 @@ UnitSystem UnitsOf(const Recording& recording) {
   return descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), recording.log.file);
 }
 
-// The run's table; among all channels it may be missing, which a line says.
+// Adds the run's table. When all channels are exported, the table may be missing, and a line says so.
 void AddTable(const Recording& recording, const Selection& selection, const Say& say, ExportedRun* run) {
   try {
     run->sheets.push_back(TableSheet(recording.log));
@@ -201,7 +202,7 @@ std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const r
     runs.push_back(Export(recording, NameFor(recording, runs), selection, times, say));
     CheckNotEmpty(recording, selection, runs.back());
   }
-  // Not where an error says what is wrong.
+  // Cautions come only after all runs were read, so that they do not precede an error.
   for (const Recording& recording : recordings)
     std::for_each(recording.cautions.begin(), recording.cautions.end(), say);
   return runs;

@@ -1,4 +1,5 @@
-// HDF5: a dataset for each column, with its unit and meaning as attributes; a group for each channel and, of several, each run.
+// HDF5: a dataset for each column, with its unit and meaning as attributes, a group for each channel and,
+// with several runs, a group for each run.
 #include <type_traits>
 
 #include "base/utf8.h"
@@ -87,7 +88,7 @@ class Hdf5Writer {
     const Hdf5Handle type = TextType();
     WriteDataset(at, field, type, type, texts.size(), static_cast<const void*>(texts.data()));
   }
-  // A list for each row.
+  // Writes a list for each row.
   template <class T>
   void WriteColumn(hid_t at, const definitions::Field& field,
                    const std::vector<std::vector<T>>& values) const {

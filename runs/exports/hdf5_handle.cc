@@ -10,12 +10,12 @@ void ThrowHdf5Error(const std::string& file) {
 
 Hdf5Handle CreateHdf5(const std::string& file, hsize_t bytes_before) {
   constexpr size_t kGrowth = 16u << 20;
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our own errors name the file
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // this program's own errors name the file
   const Hdf5Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose, file),
       access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file);
   if (bytes_before > 0) CheckHdf5(H5Pset_userblock(create, bytes_before), file);
   CheckHdf5(H5Pset_fapl_core(access, kGrowth, false), file);
-  // The library knows its files in memory by their names.
+  // The library identifies its files in memory by their names.
   return {H5Fcreate("hydro-log", H5F_ACC_TRUNC, create, access), H5Fclose, file};
 }
 

@@ -1,5 +1,6 @@
-// MAT files of version 7.3: HDF5 with MATLAB's attributes. Written without matio, which puts the time of writing into every dataset, so that the
-// same run would not give the same bytes, and crashes at the end of the program when the disk is full.
+// MAT files of version 7.3: HDF5 with MATLAB's attributes. They are written without matio, which puts the
+// time of writing into every dataset, so that the same run would not give the same bytes, and which crashes
+// at the end of the program when the disk is full.
 #include <cstring>
 #include <type_traits>
 
@@ -15,7 +16,7 @@ using definitions::FieldType;
 
 constexpr size_t kHeaderSize = 512;
 
-// The 128 bytes by which MATLAB knows its files, before what is HDF5.
+// The 128 bytes before the HDF5 part, by which MATLAB recognises its files.
 std::string Header() {
   std::string header = "MATLAB 7.3 MAT-file, written by hydro-log";
   header.resize(124, ' ');
@@ -24,11 +25,11 @@ std::string Header() {
   return header;
 }
 
-// What MATLAB calls a value, and how its elements are stored.
+// MATLAB's class for a value, and how its elements are stored.
 struct Class {
   const char* name;
   hid_t file_type;
-  int decode = 0;  // MATLAB_int_decode of what is stored as another type
+  int decode = 0;  // MATLAB_int_decode, for values stored as another type
 };
 
 Class ClassOf(FieldType type) {
@@ -80,7 +81,7 @@ class Mat73Writer {
   void Write(hid_t at, const std::string& name, const std::vector<int64_t>& values) {
     WriteArray(at, name, ClassOf(FieldType::kInt64), H5T_NATIVE_INT64, values.size(), 1, values.data());
   }
-  // A cell for each element: an array of references to what stands in the group #refs#.
+  // Writes a cell for each element: an array of references to objects in the group #refs#.
   template <class T>
   void Write(hid_t at, const std::string& name, const std::vector<T>& values) {
     if (H5Lexists(root_, kCells, H5P_DEFAULT) <= 0) static_cast<void>(Group(root_, kCells));
@@ -99,7 +100,8 @@ class Mat73Writer {
     return {H5Gcreate2(at, name.c_str(), H5P_DEFAULT, how, H5P_DEFAULT), H5Gclose, file_};
   }
 
-  // An array of rows x columns; HDF5 has MATLAB's dimensions in the opposite order. Of an empty one its dimensions are stored.
+  // Writes an array of rows x columns. HDF5 has MATLAB's dimensions in the opposite order. For an empty
+  // array, its dimensions are stored.
   void WriteArray(hid_t at, const std::string& name, const Class& kind, hid_t memory_type, size_t rows,
                   size_t columns, const void* data) const {
     const bool empty = rows * columns == 0;
@@ -134,7 +136,7 @@ class Mat73Writer {
     CheckHdf5(H5Awrite(attribute, H5T_NATIVE_INT, &value), file_);
   }
 
-  // The order of a struct's fields, each name as a list of letters.
+  // Stores the order of a struct's fields, each name as a list of letters.
   void NameFields(hid_t group, const std::vector<MatField>& fields) const {
     std::vector<hvl_t> names;
     names.reserve(fields.size());
@@ -162,7 +164,7 @@ void WriteMat73Export(const std::vector<ExportedRun>& runs, const std::string& f
   const Hdf5Handle root = CreateHdf5(file, kHeaderSize);
   Mat73Writer writer(root, file);
   for (const MatField& variable : MatVariables(runs)) writer.Write(root, variable.name, variable.value);
-  // Versions of the library differ in whether the image has the bytes before what is HDF5.
+  // Versions of the library differ in whether the image includes the bytes before the HDF5 part.
   const std::string bytes = Hdf5Bytes(root, file);
   const size_t begin = bytes.starts_with("\x89HDF") ? 0 : kHeaderSize;
   out.Write(Header());

@@ -1,4 +1,4 @@
-// MAT files of version 5, by matio.
+// Writes MAT files of version 5 with matio.
 #include <matio.h>
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace {
 
 using definitions::FieldType;
 
-// A variable must stay below this.
+// bytes; a variable must stay below this.
 constexpr size_t kLimit = (1u << 31) - (1u << 16);
 
 matvar_t* Column(matio_classes kind, matio_types type, size_t rows, const void* data, int flags = 0) {
@@ -25,7 +25,7 @@ matvar_t* Column(matio_classes kind, matio_types type, size_t rows, const void* 
   return Mat_VarCreate(nullptr, kind, type, 2, dimensions, const_cast<void*>(data), flags);
 }
 
-// Whole numbers stay whole, in the classes of MATLAB that hold them.
+// Whole numbers stay whole, in the MATLAB classes that hold them.
 matvar_t* WholeNumbers(FieldType type, const std::vector<int64_t>& values) {
   const auto as = [&]<class T>(matio_classes kind, matio_types stored, T, int flags) {
     const std::vector<T> narrow(values.begin(), values.end());
@@ -47,17 +47,19 @@ matvar_t* WholeNumbers(FieldType type, const std::vector<int64_t>& values) {
   }
 }
 
-// SciPy 1.10 cannot read a file with a character of two UTF-16 units in it: they become U+FFFD here.
+// SciPy 1.10 cannot read a file that has a character of two UTF-16 units, so such characters become U+FFFD
+// here.
 std::u16string SingleUnits(const std::u16string& text) {
   std::u16string single;
   for (const char16_t unit : text) {
-    if (unit >= 0xdc00 && unit < 0xe000) continue;  // the second of two
+    if (unit >= 0xdc00 && unit < 0xe000) continue;  // the second of the two units
     single += unit >= 0xd800 && unit < 0xdc00 ? u'\xfffd' : unit;
   }
   return single;
 }
 
-// matio's variable for each kind of value; the caller, or the struct that it goes into, frees it.
+// Makes matio's variable for each kind of value. The caller, or the struct that receives the variable, frees
+// it.
 struct MatioValue {
   static matvar_t* Of(const std::string& text) {
     const std::u16string wide = SingleUnits(Utf16(text));
@@ -113,7 +115,7 @@ size_t SizeOf(const MatValue& value) {
 bool Write(mat_t* mat, const MatField& variable) {
   const tables::Variable made(MatioValue::Of(variable.value));
   if (made == nullptr) return false;
-  // matio frees the name with the variable, and takes none where it makes one.
+  // matio frees the name with the variable, but does not accept a name when it makes one.
   made->name = static_cast<char*>(malloc(variable.name.size() + 1));
   if (made->name == nullptr) return false;
   variable.name.copy(made->name, variable.name.size());
@@ -121,7 +123,8 @@ bool Write(mat_t* mat, const MatField& variable) {
   return Mat_VarWrite(mat, made.get(), MAT_COMPRESSION_NONE) == 0;
 }
 
-// Whether all that was written is in the file: there is room behind it for one byte more, which is taken back.
+// Whether everything that was written is in the file. This is so when one more byte fits behind it; that byte
+// is removed again.
 bool IsWhole(const std::string& file) {
   const std::uintmax_t size = std::filesystem::file_size(file);
   std::ofstream more(file, std::ios::binary | std::ios::app);
@@ -135,7 +138,7 @@ bool IsWhole(const std::string& file) {
 
 void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& file) {
   const std::vector<MatField> variables = MatVariables(runs);
-  size_t least = 0;  // bytes that the numbers of the file take up
+  size_t least = 0;  // bytes that the numbers in the file take up
   for (const MatField& variable : variables) {
     const size_t size = SizeOf(variable.value);
     if (size >= kLimit) {
@@ -145,15 +148,15 @@ void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& fil
     }
     if (std::holds_alternative<SheetColumn>(variable.value.is)) least += size;
   }
-  Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the file
+  Mat_LogInitFunc("hydro", [](int, char*) {});  // this program's own errors name the file
   Output out(file, false);
-  // Our own header: matio's holds the date, and the same run must give the same bytes.
+  // The header is this program's own: matio's holds the date, and the same run must give the same bytes.
   tables::MatFile mat(
       Mat_CreateVer(out.SeekablePath().c_str(), "MATLAB 5.0 MAT-file, written by hydro-log", MAT_FT_MAT5));
   bool written = mat != nullptr;
   for (const MatField& variable : variables) written = written && Write(mat.get(), variable);
   mat.reset();
-  // matio does not report that its last buffer could not be written.
+  // matio does not report it when its last buffer could not be written.
   if (!written || out.size() < least || !IsWhole(out.SeekablePath())) {
     throw WriteError(file + ": cannot be written as a MAT file; enough room on the disk is needed");
   }

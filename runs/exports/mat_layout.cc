@@ -11,7 +11,7 @@
 namespace hydro::exports {
 namespace {
 
-// A name that MATLAB takes for a variable, and none of `taken`.
+// A name that MATLAB accepts for a variable and that is not in `taken`.
 std::string VariableName(const std::string& text, std::set<std::string>* taken) {
   constexpr size_t kMost = 50;  // of 63, which leaves room for a number
   std::string name;
@@ -80,7 +80,8 @@ std::u16string Utf16(const std::string& text) {
   std::u16string wide;
   for (std::string_view rest = text; !rest.empty();) {
     const size_t length = CharacterLength(rest);
-    // The first byte of a character of 2, 3 or 4 bytes has 5, 4 or 3 bits of its number, each other byte six.
+    // The first byte of a character of 2, 3 or 4 bytes holds 5, 4 or 3 bits of its number, and each other
+    // byte holds six.
     char32_t point = length == 0   ? char32_t{0xfffd}
                      : length == 1 ? static_cast<unsigned char>(rest[0])
                                    : static_cast<unsigned char>(rest[0]) & (0x7fu >> length);

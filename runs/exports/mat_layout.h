@@ -1,4 +1,4 @@
-// What a MAT file holds of the exported runs, whichever its version.
+// The contents of a MAT file of exported runs, the same in every version.
 #pragma once
 
 #include <string>
@@ -21,12 +21,12 @@ struct MatField {
   MatValue value;
 };
 
-// The variables: of one run its table's columns by themselves, and a struct for each channel; of several a struct for each run, whose fields are
-// the same and `log`, what the log says of itself. A channel's struct also has `units`, `descriptions` and
-// `exported_from`.
+// The variables. For one run, these are its table's columns by themselves and a struct for each channel. For
+// several runs, each run has a struct whose fields are the same plus `log`, which holds what the log says
+// about itself. A channel's struct also has `units`, `descriptions` and `exported_from`.
 std::vector<MatField> MatVariables(const std::vector<ExportedRun>& runs);
 
-// The text in UTF-16, which both versions hold. What is no UTF-8 becomes U+FFFD.
+// The text in UTF-16, which both versions hold. Bytes that are not UTF-8 become U+FFFD.
 std::u16string Utf16(const std::string& text);
 
 }  // namespace hydro::exports

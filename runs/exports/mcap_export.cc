@@ -1,4 +1,5 @@
-// MCAP: a topic for the run's table and one for each channel, with ROS 2 definitions and CDR, in the order of the log.
+// MCAP: a topic for the run's table and one for each channel, with ROS 2 definitions and CDR, in the order of
+// the log.
 #include <algorithm>
 #include <tuple>
 
@@ -43,7 +44,7 @@ std::string Schema(const Sheet& sheet) {
   return heading + definitions::RosSchema(fields, sheet.constants);
 }
 
-// What a channel's metadata say: the source, and "unit.FIELD" for each field with one.
+// The metadata of a channel: the source, and "unit.FIELD" for each field with a unit.
 McapMap Metadata(const Sheet& sheet) {
   McapMap entries{{"source", sheet.source}, {"description", sheet.description}};
   for (const SheetColumn& column : sheet.columns) {

@@ -9,7 +9,7 @@ namespace hydro::exports {
 namespace {
 
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-constexpr size_t kChunkSize = 1u << 20;  // a reader that seeks reads a whole one
+constexpr size_t kChunkSize = 1u << 20;  // bytes; a reader that seeks reads a whole chunk
 
 enum Kind : uint8_t {
   kHeader = 1,
@@ -29,7 +29,8 @@ enum Kind : uint8_t {
   kDataEnd
 };
 
-// A record's fields one after another, little endian, as every machine that this runs on.
+// Writes a record's fields one after another, in little endian, the order of every machine that runs this
+// program.
 class Fields {
  public:
   template <class T>
@@ -48,7 +49,7 @@ class Fields {
     bytes_.append(bytes);
     return *this;
   }
-  // What is preceded by its length in bytes.
+  // Adds data that are preceded by their length in bytes.
   Fields& List(const Fields& list) { return Text(list.bytes_); }
   const std::string& bytes() const { return bytes_; }
 
@@ -207,7 +208,7 @@ void McapFile::Finish() {
   FinishChunk();
   EmitRecord(kDataEnd, Fields().Number(checksum_).bytes());
 
-  // Groups of records of a kind, then where each group begins.
+  // First the groups of records of one kind, then where each group begins.
   std::vector<std::pair<uint8_t, std::string>> groups;
   const auto joined = [](const std::vector<std::string>& records) {
     std::string all;

@@ -1,4 +1,5 @@
-// Writes an MCAP file (mcap.dev/spec), front to back, so that it may go to a pipe: chunks with their indexes, a summary, checksums.
+// Writes an MCAP file (mcap.dev/spec) from front to back, so that it may go to a pipe: chunks with their
+// indexes, a summary, checksums.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,8 @@ class McapFile {
  public:
   McapFile(Output* out, const std::string& library);
 
-  // Their numbers, from 1; a schema that is there already keeps its own. Before the first message.
+  // These return the number, counted from 1; a schema that already exists keeps its own number. Call them
+  // before the first message.
   uint16_t AddSchema(const std::string& name, const std::string& encoding, const std::string& text);
   uint16_t AddChannel(uint16_t schema, const std::string& topic, const std::string& encoding,
                       const McapMap& metadata);
@@ -35,13 +37,13 @@ class McapFile {
 
   void AddMessage(const McapMessage& message);
 
-  // The summary and the end; Output::Finish() is the caller's.
+  // Writes the summary and the end. Output::Finish() is left to the caller.
   void Finish();
 
  private:
   struct ChunkPlace {
     uint64_t start = 0, length = 0, index_length = 0, size = 0, first_time = 0, last_time = 0;
-    std::map<uint16_t, uint64_t> indexes;  // of a channel's messages in the chunk: where in the file
+    std::map<uint16_t, uint64_t> indexes;  // by channel: place of the index of its messages
   };
   struct Place {
     std::string name, media_type;
@@ -56,11 +58,11 @@ class McapFile {
 
   Output& out_;
   uint64_t position_ = 0;
-  uint32_t checksum_ = 0;                        // of what was emitted
+  uint32_t checksum_ = 0;                        // of the bytes that were emitted
   std::vector<std::string> schemas_, channels_;  // records
   std::vector<Place> attachments_, metadata_;
   std::vector<ChunkPlace> chunks_;
-  std::map<uint16_t, uint64_t> messages_;  // how many on each channel
+  std::map<uint16_t, uint64_t> messages_;  // number of messages on each channel
   std::string chunk_;
   ChunkPlace open_;
   std::map<uint16_t, std::vector<std::pair<uint64_t, uint64_t>>>

@@ -61,7 +61,7 @@ void Output::Write(const void* data, size_t size) {
 }
 
 const std::string& Output::SeekablePath() {
-  // A pipe or a device has its own name already, and cannot be moved about in.
+  // A pipe or a device already has its final name, and a writer cannot seek in it.
   if (file_ && file_->path() != file_->name()) return file_->path();
   if (temporary_.empty()) temporary_ = MakeTemporary();
   return temporary_;

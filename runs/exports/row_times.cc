@@ -14,7 +14,7 @@ void RowTimes::Add(const state_t& state) {
 }
 
 RowTimes::Mark RowTimes::Here(std::optional<int64_t> tick) const {
-  // A message before the first state may have the first plant's tick.
+  // A message before the first state may have a tick of the first plant.
   if (plants_.empty()) return {0, tick, std::numeric_limits<double>::quiet_NaN()};
   return {plants_.size() - 1, tick, latest_};
 }

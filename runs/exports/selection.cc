@@ -12,7 +12,7 @@
 namespace hydro::exports {
 namespace {
 
-// The stack's channels of which the log holds messages, in the order of the table of messages.
+// The stack's channels for which the log holds messages, in the order of the table of messages.
 std::vector<std::string> ChannelsOf(const runs::RunLog& log) {
   std::vector<std::string> found;
   for (const definitions::MessageDefinition& definition : definitions::Definitions()) {
@@ -78,7 +78,7 @@ void Cut(const Selection& selection, Sheet* sheet) {
   const bool thin = selection.rate_hz > 0 && sheet->every_tick;
   if (!selection.from_s && !selection.to_s && !thin) return;
   std::vector<bool> keep(sheet->rows(), true);
-  // Times of ticks are rounded: one that is an interval's beginning may lie a little before it.
+  // Times of ticks are rounded, so a tick at the beginning of an interval may lie a little before it.
   constexpr double kRounding = 1e-6;
   double last_interval = -HUGE_VAL;
   for (size_t row = 0; row < keep.size(); ++row) {

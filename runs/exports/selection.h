@@ -1,4 +1,4 @@
-// Which part of a log is exported.
+// The part of a log that is exported.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace hydro::exports {
 
-// The name by which the run's table is chosen among channels.
+// The name that chooses the run's table among channels.
 inline constexpr const char* kTableName = "table";
 
 struct Selection {
@@ -23,17 +23,20 @@ struct Selection {
   bool si = false;
 };
 
-// Throws InputError for a window that ends before it begins, numbers that are none and a rate below 0.
+// Throws InputError for a window that ends before it begins, for values that are not numbers and for a rate
+// below 0.
 void CheckSelection(const Selection& selection);
 
-// The chosen channels without suffix, each once, in the order of bus/messages.h, those that hold a message of the log. Throws InputError
-// for a name that is none of the stack's channels or of which the log holds no message.
+// The chosen channels without suffix, each once, in the order of bus/messages.h, as far as the log holds a
+// message on them. Throws InputError for a name that is not one of the stack's channels, or for which the log
+// holds no message.
 std::vector<std::string> ChosenChannels(const Selection& selection, const runs::RunLog& log);
 
 // Whether the run's table is wanted.
 bool WantsTable(const Selection& selection);
 
-// Leaves the rows of the window, and of sheets with a row for every tick or sample the first in each interval of 1/rate_hz.
+// Keeps the rows within the window. In sheets with a row for every tick or sample, keeps only the first row
+// in each interval of 1/rate_hz.
 void Cut(const Selection& selection, Sheet* sheet);
 
 }  // namespace hydro::exports

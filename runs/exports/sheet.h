@@ -1,4 +1,5 @@
-// What is exported of a run: sheets of columns, each with its unit and meaning. Every format writes the same sheets.
+// What is exported from a run: sheets of columns, each with its unit and meaning. Every format writes the
+// same sheets.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +27,14 @@ struct Sheet {
   std::string name;  // "table", or the channel without its suffix: "HYDRO_STATE"
   std::string description;
   std::string source;  // for the reader of an exported file: "run.lcmlog: HYDRO_STATE, sent by ..."
-  std::string type;    // as ROS 2 names it
+  std::string type;    // in ROS 2's notation
   std::string topic;
   bool is_table = false;
-  bool every_tick = false;  // it has a row for each tick or sample, so it may be thinned; faults may not
+  bool every_tick = false;  // one row for each tick or sample, so it may be thinned; faults may not
   std::vector<SheetColumn> columns;
   std::vector<definitions::Constant> constants;
-  // Of each row. The table's own column time_s is the same.
-  std::vector<double> time_s;      // [s] plant time that it belongs to; NaN: before the first state
+  // For each row. The table's own column time_s holds the same values.
+  std::vector<double> time_s;      // [s] plant time to which it belongs; NaN: before the first state
   std::vector<int64_t> received;   // [us] when the recorder received it
   std::vector<int64_t> published;  // [us] when its sender sent it
   std::vector<int64_t> order;      // place in the log
@@ -45,7 +46,7 @@ struct ExportedRun {
   std::string name;                // the log's stem
   std::vector<std::string> files;  // its log, or logs that continue one another
   std::vector<std::pair<std::string, std::string>>
-      facts;                // what the log says of itself: program, version, host, ...
+      facts;                // what the log says about itself: program, version, host, ...
   std::string config_text;  // TOML
   std::string model_text;   // TOML
   std::vector<Sheet> sheets;
@@ -57,8 +58,8 @@ SheetColumn ColumnFor(const definitions::Field& field);
 // Keeps the rows whose flag is set.
 void KeepRows(const std::vector<bool>& keep, Sheet* sheet);
 
-// The columns with those that say when, which formats of tables have and messages carry beside their contents: a sheet of a
-// channel begins with time_s and received_us.
+// The columns, preceded by the columns of times. Table formats have those, and messages carry them beside
+// their contents: a channel's sheet begins with time_s and received_us.
 std::vector<SheetColumn> WithTimes(const Sheet& sheet);
 
 }  // namespace hydro::exports

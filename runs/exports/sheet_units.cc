@@ -9,7 +9,7 @@
 namespace hydro::exports {
 namespace {
 
-// The endings of the run's columns.
+// The unit suffixes of the run's columns.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kEndings{
     {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_psi", "psi"}, {"_V", "V"}, {"_s", "s"}}};
 
@@ -36,8 +36,8 @@ void Scale(double factor, Values* values) {
   }
 }
 
-// What turns values that a stack in these units has into SI's base units (m, N, Pa, m/s), which are one system: a table
-// in them can be imported. Empty where they are the same.
+// The conversion from the values of a stack in these units to SI's base units (m, N, Pa, m/s). These form one
+// system, so that a table in them can be imported. Empty where the units are the same.
 std::optional<SiUnit> InSi(const UnitSystem& units, const std::string& paper, int arm) {
   UnitSystem si = kSiUnits;
   si.linear_arm = units.linear_arm;

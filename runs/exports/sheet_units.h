@@ -9,14 +9,15 @@
 
 namespace hydro::exports {
 
-// The unit in which the paper has a column of the run's table, from its name: "psi" for "p1_psi"; empty: none.
+// The unit in which the paper states a column of the run's table, from its name: "psi" for "p1_psi"; empty:
+// none.
 std::string PaperUnit(const std::string& run_column);
 
-// What a message's field is in where it comes from a stack in these units; "" where it has no unit.
+// The unit of a message's field when it comes from a stack in these units; "" where it has no unit.
 std::string UnitOfField(const UnitSystem& units, const definitions::Field& field);
 
-// Sets the columns' units to what their values are in, by the units of the run's model; with `si` converts them. The names of the
-// table's columns say what they are in.
+// Sets the columns' units to those of their values, according to the units of the run's model; with `si`,
+// converts the values. The names of the table's columns state the units.
 void SetUnits(const UnitSystem& units, bool si, Sheet* sheet);
 
 // The same for a table that runs::ExportRun() made.

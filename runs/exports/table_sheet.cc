@@ -59,7 +59,7 @@ void SetTimesOf(const Sheet& states, Sheet* table) {
                         [&](const SheetColumn& one) { return one.field.name == name; })
         ->values;
   };
-  std::unordered_map<int64_t, size_t> rows;  // by tick; of a state that was repeated, the first
+  std::unordered_map<int64_t, size_t> rows;  // by tick; the first of a state that was repeated
   const auto& ticks = std::get<std::vector<int64_t>>(column(states, "tick"));
   rows.reserve(ticks.size());
   for (size_t row = 0; row < ticks.size(); ++row) rows.emplace(ticks[row], row);

@@ -9,10 +9,11 @@
 
 namespace hydro::exports {
 
-// What runs::ExportRun() makes of the log, and throws, with the unit and meaning of each column. `received` and the like are empty: SetTimesOf().
+// Returns the result of runs::ExportRun() with the unit and meaning of each column, and throws what that
+// throws. `received` and the like are empty: SetTimesOf() fills them.
 Sheet TableSheet(const runs::RunLog& log);
 
-// When each row's state was sent and received, from the sheet of the states of the same log.
+// Sets when each row's state was sent and received, from the sheet of the states of the same log.
 void SetTimesOf(const Sheet& states, Sheet* table);
 
 }  // namespace hydro::exports

@@ -17,7 +17,7 @@ CausalOrder::CausalOrder(int64_t pressure_interval, int64_t position_interval, b
 void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, bus::Clock::TimePoint now) {
   switch (kind) {
     case Kind::kState:
-      if (state_) EmitState();  // what it waits for has been lost
+      if (state_) EmitState();  // the answers for which it waits have been lost
       state_ = std::move(message);
       state_tick_ = tick;
       if (AnswersAreIn(SaturatingDifference(tick, 1))) {

@@ -1,8 +1,9 @@
-// Check events: what a log says of itself, so that damage is noticed (docs/logs.md).
+// Check events: the log's record of its own contents, which reveals damage (docs/logs.md).
 //
-// They are events of the log on a channel of their own. Each holds the checksums of the events since the one
-// before it; the first opens the log and the last ends it. LCM's tools read past them: lcm-logplayer picks
-// channels with ".*", in which the point does not match the line feed that the channel begins with.
+// They are events of the log on a channel of their own. Each holds the checksums of the events since the
+// check event before it; the first one opens the log and the last one ends it. LCM's tools skip them:
+// lcm-logplayer picks channels with ".*", in which the point does not match the line feed with which the
+// channel's name begins.
 #pragma once
 
 #include <cstddef>
@@ -15,32 +16,32 @@
 namespace hydro::log {
 
 inline constexpr std::string_view kCheckChannel = "\nLOG_CHECK";
-inline constexpr std::string_view kCheckMagic = "HYDROCHK";  // what the data of a check event begin with
+inline constexpr std::string_view kCheckMagic = "HYDROCHK";  // the first bytes of a check event's data
 inline constexpr uint8_t kCheckVersion = 1;
 inline constexpr size_t kMostCheckedEvents = 128;   // between two check events
-inline constexpr size_t kMostCheckedBytes = 16384;  // the same, reached by the last event between them
+inline constexpr size_t kMostCheckedBytes = 16384;  // bytes; the last event between them reaches it
 inline constexpr size_t kMostCheckText = 60000;     // bytes
 
-// How the text of a kEnd begins where the recording goes on in another file.
+// How the text of a kEnd begins when the recording continues in another file.
 inline constexpr std::string_view kGoesOn = "goes on in ";
 
 enum class CheckKind : uint8_t {
-  kBegin,  // opens a log; its text says where it comes from, if not from a recording
-  kBlock,  // between; its text is a remark of the recorder
+  kBegin,  // opens a log; its text says where the log comes from, if not from a recording
+  kBlock,  // stands in between; its text is a remark of the recorder
   kEnd,    // ends a log; its text says why, if not because the recording was finished
 };
 
-// The contents of a check event. The views lie in its bytes.
+// The contents of a check event. The views point into its bytes.
 struct LogCheck {
   CheckKind kind = CheckKind::kBlock;
   int64_t offset = 0;     // of the check event in its log, in bytes from the log's kBegin
   uint32_t previous = 0;  // `checksum` of the check event before. In kBegin: of the end of the part that
                           // this one follows (rotation); 0: of none
-  size_t count = 0;       // events since then
-  const uint8_t* checksums = nullptr;  // of those, big-endian u32 each
+  size_t count = 0;       // events since the check event before
+  const uint8_t* checksums = nullptr;  // of those events, big-endian u32 each
   std::string_view text;
   uint32_t checksum = 0;  // of the check event itself, up to this field
-  bool sound = false;     // that checksum is right
+  bool sound = false;     // whether that checksum is right
 
   uint32_t ChecksumAt(size_t k) const;
 };
@@ -53,17 +54,18 @@ uint32_t ChecksumOf(const LogEvent& event);
 
 inline bool IsCheck(const LogEvent& event) { return event.channel == kCheckChannel; }
 
-// Whether an event on another channel has the contents of a check event: then the channel's name is damaged.
+// Whether an event on another channel has the contents of a check event. If so, the channel's name is
+// damaged.
 bool IsDisguisedCheck(const LogEvent& event);
 
-// Reads a check event; none where its lengths contradict each other. Throws InputError for a sound one of a
-// later version.
+// Reads a check event; returns nothing where its lengths contradict each other. Throws InputError for a sound
+// check event of a later version.
 std::optional<LogCheck> ParseCheck(const LogEvent& event);
 
-// How long the data of a check event are.
+// The length of a check event's data in bytes.
 size_t CheckDataSize(size_t count, size_t text_size);
 
-// Writes the data of a check event; `event` is where its header begins, which is complete, like the channel.
+// Writes the data of a check event; `event` is where its header begins. Header and channel must be complete.
 // Returns its checksum.
 uint32_t WriteCheckData(const LogCheck& check, uint8_t* event, uint8_t* data);
 

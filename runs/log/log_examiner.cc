@@ -47,7 +47,8 @@ bool LogExaminer::TakeEvent(int64_t offset) {
   if (!wrong.empty()) return Unreadable(offset, wrong);
   const int64_t end = EndOf(event);
   if (!LogEventMayBeginAt(file_, end)) {
-    // Only what follows an event reveals a damaged length; then the event itself cannot be trusted either.
+    // Only what follows an event reveals that its length is damaged, and then the event itself cannot be
+    // trusted either.
     LogEvent next;
     return Damaged(offset, Place(end, messages_ + 1) + ParseLogEvent(file_, end, next));
   }
@@ -56,8 +57,8 @@ bool LogExaminer::TakeEvent(int64_t offset) {
   return taken;
 }
 
-// The end of an incomplete log may be torn; anywhere else, and in a log whose end nothing vouches for, bytes
-// that are no event are damage.
+// The end of an incomplete log may be torn. Anywhere else, and in a log whose end nothing vouches for, bytes
+// that are not an event are damage.
 bool LogExaminer::Unreadable(int64_t offset, const std::string& wrong) {
   const bool torn = begun_ && !ended_ && LogEventIsTornAt(file_, offset) && !CheckFollows(offset);
   if (!torn) return Damaged(offset, Place(offset, messages_) + wrong);
@@ -67,7 +68,7 @@ bool LogExaminer::Unreadable(int64_t offset, const std::string& wrong) {
   return false;
 }
 
-// What no checksum has covered yet is not read in a damaged log: it may be damaged too.
+// In a damaged log, nothing is read that no checksum has covered yet, because it may be damaged too.
 bool LogExaminer::Damaged(int64_t readable_end, const std::string& where) {
   if (begun_ && !pending_.empty() && !block_compared_) readable_end = pending_.front().offset;
   verdict_.completeness = Completeness::kDamaged;
@@ -78,7 +79,7 @@ bool LogExaminer::Damaged(int64_t readable_end, const std::string& where) {
 
 bool LogExaminer::CheckFollows(int64_t offset) const {
   const std::string mark = std::string(kCheckChannel) + std::string(kCheckMagic);
-  // Not the one that stands at `offset` itself and is torn.
+  // Skips the mark that stands at `offset` itself and is torn.
   offset = std::min(offset + static_cast<int64_t>(kLogHeaderSize + mark.size()), size());
   return memmem(file_.data() + offset, file_.size() - static_cast<size_t>(offset), mark.data(),
                 mark.size()) != nullptr;
@@ -93,7 +94,7 @@ bool LogExaminer::TakeMessage(const LogEvent& event) {
   }
   pending_.push_back({event.offset, EndOf(event), event.utime, begun_ ? ChecksumOf(event) : 0});
   ++messages_;
-  // Without a first check event there is nothing to compare with: a list would only grow.
+  // Without a first check event there is nothing to compare with, and the list would only grow.
   if (!begun_) pending_.resize(1);
   return true;
 }
@@ -131,7 +132,7 @@ bool LogExaminer::TakeCheck(const LogEvent& event) {
 }
 
 bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
-  // After the end of a log another may follow: files that were joined.
+  // Another log may follow the end of a log when files were joined.
   const bool allowed = begun_ ? ended_ : event.offset == 0;
   if (!allowed || check.offset != 0 || check.count != 0) {
     return Damaged(event.offset,
@@ -149,7 +150,8 @@ bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
   return true;
 }
 
-// The parts of a recording that was rotated, joined in order; or logs that have nothing to do with each other.
+// Whether the check event fits: the files are the parts of a rotated recording, joined in order, or logs that
+// have nothing to do with each other.
 bool LogExaminer::Follows(const LogEvent& event, const LogCheck& check) {
   const bool goes_on = verdict_.ending.starts_with(kGoesOn);
   if (check.previous == 0 && !goes_on) {

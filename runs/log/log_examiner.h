@@ -25,7 +25,7 @@ class LogExaminer {
   };
 
   int64_t size() const { return static_cast<int64_t>(file_.size()); }
-  // Each of these returns false when the log is damaged there, and then verdict_ says how.
+  // Each of these returns false when the log is damaged at that place; verdict_ then says how.
   bool TakeEvent(int64_t offset);
   bool TakeMessage(const LogEvent& event);
   bool TakeCheck(const LogEvent& event);
@@ -41,7 +41,7 @@ class LogExaminer {
   LogVerdict verdict_;
   std::vector<Pending> pending_;
   int64_t messages_ = 0;
-  bool block_compared_ = false;  // pending_ was compared, so what precedes the first difference is right
+  bool block_compared_ = false;  // pending_ was compared, so everything before the first difference is right
   bool begun_ = false;
   bool ended_ = false;
   int64_t begin_ = 0;        // byte of the kBegin in force

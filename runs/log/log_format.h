@@ -12,6 +12,6 @@ namespace hydro::log {
 constexpr uint32_t kLogSyncWord = 0xEDA1DA01;
 constexpr size_t kLogHeaderSize = 28;
 constexpr size_t kMaxLogChannelLength = 63;   // LCM's limit on the name of a channel
-constexpr size_t kMaxLogDataSize = 1u << 30;  // far above any message: a greater length is damaged
+constexpr size_t kMaxLogDataSize = 1u << 30;  // far above any message, so a greater length is damaged
 
 }  // namespace hydro::log

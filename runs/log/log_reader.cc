@@ -21,7 +21,7 @@ std::string WrongSyncWord(uint32_t found) {
   return "found sync word " + Hex(found) + "; allowed " + Hex(kLogSyncWord);
 }
 
-// A table or another text, that was named by mistake: no damage made it so.
+// Whether the file is a table or another text that was named by mistake, rather than a damaged log.
 bool BeginsAsText(const MappedFile& file) {
   constexpr size_t kLooked = 64;
   const size_t size = std::min(file.size(), kLooked);
@@ -30,7 +30,8 @@ bool BeginsAsText(const MappedFile& file) {
          });
 }
 
-// A file of another kind is told who reads it: repair would only find that it is damaged.
+// For a file of another kind, the error names the program that reads it, because repair would only find that
+// the file is damaged.
 void RefuseOtherKinds(const std::string& name, const MappedFile& file) {
   constexpr size_t kLooked = 1u << 16;
   const std::string_view beginning(reinterpret_cast<const char*>(file.data()),

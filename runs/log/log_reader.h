@@ -1,5 +1,5 @@
-// Reads LCM event logs (log_format.h), ours and lcm-logger's, strictly: anything that is not an event is an
-// error.
+// Reads LCM event logs (log_format.h), both ours and lcm-logger's, strictly: anything that is not an event is
+// an error.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace hydro::log {
 
-// A log that is damaged, torn or not a log. what() names the file, the byte, the event, what was found and
-// what is allowed.
+// The error for a log that is damaged, torn or not a log. what() names the file, the byte, the event, what
+// was found and what is allowed.
 class LogError : public InputError {
  public:
   using InputError::InputError;
@@ -32,25 +32,25 @@ struct LogEvent {
   int size = 0;
 };
 
-// Decodes an event with or without a seal (bus/seal_trailer.h; lcm-logger records seals). False when it is
-// not a complete message of that type.
+// Decodes an event with or without a seal (bus/seal_trailer.h; lcm-logger records seals). Returns false when
+// it is not a complete message of that type.
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
     return bus::DecodeInto(&message, event.data, event.size);
-  } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
+  } catch (const std::length_error&) {  // the code from lcm-gen trusts a string length of 0 or less
     return false;
   }
 }
 
 // Reads the event at `offset`, which must lie before the end. Returns an empty string, or what is wrong:
-// "found ...; allowed ...". Leaves `event.index` alone.
+// "found ...; allowed ...". Does not change `event.index`.
 std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event);
 
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
 
-// True when what stands at `offset` may be an event that the end of the file cuts off.
+// True when `offset` may be the beginning of an event that the end of the file cuts off.
 bool LogEventIsTornAt(const MappedFile& file, int64_t offset);
 
 // The offset of the first byte after an event.
@@ -58,20 +58,20 @@ int64_t EndOf(const LogEvent& event);
 
 // What to do where a log is damaged.
 enum class OnDamage {
-  kThrow,  // LogError: for callers that need the whole log
-  kStop,   // as at the end: for callers that say so, by the verdict
+  kThrow,  // throws LogError: for callers that need the whole log
+  kStop,   // stops as at the end: for callers that report the damage from the verdict
 };
 
 class LogReader {
  public:
-  // Opens a log and goes through it once for its verdict. Throws InputError when it cannot be read. An empty
+  // Opens a log and reads it once to find its verdict. Throws InputError when it cannot be read. An empty
   // file is a log without events.
   explicit LogReader(const std::string& file, OnDamage on_damage = OnDamage::kThrow);
 
-  // Reads the next message; false at the end, which in an incomplete log is that of its last whole event.
-  // Check events (log_check.h) are no messages. An event must be followed by the end or by another event, so
-  // one with a damaged length is not returned, and neither is one with a wrong checksum. Throws LogError at
-  // the first place where this fails.
+  // Reads the next message; returns false at the end, which in an incomplete log is the end of its last whole
+  // event. Check events (log_check.h) are not messages. An event must be followed by the end or by another
+  // event, so one with a damaged length is not returned, and neither is one with a wrong checksum. Throws
+  // LogError at the first place where this fails.
   bool Next(LogEvent& event);
 
   // Rewinds to the first event.

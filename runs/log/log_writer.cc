@@ -13,7 +13,8 @@ constexpr size_t kBufferSize = 1u << 20;
 constexpr size_t kCheckOverhead = kLogHeaderSize + kCheckChannel.size();
 constexpr size_t kMostBlockCheck = kCheckOverhead + 40 + 4 * kMostCheckedEvents;
 
-// How many of the first `size` bytes of a buffer of events belong to events that lie whole within them.
+// The number of bytes, out of the first `size` in a buffer of events, that belong to events lying whole
+// within them.
 size_t WholeEvents(const uint8_t* buffer, size_t size) {
   size_t whole = 0;
   while (size - whole >= kLogHeaderSize) {
@@ -43,7 +44,7 @@ LogWriter::~LogWriter() {
   try {
     Flush();
   } catch (const WriteError&) {
-    // A destructor cannot report errors; a caller who wants to know calls Flush() or Finish().
+    // A destructor cannot report errors. A caller that needs them calls Flush() or Finish().
   }
 }
 
@@ -64,7 +65,7 @@ uint8_t* LogWriter::Reserve(std::string_view channel, size_t size, int64_t utime
   }
   const size_t needed = kLogHeaderSize + channel.size() + size;
   MakeRoom(needed);
-  last_utime_ = utime;  // also of the first check: a player waits until the first event's time
+  last_utime_ = utime;  // also for the first check: a player waits until the time of the first event
   Begin();
   return WriteHeader(channel, size, utime);
 }
@@ -142,7 +143,7 @@ void LogWriter::FlushBuffer() {
     while (done < used_) done += file_.WriteSome(buffer_.get() + done, used_ - done);
   } catch (const WriteError&) {
     // Bytes that did reach the file must not be written twice when the caller tries again, and an event of
-    // which only a part did would make the log unreadable.
+    // which only a part was written would make the log unreadable.
     const size_t whole = WholeEvents(buffer_.get(), done);
     if (file_.TakeBack(done - whole)) done = whole;
     std::memmove(buffer_.get(), buffer_.get() + done, used_ - done);

@@ -21,7 +21,7 @@
 namespace hydro::log {
 namespace {
 
-// Moves incomplete messages, on channels where others are complete, from `kept` to `lost`.
+// Moves incomplete messages from `kept` to `lost` when other messages on the same channel are complete.
 void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
   std::map<std::string_view, const MessageKind*> decodable;
   std::vector<size_t> undecodable;
@@ -40,7 +40,7 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
     const KeptEvent place = kept[*k];
     ParseLogEvent(file, place.begin, event);
     const auto kind = decodable.find(event.channel);
-    if (kind == decodable.end()) continue;  // none is whole: another version's, not damaged
+    if (kind == decodable.end()) continue;  // from another version rather than damaged
     lost.push_back(
         {place.begin, place.end,
          "an event on " + std::string(event.channel) + " that is not a whole " + kind->second->type});
@@ -49,8 +49,8 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
   std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
 }
 
-// Moves messages that no checksum covers, and whose sender none that one covers has on that channel, from `kept` to `lost`: a
-// flipped bit in a session is one more sender.
+// Moves messages that no checksum covers from `kept` to `lost` when no covered message on the same channel
+// has the same sender: a flipped bit in a session looks like one more sender.
 void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
   std::map<std::string, std::set<int64_t>, std::less<>> senders;  // by channel
   LogEvent event;
@@ -75,8 +75,9 @@ void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::ve
   });
 }
 
-// Where logs were joined end to end: a part of a rotated recording goes on with the one before it, another log does not. Without check
-// events the numbers tell, which each recorder counts from 0.
+// The places where logs were joined end to end. A part of a rotated recording continues the part before it,
+// which another log does not. Without check events, the event numbers tell, because each recorder counts from
+// 0.
 std::vector<int64_t> JoinsOf(const MappedFile& file, const std::vector<KeptEvent>& sound) {
   std::vector<int64_t> begins, restarts;
   LogEvent event;
@@ -95,7 +96,7 @@ std::vector<int64_t> JoinsOf(const MappedFile& file, const std::vector<KeptEvent
   return checked ? begins : restarts;
 }
 
-// What a mended log says of itself.
+// The note in a mended log about its repair.
 std::string NoteOf(const RepairResult& result, const std::string& file) {
   if (!result.mended()) return {};
   int64_t bytes = 0;
@@ -162,7 +163,8 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
     throw InputError(file + ": found no event in " + std::to_string(size) +
                      " bytes; an LCM event log is needed");
   }
-  // A log of no messages would look like a run in which nothing was sent. A whole one of none has nothing to mend.
+  // A log without messages would look like a run in which nothing was sent. A whole log without messages has
+  // nothing to mend.
   const bool whole = result.lost.empty() && vouched.lost_messages == 0 &&
                      result.verdict.completeness == Completeness::kComplete;
   if (kept.empty() && !whole) {
@@ -185,7 +187,8 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
 
 namespace {
 
-// A second name for a log, which is returned, rather than a new one: whatever happens now, a log exists under the first.
+// Gives a log a second name, which is returned, rather than moving it: whatever happens now, a log exists
+// under the first name.
 std::string KeepAsDamaged(const std::string& file) {
   for (int i = 0;; ++i) {
     const std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
@@ -217,7 +220,7 @@ RepairResult RepairInPlace(const std::string& file) {
 
 namespace {
 
-// A file's name as one word of a command line.
+// Quotes a file's name as one word of a command line.
 std::string ShellWord(const std::string& name) {
   std::string quoted;
   for (const char c : name) quoted += c == '\'' ? "'\\''" : std::string(1, c);

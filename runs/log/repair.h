@@ -14,40 +14,40 @@ struct RepairResult {
   LogVerdict verdict;  // of the log as it was found
   int64_t kept_events = 0;
   int64_t kept_bytes = 0;
-  int64_t check_bytes = 0;      // of sound check events, which are written anew
-  int64_t lost_messages = 0;    // written and not kept, as far as the check events tell
-  int64_t unvouched = 0;        // kept messages of which no checksum says that they are right
+  int64_t check_bytes = 0;    // of sound check events, which are written again
+  int64_t lost_messages = 0;  // messages that were written but are not kept, as far as the check events tell
+  int64_t unvouched = 0;      // kept messages for which no checksum vouches
   std::vector<LostBytes> lost;  // in order of the file
   std::vector<int64_t>
-      joined_at;        // bytes at which another recording begins, which was joined to the one before
-  std::string damaged;  // where RepairInPlace() has left the log as it was found
+      joined_at;        // bytes at which another recording begins that was joined to the one before
+  std::string damaged;  // the name under which RepairInPlace() left the log as it was found
 
-  // Whether there was anything to mend: bytes lost, messages missing, or no mark of the end.
+  // Whether there was anything to mend: lost bytes, missing messages, or a missing mark of the end.
   bool mended() const;
 };
 
-// Finds the readable events of a log. A torn tail loses only the torn event, damage in the middle only the
-// events that it touches:
-// - it drops bytes that are no event, and events with a damaged length (sound_events.h);
-// - it drops events that have another checksum than when they were written (vouched_events.h);
+// Finds the readable events of a log. A torn tail loses only the torn event, and damage in the middle loses
+// only the events that it touches:
+// - it drops bytes that are not an event, and events with a damaged length (sound_events.h);
+// - it drops events whose checksum differs from when they were written (vouched_events.h);
 // - it drops an incomplete message on a channel of this stack if others on that channel are complete.
 //
 // Throws InputError when the file cannot be read, or has bytes but no event. Unless `out` is empty, writes
 // the events to that log, renumbered and with new checksums, whole or not at all; `out` may be the same file.
-// A mended log says in itself that it is one and what it lacks (LogVerdict::note). Throws InputError or
+// A mended log records that it was mended and what it lacks (LogVerdict::note). Throws InputError or
 // WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
-// Repairs a log in place and keeps the original as FILE.damaged, or FILE.damaged1 and so on where an earlier one has
-// that name. Leaves a whole log alone, and one without checksums in which nothing is wrong. Throws WriteError, and
-// InputError, also when the log is still being recorded.
+// Repairs a log in place and keeps the original as FILE.damaged, or FILE.damaged1 and so on where an earlier
+// one has that name. Does not change a whole log, or one without checksums in which nothing is wrong. Throws
+// WriteError and InputError, the latter also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
 
-// One line on the recordings that were joined in a log, and one with the command that takes each out of it; empty: it is one
-// recording. `file` holds the log as it was found.
+// One line on the recordings that were joined in a log, and one line for each of them with the command that
+// extracts it; empty: the log is one recording. `file` holds the log as it was found.
 std::string DescribeJoined(const RepairResult& result, const std::string& file);
 
-// One line for what was kept, and one for each place where something was lost.
+// One line for what was kept, and one line for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
 
 }  // namespace hydro::log

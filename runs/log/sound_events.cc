@@ -39,7 +39,7 @@ class Scanner {
     return offset < size() && ParseLogEvent(file_, offset, event).empty();
   }
 
-  // The first event in [from, to) that ends where another event, or the end of the file, may be.
+  // The first event in [from, to) whose end may be the beginning of another event, or the end of the file.
   std::optional<LogEvent> NextSound(int64_t from, int64_t to) const {
     for (int64_t offset = NextSync(from); offset < to; offset = NextSync(offset + 1)) {
       LogEvent event;
@@ -48,7 +48,8 @@ class Scanner {
     return std::nullopt;
   }
 
-  // By their numbers, which may be anything in a damaged file. A check event has that of the next message.
+  // Whether the numbers of the two events follow each other. In a damaged file they may be anything. A check
+  // event has the number of the next message.
   static bool Follows(const LogEvent& next, const LogEvent& event) {
     return static_cast<uint64_t>(next.number) ==
            static_cast<uint64_t>(event.number) + (IsCheck(event) ? 0 : 1);
@@ -58,10 +59,11 @@ class Scanner {
     const int64_t end = EndOf(event);
     LogEvent next;
     if (Parses(end, next) && Follows(next, event)) return true;
-    // A torn event followed by appended ones contains others, and so does one whose length is too large.
+    // A torn event to which other events were appended contains these, and so does an event whose length is
+    // too large.
     if (NextSound(event.offset + 4, end).has_value()) return false;
     if (LogEventMayBeginAt(file_, end)) return true;
-    // The bytes that follow are damaged: either those alone, or this event's length is too small.
+    // Either only the bytes that follow are damaged, or this event's length is too small.
     if (const MessageKind* kind = KindOfChannel(event.channel)) return kind->decodes(event);
     const std::optional<LogEvent> following = NextSound(end, size());
     return !following.has_value() || !Follows(*following, event);

@@ -19,13 +19,13 @@ struct LostBytes {
 struct KeptEvent {
   int64_t begin;
   int64_t end;
-  bool vouched = false;  // a checksum says that it is as it was written
+  bool vouched = false;  // a checksum confirms that it is as it was written
 };
 
-// The events of `file` that can be kept, in order, check events among them:
-// - after bytes that are no event, it looks for the next sync word that begins one;
-// - it drops an event with a damaged length, which the bytes after or inside it reveal.
-// Appends what lies between them to `lost`.
+// The events of `file` that can be kept, in order, including check events. Appends the bytes between them to
+// `lost`.
+// - After bytes that are not an event, it looks for the next sync word that begins one.
+// - It drops an event with a damaged length, which the bytes after it or inside it reveal.
 std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, std::vector<LostBytes>& lost);
 
 }  // namespace hydro::log

@@ -19,8 +19,7 @@ class Voucher {
   void Take(const KeptEvent& place) {
     LogEvent event;
     ParseLogEvent(file_, place.begin, event);
-    if (!IsCheck(event) &&
-        !IsDisguisedCheck(event)) {  // a flipped bit of its channel makes a check event none
+    if (!IsCheck(event) && !IsDisguisedCheck(event)) {  // a flipped bit in the channel hides a check event
       block_.push_back({place, ChecksumOf(event)});
       result_.found_end = false;
       return;
@@ -30,11 +29,12 @@ class Voucher {
       lost_.push_back({place.begin, place.end, "a damaged check event"});
       result_.found_end = false;
       if (check && FirstListed(*check) < block_.size()) {
-        // A message that its list lacks is damaged, or the list is there: better one message less than one wrong.
+        // A message that is missing from its list is damaged, or the list is damaged there. Losing a message
+        // is better than keeping a wrong one.
         Compare(*check);
         previous_ = check->checksum;
       } else {
-        previous_.reset();  // what it vouches for stays in the block, before what the next one does
+        previous_.reset();  // its messages stay in the block, before those of the next check event
       }
       return;
     }
@@ -50,7 +50,7 @@ class Voucher {
   VouchedEvents Finish() {
     KeepUnvouched(block_.size());
     result_.lost_messages += std::max<int64_t>(lost_here_, 0);
-    if (result_.check_events == 0) result_.unvouched = 0;  // nothing was to vouch for them
+    if (result_.check_events == 0) result_.unvouched = 0;  // there was nothing to vouch for them
     return std::move(result_);
   }
 
@@ -61,7 +61,7 @@ class Voucher {
   };
 
   void Compare(const LogCheck& check) {
-    // Where the chain is broken, the block begins with what an absent check event vouched for.
+    // Where the chain is broken, the block begins with messages for which a missing check event vouched.
     const bool chained = check.kind == CheckKind::kBegin || previous_ == check.previous;
     size_t first = 0, listed = 0;
     if (!chained) {
@@ -114,7 +114,7 @@ class Voucher {
   std::vector<Event> block_;  // messages since the last sound check event
   std::optional<uint32_t> previous_;
   int64_t kept_before_ = 0;  // messages kept before the log that the last kBegin opened (joined files)
-  int64_t lost_here_ = 0;    // messages of that log which are not kept, as far as its check events tell
+  int64_t lost_here_ = 0;    // messages of that log that are not kept, as far as its check events tell
 };
 
 }  // namespace

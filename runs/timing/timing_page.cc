@@ -15,7 +15,7 @@ namespace {
 
 using page::EscapeMarkup;
 
-// A cell with its label, which a phone shows in place of the table's head.
+// A table cell with its label, which a phone shows in place of the table's head.
 std::string Cell(const std::string& label, const std::string& text, const char* look = "number") {
   return fmt::format("<td class=\"{}\" data-label=\"{}\">{}</td>", look, label, EscapeMarkup(text));
 }

@@ -10,15 +10,15 @@
 namespace hydro::timing {
 namespace {
 
-// More processes than any stack has and more reports than any run has seconds: a flood beyond this is
-// dropped.
+// More processes than any stack has, and more reports than any run has seconds. A flood beyond these limits
+// is dropped.
 constexpr size_t kMostProcesses = 256;
 constexpr size_t kMostReports = 1'000'000;
 constexpr size_t kMostQuantities = 32;
 
 TimingHistogram Read(const loop_histogram_t& message) {
   TimingHistogram histogram{message.count, message.lowest, message.highest, {}};
-  // A reused decoder may hold lists longer than this message's.
+  // A reused decoder may hold lists longer than those of this message.
   const auto ranges =
       std::min({static_cast<size_t>(std::max(message.buckets, 0)), message.bucket_first.size(),
                 message.bucket_last.size(), message.bucket_count.size()});
@@ -29,7 +29,7 @@ TimingHistogram Read(const loop_histogram_t& message) {
   return histogram;
 }
 
-// "knee plant" is the plant of a limb's joint.
+// The role in a name: "plant" in "knee plant", the plant of a limb's joint.
 std::string RoleIn(const std::string& name) { return name.substr(name.rfind(' ') + 1); }
 
 size_t PlaceOf(const std::string& role) {
@@ -41,7 +41,7 @@ size_t PlaceOf(const std::string& role) {
 double Sum(double a, double b) { return a + b; }
 int64_t Sum(int64_t a, int64_t b) { return SaturatingSum(a, b); }
 
-// The sum of the periodic reports of a process that never sent its last one.
+// Sums the periodic reports of a process that never sent its final one.
 loop_statistics_t Sum(const std::vector<loop_statistics_t>& reports) {
   loop_statistics_t total = reports.back();
   const auto add = [&](auto member) {

@@ -1,4 +1,4 @@
-// What a run's processes reported about their loops: the source of every timing report.
+// What a run's processes reported about their loops. Every timing report is made from this.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hydro::timing {
 
-// How often each value was seen over the whole run. Times are in ns.
+// How often each value occurred over the whole run. Times are in ns.
 struct TimingHistogram {
   struct Range {
     int64_t first = 0;  // smallest and largest value in the range
@@ -22,7 +22,7 @@ struct TimingHistogram {
   int64_t highest = 0;
   std::vector<Range> ranges;  // in rising order, none empty
 
-  // The value that `percent` (0 to 100) of the records do not exceed, to within 1/32; 100 gives `highest`.
+  // The value that `percent` (0 to 100) of the records do not exceed, to within 1/32. 100 gives `highest`.
   double Percentile(double percent) const;
 };
 
@@ -31,8 +31,8 @@ struct TimedProcess {
   std::string role;
   std::string host;
   int64_t session = 0;
-  bool complete = false;  // reported its whole run on exit; else it was killed, or the log is cut off
-  // Over the whole run; if that is incomplete, the percentiles are the last report's.
+  bool complete = false;  // it reported its whole run on exit; otherwise it was killed, or the log is cut off
+  // Over the whole run. If the process is not complete, the percentiles are those of its last report.
   loop_statistics_t total;
   std::vector<loop_statistics_t> reports;             // one per second, by sequence
   std::map<std::string, TimingHistogram> histograms;  // by loop_histogram_t's quantity names
@@ -40,7 +40,7 @@ struct TimedProcess {
 
 class TimingRecord {
  public:
-  // Takes messages in any order; a message that comes twice counts once.
+  // Takes messages in any order. A message that comes twice counts once.
   void Add(const loop_statistics_t& report);
   void Add(const loop_histogram_t& histogram);
 
@@ -57,7 +57,7 @@ class TimingRecord {
   std::map<int64_t, Heard> processes_;  // by session
 };
 
-// What `latency` means for a role, in a few words.
+// The meaning of `latency` for a role, in a few words.
 const char* MeaningOfLatency(const std::string& name);
 
 }  // namespace hydro::timing

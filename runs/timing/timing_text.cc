@@ -13,7 +13,7 @@ std::string HistogramLine(const char* name, const char* unit, const TimingHistog
                      unit);
 }
 
-// Of the ticks: a desktop's late wake-ups stay below.
+// Share of the ticks. Late wake-ups on a desktop computer stay below it.
 constexpr double kFewSkipped = 0.01;
 constexpr int64_t kVeryFewSkipped = 10;
 

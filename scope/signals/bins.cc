@@ -9,7 +9,7 @@ namespace hydro::scope {
 namespace {
 
 constexpr uint32_t kBinsMessage = 1;
-constexpr size_t kHeader = 6 * 4 + 2 * 8;  // with the channels' count after the bins'
+constexpr size_t kHeader = 6 * 4 + 2 * 8;  // bytes; the channels' count comes after the bins'
 static_assert(std::endian::native == std::endian::little, "the messages are copied as they lie in memory");
 
 template <class T>
@@ -21,7 +21,7 @@ void Put(std::string& bytes, size_t& at, T value) {
 }  // namespace
 
 int64_t BinGrid::BinOf(double time) const {
-  constexpr double kMost = 4e15;  // beyond it doubles do not tell neighbouring bins apart
+  constexpr double kMost = 4e15;  // beyond this, doubles cannot tell neighbouring bins apart
   auto k = static_cast<int64_t>(std::clamp(std::floor((time - origin) / width), -kMost, kMost));
   if (origin + static_cast<double>(k) * width > time) --k;
   if (origin + static_cast<double>(k + 1) * width <= time) ++k;
@@ -33,8 +33,9 @@ BinGrid GridFor(const History& history, double spacing, double t0, double t1, ui
   if (history.empty() || !(t1 > t0) || t0 > history.last_time()) return grid;
   double most = pixels;
   if (spacing > 0 && grid.width < spacing) {
-    // From half a sample before the first sample of the window on. Its own time, not a multiple of the spacing: those differ
-    // by a rounding, which half a sample outweighs.
+    // The grid begins half a sample before the first sample of the window. It uses that sample's own time
+    // rather than a multiple of the spacing: the two differ by a rounding error, which half a sample
+    // outweighs.
     const auto row = std::min(history.LowerBound(t0), history.end() - 1);
     grid.width = spacing;
     grid.origin = history.time(row) - spacing / 2;

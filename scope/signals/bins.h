@@ -1,4 +1,4 @@
-// Bins: what a plot shows of a signal, the smallest and largest sample of each column of pixels.
+// Bins are what a plot shows of a signal: the smallest and largest sample in each column of pixels.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace hydro::scope {
 
-// A column of a history. Where `hold` is above 0, a value lasts: a bin without a sample has the last one before it that is at
-// most that old, s.
+// A column of a history. Where `hold` is above 0, a value lasts: a bin without a sample takes the last value
+// before it that is at most `hold` s old.
 struct Signal {
   const History* history = nullptr;
   size_t column = 0;
   double hold = 0;
 };
 
-// Bin k covers [Edge(k), Edge(k + 1)). Edges are multiples of the width from the origin, so that grids of one origin and
-// width agree on which bin a sample is in, to the last bit.
+// Bin k covers [Edge(k), Edge(k + 1)). Edges are multiples of the width, counted from the origin, so that
+// grids with the same origin and width agree to the last bit on the bin of each sample.
 struct BinGrid {
   double origin = 0;
   double width = 1;
-  int64_t first = 0;  // of its bins, counted from the origin
+  int64_t first = 0;  // first bin, counted from the origin
   uint32_t bins = 0;
 
   double Edge(uint32_t k) const { return origin + static_cast<double>(first + k) * width; }
@@ -30,12 +30,13 @@ struct BinGrid {
   int64_t BinOf(double time) const;
 };
 
-// The grid of a request for [t0, t1] on `pixels` columns. Bins are not narrower than the spacing of the samples: where they
-// would be, each is centred on a sample of `history` and holds that one alone, if the samples are even. `spacing`: s, of its
-// samples where they are even; 0: unknown, and the grid is as asked. Bins beyond the newest sample are left out.
+// The grid for a request for [t0, t1] on `pixels` columns. Bins are never narrower than the spacing of the
+// samples. Where they would be, each bin is centred on a sample of `history` and holds that sample alone, if
+// the samples are even. `spacing` is the distance of even samples in s; 0: unknown, and the grid is as
+// requested. Bins beyond the newest sample are left out.
 BinGrid GridFor(const History& history, double spacing, double t0, double t1, uint32_t pixels);
 
-// Writes the extremes of the bins to `min` and `max`, which have room for all.
+// Writes the extremes of the bins to `min` and `max`, which have room for all of them.
 void FillBins(const Signal& signal, const BinGrid& grid, double* min, double* max);
 
 enum BinFlags : uint32_t { kLastIncomplete = 1, kAnswerToGet = 2, kTriggerCapture = 4 };

@@ -9,7 +9,7 @@ struct Row {
   const char* id;
   const char* label;
   const char* group;
-  const char* unit;  // as the paper has it
+  const char* unit;  // in the paper
   int arm = 0;       // UnitSystem::UnitFor
   bool step = false;
 };

@@ -1,4 +1,4 @@
-// The channels that a scope shows, and where their values lie.
+// The channels that a scope shows, and the places of their values.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace hydro::scope {
 
-// The columns of a run's history of ticks: one row for each state. Held ones have a value at every tick.
+// The columns of a run's history of ticks, with one row for each state. Held columns have a value at every
+// tick.
 enum class TickColumn : size_t {
   kDp,
   kDpRef,
@@ -32,7 +33,7 @@ enum class TickColumn : size_t {
 };
 inline constexpr size_t kTickColumns = 16;
 
-// Of its history of the ghost.
+// The columns of a run's history of the ghost.
 enum class GhostColumn : size_t {
   kP1,
   kP2,
@@ -45,7 +46,7 @@ enum class GhostColumn : size_t {
 };
 inline constexpr size_t kGhostColumns = 8;
 
-// Of the history of a role's loop: a row for each report.
+// The columns of the history of a role's loop, with one row for each report.
 enum class LoopColumn : size_t { kLatencyP99, kMissed };
 inline constexpr size_t kLoopColumns = 2;
 inline constexpr double kLoopHold = 2.5;    // s: reports come once a second
@@ -56,12 +57,12 @@ struct ChannelInfo {
   std::string label;
   std::string group;
   std::string unit;
-  bool step = false;     // held between samples
-  std::string si_unit;   // empty: it is shown as it is
+  bool step = false;     // the value is held between samples
+  std::string si_unit;   // empty: the value is shown as it is
   double si_factor = 1;  // value in si_unit = factor * value
 };
 
-// Those of the ticks and of the ghost, in the order of the columns, in a model's units.
+// The channels of the ticks and of the ghost, in the order of the columns, in a model's units.
 std::vector<ChannelInfo> TickChannels(const UnitSystem& units);
 std::vector<ChannelInfo> GhostChannels(const UnitSystem& units);
 // "loop.<role>.latency_p99_us" and "loop.<role>.missed".

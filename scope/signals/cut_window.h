@@ -1,4 +1,4 @@
-// Which messages of a run belong to a window of its time.
+// Decides which messages of a run belong to a window of its time.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,19 @@
 
 namespace hydro::scope {
 
-// A cut is a log of its own: it has the run's description, the states of the window, and the commands of their ticks.
+// A cut is a log of its own: it has the run's description, the states of the window, and the commands that
+// belong to their ticks.
 class CutWindow {
  public:
-  // [t0, t1] in s of plant time. `session`: the plant's; messages of other plants are left out.
+  // The window is [t0, t1] in s of plant time. `session` is the plant's; messages of other plants are left
+  // out.
   CutWindow(const std::string& suffix, int64_t session, double t0, double t1);
 
-  // Whether this message belongs to it. Call for each message of the run, in order.
+  // Whether this message belongs to the window. Call it for each message of the run, in order.
   bool Keeps(std::string_view channel, const uint8_t* data, int size);
 
-  // Whether this message, from before the window, says what holds in it until the next of its kind: of these the last belongs to the cut.
+  // Whether this message, from before the window, states something that holds in the window until the next
+  // message of its kind. The last such message belongs to the cut.
   bool HoldsAhead(std::string_view channel) const;
 
   int64_t states() const { return states_; }

@@ -1,5 +1,5 @@
-// What happened in a run: faults, steps of the reference, stops, gaps. Numbered without gaps, so that a client knows that it
-// has all.
+// What happened in a run: faults, steps of the reference, stops, gaps. The numbers have no gaps, so that a
+// client can tell whether it has all events.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ struct Event {
 
 class EventList {
  public:
-  // A flood of made-up ones pushes out the oldest, never the newest.
+  // A flood of forged events pushes out the oldest, never the newest.
   static constexpr size_t kMost = 20000;
 
-  // Gives the event its number, from 1.
+  // Gives the event its number; the first is 1.
   const Event& Add(Event event);
 
   uint64_t last() const { return last_; }
   uint64_t first() const { return last_ + 1 - events_.size(); }  // the oldest kept
-  // One of [first(), last()].
+  // The event with number `n` in [first(), last()].
   const Event& At(uint64_t n) const { return events_[n - first()]; }
 
  private:

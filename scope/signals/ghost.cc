@@ -13,7 +13,7 @@ namespace hydro::scope {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr size_t kSlopeSamples = 8;  // over which the rate of an angle is taken where no speed is measured
+constexpr size_t kSlopeSamples = 8;  // samples for the rate of an angle where no speed is measured
 constexpr double kTolerance = 1e-6;  // far below any noise, and five times as fast as the plant's own 1e-8
 
 double& At(Ghost::Row& row, GhostColumn column) { return row[static_cast<size_t>(column)]; }
@@ -75,7 +75,7 @@ void Ghost::Start(const GhostSample& sample) {
 }
 
 double Ghost::Sigma(double given, double resolution, const NoiseEstimate& estimate) const {
-  // Rounding to a grid is noise too, evenly spread over a step.
+  // Rounding to a grid is also noise, spread evenly over one step.
   const double known = std::hypot(given, resolution / std::sqrt(12.0));
   return known > 0 ? known : estimate.sigma();
 }
@@ -122,7 +122,7 @@ std::optional<Ghost::Row> Ghost::Add(const GhostSample& sample) {
       residual(measured.motor_speed, ghost.motor_speed,
                Sigma(noise.motor_speed_rad_s, noise.motor_speed_resolution_rad_s, motor_speed_));
   const bool due = resync_s_ > 0 && sample.time - started_ >= resync_s_;
-  if (!fresh && (due || sync_)) Start(sample);  // this row is still that of the ghost before
+  if (!fresh && (due || sync_)) Start(sample);  // this row still belongs to the ghost before
   return row;
 }
 

@@ -1,5 +1,5 @@
-// The model beside the rig: driven by the voltage that was sent, set to the measured state now and then. What it does and the
-// rig does not is the gap between them, live.
+// The model beside the rig. The voltage that was sent drives it, and now and then it is set to the measured
+// state. The difference between its motion and the rig's is the gap between them, live.
 #pragma once
 
 #include <array>
@@ -19,28 +19,30 @@ namespace hydro::scope {
 // What was measured at a tick.
 struct GhostSample {
   double time = 0;     // s
-  double voltage = 0;  // V, that acted since the tick before
+  double voltage = 0;  // V, which acted since the tick before
   model::Measurement measured;
-  bool after_gap = false;  // states are missing before it: what acted meanwhile is not known
+  bool after_gap = false;  // states are missing before it, so it is unknown what acted meanwhile
 };
 
 class Ghost {
  public:
   using Row = std::array<double, kGhostColumns>;
 
-  // The model, how its shaft is held and the noise are those of `config`. `resync_s`: s of plant time after which it is set
-  // to the measured state again; 0: only by Sync() and after gaps. Throws InputError for one below 0.
+  // The model, how its shaft is held and the noise are those of `config`. `resync_s` is the plant time in s
+  // after which the model is set to the measured state again; 0: only by Sync() and after gaps. Throws
+  // InputError for a negative value.
   Ghost(std::shared_ptr<const settings::StackConfig> config, double resync_s);
   ~Ghost();
 
-  // The ghost's values at the sample's time and what is measured less those, in standard deviations of the noise; none while
-  // it waits for a state to begin from. Where it begins, its values are the measured ones, and the residuals missing.
+  // Returns the ghost's values at the sample's time and the residuals (measured value minus ghost's value, in
+  // standard deviations of the noise). Returns nothing while the ghost waits for a state to begin from. Where
+  // it begins, its values are the measured ones, and the residuals are missing.
   std::optional<Row> Add(const GhostSample& sample);
 
   // Begins anew with the next sample.
   void Sync() { sync_ = true; }
 
-  // Why it does not run, or the model's last error; empty when there was none.
+  // Why the ghost does not run, or the model's last error; empty when there was none.
   const std::string& problem() const { return problem_; }
   int64_t starts() const { return starts_; }
 
@@ -51,7 +53,7 @@ class Ghost {
 
   std::shared_ptr<const settings::StackConfig> config_;
   double resync_s_;
-  std::unique_ptr<trajectory::Trajectory> motion_;  // of a driven shaft; the actuator points to it
+  std::unique_ptr<trajectory::Trajectory> motion_;  // motion of a driven shaft; the actuator points to it
   std::optional<model::StartedActuator> actuator_;
   std::deque<GhostSample> newest_;
   double started_ = 0;  // s

@@ -7,8 +7,8 @@ namespace hydro::scope {
 namespace {
 
 constexpr uint64_t kBlockRows = 4096;
-constexpr uint64_t kFineRows = 16;     // of the stretches of the first level
-constexpr uint64_t kCoarseRows = 256;  // of the second
+constexpr uint64_t kFineRows = 16;     // rows in a stretch of the first level
+constexpr uint64_t kCoarseRows = 256;  // rows in a stretch of the second level
 constexpr uint64_t kFine = kBlockRows / kFineRows;
 constexpr uint64_t kCoarse = kBlockRows / kCoarseRows;
 
@@ -83,7 +83,7 @@ History::Row History::LowerBound(double time) const {
 }
 
 History::Row History::LowerBoundFrom(Row hint, double time) const {
-  // Doubling steps from the hint find what is near in few looks.
+  // Steps that double from the hint find a nearby row in a few comparisons.
   Row low = std::max(hint, first_);
   uint64_t step = 1;
   Row high = low;
@@ -110,7 +110,8 @@ Extremes History::Find(Row from, Row to, size_t column) const {
     found.Add(other.min);
     found.Add(other.max);
   };
-  // Row numbers within blocks count from the first kept block, so stretches lie at multiples of their length.
+  // Row numbers within blocks count from the first kept block, so that stretches lie at multiples of their
+  // length.
   uint64_t at = from - first_;
   const uint64_t last = to - first_;
   while (at < last) {

@@ -10,8 +10,8 @@
 namespace hydro::scope {
 namespace {
 
-constexpr int64_t kAlive = 1000000;    // us; a plant silent for longer may be replaced by another
-constexpr double kRest = 0.1;          // s; a reference that changes after less is no step
+constexpr int64_t kAlive = 1000000;    // us; another plant may replace one that is silent for longer
+constexpr double kRest = 0.1;          // s; a reference that changes again sooner is not a step
 constexpr double kLongestTime = 1e12;  // s
 
 }  // namespace
@@ -44,7 +44,7 @@ double Intake::TimeOf(int64_t tick) const {
 }
 
 bool Intake::Follow(const state_t& state, int64_t utime) {
-  // A plant that begins anew under its old name: a log that is played again.
+  // A plant that begins again under its old name is a log that is played again.
   const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ &&
                      state.time < time_ - 0.5;
   if (state.session == session_ && !again) return true;
@@ -58,7 +58,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   run_ = next_run_(state.session);
   run_->session = state.session;
   if (early_description_ && early_description_->session == state.session) run_->Describe(*early_description_);
-  for (auto& [name, process] : run_->processes) process.missed = process.lost = 0;  // of the run before
+  for (auto& [name, process] : run_->processes) process.missed = process.lost = 0;  // from the run before
   session_ = state.session;
   left_ = false;
   sequence_ = -1;
@@ -76,12 +76,12 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   ++states_;
   if (!(std::abs(state.time) < kLongestTime) || !Follow(state, utime)) return;
   heard_utime_ = utime;
-  if (sequence_ >= 0 && state.sequence <= sequence_) return;  // repeated, or overtaken
+  if (sequence_ >= 0 && state.sequence <= sequence_) return;  // repeated, or overtaken by a later state
   if (sequence_ >= 0 && state.sequence > SaturatingSum(sequence_, 1)) {
     const int64_t missing = state.sequence - sequence_ - 1;  // both are 0 or above
     AddEvent(state.time, "gap", "", "",
              std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
-  } else if (sequence_ >= 0) {  // a recording without these rows, which was imported
+  } else if (sequence_ >= 0) {  // an imported recording that lacks these rows
     const int64_t expected =
         SaturatingSum(SaturatingSum(tick_, 1), std::max<int64_t>(state.skipped_ticks, 0));
     if (run_->of_a_limb) {
@@ -98,7 +98,7 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   ticks_.Add(state, utime);
 }
 
-// What a limb leaves out is not missing. The ends of a run, and late ticks, are no other interval.
+// What a limb leaves out is not missing. The ends of a run and late ticks do not change the interval.
 void Intake::FollowSampling(int64_t ticks) {
   if (ticks == sample_ticks_ && ticks > 1 && run_->sample_ticks != ticks) {
     run_->sample_ticks = ticks;

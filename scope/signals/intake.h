@@ -1,4 +1,4 @@
-// Messages into runs: the same for a bus and for a log.
+// Turns messages into runs, in the same way for a bus and for a log.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,22 @@ namespace hydro::scope {
 
 class Intake {
  public:
-  // `next_run`: a new run for another plant session, the one before it ended; called also for the first. What it returns
-  // must live until the next call.
+  // `next_run` makes a new run for another plant session after the run before it has ended. It is also called
+  // for the first run. The run that it returns must live until the next call.
   Intake(const std::string& suffix, std::function<Run*(int64_t session)> next_run);
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;
 
-  // A message as it was received; any other than those of a stack of that suffix are ignored. `utime`: us, of its arrival.
+  // Takes a message as it was received, and ignores messages that do not belong to a stack with that suffix.
+  // `utime` is its arrival in us.
   void Take(std::string_view channel, const uint8_t* data, int size, int64_t utime);
 
-  // The same on the channels of the limb whose joint this stack is: what concerns all joints counts as this one's too.
+  // The same for the channels of the limb to which this joint's stack belongs: what concerns all joints
+  // counts as this joint's too.
   void TakeOfLimb(const bus::Channels& limb, std::string_view channel, const uint8_t* data, int size,
                   int64_t utime);
 
-  // No more is coming for now: rows that wait for answers are complete.
+  // No more messages are coming for now, so rows that wait for answers are complete.
   void Flush() { ticks_.Flush(); }
 
   int64_t states() const { return states_; }
@@ -75,28 +77,28 @@ class Intake {
   int64_t undecodable_ = 0;
   int64_t foreign_ = 0;
 
-  // Of the plant that is followed.
+  // Session of the plant that is followed.
   std::optional<int64_t> session_;
-  bool left_ = false;  // it has ended
+  bool left_ = false;  // the plant has ended
   int64_t heard_utime_ = 0;
   int64_t sequence_ = -1;
   int64_t tick_ = -1;
   double time_ = 0;
-  int64_t sample_ticks_ = 1;  // before the newest state
+  int64_t sample_ticks_ = 1;  // interval before the newest state
 
   std::optional<run_description_t> early_description_;
 
-  // The reference, and since when it rests.
+  // The reference, and the time since which it rests.
   std::optional<double> reference_;
   double rests_since_ = 0;
 
-  std::map<int64_t, int64_t> fault_sequence_;            // the newest of each sender
+  std::map<int64_t, int64_t> fault_sequence_;            // the newest number of each sender
   std::map<std::string, std::set<std::string>> active_;  // faults by role
   std::map<std::string, std::set<std::string>>
-      doubted_;                            // active here, and missing from the role's last list
-  std::optional<tuned_settings_t> tuned_;  // the newest that was decided; empty: none was heard
-  int64_t tuning_request_ = -1;            // refused last
-  ProcessReport flood_;                    // of processes beyond those that are kept
+      doubted_;                            // active here, but missing from the role's last list
+  std::optional<tuned_settings_t> tuned_;  // the newest that was decided; empty: none has been heard
+  int64_t tuning_request_ = -1;            // the last one that was refused
+  ProcessReport flood_;                    // takes the reports of processes beyond those that are kept
   std::string last_stop_;
   std::string last_rearm_;
   int64_t last_stop_utime_ = 0;

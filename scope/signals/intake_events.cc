@@ -1,4 +1,4 @@
-// What an Intake makes of the messages that are not sent at each tick.
+// What an Intake makes of messages that are not sent at every tick.
 #include <algorithm>
 #include <cmath>
 #include <hydro/messages.hpp>
@@ -17,10 +17,10 @@
 namespace hydro::scope {
 namespace {
 
-constexpr int64_t kRepeated = 2000000;  // us, within which the same stop or answer is one
-constexpr size_t kMostProcesses = 64;   // a flood of made-up ones is not kept
+constexpr int64_t kRepeated = 2000000;  // us within which the same stop or answer counts once
+constexpr size_t kMostProcesses = 64;   // processes beyond this are a flood of forged ones and are not kept
 constexpr size_t kMostText = 400;
-constexpr uint64_t kMostReports = 100000;  // of a loop: a day
+constexpr uint64_t kMostReports = 100000;  // of a loop: a day's reports
 
 std::string Shown(const std::string& text) { return Printable(FirstBytes(text, kMostText)); }
 
@@ -78,7 +78,7 @@ void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, con
     return true;
   };
   const auto on_stop = [&](stop_t stop) {
-    stop.addressee = 0;  // the limb's session is not the joint's
+    stop.addressee = 0;  // the limb's session is not that of the joint
     OnStop(stop, utime);
   };
   static_cast<void>(take([&](const fault_t& m) { OnFault(m); }, fault_t{}) ||
@@ -88,7 +88,7 @@ void Intake::TakeOfLimb(const bus::Channels& limb, std::string_view channel, con
                     take([&](const loop_statistics_t& m) { OnStatistics(m, utime); }, loop_statistics_t{}));
 }
 
-// A plant describes its run before its first state.
+// A plant describes its run before it sends its first state.
 void Intake::OnDescription(const run_description_t& description) {
   if (session_ && description.session == session_) {
     run_->Describe(description);
@@ -117,8 +117,8 @@ void Intake::OnFault(const fault_t& fault) {
            fault.text);
 }
 
-// The list makes good for messages that were lost: one that it names and that is not known here has begun; one that two
-// lists in a row lack has ended.
+// The list makes up for lost messages: a fault that it names and that is unknown here has begun, and a fault
+// that two lists in a row lack has ended.
 void Intake::OnActiveFaults(const active_faults_t& message) {
   if (active_.size() > kMostProcesses) return;
   const std::string role = Shown(message.role);
@@ -145,7 +145,7 @@ void Intake::OnActiveFaults(const active_faults_t& message) {
 }
 
 void Intake::OnStop(const stop_t& stop, int64_t utime) {
-  if (stop.addressee != 0 && stop.addressee != session_) return;  // another run's
+  if (stop.addressee != 0 && stop.addressee != session_) return;  // addressed to another run
   left_ = true;
   const std::string what = stop.source + ": " + stop.reason;
   const bool repeated = what == last_stop_ && SaturatingDifference(utime, last_stop_utime_) < kRepeated;
@@ -154,7 +154,7 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
   if (!repeated) AddEvent(TimeOf(stop.tick), "stop", stop.source, "", stop.reason);
 }
 
-// Said when it is decided, with the tick on which it acts, and again once a second.
+// The plant sends this when it decides, with the tick at which the change acts, and again once a second.
 void Intake::OnSettings(const tuned_settings_t& settings) {
   const bool certain =
       settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
@@ -203,7 +203,7 @@ void Intake::OnStatus(const process_status_t& status, int64_t utime) {
 }
 
 void Intake::OnStatistics(const loop_statistics_t& statistics, int64_t utime) {
-  if (statistics.whole_run != 0) return;  // the sum of those before
+  if (statistics.whole_run != 0) return;  // it is the sum of the reports before it
   ProcessReport& report = Report(statistics.role, statistics.host, utime);
   if (statistics.interval_s > 0)
     report.rate_hz = static_cast<double>(statistics.cycles) / statistics.interval_s;

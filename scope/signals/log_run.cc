@@ -17,7 +17,8 @@
 namespace hydro::scope {
 namespace {
 
-// The names of the channels that the log holds; and what its limbs say of themselves.
+// Reads the names of the channels that the log holds, and the configurations by which its limbs describe
+// themselves.
 runs::RunLog ChannelsOf(log::LogReader& reader, const std::string& file, runs::LimbConfigs* configs) {
   std::map<std::string, int64_t, std::less<>> events;
   log::LogEvent event;
@@ -41,7 +42,7 @@ runs::RunLog ChannelsOf(log::LogReader& reader, const std::string& file, runs::L
   return names;
 }
 
-// A stack's messages into its runs.
+// Sorts a stack's messages into its runs.
 class StackOfLog {
  public:
   StackOfLog(std::string file, std::string name, std::string suffix)
@@ -68,7 +69,7 @@ class StackOfLog {
   Intake intake_{suffix_, [this](int64_t) { return NextRun(); }};
 };
 
-// All joints of a limb, or the one stack that is meant; and what the limb's own channels end in.
+// All joints of a limb, or the one stack that was chosen, and the suffix of the limb's own channels.
 std::vector<std::unique_ptr<StackOfLog>> StacksOf(const runs::RunLog& channels,
                                                   const runs::LimbConfigs& configs, const std::string& name,
                                                   const runs::StackChoice& choice, std::string* limb) {

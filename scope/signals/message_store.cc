@@ -8,14 +8,14 @@ namespace {
 
 constexpr size_t kBlock = 1 << 20;
 
-// Before a message's channel and data in a block.
+// Stands before a message's channel and data in a block.
 struct Header {
   int64_t utime;
   uint32_t channel_size;
   uint32_t data_size;
 };
 
-// The message at `bytes`; returns how long it is there.
+// Reads the message at `bytes`; returns its length in the block.
 size_t ReadMessage(const uint8_t* bytes, MessageStore::Message* message) {
   Header header;
   std::memcpy(&header, bytes, sizeof header);

@@ -1,4 +1,4 @@
-// The newest messages of a running stack as they were received, to be cut out as a log.
+// The newest messages of a running stack as they were received, so that they can be cut out as a log.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ class MessageStore {
     std::string_view channel;
     const uint8_t* data = nullptr;
     size_t size = 0;
-    int64_t utime = 0;  // us, when it was received
+    int64_t utime = 0;  // us, time of receipt
   };
 
-  // At most `most_bytes` are kept, and a block more.
+  // Keeps at most `most_bytes`, and a block more.
   explicit MessageStore(size_t most_bytes);
 
-  // `t`: s, plant time when it was received. Messages of more than a MiB are left out.
+  // `t` is the plant time at receipt in s. Messages of more than 1 MiB are left out.
   void Add(const Message& message, double t);
 
   // Drops whole blocks of messages received before `t`.
   void DropBefore(double t);
 
-  // What is kept now. It stays as it is, and may be read on another thread, while the store goes on.
+  // What is kept now. It does not change, and another thread may read it while the store continues.
   class Snapshot {
    public:
     void ForEach(const std::function<void(const Message&)>& visit) const;
@@ -44,17 +44,19 @@ class MessageStore {
   };
   Snapshot Take() const;
 
-  // Reading along: a place between two messages.
+  // A reader's place between two messages.
   struct Place {
-    uint64_t block = 0;  // counted from the first that ever was
+    uint64_t block = 0;  // counted from the first block that ever was
     size_t at = 0;
     uint64_t message = 0;  // counted likewise
   };
-  // After the newest message.
+  // The place after the newest message.
   Place End() const;
-  // The message there, valid until the store changes, and goes on; false: there is none yet.
+  // Reads the message at the place, which stays valid until the store changes, and moves on. Returns false
+  // when there is none yet.
   bool Read(Place* place, Message* message) const;
-  // Where more than `most` messages follow, or some were dropped, goes to the end. Returns how many are left out.
+  // Moves to the end when more than `most` messages follow, or when some were dropped. Returns how many are
+  // left out.
   uint64_t CatchUp(Place* place, uint64_t most) const;
 
   size_t memory() const;
@@ -70,7 +72,7 @@ class MessageStore {
 
   size_t most_blocks_;
   uint64_t dropped_blocks_ = 0;
-  uint64_t added_ = 0;  // messages
+  uint64_t added_ = 0;  // number of messages
   std::deque<Block> blocks_;
 };
 

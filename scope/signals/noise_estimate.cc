@@ -11,8 +11,8 @@ constexpr size_t kWindow = 2048;
 constexpr size_t kUpdateAfter = 512;
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-// A second difference of independent samples has sqrt(1 + 4 + 1) times their deviation; the median of a normal
-// distribution's absolute values is 0.67449 of its deviation.
+// A second difference of independent samples has sqrt(1 + 4 + 1) times their deviation; the median of a
+// normal distribution's absolute values is 0.67449 times its deviation.
 constexpr double kOfNormal = 0.6744897501960817 * 2.449489742783178;
 
 }  // namespace

@@ -70,7 +70,7 @@ void PendingTicks::Add(const motor_command_t& command, int64_t utime) {
     early_.push_back({command, utime});
     return;
   }
-  // The newest first: that is what a command answers.
+  // Searches from the newest tick, which is the one that a command usually answers.
   for (auto tick = ticks_.rbegin(); tick != ticks_.rend(); ++tick) {
     if (tick->tick == command.tick) return Answer(*tick, command, utime);
   }
@@ -89,7 +89,7 @@ void PendingTicks::Add(const arm_reference_t& reference) {
     AtTick(tick->row, TickColumn::kArmRef) = reference.value;
     return;
   }
-  arm_ref_ = reference.value;  // too late for its own tick
+  arm_ref_ = reference.value;  // it came too late for its own tick
 }
 
 void PendingTicks::EmitFirst() {

@@ -1,5 +1,5 @@
-// The newest ticks, while the answers to them may still arrive: a tick's row is complete when its commands are in, or
-// when kPending later ticks have come.
+// The newest ticks, while answers to them may still arrive. A tick's row is complete when its commands have
+// arrived, or when kPending later ticks have come.
 #pragma once
 
 #include <array>
@@ -25,15 +25,15 @@ class PendingTicks {
     Reset();
   }
 
-  // `utime`: us, when the message arrived. States must come in the order of their ticks.
+  // `utime` is the arrival of the message in us. States must come in the order of their ticks.
   void Add(const state_t& state, int64_t utime);
   void Add(const motor_command_t& command, int64_t utime);
   void Add(const arm_reference_t& reference);
 
-  // Emits all that waits.
+  // Emits all rows that wait.
   void Flush();
 
-  // As at the beginning, for another run.
+  // Resets to the initial state for another run.
   void Reset();
 
  private:
@@ -50,13 +50,13 @@ class PendingTicks {
 
   std::function<void(double, const Row&)> emit_;
   std::deque<Tick> ticks_;
-  int64_t newest_utime_ = 0;  // of a state
-  // In force until others come.
+  int64_t newest_utime_ = 0;  // of the newest state
+  // In force until the next one arrives.
   double dp_ref_;
   double voltage_asked_;
   double saturated_;
   double arm_ref_;
-  // Came before its state.
+  // A command that came before its state.
   struct Early {
     motor_command_t command;
     int64_t utime = 0;

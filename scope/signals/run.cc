@@ -49,7 +49,7 @@ void Run::Describe(const run_description_t& given) {
 
 std::optional<Signal> Run::Find(const std::string& channel_id) const {
   if (const auto column = IndexOf(tick_channels_, channel_id)) {
-    // A limb's samples last until the next: what is missing for longer is a gap.
+    // A limb's sample lasts until the next one. A longer time without samples is a gap.
     const bool sampled = sample_ticks > 1 && rate_hz > 0;
     return Signal{&ticks, *column, sampled ? kSampleHold * static_cast<double>(sample_ticks) / rate_hz : 0};
   }

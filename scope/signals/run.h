@@ -1,4 +1,4 @@
-// A run as a scope knows it: live, or out of a log.
+// A run as a scope knows it: live, or from a log.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,17 @@
 
 namespace hydro::scope {
 
-// What is known of a process of a running stack.
+// What is known about a process of a running stack.
 struct ProcessReport {
   std::string role;
   std::string host;
-  std::string state;  // ready, running, done, failed; empty: it has not said
-  std::string text;   // why it waits or failed
+  std::string state;  // ready, running, done, failed; empty: the process has not reported
+  std::string text;   // why the process waits or failed
   double rate_hz = 0;
-  int64_t missed = 0;  // deadlines, since the scope listens
-  int64_t lost = 0;    // messages
+  int64_t missed = 0;  // deadlines missed since the scope began to listen
+  int64_t lost = 0;    // messages lost
   double latency_p99_us = 0;
-  std::string faults;  // those that last, with blanks between
+  std::string faults;  // those still active, separated by blanks
   int64_t heard_utime = 0;
 };
 
@@ -37,17 +37,18 @@ struct Run {
 
   Run(uint32_t its_id, std::string its_name, Kind its_kind, uint64_t most_rows);
 
-  // What its messages say it runs with, or was recorded with. Describes the channels in the model's units.
+  // Takes the description of what the run runs with, or was recorded with. Describes the channels in the
+  // model's units.
   void Describe(const run_description_t& given);
 
   // The column of a channel; none for an unknown id.
   std::optional<Signal> Find(const std::string& channel_id) const;
-  // Those that have values, or may get some.
+  // The channels that have values, or may get some.
   std::vector<ChannelInfo> Channels() const;
 
   double first_time() const { return ticks.empty() ? 0 : ticks.time(ticks.begin()); }
   double last_time() const { return ticks.empty() ? 0 : ticks.last_time(); }
-  // s, between two states; 0 where they are uneven, as a limb's samples are, or not known.
+  // s between two states; 0 where they are uneven, like a limb's samples, or unknown.
   double spacing() const { return rate_hz > 0 && sample_ticks == 1 ? 1 / rate_hz : 0; }
   size_t memory() const;
 
@@ -56,23 +57,23 @@ struct Run {
   Kind kind;
   int64_t session = 0;
   double rate_hz = 0;
-  bool of_a_limb = false;    // hydro-limb sends it: states may be missing on purpose (limb.telemetry_hz)
-  int64_t sample_ticks = 1;  // from one state to the next; 1: all are there
+  bool of_a_limb = false;    // hydro-limb sends it, so states may be missing on purpose (limb.telemetry_hz)
+  int64_t sample_ticks = 1;  // from one state to the next; 1: every state is there
   std::shared_ptr<const settings::StackConfig> listened =
-      {};  // of CONFIG, for a live run and the one before it; null: a log's
+      {};  // that of CONFIG, for a live run and the one before it; null: for a log
   History ticks;
   History ghost;
   std::map<std::string, History> loops;            // by role
-  std::map<std::string, ProcessReport> processes;  // by role, and host where several have it
+  std::map<std::string, ProcessReport> processes;  // by role, and by host where several hosts have the role
   EventList events;
   std::optional<run_description_t> description;
   std::shared_ptr<const settings::StackConfig>
-      config;                              // of the description; null where this version cannot read it
-  std::string config_problem;              // why
+      config;                              // from the description; null where this version cannot read it
+  std::string config_problem;              // why config is null
   std::unique_ptr<MessageStore> messages;  // as received; null for a log
-  std::string log_file;                    // of a log
+  std::string log_file;                    // of a log's run
   std::string suffix;                      // of the channels' names
-  uint64_t revision = 0;  // grows when channels or facts above change, not with samples and events
+  uint64_t revision = 0;  // grows when the channels or facts above change, not with samples and events
 
  private:
   std::vector<ChannelInfo> tick_channels_;

@@ -37,7 +37,7 @@ void Trigger::Follow(const Run& run) {
   const bool first = run_ == nullptr;
   run_ = &run;
   const auto signal = run.Find(request_.channel);
-  // Of a run that begins anew, everything is new.
+  // When a run begins again, all of it is new.
   next_row_ = !first || !signal ? 0 : signal->history->end();
   next_event_ = first ? run.events.last() + 1 : 1;
   was_below_ = was_above_ = false;
@@ -60,7 +60,7 @@ bool Trigger::Crosses(double value) {
 
 void Trigger::Fire(double t) {
   if (t < quiet_until_ || state_ != State::kArmed) return;
-  if (fired_) {  // complete, or t would be quiet
+  if (fired_) {  // complete, or otherwise `t` would be in the quiet time
     if (capture_) ++skipped_;
     capture_ = fired_;
   }
@@ -91,7 +91,7 @@ void Trigger::ScanEvents(const Run& run) {
 Trigger::Capture Trigger::Captured(const Run& run, double t, const char* state) const {
   BinGrid grid{t - request_.pre * request_.span, request_.span / request_.pixels, 0, request_.pixels};
   if (const double spacing = run.spacing(); spacing > grid.width) {
-    // Bins centred on the samples, the trigger's among them.
+    // The bins are centred on the samples, including the trigger's.
     grid.origin = t - spacing / 2;
     grid.width = spacing;
     grid.first = -static_cast<int64_t>(std::floor(request_.pre * request_.span / spacing));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kMostChannels = 64;
 constexpr double kMostPixels = 16384;
-constexpr double kMostNumbers = 400000;  // of channels times pixels: 6.4 MB a frame
+constexpr double kMostNumbers = 400000;  // channels times pixels: 6.4 MB per frame
 constexpr double kLongestSpan = 1e6;     // s
 
 }  // namespace
@@ -55,13 +55,13 @@ View::View(ViewRequest request, const Run& run) : request_(std::move(request)) {
   FindSignals(run, request_.channels);
 }
 
-// The signals of a run that has begun anew, or has got channels.
+// Finds the signals again in a run that has begun again or has new channels.
 void View::Follow(const Run& run) {
   const bool same_run = run_ == &run;
   if (same_run && revision_ == run.revision) return;
   signals_.clear();
   for (const std::string& id : request_.channels) {
-    // A loop that has not reported yet in this run: nothing is shown of it.
+    // Nothing is shown of a loop that has not yet reported in this run.
     static const History kNothing(1);
     signals_.push_back(run.Find(id).value_or(Signal{&kNothing, 0, 0}));
   }
@@ -77,13 +77,13 @@ void View::Follow(const Run& run) {
   revision_ = run.revision;
 }
 
-// Of the rows that have not been sent.
+// The earliest time of the rows that have not been sent.
 std::optional<double> View::EarliestNew() const {
   std::optional<double> earliest;
   for (const Signal& signal : signals_) {
     const History& history = *signal.history;
     const auto sent = sent_.find(&history);
-    // A ghost that begins anew has fewer rows than it had.
+    // A ghost that begins again has fewer rows than before.
     const bool known = sent != sent_.end() && sent->second <= history.end();
     const History::Row row = std::max(history.begin(), known ? sent->second : 0);
     if (row < history.end()) earliest = std::min(earliest.value_or(history.time(row)), history.time(row));
@@ -93,7 +93,7 @@ std::optional<double> View::EarliestNew() const {
 
 std::string View::Next(const Run& run, TimePoint now) {
   const std::chrono::duration<double> since = last_ ? now - *last_ : std::chrono::duration<double>(1e9);
-  // Half a turn early rather than a turn late.
+  // Rather half a turn early than a whole turn late.
   if (since.count() < 1 / request_.fps - 0.004) return {};
   Follow(run);
   const auto earliest = EarliestNew();

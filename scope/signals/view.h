@@ -1,4 +1,4 @@
-// What is new of a run for a client that watches some of its channels.
+// What is new in a run for a client that watches some of its channels.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,9 @@ struct ViewRequest {
   double fps = 60;
 };
 
-// Frames are made when the client is ready for one: what a slow client was not shown in time is not made up for, but counted,
-// and lies in later bins or in history. No sample is lost between two frames: a bin is sent again when samples have come
-// into it, however late.
+// Frames are made when the client is ready for one. What a slow client could not be shown in time is counted
+// but not repeated, and remains in later bins or in history. No sample is lost between two frames: a bin is
+// sent again when samples have been added to it, however late.
 class View {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -31,11 +31,11 @@ class View {
   // Throws InputError when a channel is unknown or a number makes no sense.
   View(ViewRequest request, const Run& run);
 
-  // The next frame (bins.h), at most `fps` a second; empty when nothing is new, or it is too early.
+  // The next frame (bins.h), at most `fps` per second; empty when nothing is new, or when it is too early.
   std::string Next(const Run& run, TimePoint now);
 
   const ViewRequest& request() const { return request_; }
-  // So far: bins that scrolled past unseen, and frames that were due while the client was not ready.
+  // Totals so far: bins that scrolled past unseen, and frames that were due while the client was not ready.
   uint64_t skipped_bins() const { return skipped_bins_; }
   uint64_t skipped_frames() const { return skipped_frames_; }
 
@@ -44,13 +44,13 @@ class View {
   std::optional<double> EarliestNew() const;
 
   ViewRequest request_;
-  const Run* run_ = nullptr;  // to which the signals belong
+  const Run* run_ = nullptr;  // the run to which the signals belong
   uint64_t revision_ = 0;
   std::vector<Signal> signals_;
   std::map<const History*, History::Row> sent_;  // rows before these have been sent
   BinGrid grid_;
-  std::optional<int64_t> newest_bin_;  // sent
-  std::optional<TimePoint> last_;      // frame
+  std::optional<int64_t> newest_bin_;  // the newest that was sent
+  std::optional<TimePoint> last_;      // time of the last frame
   uint64_t skipped_bins_ = 0;
   uint64_t skipped_frames_ = 0;
 };

@@ -19,7 +19,8 @@ bool SameText(std::string_view a, std::string_view b) {
 }
 
 bool SameSecret(std::string_view given, std::string_view secret) {
-  // Every byte of the secret is looked at, whatever was given; only the given text's own length decides how long it takes.
+  // Compares every byte of the secret, whatever was given, so that the time depends only on the length of the
+  // given text.
   unsigned difference = given.size() == secret.size() ? 0 : 1;
   for (size_t i = 0; i < secret.size(); ++i) {
     const char other = given.empty() ? '\0' : given[i % given.size()];

@@ -11,13 +11,13 @@ namespace hydro::scope {
 
 struct Target {
   std::string path;
-  std::map<std::string, std::string> query;  // the first of each name
+  std::map<std::string, std::string> query;  // the first value of each name
 };
 
-// Empty when it is no path, or an escape or a zero byte in it is wrong.
+// Empty when the text is not a path, or when it has a wrong escape or a zero byte.
 std::optional<Target> ParseTarget(std::string_view target);
 
-// "a, b" as its parts.
+// Splits "a, b" into its parts.
 std::vector<std::string> ListOf(std::string_view header);
 
 }  // namespace hydro::scope

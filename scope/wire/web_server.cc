@@ -29,11 +29,11 @@ namespace {
 
 constexpr size_t kMostHeader = 8192;
 constexpr size_t kMostMessage = 65536;
-constexpr size_t kMostInMemory = 1 << 20;  // of a body
+constexpr size_t kMostInMemory = 1 << 20;  // bytes of a body
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
-// A page without a script of its own line, from nowhere else, in no frame.
+// The page may have no inline scripts, load nothing from elsewhere, and be shown in no frame.
 constexpr char kPolicy[] =
     "default-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' blob: data:; frame-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -94,15 +94,15 @@ class WebServer::Impl {
   int connections = 0;
   int64_t refused = 0;
   std::unordered_set<SocketSession*> sockets;
-  asio::io_context io{1};  // last of these: the sessions that end with it count themselves out
+  asio::io_context io{1};  // last of these, because the sessions that end with it count themselves out
 
  private:
   void Accept();
   void Turn();
 
   tcp::acceptor acceptor_;
-  asio::steady_timer timer_;  // of the turns
-  asio::steady_timer pause_;  // before the next try to accept
+  asio::steady_timer timer_;  // for the turns
+  asio::steady_timer pause_;  // before the next attempt to accept
   const std::function<std::chrono::microseconds()>* turn_ = nullptr;
   bool ended_ = false;
 };
@@ -159,7 +159,7 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
     });
   }
 
-  // Sends what the conversation has, one message after another.
+  // Sends the conversation's messages, one after another.
   void Pump() {
     if (!open_ || writing_) return;
     if (conversation_->over()) return Close();
@@ -195,7 +195,7 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
     socket_.async_close(websocket::close_code::policy_error, [self = shared_from_this()](error_code) {});
   }
 
-  // Whatever still waits on this socket ends.
+  // Ends everything that still waits on this socket.
   void Drop() {
     open_ = false;
     beast::get_lowest_layer(socket_).close();
@@ -229,7 +229,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void ReadHeader() {
     header_.emplace();
     header_->header_limit(kMostHeader);
-    header_->body_limit(std::numeric_limits<uint64_t>::max());  // BodyLimit() has the say
+    header_->body_limit(std::numeric_limits<uint64_t>::max());  // BodyLimit() decides instead
     stream_.expires_after(server_.options.header_time);
     http::async_read_header(
         stream_, buffer_, *header_, [self = shared_from_this()](error_code error, size_t) {
@@ -240,7 +240,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           if (error == http::error::end_of_stream || error == beast::error::timeout) {
             return self->Shut();
           }
-          // What is not HTTP gets an answer, so that its sender sees why.
+          // A request that is not HTTP gets an answer, so that its sender sees why it failed.
           if (error.category() == http::make_error_code(http::error::bad_method).category()) {
             self->Refuse(400, "found no HTTP request: " + error.message());
           }
@@ -339,7 +339,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     ReadSome(*file_);
   }
 
-  // As long as bytes come, the body may take its time.
+  // As long as bytes arrive, the body may take its time.
   template <class Parser>
   void ReadSome(Parser& parser) {
     if (parser.is_done()) return TakeBody();
@@ -354,7 +354,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                           });
   }
 
-  // The upload was cut off.
+  // Removes the file of an upload that was cut off.
   void Forget() {
     file_.reset();
     if (!now_.body_file.empty()) std::remove(now_.body_file.c_str());
@@ -410,7 +410,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto response = std::make_shared<http::response<http::file_body>>();
     error_code error;
     response->body().open(from.file.c_str(), beast::file_mode::scan, error);
-    std::remove(from.file.c_str());  // its bytes stay until it is closed
+    std::remove(from.file.c_str());  // the open file keeps its bytes until it is closed
     if (error) return Send(ErrorResponse(500, "cannot read " + from.file + ": " + error.message()), keep);
     SetHead(*response, from, keep);
     response->prepare_payload();
@@ -435,8 +435,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     Drain(0);
   }
 
-  // What the client is still sending is read away for a moment: a connection that is closed with bytes unread is reset, and
-  // the client may lose the answer.
+  // For a moment, reads and discards what the client is still sending: closing a connection with unread bytes
+  // resets it, and the client may lose the answer.
   void Drain(size_t drained) {
     constexpr size_t kMostDrained = 1 << 20;
     if (drained > kMostDrained) return;
@@ -462,7 +462,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 void WebServer::Impl::Accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (ended_ || error == asio::error::operation_aborted) return;
-    if (error) {  // out of file descriptors: better later than in a busy loop
+    if (error) {  // out of file descriptors: waiting is better than a busy loop
       pause_.expires_after(std::chrono::milliseconds(100));
       pause_.async_wait([this](error_code) {
         if (!ended_) Accept();
@@ -472,7 +472,7 @@ void WebServer::Impl::Accept() {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const bool full = connections >= options.most_connections;
-    // Beyond twice the limit not even an answer.
+    // Beyond twice the limit, the client does not even get an answer.
     if (connections < 2 * options.most_connections) {
       std::make_shared<HttpSession>(*this, std::move(socket))->Start(full);
     }
@@ -487,7 +487,7 @@ void WebServer::Impl::Turn() {
     io.stop();
     return;
   }
-  // A conversation that ends while it is asked leaves the set.
+  // A conversation that ends while it is asked leaves the set, so this loops over a copy.
   const std::vector<SocketSession*> now(sockets.begin(), sockets.end());
   for (SocketSession* const session : now) {
     if (sockets.contains(session)) session->Pump();

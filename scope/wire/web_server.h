@@ -1,9 +1,9 @@
 // HTTP and web sockets on one port, on one thread, for a few clients that may be slow, stuck or hostile.
 //
-// - A request must pass the checks of Access; its header ends within 10 s and 8 KiB; a body or an answer that makes no
-//   progress for 20 s ends the connection. More than 64 connections at a time are turned away.
-// - A web socket's messages have at most 64 KiB; a client that is silent for 30 s is asked whether it is there, and closed
-//   when it is not.
+// - A request must pass the checks of Access. Its header must end within 10 s and 8 KiB. A body or an answer
+//   that makes no progress for 20 s ends the connection. More than 64 connections at a time are turned away.
+// - A web socket's messages have at most 64 KiB. A client that is silent for 30 s is asked whether it is
+//   there, and its connection is closed when it does not answer.
 #pragma once
 
 #include <chrono>
@@ -21,14 +21,14 @@ struct WebServerOptions {
   std::string address = "127.0.0.1";
   int port = 0;  // 0: any free one
   int most_connections = 64;
-  std::chrono::milliseconds header_time{10000};  // in which a request's header must have come
+  std::chrono::milliseconds header_time{10000};  // within which a request's header must have arrived
   std::chrono::milliseconds stall_time{20000};   // without progress
   std::chrono::milliseconds idle_time{30000};    // of a web socket without any sign of life
 };
 
 class WebServer {
  public:
-  // Listens from now on. Throws InputError for an address or a port that cannot be had.
+  // Listens from now on. Throws InputError for an address or a port that is not available.
   explicit WebServer(const WebServerOptions& options);
   ~WebServer();
   WebServer(const WebServer&) = delete;
@@ -36,19 +36,19 @@ class WebServer {
 
   int port() const;
 
-  // Whom to serve, and what. Call before Run(), with the port known.
+  // Sets who is served, and what. Call it before Run(), once the port is known.
   void Open(Access access, Site* site);
 
-  // Serves until `turn`, which is called at once and then after the time that it returned last, returns a negative one.
-  // After each turn, every conversation is asked for what is new.
+  // Serves until `turn` returns a negative time. `turn` is called at once, and then each time after the time
+  // that it returned last. After each turn, every conversation is asked for what is new.
   void Run(const std::function<std::chrono::microseconds()>& turn);
 
-  // Runs `work` on the thread of Run(), soon. Any thread may call it.
+  // Soon runs `work` on the thread of Run(). Any thread may call this.
   void Post(std::function<void()> work);
 
   int connections() const;    // HTTP and web sockets
   int conversations() const;  // web sockets
-  int64_t refused() const;    // requests that did not pass the checks
+  int64_t refused() const;    // requests that failed the checks
 
   class Impl;
 

@@ -11,7 +11,7 @@ namespace {
 // The sections of this project's documents that are lists.
 constexpr std::array kLists{"joint", "process", "arm.link"};
 
-// A line without blanks and comment.
+// A line without blanks and comments.
 std::string Bare(std::string_view line) {
   std::string bare(line.substr(0, line.find('#')));
   std::erase_if(bare, [](unsigned char c) { return std::isspace(c); });

@@ -1,4 +1,4 @@
-// Lists of sections, [[name]], that stand as [name].
+// Finds lists of sections, [[name]], that are written as [name].
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace hydro::settings {
 
-// For the section `name` of a list of sections, where it stands as [name].
+// The error for the section `name` of a list of sections that is written as [name].
 InputError NotAList(const std::string& place, const std::string& name);
 
-// What the parser calls a table defined twice, at line `at` of a text, may be a list whose sections have single brackets. Throws
-// InputError then, for the first of them.
+// When the parser reports a table defined twice, at line `at` of a text, that table may be a list whose
+// sections have single brackets. If it is, throws InputError for the first of them.
 void RefuseSingleBrackets(std::string_view text, const std::string& name, size_t at);
 
 }  // namespace hydro::settings

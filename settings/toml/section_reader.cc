@@ -14,7 +14,7 @@ using Kind = TomlNode::Kind;
 }  // namespace
 
 std::optional<int64_t> WholeNumber(const TomlNode& node) {
-  constexpr double kExact = 9007199254740992;  // 2^53: above it, a double has no units
+  constexpr double kExact = 9007199254740992;  // 2^53: above it, doubles cannot hold every whole number
   if (node.is(Kind::kInteger)) return node.integer;
   const bool whole =
       node.is(Kind::kFloat) && std::abs(node.number) <= kExact && std::floor(node.number) == node.number;

@@ -1,4 +1,4 @@
-// Reads one section of a TOML document key by key, so that a key that no one asks for is an error.
+// Reads one section of a TOML document key by key, so that a key for which nothing asks is an error.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,13 @@ namespace hydro::settings {
 InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
                     const std::string& allowed);
 
-// The same for a dotted key. The place is the key's or, if the key is absent, that of the innermost enclosing
-// section.
+// The same for a dotted key. The place is that of the key or, if the key is absent, that of the innermost
+// enclosing section.
 InputError KeyError(const TomlNode& root, const std::string& dotted_key, const std::string& found,
                     const std::string& allowed);
 
-// The value of a whole number; 1.0 is one too, as programs and spreadsheets write it so. Empty for any other value.
+// The value of a whole number. 1.0 counts as one, because programs and spreadsheets write whole numbers that
+// way. Empty for any other value.
 std::optional<int64_t> WholeNumber(const TomlNode& node);
 
 struct NumberRange {
@@ -32,14 +33,15 @@ struct NumberRange {
   bool min_allowed = true;
   bool max_allowed = true;
   bool infinity_allowed = false;  // "inf" for "no limit"
-  // The sizes of numbers other than 0. Nearer to 0 a number loses its digits, and what is divided by it overflows.
+  // The allowed sizes of numbers other than 0. Closer to 0, a number loses its digits, and quotients by it
+  // overflow.
   double smallest = std::numeric_limits<double>::min();
   double largest = std::numeric_limits<double>::max();
-  const char* beyond_max = "";  // why a value above max is refused
+  const char* beyond_max = "";  // the reason why a value above max is refused
 
   bool Holds(double value) const;
   std::string Allowed() const;  // "a finite number above 0"
-  // The same, with the sizes where it is they that the number misses.
+  // The same, with the allowed sizes if the size is what is wrong with the number.
   std::string AllowedInsteadOf(double value) const;
 
  private:
@@ -50,7 +52,7 @@ inline constexpr NumberRange kAnyNumber{};
 inline constexpr NumberRange kPositive{.min = 0, .min_allowed = false};
 inline constexpr NumberRange kNotNegative{.min = 0};
 
-// A key that a reader asked for, for the page that lists them all (tests/settings/configuration_page.h).
+// A key for which a reader asked. The page that lists all keys uses it (tests/settings/configuration_page.h).
 struct AskedKey {
   std::string section;  // dotted; empty: the whole document
   std::string key;
@@ -60,13 +62,13 @@ struct AskedKey {
 
 class SectionReader {
  public:
-  // `path` is the dotted name of the section, empty for the whole document. The node must outlive the reader.
-  // `asked`, which must too: where to note the keys that this reader and those of its sections ask for.
+  // `path` is the dotted name of the section, empty for the whole document. `asked` receives the keys for
+  // which this reader and those of its sections ask. Both the node and `asked` must outlive the reader.
   SectionReader(const TomlNode& table, std::string path, std::vector<AskedKey>* asked = nullptr);
 
   bool Has(const std::string& key) const { return table_->Find(key) != nullptr; }
 
-  // These return whether the key is present, and leave `out` alone if not. They throw InputError.
+  // These return whether the key is present, and leave `out` unchanged if it is not. They throw InputError.
   bool Number(const std::string& key, double* out, const NumberRange& range = kAnyNumber);
   bool Number(const std::string& key, std::optional<double>* out, const NumberRange& range = kAnyNumber);
   bool Integer(const std::string& key, int64_t* out, int64_t min, int64_t max);
@@ -76,21 +78,21 @@ class SectionReader {
   template <class Value>
   bool Choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& choices, Value* out);
 
-  // The section of that name; an empty one if there is none.
+  // The section of that name; an empty section if there is none.
   SectionReader Section(const std::string& key);
 
-  // One of an array of sections: `item` is in this section's, `path` its dotted name.
+  // One section of an array of sections: `item` is in this reader's section, and `path` is its dotted name.
   SectionReader Item(const TomlNode& item, const std::string& path) const {
     return SectionReader(item, path, asked_);
   }
 
-  // The key's node, for what the functions above do not cover; null if there is none.
+  // The key's node, for values that the functions above do not cover; null if there is none.
   const TomlNode* Take(const std::string& key);
 
-  // Declares that `key` must be present (checked by Finish).
+  // Declares that `key` must be present; Finish() checks it.
   void Require(const std::string& key, const std::string& allowed);
 
-  // Throws InputError for the first key that was never asked for, else for the first missing required one.
+  // Throws InputError for the first key for which nothing asked, or else for the first missing required key.
   void Finish() const;
 
   InputError Error(const std::string& key, const std::string& found, const std::string& allowed) const;

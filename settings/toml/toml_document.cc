@@ -15,8 +15,8 @@
 namespace hydro::settings {
 namespace {
 
-constexpr int kMostKeyParts = 16;  // this project's keys have up to three
-constexpr int kMostBrackets = 16;  // one inside another; this project's values have two
+constexpr int kMostKeyParts = 16;  // keys of this project have up to three parts
+constexpr int kMostBrackets = 16;  // one inside another; values of this project have two
 
 // Bounds the depth of a document before it is parsed. toml++ bounds the nesting of arrays and inline tables,
 // but builds a table inside a table for each part of a dotted key, and a key of a hundred thousand parts
@@ -73,7 +73,7 @@ class DepthScan {
     const std::string end = At(thrice) ? thrice : std::string(1, quote);
     Step(end.size());
     while (at_ < text_.size() && !At(end)) {
-      if (end.size() == 1 && text_[at_] == '\n') return;  // no TOML
+      if (end.size() == 1 && text_[at_] == '\n') return;  // not TOML
       Step(quote == '"' && text_[at_] == '\\' ? 2 : 1);
     }
     Step(end.size());
@@ -91,7 +91,7 @@ TomlNode Convert(const toml::node& from, const std::string& name) {
   node.place = name + ":" + std::to_string(from.source().begin.line);
   if (const toml::table* table = from.as_table()) {
     node.kind = TomlNode::Kind::kTable;
-    // toml++ sorts by name; people, and the order of effects in a model, follow the file.
+    // toml++ sorts by name, but people, and the order of effects in a model, follow the file.
     std::vector<std::pair<const toml::key*, const toml::node*>> entries;
     for (auto&& [key, value] : *table) entries.emplace_back(&key, &value);
     std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
@@ -187,14 +187,14 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
 
 namespace {
 
-// Files that are no text of settings, whatever the first byte is that TOML does not allow.
+// Refuses files that are not settings text at all, whatever the first byte is that TOML does not allow.
 void RefuseOtherKinds(const std::string& text, const std::string& name) {
   const std::optional<FileKind> kind = FindFileKind(std::string_view(text).substr(0, 64));
   if (!kind.has_value() || *kind >= FileKind::kStack) return;
   throw InputError(name + ": " + OtherKind(*kind, name, "a TOML file"));
 }
 
-// Whether the first two lines have cells, as many in both, as a table has.
+// Whether each of the first two lines has cells, and both have the same number, as in a table.
 bool LooksLikeTable(const std::string& text) {
   const size_t end = text.find('\n');
   if (end == std::string::npos) return false;

@@ -22,7 +22,7 @@ struct TomlNode {
   bool boolean = false;             // kBoolean
   std::string place;                // "file:line", or the option that set it
   bool from_option = false;         // true: from --set
-  std::string former = {};          // the key's name before another took its place (quantity_keys.h)
+  std::string former = {};          // the key's name before its present name replaced it (quantity_keys.h)
 
   bool is(Kind k) const { return kind == k; }
   bool is_number() const { return kind == Kind::kInteger || kind == Kind::kFloat; }
@@ -32,7 +32,7 @@ struct TomlNode {
   TomlNode* Find(const std::string& key);
   void Erase(const std::string& key);
 
-  // What was found, for a message: a value as it would be written, a table or an array by its kind.
+  // What was found, for a message: a value as it would be written, or the kind of a table or array.
   std::string Shown() const;
 };
 

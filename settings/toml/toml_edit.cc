@@ -7,12 +7,12 @@
 namespace hydro::settings {
 namespace {
 
-// Walks over TOML value text, outside strings: whether a comment begins, and how deep the brackets are.
+// Scans the text of a TOML value outside strings, for the start of a comment and the depth of the brackets.
 struct ValueScan {
   int depth = 0;
   char quote = 0;
 
-  // Returns where a comment begins in `line` from `from` on; its length where there is none.
+  // Returns where a comment begins in `line` at or after `from`, or the line's length where there is none.
   size_t Scan(const std::string& line, size_t from) {
     for (size_t i = from; i < line.size(); ++i) {
       const char c = line[i];
@@ -39,14 +39,14 @@ struct Place {
   size_t first = 0;    // line of the key
   size_t last = 0;     // line where its value ends
   size_t value = 0;    // column of the value in `first`
-  size_t comment = 0;  // column behind the value in `last`
+  size_t comment = 0;  // column after the value in `last`
 };
 
 struct Document {
   std::vector<std::string> lines;
   std::map<std::string, Place> keys;  // by dotted name, of tables that occur once
   std::map<std::string, size_t>
-      section_ends;  // line behind the last key of each section; "" is the document's head
+      section_ends;  // line after the last key of each section; "" is the document's head
 };
 
 Document Read(const std::string& text) {
@@ -95,7 +95,7 @@ void Replace(Document* document, const Place& place, const std::string& value) {
     const std::string& old = document->lines[place.last];
     const size_t end = place.comment == 0 ? 0 : old.find_last_not_of(" \t", place.comment - 1) + 1;
     behind = old.substr(end, place.comment - end) + behind;
-    // A shorter value leaves the comment where it stood.
+    // With a shorter value, the comment stays in its column.
     const size_t length = place.first == place.last ? end - place.value : 0;
     if (value.size() < length) behind.insert(0, length - value.size(), ' ');
   }
@@ -132,7 +132,7 @@ void CheckResult(const std::string& before, const std::string& after, const std:
   try {
     for (const auto& [key, value] : TomlEntries(ParseToml(after, name))) found[key] = value;
   } catch (const InputError&) {
-    found.clear();  // what was added contradicts the rest, as a [section] does beside an inline table
+    found.clear();  // the addition contradicts the rest, as a [section] does beside an inline table
   }
   if (found == expected) return;
   for (const auto& [key, value] : changed) {

@@ -1,4 +1,5 @@
-// Changes values in the text of a TOML document and leaves all else as it is: comments, order, blank lines.
+// Changes values in the text of a TOML document and leaves everything else as it is: comments, order, blank
+// lines.
 #pragma once
 
 #include <string>
@@ -8,9 +9,10 @@
 
 namespace hydro::settings {
 
-// `text` with each of `changed` ("section.key", its value as TOML) in the place of its old value, or new at the end of its section,
-// and without `removed`. Comments behind a value stay. Throws InputError when the document is written in a way in which this does not find
-// its values (an inline table, a dotted key): no text is better than a wrong one.
+// Returns `text` without `removed` and with each of `changed` ("section.key", its value as TOML) in place of
+// its old value, or new at the end of its section. Comments after a value stay. Throws InputError when the
+// document is written in a way that hides its values from this function (an inline table, a dotted key),
+// because no text is better than a wrong one.
 std::string EditToml(const std::string& text, const std::string& name, const std::vector<TomlEntry>& changed,
                      const std::vector<std::string>& removed);
 

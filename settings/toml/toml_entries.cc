@@ -16,14 +16,14 @@ std::vector<const TomlMember*> SortedMembers(const TomlNode& table) {
   return members;
 }
 
-// A literal string where possible, which needs no escapes.
+// Writes a literal string, which needs no escapes, where possible.
 std::string StringText(const std::string& text) {
   const bool literal =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\'' || c < 0x20 || c == 0x7f; });
   return literal ? "'" + text + "'" : TomlString(text);
 }
 
-// A value as TOML on one line; numbers as they are read, in the shortest form.
+// A value as TOML on one line, with numbers in the shortest form that reads back the same.
 std::string ValueText(const TomlNode& node) {
   std::string text;
   switch (node.kind) {

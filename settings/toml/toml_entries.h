@@ -11,8 +11,8 @@ namespace hydro::settings {
 
 using TomlEntry = std::pair<std::string, std::string>;  // "section.key", and its value as TOML on one line
 
-// All entries of a table and the tables in it, in the order of their keys; equal values have equal text, however
-// they were written.
+// All entries of a table and of the tables in it, in the order of their keys. Equal values have equal text,
+// no matter how they were written.
 std::vector<TomlEntry> TomlEntries(const TomlNode& table);
 
 }  // namespace hydro::settings

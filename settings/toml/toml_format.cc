@@ -24,7 +24,7 @@ std::string Number(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   std::string text = ShortestNumber(value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // else it would read back as an integer
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // else it would be read as an integer
   return text;
 }
 

@@ -1,4 +1,4 @@
-// hydro-limb CONFIG: the joints of a limb in one process.
+// hydro-limb CONFIG: runs the joints of a limb in one process.
 #include "process/process_main.h"
 #include "process/supervision.h"
 #include "sim/limb/limb_app.h"

@@ -6,8 +6,8 @@
 namespace hydro::limb {
 namespace {
 
-// All parts of a limb run with what this process has read: there is nothing to compare. And the limb itself looks after its joints'
-// faults.
+// All parts of a limb run with the configuration that this process has read, so there is nothing to compare.
+// The limb itself handles the faults of its joints.
 settings::StackConfig InsideALimb(settings::StackConfig config) {
   config.agreed.clear();
   config.siblings.clear();
@@ -39,7 +39,7 @@ void Joint::Dispatch(bus::Clock::TimePoint until) {
   }
 }
 
-// Each is computed from the start, so that rounding does not add up.
+// Each due time is computed from the start, so that rounding errors do not add up.
 bus::Clock::TimePoint Joint::DueTime(int64_t tick) const {
   return start_ + bus::FromSeconds(static_cast<double>(tick) / config_.plant.rate_hz);
 }

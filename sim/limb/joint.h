@@ -1,5 +1,5 @@
-// One joint of a limb: its rig, its plant and its two loops on a bus of its own, in the process of the limb. The classes are those of
-// the separate processes.
+// One joint of a limb: its rig, its plant and its two loops on a bus of its own, in the limb's process. The
+// classes are those of the separate processes.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,9 @@ namespace hydro::limb {
 
 class Joint {
  public:
-  // `clock`: null for lockstep, in which the joint has a simulated clock of its own; else that of the process. `program`, `heartbeat`:
-  // as PlantApp's. `session`: of the simulated clock.
+  // `clock` is null for lockstep, in which the joint has a simulated clock of its own; otherwise it is the
+  // clock of the process. `program` and `heartbeat` are those of PlantApp. `session` is the session on the
+  // simulated clock.
   Joint(const settings::JointConfig& joint, std::unique_ptr<plant::Rig> rig, bus::Clock* clock,
         const std::string& program, std::function<bool()> heartbeat, int64_t session = 0);
 
@@ -33,20 +34,23 @@ class Joint {
   plant::PlantApp& plant() { return plant_; }
   const plant::PlantApp& plant() const { return plant_; }
 
-  // Whether this session is the joint's own: its plant's, or a loop's.
+  // Whether this session belongs to the joint: to its plant, or to one of its loops.
   bool IsOwn(int64_t session) const;
 
-  // Delivers all that waits on the joint's bus, and what answers it. On a simulated clock, time then is `until`.
+  // Delivers everything that waits on the joint's bus, and the answers to it. On a simulated clock, the time
+  // is then `until`.
   void Dispatch(bus::Clock::TimePoint until);
 
-  // Lockstep: when `tick` is due on the joint's clock.
+  // Lockstep: the time on the joint's clock at which `tick` is due.
   bus::Clock::TimePoint DueTime(int64_t tick) const;
   void StartClock() { start_ = clock_.Now(); }
 
-  // Watchdogs, statistics, announcements of all three. At least every process::kPollPeriod.
+  // Runs the watchdogs, statistics and announcements of all three. Call it at least every
+  // process::kPollPeriod.
   void Poll();
 
-  // Its run is over: zero volts, the ends are announced. Later calls do nothing and return the same exit code.
+  // Ends the joint's run: puts out zero volts and announces the ends. Later calls do nothing and return the
+  // same exit code.
   int End();
   bool ended() const { return ended_; }
 

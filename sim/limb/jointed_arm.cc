@@ -9,7 +9,7 @@
 namespace hydro::limb {
 namespace {
 
-// What the joints share.
+// The arm that the joints share.
 class Arm {
  public:
   Arm(const model::ArmDescription& description, const std::vector<model::ArmJoint>& joints)
@@ -17,7 +17,7 @@ class Arm {
 
   void Hold(size_t joint, double voltage) noexcept { voltages_[joint] = voltage; }
 
-  // Once it has failed, it has failed for all its joints.
+  // Once the arm has failed, it has failed for all its joints.
   void Advance(double until) {
     if (failure_) throw model::ModelError(*failure_);
     if (until <= arm_.time()) return;

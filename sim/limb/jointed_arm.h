@@ -9,8 +9,9 @@
 
 namespace hydro::limb {
 
-// A machine for each joint, in the order of the configuration, which must have an arm. They advance together: the first that is told
-// to advance takes the others along, each under the voltage that it holds. Throws InputError.
+// Makes a machine for each joint, in the order of the configuration, which must have an arm. The machines
+// advance together: the first one that is told to advance takes the others along, each under the voltage that
+// it holds. Throws InputError.
 std::vector<std::unique_ptr<plant::SimulatedMachine>> MakeJointedArm(const settings::LimbConfig& config);
 
 }  // namespace hydro::limb

@@ -10,8 +10,8 @@
 namespace hydro::limb {
 namespace {
 
-// In real time each joint's watchdogs and statistics have their turn every so many ticks, a part of the joints at each: all at
-// once would delay the tick.
+// In real time each joint's watchdogs and statistics run once in this many ticks. Each tick handles a part of
+// the joints, because handling all at once would delay it.
 constexpr size_t kPollTicks = 16;
 
 bool IsWanted(const std::string& name, const std::vector<std::string>& wanted) {
@@ -120,7 +120,7 @@ bool Limb::StepRealtime(const plant::WakeUp& wake_up) {
   return !over_ && tick_ != last_tick_;
 }
 
-// The first joint, besides one, whose own fault zeroes its voltage.
+// The first joint other than `besides` whose own fault zeroes its voltage.
 Joint* Limb::FirstFault(const Joint* besides) const {
   for (const auto& joint : joints_) {
     if (joint.get() != besides && !joint->ended() && joint->plant().HasOwnFault()) return joint.get();
@@ -128,13 +128,14 @@ Joint* Limb::FirstFault(const Joint* besides) const {
   return nullptr;
 }
 
-// All are checked before any voltage is chosen: a fault of the last joint zeroes the first in the same tick.
+// Checks all joints before any voltage is chosen, so that a fault of the last joint zeroes the first in the
+// same tick.
 void Limb::CheckAll() {
   for (auto& joint : joints_) {
     if (!joint->ended()) joint->plant().Check(joint->clock().Now());
   }
   if (on_joint_fault_ == settings::OnJointFault::kOthersGoOn) return;
-  joints_.front()->plant().HoldForSilence(silence_);  // the others follow its fault
+  joints_.front()->plant().HoldForSilence(silence_);  // the other joints follow its fault
   Joint* const first = FirstFault(nullptr);
   Joint* const second = first != nullptr ? FirstFault(first) : nullptr;
   for (auto& joint : joints_) {
@@ -155,7 +156,8 @@ void Limb::DriveAll() {
   }
 }
 
-// A joint whose run is over (a limit was passed, its rig failed, somebody stopped it) ends all, or itself alone.
+// A joint whose run is over (it passed a limit, its rig failed, or it was stopped) ends all joints, or only
+// itself.
 void Limb::NoteEnds() {
   for (auto& joint : joints_) {
     if (joint->ended() || !joint->plant().Ended()) continue;

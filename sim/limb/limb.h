@@ -1,4 +1,5 @@
-// The joints of a limb, tick by tick: all take each step together, so that a fault of one reaches the others within the same tick.
+// The joints of a limb, tick by tick. All joints take each step together, so that a fault of one reaches the
+// others within the same tick.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +17,14 @@
 namespace hydro::limb {
 
 struct LimbOptions {
-  std::vector<std::string> joints;  // those of the configuration that are run here; empty: all
+  std::vector<std::string> joints;  // joints of the configuration to run here; empty: all
   std::string program = "hydro-limb";
   const bus::Clock* clock = nullptr;     // null: lockstep on simulated clocks
-  std::function<bool()> heartbeat = {};  // as PlantApp's
+  std::function<bool()> heartbeat = {};  // as in PlantApp
   int64_t session = 0;                   // of all joints, on simulated clocks
 };
 
-// What a log needs to describe the limb as a whole. Its sender adds who and when it is.
+// The description that a log needs of the limb as a whole. Its sender adds its own identity and the time.
 run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program);
 
 class Limb {
@@ -34,25 +35,27 @@ class Limb {
   std::vector<std::unique_ptr<Joint>>& joints() { return joints_; }
   size_t joint_count() const { return joints_.size(); }
 
-  // Lockstep: the whole state of a tick, and on to the next. False: the run is over. Begin() comes first.
+  // Lockstep: computes the whole state of a tick and moves on to the next. Returns false when the run is
+  // over. Begin() must be called first.
   bool Begin();
   bool StepLockstep();
 
-  // Real time: as many ticks later as have elapsed. False: the run is over.
+  // Real time: advances by as many ticks as have elapsed. Returns false when the run is over.
   bool StepRealtime(const plant::WakeUp& wake_up);
 
-  // While one of them is not empty, all joints are at zero volts: a joint in another process has a fault, or is no longer heard.
+  // While either text is not empty, all joints are at zero volts, because a joint in another process has a
+  // fault or is no longer heard.
   void HoldForOthers(std::string fault, std::string silence) {
     elsewhere_ = std::move(fault);
     silence_ = std::move(silence);
   }
 
-  // Ends all joints: zero volts for each before anything else. `after_each` (may be empty) is called when one has said so. Returns the exit
-  // code: 0 when every joint's run ended well.
+  // Ends all joints; each gets zero volts before anything else happens. `after_each` (may be empty) is called
+  // after each joint's announcement. Returns the exit code: 0 when every joint's run ended well.
   int End(const std::function<void()>& after_each);
 
   int64_t tick() const { return tick_; }
-  // Why the first joint that failed did so: "knee: plant: ..."; empty when none has.
+  // Why the first joint that failed did so: "knee: plant: ..."; empty when none has failed.
   std::string failure() const;
 
  private:
@@ -63,7 +66,7 @@ class Limb {
 
   settings::OnJointFault on_joint_fault_;
   int64_t last_tick_;
-  std::optional<TickClock> clock_;  // real time; before the joints, which have it
+  std::optional<TickClock> clock_;  // real time; declared before the joints, which use it
   std::vector<std::unique_ptr<Joint>> joints_;
   int64_t tick_ = 0;
   bool over_ = false;

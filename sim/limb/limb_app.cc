@@ -24,14 +24,15 @@ constexpr char kRole[] = "limb";
 constexpr char kProgram[] = "hydro-limb";
 constexpr auto kDescriptionPeriod = 1s;
 constexpr auto kFarewellPause = 500us;  // between the ends of two joints
-constexpr auto kWait = 50ms;            // how long a wait for others lasts before it looks around
-// Lockstep: by how many ticks a limb of one joint may run ahead of a logger; about half of what Linux's default receive buffer
-// (208 KiB) holds. A logger reports four times as often (logger_app.cc).
+constexpr auto kWait = 50ms;            // after which a wait for others checks for signals
+// Lockstep: the number of ticks by which a limb of one joint may run ahead of a logger. It fills about half
+// of Linux's default receive buffer (208 KiB). A logger reports four times as often (logger_app.cc).
 constexpr int64_t kLoggerWindow = 64;
-// Real time: which part of a tick may be spent on sending.
+// Real time: the share of a tick that may be spent on sending.
 constexpr double kSendingShare = 0.3;
 
-// Of a source of beats that each of many may ask: whether one has come since the same one asked last.
+// Lets many callers ask one source of heartbeats. Each caller learns whether a beat has come since its own
+// last question.
 std::function<bool()> SharedHeartbeat(const std::function<bool()>& source, int64_t* count) {
   if (!source) return {};
   return [source, count, seen = int64_t{0}]() mutable {
@@ -81,7 +82,7 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {
-    // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
+    // Only loggers that were present when the run began count, so that a flood of forged ones is not kept.
     const auto known = log_progress_.find(progress.session);
     if (known != log_progress_.end()) known->second = progress.tick;
   });
@@ -95,7 +96,8 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
   }
 }
 
-// What comes from outside on a joint's channels; its own messages come back too.
+// Forwards messages from outside on a joint's channels. The joint's own messages come back too and are left
+// out.
 template <class Message>
 void LimbApp::ForwardTo(Joint& joint) {
   const std::string channel = bus::Channels(joint.config().bus.channel_suffix).Of<Message>();
@@ -109,7 +111,7 @@ void LimbApp::Forward(Joint& joint) {
   ForwardTo<rearm_t>(joint);
   ForwardTo<process_status_t>(joint);
   ForwardTo<tuning_request_t>(joint);
-  ForwardTo<run_description_t>(joint);  // of another plant on these channels: a fault
+  ForwardTo<run_description_t>(joint);  // from another plant on these channels: a fault
   if (joint.config().reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner) {
     ForwardTo<arm_plan_t>(joint);
   }
@@ -121,7 +123,7 @@ int LimbApp::Run() {
       config_.common.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
     }
   } catch (...) {
-    limb_.End({});  // zero volts first, explanation second
+    limb_.End({});  // zero volts first, the explanation afterwards
     throw;
   }
   return End();
@@ -137,7 +139,7 @@ bool LimbApp::Begin() {
   description_.session = participant_.session();
   description_.host = participant_.host();
   participant_.Announce(process_status_t::READY);
-  // Other processes of the limb wait for its joints.
+  // Other processes of the limb wait for the joints here.
   for (auto& joint : limb_.joints()) joint->plant().participant().Announce(process_status_t::READY);
   const auto deadline = participant_.clock().Now() + bus::FromSeconds(config_.common.time.start_timeout_s);
   for (std::vector<std::string> missing; !(missing = Missing()).empty();) {
@@ -157,7 +159,7 @@ bool LimbApp::Begin() {
   }
   for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
   participant_.Announce(process_status_t::RUNNING);
-  PublishDescription();  // once more: a logger may have come since
+  PublishDescription();  // once more, because a logger may have joined since
   const bool began = limb_.Begin();
   telemetry_.SendAll();
   return began;
@@ -217,7 +219,7 @@ void LimbApp::RunRealtime() {
                              config_.common.last_tick);
   while (!Ended()) {
     const int64_t elapsed = loop.Wait();
-    if (elapsed == 0) continue;  // interrupted by a signal
+    if (elapsed == 0) continue;  // a signal interrupted the wait
     limb_.HoldForOthers(elsewhere_.Fault(loop.woke()), elsewhere_.Silence(loop.woke()));
     const bool goes_on = limb_.StepRealtime({elapsed, loop.skipped(), loop.woke(), loop.late()});
     participant_.set_tick(limb_.tick());
@@ -240,7 +242,7 @@ void LimbApp::Poll() {
   if (participant_.clock().Now() >= next_description_) PublishDescription();
 }
 
-// What ends the limb, or one joint of it, ends all, and each says so.
+// The end of the limb, or of one joint, ends all joints, and each announces it.
 void LimbApp::AgreeOnTheEnd() {
   if (const auto& stop = elsewhere_.stop()) participant_.RequestStop(stop->reason, stop->exit_code);
   for (const auto& joint : limb_.joints()) {
@@ -260,7 +262,7 @@ int LimbApp::End() {
   if (limb_.failure().empty()) AgreeOnTheEnd();
   const int exit_code = limb_.End([this] {
     telemetry_.SendAll();
-    // Whoever listens has a buffer of limited size.
+    // The receivers' buffers have a limited size.
     participant_.bus().HandleUntil(participant_.clock().Now() + kFarewellPause);
   });
   const std::string failure = limb_.failure();

@@ -1,11 +1,12 @@
-// A limb as an application: its joints inside this process, and on the bus what others see of them.
+// A limb as an application: its joints inside this process, and the part of them that others see on the bus.
 //
-// On the bus it takes part as one process with the role "limb", on the channels without a joint's suffix; on those of each joint's
-// suffix go the joint's states and commands at limb.telemetry_hz (in lockstep every one), its faults at once, and its descriptions and
-// statistics. Stops, re-arms, changes of values and plans that come on a joint's channels reach that joint.
+// On the bus it takes part as one process with the role "limb", on the channels without a joint's suffix. On
+// the channels with a joint's suffix it sends the joint's states and commands at limb.telemetry_hz (in
+// lockstep every one), its faults at once, and its descriptions and statistics. Stops, re-arms, changes of
+// values and plans that arrive on a joint's channels reach that joint.
 //
-// Real time: it wakes at each tick, takes every joint a step (limb.h), and sends in what is left of the tick. Lockstep: it runs as
-// fast as it can, and waits for loggers that fall behind.
+// Real time: it wakes at each tick, takes every joint a step further (limb.h), and sends in the rest of the
+// tick. Lockstep: it runs as fast as it can, and waits for loggers that fall behind.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +28,10 @@
 namespace hydro::limb {
 
 struct LimbAppOptions {
-  std::vector<std::string> joints;  // those of the configuration that run here; empty: all
+  std::vector<std::string> joints;  // joints of the configuration that run here; empty: all
   std::vector<std::string>
-      expected;  // to wait for before the run begins: "logger", "joint:knee" of another process
-  std::function<bool()> heartbeat;  // as PlantApp's
+      expected;  // processes to wait for before the run begins: "logger", "joint:knee" of another process
+  std::function<bool()> heartbeat;  // as in PlantApp
 };
 
 class LimbApp {
@@ -38,7 +39,7 @@ class LimbApp {
   // Throws InputError.
   LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& config, LimbAppOptions options);
 
-  // The whole run: as PlantApp::Run(), for all joints.
+  // Performs the whole run, as PlantApp::Run() does, for all joints.
   int Run();
 
   Limb& limb() { return limb_; }
@@ -65,11 +66,11 @@ class LimbApp {
   process::Participant participant_;
   plant::RollCall roll_call_;
   plant::LoggerWatch logger_watch_;
-  plant::SiblingFaults elsewhere_;  // of the joints that other processes run
+  plant::SiblingFaults elsewhere_;  // of the joints that run in other processes
   int64_t heartbeats_ = 0;
   Limb limb_;
   Telemetry telemetry_;
-  std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
+  std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers present when the run began
   run_description_t description_;
   bus::Clock::TimePoint next_description_;
 };

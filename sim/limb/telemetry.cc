@@ -12,7 +12,7 @@ namespace hydro::limb {
 namespace {
 
 constexpr size_t kFirstCapacity = 256;
-// What waits: a second of all that a large limb says in between.
+// The most messages that wait: one second of all that a large limb sends in between.
 constexpr size_t kMostWaiting = 1 << 14;
 
 template <class Message, class... Others>
@@ -33,7 +33,7 @@ constexpr Passage PassageOfType() {
   return Passage::kInBetween;
 }
 
-// All that stands before it in a state takes eight bytes (bus/messages.h).
+// Every field before this one in a state takes eight bytes (bus/messages.h).
 constexpr int kSkippedPlace = 8 + static_cast<int>(offsetof(state_t, skipped_ticks));
 
 int64_t NumberAt(const bus::RawMessage& message, int place) {
@@ -68,7 +68,7 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
       OnSample(stack, *channel, message);
       return;
     case Passage::kAtOnce:
-      // What came from outside does not go back.
+      // A message that came from outside is not sent back.
       if (stack.is_own(NumberAt(message, channel->places.session))) {
         out_.PublishRaw(channel->name, message.data, message.size);
       }
@@ -82,8 +82,8 @@ void Telemetry::OnMessage(Stack& stack, const bus::RawMessage& message) {
   }
 }
 
-// Those in between are not missing, so what goes out is counted anew: receivers look for gaps. A state tells of all ticks that were
-// skipped since the one before it.
+// The states in between are not missing, so the messages that go out get new sequence numbers, because
+// receivers look for gaps. A state reports all ticks that were skipped since the state sent before it.
 void Telemetry::OnSample(const Stack& stack, Channel& channel, const bus::RawMessage& message) {
   if (channel.part == bus::LoopPart::kState)
     channel.skipped += std::max<int64_t>(0, NumberAt(message, kSkippedPlace));

@@ -1,4 +1,5 @@
-// What of a joint's messages leaves its process: states and commands at a chosen rate, faults and ends at once, the rest in between.
+// Decides which of a joint's messages leave its process: states and commands at a chosen rate, faults and
+// ends at once, the rest in between.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +13,36 @@
 
 namespace hydro::limb {
 
-// Which of a joint's messages go out.
+// How a joint's message goes out.
 enum class Passage {
-  kSampled,    // of the loops: one per interval, with sequence numbers of their own
-  kAtOnce,     // faults, ends, answers to an operator: if the joint itself has sent them
+  kSampled,    // messages of the loops: one per interval, with sequence numbers of their own
+  kAtOnce,     // faults, ends, answers to an operator, if the joint itself has sent them
   kInBetween,  // descriptions, statistics
-  kNever,      // comes from outside
+  kNever,      // messages from outside
 };
 
 class Telemetry {
  public:
-  // `out`: where messages go. `interval`: ticks from one sampled message to the next on a channel; 1: every message goes out as it is.
+  // `out` is the bus on which messages go out. `interval` is the number of ticks from one sampled message to
+  // the next on a channel; 1: every message goes out unchanged.
   Telemetry(bus::Bus& out, int64_t interval);
 
-  // What a joint publishes on `joint` goes out from now on. `phase`: ticks by which its samples are early, so that not all joints
-  // send at one tick. `is_own`: whether a session is the joint's. Must outlive `joint`.
+  // From now on, sends what a joint publishes on `joint`. `phase` is the number of ticks by which its samples
+  // are early, so that not all joints send at one tick. `is_own` tells whether a session is the joint's. This
+  // object must outlive `joint`.
   void Add(bus::Bus& joint, const std::string& suffix, int64_t phase,
            std::function<bool(int64_t session)> is_own);
 
-  // The run is ending: the newest of each channel and everything from now on goes out.
+  // The run is ending, so the newest message of each channel and all later messages go out.
   void PassAll();
 
-  // Sends what waits while `goes_on` allows; at least one message.
+  // Sends waiting messages while `goes_on` allows it, but at least one.
   void Send(const std::function<bool()>& goes_on);
-  // Sends all that waits.
+  // Sends all waiting messages.
   void SendAll();
 
   size_t waiting() const { return end_ - first_; }
-  int64_t left_out() const { return left_out_; }  // messages that found the queue full
+  int64_t left_out() const { return left_out_; }  // messages for which the queue was full
 
  private:
   struct Channel {
@@ -48,12 +51,12 @@ class Telemetry {
     Passage passage = Passage::kNever;
     bus::NumberPlaces places;
     int64_t slot = -1;                 // of the newest sample
-    int64_t sequence = 0;              // of the next
-    int64_t skipped = 0;               // ticks, of the states since the newest sample
-    std::vector<uint8_t> newest = {};  // the message, where it was left out; else empty
+    int64_t sequence = 0;              // of the next sample
+    int64_t skipped = 0;               // ticks skipped by the states since the newest sample
+    std::vector<uint8_t> newest = {};  // the message, if it was left out; else empty
   };
   struct Stack {
-    std::vector<Channel> channels;  // of the loops first
+    std::vector<Channel> channels;  // those of the loops come first
     int64_t phase = 0;
     std::function<bool(int64_t)> is_own;
   };
@@ -70,7 +73,7 @@ class Telemetry {
   bus::Bus& out_;
   int64_t interval_;
   std::vector<std::unique_ptr<Stack>> stacks_;
-  std::vector<Waiting> queue_;  // ring; its size is a power of 2
+  std::vector<Waiting> queue_;  // a ring whose size is a power of 2
   size_t first_ = 0;
   size_t end_ = 0;
   int64_t left_out_ = 0;

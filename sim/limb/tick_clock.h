@@ -1,4 +1,5 @@
-// A clock that stands still within a tick: all joints of a limb take the same reading of it, and nobody pays for another.
+// A clock that stands still within a tick. All joints of a limb get the same reading, and only one reading of
+// the real clock is needed.
 #pragma once
 
 #include "bus/clock.h"
@@ -7,7 +8,7 @@ namespace hydro::limb {
 
 class TickClock : public bus::Clock {
  public:
-  // `real` must outlive it. It runs until it is stopped.
+  // `real` must outlive this object. The clock runs until it is stopped.
   explicit TickClock(const bus::Clock& real) : real_(real) {}
 
   void Stop() {

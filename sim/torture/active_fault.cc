@@ -168,7 +168,7 @@ std::optional<int64_t> ActiveFault::Continue() {
       world_.SendStop();
       return std::nullopt;
     case FaultKind::kInsider:
-      // The numbers of every fifth end with the largest that there is.
+      // In every fifth of these faults, the sequence numbers end at the largest possible number.
       world_.SendInsider(injection_.amount, injection_.duration_s,
                          injection_.seed % 5 == 4 ? std::numeric_limits<int64_t>::max() - 20 : 0);
       return std::nullopt;

@@ -1,4 +1,4 @@
-// What an injected fault does to the world: at its beginning, again and again while it lasts, and at its end.
+// The effect of an injected fault on the world: at its beginning, repeatedly while it lasts, and at its end.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class ActiveFault {
       : world_(world), injection_(injection), random_(injection.seed) {}
 
   void Begin();
-  // Empty: it does nothing in between. Otherwise: in how many ns the next time.
+  // Empty: the fault does nothing in between. Otherwise: the time in ns until it acts again.
   std::optional<int64_t> Continue();
   void End();
 
@@ -35,7 +35,7 @@ class ActiveFault {
   void SendWrongPlan();
   void SendReplay();
   void SendFlood();
-  // The newest genuine motor command, with a number in it changed.
+  // Sends the newest genuine motor command with one number changed.
   void SendChangedCommand();
 
   World& world_;

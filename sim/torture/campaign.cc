@@ -28,7 +28,7 @@ struct Child {
   std::string report;
 };
 
-// Memory that survives a fork as the same memory.
+// Memory that stays shared across a fork.
 WorkerState* SharedStates(int count) {
   void* memory = mmap(nullptr, sizeof(WorkerState) * static_cast<size_t>(count), PROT_READ | PROT_WRITE,
                       MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -59,7 +59,7 @@ Child StartWorker(const CampaignOptions& options, int index, WorkerState* states
   return child;
 }
 
-// A caught signal is for all: each worker ends the run that it is at, and reports.
+// A caught signal is for all workers: each ends its current run, and reports.
 void ReadAll(Child* child) {
   char buffer[65536];
   while (true) {
@@ -74,7 +74,7 @@ void ReadAll(Child* child) {
   close(child->pipe);
 }
 
-// A run that has taken the whole program with it.
+// The finding for a run that crashed the whole program.
 Finding Crash(const CampaignOptions& options, const WorkerState& state, int status) {
   Finding finding;
   finding.seed = state.seed;

@@ -1,4 +1,4 @@
-// Many runs, each from a seed of its own, on several processors.
+// Many runs on several processors, each from a seed of its own.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct CampaignOptions {
   uint64_t first_seed = 1;
   double seconds = 60;               // of wall time
   int64_t most_runs = 0;             // 0: as many as there is time for
-  int jobs = 1;                      // processes that run at a time
-  std::string config;                // a stack of one's own; empty: the shipped one
+  int jobs = 1;                      // processes that run at the same time
+  std::string config;                // a stack of the user's own; empty: the shipped one
   std::string out;                   // folder for the schedules that fail
   bool first_only = false;           // the first run that fails ends the campaign
   std::vector<std::string> without;  // kinds of faults that are not injected
@@ -36,11 +36,11 @@ struct CampaignResult {
   std::vector<Finding> findings;
   int64_t failed_runs = 0;
   double wall_s = 0;
-  double cpu_s = 0;  // of all processors
+  double cpu_s = 0;  // summed over all processors
 };
 
-// Runs the seeds from the first on. Also a run that crashes this program, or does not end, becomes a finding.
-// Throws InputError when the folder cannot be written.
+// Runs the seeds from the first one on. A run that crashes this program, or does not end, also becomes a
+// finding. Throws InputError when the folder cannot be written.
 CampaignResult RunCampaign(const CampaignOptions& options);
 
 }  // namespace hydro::torture

@@ -10,7 +10,7 @@ namespace {
 constexpr std::array kSensors{&model::Measurement::p1,          &model::Measurement::p2,
                               &model::Measurement::motor_speed, &model::Measurement::motor_angle,
                               &model::Measurement::arm_angle,   &model::Measurement::arm_speed};
-// What a saturated sensor shows, and by how much a lying one or a spike is wrong: psi, rad/s, rad, rad/s.
+// The reading of a saturated sensor, and the error of a lying sensor or a spike: psi, rad/s, rad, rad/s.
 constexpr std::array kFullScale{3000.0, 3000.0, 2000.0, 1e6, 2.0, 20.0};
 constexpr std::array kLie{150.0, -150.0, 40.0, 1.0, 0.05, 0.3};
 
@@ -51,7 +51,8 @@ FaultyRig::FaultyRig(const settings::StackConfig& config, const SimulatedProcess
   good_readings_.fill(kGoodReadings);
 }
 
-// As plant::DeviceRig reads its sensors: what is not credible is missing, and a fault until ten readings in a row are good.
+// Reads the sensors as plant::DeviceRig does: a reading that is not credible counts as missing, and is a
+// fault until ten readings in a row are good.
 void FaultyRig::ReadBoard(model::Measurement* measured) {
   if (std::exchange(board_->refuses_reading, false))
     throw plant::RigError("board_error", "/dev/comedi0 (simulated): driver.p1: the board does not answer");

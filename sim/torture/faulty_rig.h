@@ -1,4 +1,5 @@
-// The simulated actuator as the plant sees it through sensors that fail; the observer sees what is driven.
+// The simulated actuator as the plant sees it, through sensors that fail. The observer sees what is really
+// driven.
 #pragma once
 
 #include <array>
@@ -10,26 +11,27 @@
 
 namespace hydro::torture {
 
-// The faults of a plant's sensors while they last; a plant that restarts keeps them.
+// The active faults of a plant's sensors. A plant that restarts keeps them.
 struct SensorFault {
   FaultKind kind = FaultKind::kSensorNan;
   size_t sensor = 0;
-  bool began = false;  // the reading in `held` is the one at which it stuck
+  bool began = false;  // the reading in `held` is the one at which the sensor stuck
   double held = 0;
 };
 
-// What the board of a driver does next. Each once; a driver that starts finds a board that somebody has looked at.
+// The next faults of a driver's board. Each occurs once, and a driver that starts finds a board that has been
+// repaired.
 struct BoardFaults {
   bool refuses_reading = false;
   bool refuses_output = false;
-  bool refuses_zero = false;  // from then on
+  bool refuses_zero = false;  // from now on
   bool encoder_lost = false;
   bool guardian_gone = false;
 };
 
 class FaultyRig : public plant::Rig {
  public:
-  // `board`: of a driver; null: the process is a plant, which has none.
+  // `board` belongs to a driver; null: the process is a plant, which has none.
   FaultyRig(const settings::StackConfig& config, const SimulatedProcess& process,
             std::vector<SensorFault>& faults, BoardFaults* board, Observer& observer);
 
@@ -49,7 +51,7 @@ class FaultyRig : public plant::Rig {
   BoardFaults* board_;
   Observer& observer_;
   int64_t tick_ = 0;
-  double voltage_ = 0;  // that the output holds
+  double voltage_ = 0;  // that the output now holds
   std::array<int, kSensorCount> good_readings_{};
   std::vector<plant::RigFault> board_faults_;
 };

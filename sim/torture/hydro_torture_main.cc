@@ -1,4 +1,4 @@
-// hydro-torture: the whole stack in simulation, under faults drawn from a seed.
+// hydro-torture: runs the whole stack in simulation, under faults drawn from a seed.
 #include "process/stop_signal.h"
 #include "settings/command_line.h"
 #include "sim/torture/torture_command.h"
@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   hydro::torture::AddOptions(&line, &options);
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-torture", [&] {
-    hydro::process::CatchStopSignals();  // Ctrl-C: the report so far
+    hydro::process::CatchStopSignals();  // Ctrl-C gives the report so far
     return hydro::torture::Run(options);
   });
 }

@@ -1,5 +1,5 @@
-// The injected faults that send messages: the operator's requests, another stack on the network, and somebody
-// who has listened and sends what no process of the stack would.
+// The injected faults that send messages: the operator's requests, another stack on the network, and an
+// intruder who has listened and sends what no process of the stack would.
 #include <algorithm>
 #include <cmath>
 #include <hydro/arm_plan_t.hpp>
@@ -12,7 +12,7 @@ namespace hydro::torture {
 
 namespace {
 
-// A command for the newest plant's tick, of a process that is none of the stack's.
+// Sends a command for the newest plant's tick, from a process that does not belong to the stack.
 template <class Command>
 Command OfAnother(const PlantRecord* plant, uint64_t session, int64_t sequence) {
   Command command{};
@@ -106,7 +106,7 @@ void ActiveFault::SendNonfiniteReference() {
   world_.Forge(command, Origin::kChanged);
 }
 
-// A request as hydro-set sends it, but for one thing.
+// Sends a request as hydro-set would, with one thing wrong.
 void ActiveFault::SendStrangeRequest() {
   SimulatedProcess* const plant = world_.Find(Role::kPlant);
   const PlantRecord* const record = world_.observer().newest_plant();
@@ -149,7 +149,7 @@ void ActiveFault::SendStrangeRequest() {
   world_.Forge(request);
 }
 
-// The planner's newest plan in its own name, or another's, but for one thing.
+// Sends the planner's newest plan in its own or another's name, with one thing wrong.
 void ActiveFault::SendWrongPlan() {
   const Packet* const packet = world_.newest_plan();
   arm_plan_t plan;

@@ -11,7 +11,7 @@
 namespace hydro::torture {
 namespace {
 
-// What it prints stands in the tail of a replay.
+// Puts the launcher's output into the tail of a replay.
 class TailReport : public launch::LaunchReport {
  public:
   TailReport(World& world, int number) : world_(world), number_(number) {}
@@ -24,7 +24,7 @@ class TailReport : public launch::LaunchReport {
   const int number_;
 };
 
-// What launch::PlanLaunch() makes of a configuration without [[process]] sections.
+// The plan that launch::PlanLaunch() makes for a configuration without [[process]] sections.
 launch::LaunchPlan PlanOf(const World& world) {
   launch::LaunchPlan plan;
   const char* const role = world.has_driver() ? "driver" : "plant";

@@ -19,7 +19,7 @@ int32_t LaunchedChildren::Start(const launch::ChildSpec& spec) {
   return children_.back()->process.identity().id;
 }
 
-// What a poll() would return for at once.
+// Whether there is something for which a poll() would return at once.
 bool LaunchedChildren::AnythingToReport() const {
   return launcher_.identity().stop_signal != 0 ||
          std::any_of(children_.begin(), children_.end(),

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array kOrigins{"", ", repeated", ", changed or made up", ", forged", ", of an insider"};
 
-// The fields that tell most, of those that the message has.
+// The most informative fields of a message.
 template <class Message>
 std::string Told(const Message& m) {
   std::string text;
@@ -52,7 +52,7 @@ std::string Decoded(const std::string& channel, const Packet& packet) {
   return text;
 }
 
-// "stale_state begins"; empty: the message is no fault, or no process has sent it.
+// "stale_state begins"; empty: the message is not a fault, or no process sent it.
 std::string FaultOf(const std::string& channel, const Packet& packet) {
   fault_t fault;
   if (packet.origin != Origin::kProcess || !channel.starts_with("HYDRO_FAULT") || !Decode(packet, &fault))

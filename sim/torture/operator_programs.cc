@@ -1,4 +1,4 @@
-// The operator's requests as simulated processes: the launcher's own code (launch/logic).
+// The operator's requests as simulated processes, which run the launcher's own code (launch/logic).
 #include <array>
 #include <cmath>
 #include <hydro/arm_plan_t.hpp>
@@ -24,8 +24,8 @@ class NoLocalProcesses : public launch::LocalProcesses {
   std::string Left() override { return ""; }
 };
 
-// Gains, limits and a reference; loops that would be unstable and a limit that would be loosened, which are
-// refused. Empty: undo.
+// Gains, limits and a reference, and two changes that are refused: loops that would be unstable, and a limit
+// that would be loosened. Empty: undo.
 constexpr std::array kChanges{"position.c2=900\nposition.c1=4000",
                               "pressure.damping_ratio=0.7",
                               "limits.arm_angle_rad=0.5",
@@ -59,7 +59,7 @@ SimulatedProcess::Body SetProgram(const settings::StackConfig& config, int which
 
 namespace {
 
-// Where a sine of the stack's own amplitude and period would have the arm, for a while from this state on.
+// A plan for the next moments from this state on, along a sine with the stack's own amplitude and period.
 arm_plan_t PlanFrom(const state_t& state) {
   constexpr int kPoints = 8;
   constexpr double kInterval_s = 0.05, kAmplitude_rad = 0.2, kFrequency_rad_s = 2 * std::numbers::pi * 0.25;

@@ -24,7 +24,8 @@ SimulatedProcess::Body Running(const settings::StackConfig& config) {
   };
 }
 
-// Whether a heartbeat has reached a plant. Without a launcher in the simulation one comes all the time, but for its hangs.
+// Whether a heartbeat has reached a plant. Without a launcher in the simulation, heartbeats come all the
+// time, except when the launcher is said to hang.
 bool Beats(World& world, int number) {
   SimulatedProcess& plant = world.process(number);
   const bool beats = world.has_launcher() ? plant.TakeBeat() : world.launcher_hangs() == 0;

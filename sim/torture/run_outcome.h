@@ -1,4 +1,4 @@
-// What a run is given, and what comes of it.
+// The input of a run, and its outcome.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace hydro::torture {
 
-// What is run.
+// The stacks that are run.
 struct Stacks {
   settings::StackConfig right;
-  settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
-  settings::StackConfig other_version;  // the same of kOtherVersion
+  settings::StackConfig other;          // started by FaultKind::kOtherConfiguration
+  settings::StackConfig other_version;  // started by kOtherVersion
   settings::StackConfig knee;           // the other joint of a limb
-  settings::StackConfig whole;          // what an operator asks: of a limb all joints
+  settings::StackConfig whole;          // what an operator addresses: all joints of a limb
 };
 
 struct RunOutcome {

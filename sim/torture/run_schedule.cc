@@ -11,7 +11,7 @@
 namespace hydro::torture {
 namespace {
 
-// What simulated processes log goes nowhere.
+// Discards what simulated processes log.
 class Silence {
  public:
   Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::off); }
@@ -29,7 +29,7 @@ Stacks OneStack(const settings::StackConfig& config) {
 
 Stacks LimbStacks(Schedule schedule, const std::string& config_file) {
   const settings::StackConfig config = ConfigFor(schedule, config_file);
-  schedule.planner = false;  // the planner knows nothing of the knee
+  schedule.planner = false;  // the planner does not know the knee
   const settings::StackConfig knee = ConfigFor(schedule, config_file);
   return {HipOf(config), HipOf(OtherConfig(config)), HipOf(OtherVersion(config)), KneeOf(knee),
           LimbOf(config)};
@@ -38,7 +38,7 @@ Stacks LimbStacks(Schedule schedule, const std::string& config_file) {
 }  // namespace
 
 RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
-  // Reading a configuration takes as long as a second of a run.
+  // Configurations are cached, because reading one takes as long as a second of a run.
   using Key = std::tuple<std::string, bool, bool, bool, bool, bool, double>;
   static std::map<Key, Stacks> known;
   const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.logger_required,

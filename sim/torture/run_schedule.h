@@ -1,4 +1,4 @@
-// One run of one schedule.
+// Runs one schedule once.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace hydro::torture {
 
-// `config_file`: a stack of one's own; empty: the shipped one. `tail`: is told what happens; null: nobody is.
+// `config_file` is a stack of the user's own; empty: the shipped one. `tail` is told what happens; it may be
+// null.
 RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail = nullptr);
 
 }  // namespace hydro::torture

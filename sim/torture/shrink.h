@@ -1,4 +1,4 @@
-// The shortest schedule that still fails.
+// Finds the shortest schedule that still fails.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace hydro::torture {
 
-// Leaves out injections, halves durations and shortens the run while `fails` returns true for the rest; it
-// does for `schedule` itself. Calls it at most `most_runs` times.
+// Leaves out injections, halves durations and shortens the run as long as `fails` returns true for the rest.
+// It must return true for `schedule` itself. Calls `fails` at most `most_runs` times.
 Schedule Shrink(const Schedule& schedule, const std::function<bool(const Schedule&)>& fails,
                 int most_runs = 300);
 

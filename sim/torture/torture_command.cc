@@ -44,7 +44,7 @@ int Replay(const TortureOptions& options) {
   return outcome.violations.empty() ? 0 : 1;
 }
 
-// Of seeds, and of nothing that takes time: the same seeds give the same numbers.
+// Writes numbers that depend on the seeds alone, and not on time: the same seeds give the same numbers.
 void WriteNumbers(const std::string& file, const CampaignOptions& options, const CampaignResult& result) {
   const Coverage& coverage = result.coverage;
   WriteWholeFile(file,
@@ -55,10 +55,11 @@ void WriteNumbers(const std::string& file, const CampaignOptions& options, const
                  Existing::kKept);
 }
 
-// The findings come last, where the end of a long output shows them.
+// The findings come last, so that they are visible at the end of a long output.
 int Report(const CampaignOptions& options, const CampaignResult& result) {
   const Coverage& coverage = result.coverage;
-  // In lockstep the plant ticks as fast as its network lets it: ticks are what runs have in common.
+  // In lockstep the plant ticks as fast as its network allows, so the report counts ticks, which all runs
+  // have.
   fmt::print("seeds from {}: {} runs, {:.0f} s and {} ticks simulated in {:.1f} s, {} faults injected\n",
              options.first_seed, coverage.runs, coverage.simulated_s, coverage.ticks, result.wall_s,
              coverage.injected);
@@ -114,7 +115,7 @@ int Run(const TortureOptions& options) {
   if (!(options.seconds > 0 && options.seconds <= 1e8)) refuse("--seconds", options.seconds, "more than 0");
   if (!(options.hours >= 0 && options.hours <= 1e5)) refuse("--hours", options.hours, "more than 0");
   if (options.runs < 0) refuse("--runs", static_cast<double>(options.runs), "1 and more");
-  if (!options.config.empty()) ConfigFor(Schedule{}, options.config);  // a wrong one is no violation
+  if (!options.config.empty()) ConfigFor(Schedule{}, options.config);  // an error here is no violation
   if (options.jobs < 1 || options.jobs > 256) {
     throw InputError(fmt::format("--jobs: found {}, allowed are 1 to 256", options.jobs));
   }

@@ -25,7 +25,7 @@ constexpr char kHip[] = "hip", kKnee[] = "knee";
 
 std::string SuffixOf(const std::string& joint) { return "_" + joint; }
 
-// As settings::StackOfJoint() makes it of a limb's document.
+// Makes the configuration that settings::StackOfJoint() makes from a limb's document.
 settings::StackConfig JointOf(settings::StackConfig config, const std::string& own,
                               const std::string& other) {
   settings::LimbSection limb;
@@ -52,7 +52,7 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
   if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
   if (file.empty()) return Parsed(overrides);
   return settings::WithoutOwnPrograms(
-      settings::LoadStackConfig(file, overrides));  // simulated machines run ours
+      settings::LoadStackConfig(file, overrides));  // simulated machines run our own programs
 }
 
 settings::StackConfig OtherConfig(const settings::StackConfig& config) {

@@ -1,4 +1,4 @@
-// The stacks that are tortured.
+// The stacks that hydro-torture runs.
 #pragma once
 
 #include <string>
@@ -12,15 +12,16 @@ namespace hydro::torture {
 // modes.
 settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file);
 
-// The same stack with other gains and limits: what a process that was restarted by mistake runs.
+// The same stack with other gains and limits, as run by a process that was restarted by mistake.
 settings::StackConfig OtherConfig(const settings::StackConfig& config);
 
-// The same stack as one joint of a limb, beside the other; and what such joints have in common, for an operator.
+// The same stack as one joint of a limb, then as the other joint; and what such joints have in common, for an
+// operator.
 settings::StackConfig HipOf(settings::StackConfig config);
 settings::StackConfig KneeOf(settings::StackConfig config);
 settings::StackConfig LimbOf(settings::StackConfig config);
 
-// The same configuration, of a program of another version.
+// The same configuration for a program of another version.
 settings::StackConfig OtherVersion(settings::StackConfig config);
 
 }  // namespace hydro::torture

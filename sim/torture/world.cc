@@ -15,7 +15,7 @@ namespace hydro::torture {
 namespace {
 
 constexpr size_t kMostRecorded = 4096;
-constexpr TrueTime kStarts = 50'000'000;  // ns: the processes of a stack start within this time
+constexpr TrueTime kStarts = 50'000'000;  // ns within which the processes of a stack start
 
 TrueTime FromSeconds(double seconds) { return static_cast<TrueTime>(seconds * 1e9); }
 
@@ -74,7 +74,7 @@ World::World(const Schedule& schedule, const Stacks& stacks)
 
 World::~World() {
   alive_.clear();
-  processes_.clear();  // unwinds the fibers, while all that they use is there
+  processes_.clear();  // unwinds the fibers while everything that they use still exists
 }
 
 void World::Push(TrueTime time, Happening what, int number, PacketPtr packet) {
@@ -98,7 +98,7 @@ RunOutcome World::Run() {
   return std::move(outcome_);
 }
 
-// The next event, or the next process that can go on, whichever comes first.
+// Handles the next event, or runs the next process that can continue, whichever comes first.
 void World::Step() {
   SimulatedProcess* next = nullptr;
   TrueTime wake = kNever;

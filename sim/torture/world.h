@@ -1,5 +1,6 @@
-// A stack and everything around it, simulated: processes on machines, the network between them, and the
-// faults of a schedule. One thread, one order of events: the same schedule gives the same run, bit by bit.
+// A simulated stack and everything around it: processes on machines, the network between them, and the faults
+// of a schedule. There is one thread and one order of events, so the same schedule gives the same run, bit by
+// bit.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@
 
 namespace hydro::torture {
 
-// What this program has allocated.
+// The number of bytes that this program has allocated.
 size_t AllocatedBytes();
 
 class World : public NetworkPort {
@@ -36,10 +37,10 @@ class World : public NetworkPort {
   World(const Schedule& schedule, const Stacks& stacks);
   ~World() override;
 
-  // From now on what happens is also told to `tail`, which must outlive the run.
+  // From now on, also tells `tail` what happens. It must outlive the run.
   void SetTail(MessageTail* tail) { tail_ = tail; }
 
-  // The whole run: start, faults, return to control, end. Stops at the first violation.
+  // Performs the whole run: start, faults, return to control, end. Stops at the first violation.
   RunOutcome Run();
 
   // For the injector: times are true times.
@@ -57,19 +58,19 @@ class World : public NetworkPort {
   SimulatedProcess& process(int number) { return *by_number_[static_cast<size_t>(number)]; }
   // The living process of a role; null: none.
   SimulatedProcess* Find(Role role);
-  // Without a launcher somebody starts it again at that time.
+  // Kills the process of a role. Without a launcher, it is started again at that time.
   void Kill(Role role, TrueTime restart_at);
-  // Its children are sent SIGTERM by the kernel.
+  // Kills the launcher. The kernel then sends SIGTERM to its children.
   void KillLauncher();
   void InterruptLauncher();
   void HangLauncher(TrueTime until);
-  // From now on a role starts with that configuration; null: with the right one again.
+  // From now on, starts a role with that configuration; null: with the right one again.
   void StartWith(Role role, const settings::StackConfig* other) {
     starts_with_[static_cast<size_t>(role)] = other;
   }
   const Stacks& stacks() const { return stacks_; }
   bool has_launcher() const { return schedule_.launcher; }
-  // For a launcher: starts the process of a role; sends a process a signal; says a line.
+  // For a launcher: these start the process of a role, send a process a signal and print a line.
   SimulatedProcess& StartChild(Role role);
   void SendSignal(const SimulatedProcess& process, int signal);
   void Say(int process, const std::string& text);
@@ -77,34 +78,35 @@ class World : public NetworkPort {
   void ClockChanged(Role role);
   // Everything of a machine stands still until `until`, and its clocks count the time as suspended.
   void Suspend(Role role, TrueTime until);
-  // A message that no process has sent, to everyone. Origin::kProcess: one that the operator may send.
+  // Sends a message that no process has sent to everyone. Origin::kProcess marks a message that the operator
+  // may send.
   template <class Message>
   void Forge(const Message& message, Origin origin = Origin::kForged) {
     ForgeBytes(channels_.Of<Message>(), bus::TypeOf<Message>(), &message, origin);
   }
   void ForgeAgain(const Packet& packet);
-  // The newest motor command that was sent before a time; null: none is remembered.
+  // The newest motor command that was sent before that time; null: none is remembered.
   const Packet* RecordedCommand(TrueTime before) const;
-  // An operator's process asks the plant to go on, or everybody to end.
+  // An operator's process asks the plant to continue, or everybody to end.
   void SendRearm();
   void SendStop();
-  // Somebody who has the stack's key sends motor commands of his own.
+  // An intruder with the stack's key sends motor commands.
   void SendInsider(double voltage, double seconds, int64_t first_sequence);
   void SendSet(int which);
-  // The planner ends, and is started again then. Where none runs, nothing happens.
+  // Ends the planner and starts it again at `until`. Where none runs, nothing happens.
   void SilencePlanner(TrueTime until);
   // The newest pressure command, and the newest plan; null: there was none.
   const Packet* newest_reference() const { return newest_reference_.get(); }
   const Packet* newest_plan() const { return newest_plan_.get(); }
   Disk& disk() { return disk_; }
   bool has_logger() const { return schedule_.logger; }
-  // The path of a new log, of the process `number`.
+  // The path of a new log for the process `number`.
   std::string NewLog(int number);
-  // Something befalls the log that is being written.
+  // Notes a fault of the log that is being written.
   void NoteLogFault(bool LogRecord::*what);
-  // A bit of the newest log was changed.
+  // Notes that a bit of the newest log was changed.
   void NoteLie();
-  // Somebody deletes the newest log, whose logger goes on writing into what is no longer there.
+  // Deletes the newest log. Its logger continues to write into the deleted file.
   void DeleteLog();
   Coverage& coverage() { return outcome_.coverage; }
 
@@ -128,7 +130,7 @@ class World : public NetworkPort {
     kLaunchDue,
     kPlanner
   };
-  static constexpr int kSignals = 64;  // a kSignal's number: that of the process, times this, and the signal
+  static constexpr int kSignals = 64;  // a kSignal's number: the process's times this, plus the signal
   struct Event {
     TrueTime time;
     uint64_t order;
@@ -182,7 +184,7 @@ class World : public NetworkPort {
   std::vector<Network::Receiver> receivers_;
   // By role:
   std::array<const settings::StackConfig*, static_cast<size_t>(Role::kCount)> starts_with_{};
-  std::array<TrueTime, static_cast<size_t>(Role::kCount)> start_at_{};  // when it is started next
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> start_at_{};  // the next start
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> awake_at_{};  // when its machine wakes up
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> asleep_since_{};
   std::vector<SensorFault> sensor_faults_;
@@ -193,22 +195,22 @@ class World : public NetworkPort {
   std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
-  int due_launcher_ = -1;  // the newest for which it is known when it must end
-  TrueTime due_at_ = 0;    // when that is looked at
+  int due_launcher_ = -1;  // the newest launcher whose deadline for its end is known
+  TrueTime due_at_ = 0;    // when that deadline is checked
   MessageTail* tail_ = nullptr;
   LaunchInvariants launches_;
-  Random start_random_;  // how long a launcher's children take to begin
+  Random start_random_;  // for the time that a launcher's children take to begin
   Disk disk_;
   Random disk_random_;
-  std::map<int, LogRecord> logs_;  // by number of the process that writes it
+  std::map<int, LogRecord> logs_;  // by number of the process that writes the log
   uint64_t order_ = 0;
   std::deque<PacketPtr> recorded_;  // the newest motor commands
   int command_channel_ = -1;
-  const size_t allocated_ = AllocatedBytes();  // at the start
+  const size_t allocated_ = AllocatedBytes();  // bytes at the start
   bool ending_ = false;
-  std::set<const SimulatedProcess*> stops_;  // operators who wait for the stack to end
+  std::set<const SimulatedProcess*> stops_;  // operators that wait for the stack to end
   const SimulatedProcess* last_stop_ = nullptr;
-  TrueTime stopped_at_ = 0;  // when one of them had done so
+  TrueTime stopped_at_ = 0;  // when one of them last finished
   bool over_ = false;
 };
 

@@ -1,4 +1,5 @@
-// How a World's run ends: faults stop, control must return, the operator stops the stack, all must end.
+// How a World's run ends: faults stop, control must return, the operator stops the stack, and every process
+// must end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,12 +11,12 @@ namespace hydro::torture {
 namespace {
 
 constexpr TrueTime kSecond = 1'000'000'000;
-// After the last fault control returns within this time: another stack is forgotten after 2.5 s, a stack that has
-// ended is started again and gathers its processes in 1 s.
+// Control returns within this time after the last fault: another stack is forgotten after 2.5 s, and a stack
+// that has ended is started again and gathers its processes in 1 s.
 constexpr TrueTime kReturn = 5 * kSecond;
-constexpr TrueTime kEnd = 2 * kSecond;  // after a stop every process has ended
+constexpr TrueTime kEnd = 2 * kSecond;  // within which every process has ended after a stop
 constexpr TrueTime kLookBack = kSecond / 4;
-constexpr int kRequests = 6;  // of the operator, half a second apart
+constexpr int kRequests = 6;  // requests of the operator, half a second apart
 
 constexpr size_t kMostBytes = 16u << 20;
 
@@ -27,7 +28,7 @@ void World::EnterPhase(int phase) {
   if (phase == kQuiet) Push(now_ + kReturn, Happening::kPhase, kReturned);
   if (phase < kRequests && config_.limits.rearm == settings::Rearm::kExplicit) {
     const PlantRecord* const plant = observer_.newest_plant();
-    // An arm that stands beyond its limit stays there: only a new start helps.
+    // An arm that stands beyond its limit stays there, and only a new start helps.
     if (phase == 2 && plant != nullptr && plant->over_limit) SendStop();
     SendRearm();
     Push(now_ + kSecond / 2, Happening::kPhase, phase + 1);
@@ -44,7 +45,8 @@ void World::EnterPhase(int phase) {
   }
 }
 
-// A stop waits up to 12 s for whoever has fallen silent, and ends what is started meanwhile; then a launch begins anew.
+// A stop waits up to 12 s for a process that has fallen silent, and ends what is started meanwhile. After
+// that, a launch begins again.
 bool World::StillStopping() {
   return schedule_.launcher && (!stops_.empty() || (stopped_at_ > 0 && now_ - stopped_at_ < kReturn));
 }

@@ -1,4 +1,4 @@
-// The World's launches: what a simulated launcher does to its children, and what befalls it.
+// The World's launches: what a simulated launcher does to its children, and its faults.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace hydro::torture {
 namespace {
 
-constexpr TrueTime kBegins = 50'000'000;  // ns: a started process begins within this time
+constexpr TrueTime kBegins = 50'000'000;  // ns within which a started process begins
 
 }  // namespace
 
@@ -19,11 +19,11 @@ SimulatedProcess& World::StartChild(Role role) {
   child.FreezeUntil(std::max(now_ + static_cast<TrueTime>(start_random_.Index(kBegins)),
                              awake_at_[static_cast<size_t>(role)]));
   launches_.OnStart(child);
-  if (role == Role::kPlant) observer_.OnHeartbeat(child);  // from now on it counts on them
+  if (role == Role::kPlant) observer_.OnHeartbeat(child);  // from now on, the plant expects heartbeats
   return child;
 }
 
-// Not at once: who sends it runs on a fiber of its own.
+// Not at once, because the sender runs on a fiber of its own.
 void World::SendSignal(const SimulatedProcess& process, int signal) {
   launches_.OnSignal(process, signal);
   Say(process.number(), fmt::format("is sent signal {}", signal));
@@ -59,7 +59,7 @@ void World::InterruptLauncher() {
     Destroy(*launcher, SIGINT);
     return;
   }
-  if (launcher->identity().stop_signal == 0) launches_.OnInterrupt();  // a second one at a time is lost
+  if (launcher->identity().stop_signal == 0) launches_.OnInterrupt();  // a second pending one is lost
   Say(launcher->number(), "is sent SIGINT");
   launcher->Signal(SIGINT);
   NoteDue();
@@ -72,7 +72,7 @@ void World::HangLauncher(TrueTime until) {
   launches_.OnFrozen(until);
 }
 
-// Looks again when the launch that runs must have ended, if there is a reason to end it.
+// Schedules a check at the time by which the current launch must have ended, if it has a reason to end.
 void World::NoteDue() {
   const int launcher = launches_.launcher();
   const std::optional<TrueTime> due = launches_.due();
@@ -84,7 +84,7 @@ void World::NoteDue() {
 
 void World::CheckLaunchIsOver(int launcher) {
   if (launches_.launcher() != launcher) return;
-  if (const TrueTime due = *launches_.due(); due > now_) {  // it stood still meanwhile
+  if (const TrueTime due = *launches_.due(); due > now_) {  // it stood still in the meantime
     due_at_ = due;
     Push(due, Happening::kLaunchDue, launcher);
   } else {

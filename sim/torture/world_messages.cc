@@ -1,4 +1,4 @@
-// What is sent in the World in nobody's name, or by an operator; and what a replay tells of it all.
+// Messages in the World that are forged or that an operator sends, and what a replay reports of all messages.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace hydro::torture {
 
-// Only replays that are looked at pay for it.
+// Only replays with a tail pay for this.
 void World::Tell(const Packet& packet, int process, const char* what) {
   if (tail_ == nullptr) return;
   tail_->AddMessage(now_, NameOf(process), what, network_.ChannelName(packet.channel), packet);

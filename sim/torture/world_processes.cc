@@ -11,9 +11,10 @@
 namespace hydro::torture {
 namespace {
 
-constexpr TrueTime kRestart = 300'000'000;  // ns: how soon whoever watches a process starts it again
+constexpr TrueTime kRestart = 300'000'000;  // ns after which a watched process is started again
 
-// As process::OpenStackBus() has them: all processes of a limb introduce themselves on its own channels.
+// The channels of process::OpenStackBus(): all processes of a limb introduce themselves on the limb's own
+// channels.
 std::vector<std::string> SealedChannels(const settings::StackConfig& whole) {
   std::vector<std::string> sealed;
   for (const std::string& suffix : settings::StackSuffixes(whole)) {
@@ -39,7 +40,7 @@ void World::Start(Role role) {
     StartAt(role, awake_at_[index]);
     return;
   }
-  // Nobody starts a stack that he is about to stop.
+  // An operator does not start a stack while a stop is under way.
   if (role == Role::kLauncher && !stops_.empty()) {
     StartAt(role, now_ + kRestart);
     return;
@@ -106,7 +107,7 @@ void World::Reap(SimulatedProcess& process) {
   NoteConfigurations();
   if (schedule_.launcher) {
     launches_.OnEnd(process);
-    // SIGCHLD
+    // The launcher gets SIGCHLD.
     if (SimulatedProcess* const launcher = Find(Role::kLauncher)) {
       launcher->Interrupt();
       NoteDue();
@@ -119,7 +120,7 @@ void World::Reap(SimulatedProcess& process) {
   }
   if (stops_.erase(&process) > 0) stopped_at_ = now_;
   if (ending_ || process.role() == Role::kOperator) return;
-  // A launcher's children are its own business; somebody starts it again, however it has ended.
+  // A launcher handles its own children. The launcher itself is started again, however it ended.
   const bool restarts = schedule_.launcher ? process.role() == Role::kLauncher : !process.killed();
   if (restarts) StartAt(process.role(), now_ + kRestart);
 }
@@ -137,7 +138,7 @@ void World::NoteLogFault(bool LogRecord::*what) {
   if (log != logs_.end()) log->second.*what = true;
 }
 
-// Two loggers may live at once: one that hangs, and that of the next launch.
+// Two loggers may be alive at once: one that hangs, and the one of the next launch.
 void World::NoteLie() {
   for (auto& [number, log] : logs_) {
     if (log.file == disk_.newest()) log.lied = true;
@@ -156,10 +157,10 @@ void World::DeleteLog() {
 
 void World::CheckLog(const SimulatedProcess& logger) {
   const auto log = logs_.find(logger.number());
-  if (log == logs_.end()) return;  // it was killed before it had one
+  if (log == logs_.end()) return;  // it was killed before it had a log
   disk_.CheckRoom();
-  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file
-  // there, or none.
+  // A full disk ends the logger with an error that its main prints. On a disk that lies, the logger finds
+  // another file there, or none.
   const bool sees_another =
       (log->second.lied || log->second.deleted) && logger.exit_code() == 1 && logger.failure().empty();
   if (!log->second.was_full && !sees_another) observer_.OnEnd(logger);
@@ -197,7 +198,7 @@ void World::SilencePlanner(TrueTime until) {
 
 void World::Suspend(Role role, TrueTime until) {
   TrueTime& awake_at = awake_at_[static_cast<size_t>(role)];
-  if (awake_at > now_) return;  // asleep already
+  if (awake_at > now_) return;  // it is already asleep
   awake_at = until;
   asleep_since_[static_cast<size_t>(role)] = now_;
   for (SimulatedProcess* process : alive_) {

@@ -8,7 +8,8 @@
 namespace hydro {
 namespace {
 
-// Tests that it agrees with division for numbers that go up by one, stay, jump and go back, up to both ends of the range.
+// Tests that it agrees with division for numbers that go up by one, stay, jump and go back, up to both ends
+// of the range.
 TEST(MultiplesTest, AgreesWithDivision) {
   constexpr int64_t kLowest = std::numeric_limits<int64_t>::min(),
                     kHighest = std::numeric_limits<int64_t>::max();

@@ -196,8 +196,8 @@ TEST_F(NewFileTest, KeepsWhatIsBeingWritten) {
   close(asking);
 }
 
-// Tests that a file which another process begins to write, while one that replaces it is being written, is kept,
-// and so is what was written.
+// Tests that a file which another process begins to write, while one that replaces it is being written, is
+// kept, and so is what was written.
 TEST_F(NewFileTest, KeepsARecordingThatBegins) {
   NewFile file(Path("run"), Opening::kTemporary, Existing::kReplaced);
   file.Write("ours", 4);

@@ -36,7 +36,8 @@ class NewFolderTest : public ::testing::Test {
   std::string folder_;
 };
 
-// Tests that the folder has its name with all files in it, or leaves nothing; an empty one of its name is replaced.
+// Tests that the folder has its name with all files in it, or leaves nothing; an empty one of its name is
+// replaced.
 TEST_F(NewFolderTest, WholeOrNotAtAll) {
   {
     const NewFolder folder(Path("a"));

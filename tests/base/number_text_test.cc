@@ -11,7 +11,8 @@
 namespace hydro {
 namespace {
 
-// Tests that rounded numbers are printf's of the C locale, from 1 to 7 significant digits, but for whole numbers below ten million.
+// Tests that rounded numbers are printf's of the C locale, from 1 to 7 significant digits, but for whole
+// numbers below ten million.
 TEST(NumberTextTest, Rounded) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> power(-12, 12), sign(-1, 1);
@@ -31,7 +32,8 @@ TEST(NumberTextTest, Rounded) {
   EXPECT_EQ(ShortNumber(NAN), "-");
 }
 
-// Tests that a program that has set a locale with decimal commas, as one that embeds these libraries may, gets points all the same.
+// Tests that a program that has set a locale with decimal commas, as one that embeds these libraries may,
+// gets points all the same.
 TEST(NumberTextTest, InAnyLocale) {
   std::string found;
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "fr_FR.utf8"}) {

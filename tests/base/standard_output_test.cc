@@ -11,7 +11,8 @@
 namespace hydro {
 namespace {
 
-// Tests that `-` is checked and written without a file of that name, and that what else is said goes elsewhere.
+// Tests that `-` is checked and written without a file of that name, and that what else is said goes
+// elsewhere.
 TEST(StandardOutputTest, TakesTheText) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::tmpfile(), std::fclose);
   CheckCanBeWritten("-");

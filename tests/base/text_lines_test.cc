@@ -9,7 +9,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// Tests that lines come without their ends, that empty ones between others stay, and that an end at the end begins no line.
+// Tests that lines come without their ends, that empty ones between others stay, and that an end at the end
+// begins no line.
 TEST(TextLines, Splits) {
   EXPECT_THAT(TextLines(""), IsEmpty());
   EXPECT_THAT(TextLines("a"), ElementsAre("a"));

@@ -7,8 +7,8 @@
 namespace hydro {
 namespace {
 
-// Tests that of a unit that is spelled in another way ours is named, one of the quantity that is wanted; and nothing
-// of a unit of another quantity, or a word that is none.
+// Tests that of a unit that is spelled in another way ours is named, one of the quantity that is wanted; and
+// nothing of a unit of another quantity, or a word that is none.
 TEST(UnitsTest, OtherSpellings) {
   const struct {
     const char* theirs;

@@ -7,7 +7,8 @@
 namespace hydro::batch {
 namespace {
 
-// Tests that keys of the configuration, of the model's parameters and of effects reach a case's files, and that the rest stays.
+// Tests that keys of the configuration, of the model's parameters and of effects reach a case's files, and
+// that the rest stays.
 TEST(CaseInputsTest, SetsKeysOfConfigurationModelAndEffects) {
   const StudyFolder folder;
   const Study study = folder.Read("config = \"" + std::string(HYDRO_CONFIG) + R"(/demo.toml"

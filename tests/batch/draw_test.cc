@@ -34,7 +34,8 @@ Moments MomentsOf(const Draw& draw, const Transform& transform) {
 
 double Same(double value) { return value; }
 
-// Tests each distribution's mean, deviation and bounds. Tolerances are six standard errors of 20,000 draws; the seed is fixed.
+// Tests each distribution's mean, deviation and bounds. Tolerances are six standard errors of 20,000 draws;
+// the seed is fixed.
 TEST(DrawTest, HasTheMomentsOfItsDistribution) {
   const double six = 6 / std::sqrt(kDraws);
   Draw uniform{.key = "a", .min = 2, .max = 5};
@@ -120,7 +121,8 @@ TEST(DrawTest, RefusesWhatIsNoNumber) {
   EXPECT_EQ(error("\"uniform\"\nmin = -9007199254740992\nmax = 9007199254740992\nwhole = true\n"), "");
 }
 
-// Tests that what a case gets for a key depends on seed, number and key, and on none of the study's other keys.
+// Tests that what a case gets for a key depends on seed, number and key, and on none of the study's other
+// keys.
 TEST(DrawTest, DependsOnSeedNumberAndKeyAlone) {
   const StudyFolder folder;
   const std::string draw = "[[draw]]\nkey = \"a\"\ndistribution = \"uniform\"\nmin = 0\nmax = 1\n";

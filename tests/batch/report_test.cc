@@ -26,7 +26,8 @@ TEST(QuantileTest, InterpolatesBetweenValues) {
   EXPECT_EQ(Quantile({-1.6e308, 1.6e308}, 0.5), 0);
 }
 
-// Tests which cases count as the worst: the largest, or the smallest where that is said; of equal ones the first.
+// Tests which cases count as the worst: the largest, or the smallest where that is said; of equal ones the
+// first.
 TEST(WorstPlacesTest, KnowsWhichSideIsWorse) {
   Collected larger{.name = "x", .file = "", .pointer = "", .unit = ""}, smaller = larger;
   smaller.smaller_is_worse = true;
@@ -57,7 +58,8 @@ run = ["true", "{case}"]
 x = "out.json:/x"
 )";
 
-// Tests that cases without a number count as the worst: the share of cases that are no worse is of all, and ends where they begin.
+// Tests that cases without a number count as the worst: the share of cases that are no worse is of all, and
+// ends where they begin.
 TEST(NoWorseTest, CasesWithoutTheNumberAreTheWorst) {
   const StudyFolder folder;
   const Study study = folder.Read(kTwoKeys);
@@ -77,7 +79,8 @@ TEST(NoWorseTest, CasesWithoutTheNumberAreTheWorst) {
   EXPECT_THAT(SurfaceFigure(numbers)->caption, HasSubstr("2 cases have none and are left out"));
 }
 
-// Tests that a surface's cell is the mean of the cases with its two values, with rising axes, whatever the order of the grid's values.
+// Tests that a surface's cell is the mean of the cases with its two values, with rising axes, whatever the
+// order of the grid's values.
 TEST(SurfaceTest, AveragesCells) {
   const StudyFolder folder;
   const Study study = folder.Read(kTwoKeys);
@@ -125,7 +128,8 @@ x = "out.json:/x"
   EXPECT_EQ(all, 1000);
 }
 
-// Tests that texts, failed cases and studies without a number have a page, too, and that nothing in it stands for another page or host.
+// Tests that texts, failed cases and studies without a number have a page, too, and that nothing in it stands
+// for another page or host.
 TEST(StudyPageTest, ShowsWhatThereIs) {
   const StudyFolder folder;
   std::string text = kShellStudy;

@@ -19,7 +19,8 @@ std::string Shown(const std::vector<Value>& values) {
   return text;
 }
 
-// Tests that grid, list and draws are combined, and that the draws change fastest and the first factor of the grid slowest.
+// Tests that grid, list and draws are combined, and that the draws change fastest and the first factor of the
+// grid slowest.
 TEST(StudyTest, CombinesAllFactors) {
   const StudyFolder folder;
   const Study study = folder.Read(R"(

@@ -33,8 +33,8 @@ TEST(MalformedStringTest, BadLengthsAreRefused) {
   }
 }
 
-// Tests that a string with a zero byte inside makes the message undecodable: LCM would cut it there when the receiver repeats it,
-// and what is encoded then is not what was said.
+// Tests that a string with a zero byte inside makes the message undecodable: LCM would cut it there when the
+// receiver repeats it, and what is encoded then is not what was said.
 TEST(MalformedStringTest, AZeroByteInsideIsRefused) {
   fault_t fault{};
   fault.text = "no state";

@@ -138,8 +138,8 @@ TEST(SequenceMonitorTest, OldMessageRepeated) {
   EXPECT_EQ(monitor.Observe(1, 6, Clock::TimePoint(401ms)), Verdict::kAccept);
 }
 
-// Tests that where ticks are known, an old message of the same sender is old however long the silence was: lockstep
-// may wait that long. Another sender begins where it likes.
+// Tests that where ticks are known, an old message of the same sender is old however long the silence was:
+// lockstep may wait that long. Another sender begins where it likes.
 TEST(SequenceMonitorTest, OldTickAfterASilence) {
   SequenceMonitor monitor(100ms);
   const auto observe = [&](int64_t session, int64_t sequence, int64_t tick, std::chrono::milliseconds at) {

@@ -86,8 +86,8 @@ TEST(Diagnose, ItsOwnModelNeedsNothing) {
   EXPECT_EQ(d.model.effects.size(), 1);
 }
 
-// Tests that a constant torque is found as such: friction that differs between the directions has the same term among
-// its two, and may be tied with it.
+// Tests that a constant torque is found as such: friction that differs between the directions has the same
+// term among its two, and may be tied with it.
 TEST(Diagnose, FindsABias) {
   diagnose::DiagnoseOptions options = Few();
   options.effects = {"amp.bias", "pump.friction_asymmetry", "pump.quadratic_drag"};
@@ -161,7 +161,8 @@ TEST(Diagnose, SplitsASingleRun) {
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
 }
 
-// Tests that what is held out of a single run moves: a run that stands still in its second half is split in its first.
+// Tests that what is held out of a single run moves: a run that stands still in its second half is split in
+// its first.
 TEST(Diagnose, SplitsASingleRunWhereItMoves) {
   std::vector<runs::MeasuredRun> runs = Measured(ClampedPair(Dragged(), 0.9, 5));
   runs.pop_back();
@@ -230,7 +231,8 @@ TEST(Diagnose, FreesOnlyWhatItMay) {
                                                       "parameter b + parameter beta"));
 }
 
-// Tests that a run of a fifth of a second is judged: an effect that acts at one point of its grid may act nowhere beside it.
+// Tests that a run of a fifth of a second is judged: an effect that acts at one point of its grid may act
+// nowhere beside it.
 TEST(Diagnose, ARunOfAFifthOfASecond) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b *= 1.5;
@@ -250,8 +252,8 @@ TEST(Diagnose, ARunOfAFifthOfASecond) {
     EXPECT_EQ(candidate.id.find("line.wave"), std::string::npos) << candidate.id;
 }
 
-// Tests that where one signal was recorded it is the command that is early, not the signal late; and that where the motor hardly turns,
-// what repeats with its shaft cannot be judged.
+// Tests that where one signal was recorded it is the command that is early, not the signal late; and that
+// where the motor hardly turns, what repeats with its shaft cannot be judged.
 TEST(Diagnose, OneSignalOfAMotorThatHardlyTurns) {
   testing::NoisyRig rig;
   rig.model = Table1With({{"amp.delay", {{"delay", 0.01}}, {}}});

@@ -51,7 +51,8 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_EQ(fitted.runs.size(), runs.size());
 }
 
-// Tests that a start that has gone where the run says nothing, below p_3, comes back: what was measured holds it.
+// Tests that a start that has gone where the run says nothing, below p_3, comes back: what was measured holds
+// it.
 TEST(Fit, ComesBackFromBelowTheFloor) {
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, false, 0.6, 2, 1));

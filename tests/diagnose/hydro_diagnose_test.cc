@@ -153,8 +153,8 @@ TEST_F(HydroDiagnoseTest, ModelRoundTrips) {
   }
 }
 
-// Tests that each changed value has a comment with its interval, its source and what it was, in the file and on the page, and that a
-// value as given has none.
+// Tests that each changed value has a comment with its interval, its source and what it was, in the file and
+// on the page, and that a value as given has none.
 TEST_F(HydroDiagnoseTest, ModelHasComments) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.model.parameters.b = 0.0203;
@@ -181,7 +181,8 @@ TEST_F(HydroDiagnoseTest, ModelHasComments) {
   EXPECT_THAT(Read("out/report.html"), HasSubstr("was 0.01455\n"));
 }
 
-// Tests that the report of a motor alone speaks of the motor, and that ids and balances keep their names for programs.
+// Tests that the report of a motor alone speaks of the motor, and that ids and balances keep their names for
+// programs.
 TEST_F(HydroDiagnoseTest, MotorAlone) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.sentence =
@@ -215,8 +216,8 @@ TEST_F(HydroDiagnoseTest, MotorAlone) {
   EXPECT_THAT(json, HasSubstr("\"says\": \"drag of the motor or its gear grows"));
 }
 
-// Tests that an earlier report stays to the bit unless --force is given, whichever of its files is left of it; that other files in its
-// folder are no hindrance; and that nothing is read or tried before.
+// Tests that an earlier report stays to the bit unless --force is given, whichever of its files is left of
+// it; that other files in its folder are no hindrance; and that nothing is read or tried before.
 TEST_F(HydroDiagnoseTest, AnEarlierReportStays) {
   for (const char* name : {"report.html", "report.json", "model.toml", "next.toml"}) {
     fs::remove_all(Path("out"));
@@ -399,8 +400,8 @@ TEST(TerminalSummary, CannotBeJudged) {
                 "not recorded\n"));
 }
 
-// Tests that the likely explanations are as many as hold the truth nine times in ten, four at most, and that a single one has its
-// rival beside it where that has a hundredth.
+// Tests that the likely explanations are as many as hold the truth nine times in ten, four at most, and that
+// a single one has its rival beside it where that has a hundredth.
 TEST(TerminalSummary, Likely) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.set_90 = 1;

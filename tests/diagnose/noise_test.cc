@@ -54,7 +54,8 @@ TEST(EstimateNoise, OnMotionSampledSlowly) {
   EXPECT_NEAR(MeanEstimate(50, 1.5, [](double t) { return Motion(t, 8); }), 1.5, 0.05 * 1.5);
 }
 
-// Tests the same of a motor that is switched twice a second and seen at 100 and 200 Hz: each stretch of the spectrum has a corner in it.
+// Tests the same of a motor that is switched twice a second and seen at 100 and 200 Hz: each stretch of the
+// spectrum has a corner in it.
 TEST(EstimateNoise, OnCornersInEveryStretch) {
   const auto saw = [](double t) {
     const double phase = t / 0.47 - std::floor(t / 0.47);
@@ -64,7 +65,8 @@ TEST(EstimateNoise, OnCornersInEveryStretch) {
   EXPECT_NEAR(MeanEstimate(200, 0.1, saw), 0.1, 0.1 * 0.1);
 }
 
-// Tests that a signal that stands in every second or fourth row, or in rows of its own, has the noise of its own samples.
+// Tests that a signal that stands in every second or fourth row, or in rows of its own, has the noise of its
+// own samples.
 TEST(EstimateNoise, OfASignalInFewRows) {
   for (const size_t every : {2, 3, 4}) {
     std::mt19937_64 random(every);
@@ -135,8 +137,9 @@ TEST(EstimateResolution, StepsAndNone) {
   EXPECT_EQ(EstimateResolution({}), 0);
 }
 
-// Tests that an encoder's steps are found whatever its shaft does: at rest, slowly or fast, at a speed of which no two counts are
-// neighbours, back and forth, and behind the digits of a table; and that the noise is theirs.
+// Tests that an encoder's steps are found whatever its shaft does: at rest, slowly or fast, at a speed of
+// which no two counts are neighbours, back and forth, and behind the digits of a table; and that the noise is
+// theirs.
 TEST(EstimateResolution, OfAnEncoder) {
   const double q = 2 * kPi / 4096;
   const std::function<double(double)> motions[] = {[](double t) { return 0.3 * std::sin(0.01 * t); },

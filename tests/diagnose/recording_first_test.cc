@@ -59,7 +59,8 @@ TEST(RecordingFirst, TimeIsUp) {
   EXPECT_THAT(CheckFirst(kGiven, {}, 1, &runs, &none, [] { return true; }).mistakes, IsEmpty());
 }
 
-// Tests that the load of an arm is said of the joints that it loads, also where the recording is to be mended first.
+// Tests that the load of an arm is said of the joints that it loads, also where the recording is to be mended
+// first.
 TEST(RecordingFirst, JointsOfAnArm) {
   const std::string said = "the load is that of the limb's [arm], in the place of J_a and mgl";
   std::vector<runs::MeasuredRun> runs = Bench(1, 1), none;
@@ -110,8 +111,8 @@ TEST(RecordingFirst, UnknownFactor) {
   EXPECT_EQ(diagnosis.remarks, checked.factors);
 }
 
-// Tests that an inverted sensor is left to the search where sensor.sign may be named, and that nothing else then
-// stays named.
+// Tests that an inverted sensor is left to the search where sensor.sign may be named, and that nothing else
+// then stays named.
 TEST(RecordingFirst, InvertedSensor) {
   std::vector<runs::MeasuredRun> runs = Bench(1, -1), none;
   EXPECT_TRUE(CheckFirst(kGiven, {"pump.stribeck"}, 1, &runs, &none).mend_first);

@@ -96,8 +96,8 @@ TEST(ReportHtml, Complete) {
   }
 }
 
-// Tests the order: what was found, how sure, how much of the gap, what remains, what to measure next, then the
-// details.
+// Tests the order: what was found, how sure, how much of the gap, what remains, what to measure next, then
+// the details.
 TEST(ReportHtml, AnswersFirst) {
   const std::string page = ReportHtml(testing::ExampleDiagnosis(60), false);
   size_t before = 0;
@@ -116,8 +116,8 @@ TEST(ReportHtml, AnswersFirst) {
   }
 }
 
-// Tests that the verdict's first sentence is the page's heading, that what follows it stands below, and that the gap in brackets is
-// said in words over 0.4 s.
+// Tests that the verdict's first sentence is the page's heading, that what follows it stands below, and that
+// the gap in brackets is said in words over 0.4 s.
 TEST(ReportHtml, LeadsWithTheVerdict) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.sentence = "Missing: a 0.5 in. bore (held-out gap 12 to 1.04 noise units). T_s differs by run.";
@@ -132,8 +132,8 @@ TEST(ReportHtml, LeadsWithTheVerdict) {
                   "is off by 1.01 times the noise of the sensors; at 1 nothing but noise is left."));
 }
 
-// Tests that explanations are in plain words, that the page says which hold the truth nine times in ten, and which of them is what was
-// found.
+// Tests that explanations are in plain words, that the page says which hold the truth nine times in ten, and
+// which of them is what was found.
 TEST(ReportHtml, SaysWhatMayExplainTheRuns) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   diagnosis.effects.resize(1);
@@ -191,7 +191,8 @@ TEST(ReportHtml, OddCurves) {
   EXPECT_FALSE(Has(page, "e+"));
 }
 
-// Tests that the held-out gaps say what chose the model that predicts each run, where runs were held out in turn.
+// Tests that the held-out gaps say what chose the model that predicts each run, where runs were held out in
+// turn.
 TEST(ReportHtml, SaysWhatChoseWhat) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   EXPECT_FALSE(Has(ReportHtml(diagnosis, false), "the others choose"));

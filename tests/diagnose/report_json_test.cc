@@ -130,7 +130,8 @@ TEST(ReportJson, CannotJudge) {
                           {"because", "p1 and p2 were not recorded"}}}));
 }
 
-// Tests that explanations are lists of changes with their weights, "nothing" the empty one, and how many hold the truth.
+// Tests that explanations are lists of changes with their weights, "nothing" the empty one, and how many hold
+// the truth.
 TEST(ReportJson, Explanations) {
   const Json report = Json::parse(ReportJson(testing::ExampleDiagnosis(60), "", 1));
   EXPECT_EQ(report["explanations"][0], Json({{"changes", {"pump.stribeck"}}, {"weight", 0.8125}}));
@@ -152,7 +153,8 @@ TEST(ReportJson, Verdicts) {
   EXPECT_EQ(VerdictName(Verdict::kNothingMissing), "nothing_missing");
 }
 
-// Tests that what the other runs choose without each run is there, and an empty list where runs were held out by name.
+// Tests that what the other runs choose without each run is there, and an empty list where runs were held out
+// by name.
 TEST(ReportJson, WhatIsChosenWithoutEachRun) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   EXPECT_EQ(Json::parse(ReportJson(diagnosis, "", 1))["chosen_without"], Json::array());

@@ -111,8 +111,8 @@ TEST(PrepareRun, RestIsRest) {
   }
 }
 
-// Tests that a recording that cannot be put on an even grid is refused, with where and what to do: rows without end between two, and rows
-// too far apart to show a motion.
+// Tests that a recording that cannot be put on an even grid is refused, with where and what to do: rows
+// without end between two, and rows too far apart to show a motion.
 TEST(PrepareRun, RefusesTimesWithoutMotion) {
   const auto error = [](const runs::MeasuredRun& run) -> std::string {
     try {
@@ -175,8 +175,8 @@ TEST(PrepareRun, StartOfWhatIsNotMeasured) {
   EXPECT_TRUE(data.start_free[model::kMotorAngle]);
 }
 
-// Tests that of times in a unit that nobody stated the one is named in which the samples are those of such a machine, and none where
-// none is, or where they are so as they stand.
+// Tests that of times in a unit that nobody stated the one is named in which the samples are those of such a
+// machine, and none where none is, or where they are so as they stand.
 TEST(PrepareRun, NamesTheUnitOfTimes) {
   for (const auto& [interval, unit] : {std::pair(1.0, "ms"), std::pair(10.0, "ms"), std::pair(1e3, "us"),
                                        std::pair(2e4, "us"), std::pair(1e6, "ns"), std::pair(2e7, "ns")}) {

@@ -147,7 +147,8 @@ diagnose::Fitted FitAll(const model::ModelDescription& given, const std::vector<
   return diagnose::Fit(hypothesis, PointersTo(runs), StartsOf(runs), {});
 }
 
-// Tests that a fit of all values at once finds those that are wrong, and leaves those of which the runs say nothing.
+// Tests that a fit of all values at once finds those that are wrong, and leaves those of which the runs say
+// nothing.
 TEST(FitOfAllValues, LeavesWhatTheRunsDoNotTell) {
   model::ModelDescription given = Table1With();
   given.parameters.b *= 1.4;
@@ -161,8 +162,8 @@ TEST(FitOfAllValues, LeavesWhatTheRunsDoNotTell) {
   EXPECT_NEAR(found.k_2, truth.k_2, 1e-6 * truth.k_2);  // the shaft is clamped
   EXPECT_NEAR(found.J_a, truth.J_a, 1e-6 * truth.J_a);
   EXPECT_NEAR(found.mgl, 0, 1e-3);
-  // Equations (4), (13), (14) still hold when all torques and flows are multiplied by any number: what is known
-  // settles it, and what is known best moves least.
+  // Equations (4), (13), (14) still hold when all torques and flows are multiplied by any number: what is
+  // known settles it, and what is known best moves least.
   EXPECT_NEAR(found.D, truth.D, 0.02 * truth.D);
   EXPECT_NEAR(found.T_s, truth.T_s, 0.05 * truth.T_s);
   EXPECT_NEAR(found.b, truth.b, 0.1 * truth.b);

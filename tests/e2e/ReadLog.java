@@ -1,5 +1,5 @@
-// java -cp lcm.jar:hydro.jar ReadLog.java LOG: decodes each message of the log with the type of its fingerprint, encodes it again,
-// and prints how many came out as they were, by type, and the arm's last angle.
+// java -cp lcm.jar:hydro.jar ReadLog.java LOG decodes each message of the log with the type of its
+// fingerprint, encodes it again, and prints by type how many came out unchanged, and the arm's last angle.
 import java.io.ByteArrayInputStream;
 import java.io.ByteArrayOutputStream;
 import java.io.DataInput;

@@ -34,7 +34,8 @@ class AgreementTest(fault_case.FaultCase):
         log = event_log.Log(self.log_file)
         self.assertEqual([s for s in log.states if s.voltage != 0], [])
 
-    # Tests that a stack whose processes do not agree does not start, and that the plant names process, key and both values.
+    # Tests that a stack does not start when its processes do not agree, and that the plant names process, key
+    # and both values.
     def test_other_gain(self):
         self.check_refused("pressure_ctrl", "position.c1 is 60000 there, 6000 here", "--set", "position.c1=60000")
 
@@ -54,7 +55,8 @@ class AgreementTest(fault_case.FaultCase):
             file.write(changed)
         self.check_refused("pressure_ctrl", "model file: parameters.k_1 is 5 there, 4 here", "--set", f'model.file="{model}"')
 
-    # Tests that what may differ does: the noise, the integrator, and where the same model lies.
+    # Tests that the entries that may differ can differ: the noise, the integrator, and the place of the same
+    # model.
     def test_may_differ(self):
         shutil.copy(stack.config("models/table1.toml"), self.path("copy.toml"))
         self.start_with("plant", "--set", "noise.p1=7", "--set", 'plant.integrator="fast"', "--set",
@@ -63,8 +65,8 @@ class AgreementTest(fault_case.FaultCase):
         self.wait_for_voltage()
         self.assertEqual(self.finish().of("HYDRO_FAULT"), [])
 
-    # Tests that a process that joins later with another configuration is not obeyed and leaves, while the rest goes on, and
-    # that one with the right configuration takes over.
+    # Tests that a process that joins later with another configuration is not obeyed and leaves, while the
+    # others continue, and that a process with the right configuration takes over.
     def test_late_joiner(self):
         self.start_stack()
         self.wait_for_voltage()

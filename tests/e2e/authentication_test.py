@@ -14,7 +14,7 @@ import outcome
 import stack
 
 CODE = "unauthenticated_command"
-# Far longer than wake-ups are late here: no stale input must be blamed on an intruder.
+# Far longer than wake-ups are late here, so that no stale input is blamed on an intruder.
 PATIENT = ("--set", "limits.stale_input_s=2")
 
 
@@ -80,7 +80,8 @@ class AuthenticationTest(stack.TestCase):
         for state in acted:
             self.assertEqual(state.voltage, commanded[state.command_tick], state)
 
-    # Tests that a key changes nothing in a run: the log is that of hydro-sim, bit by bit, and holds plain messages.
+    # Tests that a key changes nothing in a run: the log is that of hydro-sim, bit by bit, and holds plain
+    # messages.
     def test_lockstep_is_identical(self):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1", "-o", self.path("sim.lcmlog"))
         launch = self.launch(stack.config("demo.toml"), "--time", "lockstep", "--duration", "1", *self.keyed, "--log",
@@ -89,8 +90,8 @@ class AuthenticationTest(stack.TestCase):
         self.assert_identical(self.path("sim.lcmlog"), self.path("stack.lcmlog"))
         self.assertEqual({f.code for f in event_log.Log(self.path("stack.lcmlog")).faults}, set())
 
-    # Tests that the commands, states, stops, failures and faults of an intruder without the key are refused, counted
-    # and named, while the run goes on as if nobody had sent anything: to the last bit, in lockstep.
+    # Tests that the commands, states, stops, failures and faults of an intruder without the key are refused,
+    # counted and named, while the run continues as if they had not been sent: to the last bit, in lockstep.
     def test_intruder(self):
         options = ("--duration", "1.5", *self.keyed)
         self.run_program("hydro-sim", stack.config("demo.toml"), *options, "-o", self.path("sim.lcmlog"))
@@ -136,7 +137,7 @@ class AuthenticationTest(stack.TestCase):
 
         sim, run = event_log.Log(self.path("sim.lcmlog")), event_log.Log(self.path("run.lcmlog"))
         for kind in event_log.NUMBERED:
-            # A requested repetition is no difference.
+            # A repetition that was requested does not count as a difference.
             def essence(messages):
                 return {m.sequence: m._replace(utime=0, session=0) for m in messages}
             self.assertEqual(essence(run.of(kind)), essence(sim.of(kind)), kind)
@@ -150,7 +151,8 @@ class AuthenticationTest(stack.TestCase):
         info = self.run_program("hydro-log", "info", self.path("run.lcmlog"))
         self.assertIn("REFUSED_HYDRO_MOTOR_COMMAND", info.stdout)
 
-    # Tests that a part of a stack that was started with another key than the plant's ends by itself, and says why.
+    # Tests that a part of a stack that was started with another key than the plant's ends by itself, and says
+    # why.
     def test_part_with_another_key(self):
         with open(stack.config("demo.toml"), encoding="utf-8") as file:
             text = file.read().split("[[process]]")[0]
@@ -169,8 +171,8 @@ class AuthenticationTest(stack.TestCase):
         self.assertEqual(desk.wait(), 1, desk.report())
         self.assertRegex(desk.stderr, "no plant or driver is heard .*messages were refused: is bus.key_file the same")
 
-    # Tests that a process with another key, or without one, never gets control: the plant does not even count it as
-    # ready.
+    # Tests that a process with another key, or without one, never gets control: the plant does not even count
+    # it as ready.
     def test_another_key(self):
         other = self.make_key("other")
         for options, reason in (("--set", f"bus.key_file={other}"), "another key"), ((), "without a seal"):
@@ -185,7 +187,7 @@ class AuthenticationTest(stack.TestCase):
             for role in ("position_ctrl", "pressure_ctrl"):
                 run[role].end()
 
-    # Tests that a recording is refused, in a later run and in the run itself, with the seals or without.
+    # Tests that a recording is refused, in a later run and in the same run, with the seals or without.
     def test_recording(self):
         recorder, _ = self.recorder("wire.lcmlog")
         self.wait_until(lambda: os.path.exists(self.path("wire.lcmlog")), "the recorder is on the network")
@@ -196,7 +198,7 @@ class AuthenticationTest(stack.TestCase):
         recorder.wait()
         sealed = [e for e in event_log.read_events(self.path("wire.lcmlog")) if e.data[-40:-32] == b"hydroMAC"]
         self.assertGreater(len(sealed), 100)
-        # Both logs read alike without the key; LCM's logger may have lost some messages.
+        # Both logs read the same without the key, except that LCM's logger may have lost some messages.
         rows = {}
         for name in ("wire.lcmlog", "plain.lcmlog"):
             self.run_program("hydro-log", "export", self.path(name), "-o", self.path(name + ".csv"))
@@ -215,7 +217,7 @@ class AuthenticationTest(stack.TestCase):
         for name in ("wire.lcmlog", "plain.lcmlog"):
             player = self.start(shutil.which("lcm-logplayer"), "--lcm-url=" + self.url, self.path(name))
             self.assertEqual(player.wait(), 0, player.report())
-        # And what this very run is sending.
+        # Also a recording of what this very run is sending.
         recorder, wire = self.recorder("here.lcmlog")
         events = []
         self.wait_until(lambda: events.extend(wire.new_events()) or len(events) > 200, "a recording")
@@ -235,7 +237,8 @@ class AuthenticationTest(stack.TestCase):
         self.assert_voltages_are_the_loops_own(run)
         self.assertEqual(len({s.session for s in run.states}), 1)
 
-    # Tests that a pressure loop that was killed and restarted takes over, and that a recording of the first does not.
+    # Tests that a pressure loop that was killed and restarted takes over, and that a recording of the first
+    # does not.
     def test_restart(self):
         run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT)
         log = run.start_all(self.path("run.lcmlog"))
@@ -251,7 +254,8 @@ class AuthenticationTest(stack.TestCase):
         run["plant"].send(15)
         self.assertEqual(run["plant"].wait(), 0, run["plant"].report())
 
-    # Tests that a key file that is missing, readable by others or not a key stops a program at once, naming the file.
+    # Tests that a key file that is missing, readable by others or not a key stops a program at once, naming
+    # the file.
     def test_bad_key_files(self):
         def check(name, found):
             for program in ("hydro-plant", "hydro-pressure-ctrl", "hydro-launch"):
@@ -272,8 +276,8 @@ class AuthenticationTest(stack.TestCase):
         none = self.run_program("hydro-launch", stack.config("demo.toml"), "--make-key", expect=2)
         self.assertIn("bus.key_file", none.stderr)
 
-    # Tests that a plant on a network that others can reach says that it has no key, and that no other program does. In
-    # a network of its own: nothing leaves this machine.
+    # Tests that a plant on a network that others can reach says that it has no key, and that no other program
+    # says so. It runs in a network of its own, so that nothing leaves this machine.
     def test_warns_of_open_network(self):
         unshare = shutil.which("unshare")
         if unshare is None or os.system(f"{unshare} -n true 2>/dev/null") != 0:

@@ -26,7 +26,7 @@ LOG_VERBS = {
     "summary": ["LOG", "--json", "FILE"],
 }
 
-# Changes to demo.toml (text to replace, replacement), and what the message must name besides the file.
+# Changes to demo.toml (text to replace, replacement), and what the message must name in addition to the file.
 CONFIGS = [
     ("unknown key", "rate_hz = 1000 ", "rate_hz = 1000\nrate = 1 ", r'plant: "rate"'),
     ("unknown section", "[plant]", "[pump]\nx = 1\n[plant]", r"pump"),
@@ -76,7 +76,8 @@ class BadInputTest(stack.TestCase):
         code = process.wait()
         said = process.stderr
         self.assertEqual(code, 2, process.report())
-        # hydro-launch labels what a program prints and how it ended; it refuses what it reads itself.
+        # hydro-launch labels what a program prints and how it ended. It refuses bad input that it reads
+        # itself.
         self.assertEqual(len(said.splitlines()), 1, process.report())
         self.assertRegex(said, pattern, process.report())
         self.assertEqual(process.stdout, "", process.report())
@@ -101,8 +102,8 @@ class BadInputTest(stack.TestCase):
                     with open(file, "rb") as after:
                         self.assertEqual(after.read(), text)
 
-    # Tests that a launch notices a log that cannot be written before it starts anything: a failed start would also stop
-    # other processes on the port.
+    # Tests that a launch notices a log that cannot be written before it starts anything, because a failed
+    # start would also stop other processes on the port.
     def test_log_that_cannot_be_written(self):
         nowhere = self.path(os.path.join("none", "run.lcmlog"))
         self.assert_refused("hydro-launch", [self.write("mine.toml", self.demo), "--log", nowhere],
@@ -195,7 +196,8 @@ class BadInputTest(stack.TestCase):
         for name, content in logs.items():
             log = self.path(name) if content is None else self.write(name, content)
             for verb, arguments in LOG_VERBS.items():
-                # The whole part of a damaged log is worth looking at: info may count instead of refusing.
+                # The whole part of a damaged log is still useful, so info may count its messages instead of
+                # refusing.
                 if verb == "info" and content is not None:
                     continue
                 with self.subTest(log=name, verb=verb):
@@ -244,7 +246,7 @@ class BadInputTest(stack.TestCase):
                     self.assertEqual(process.stderr, "")
                     self.assertIn(name, process.stdout)
 
-    # Tests that ./check says what it is rather than building for minutes, and refuses what it does not know.
+    # Tests that ./check explains itself rather than building for minutes, and refuses what it does not know.
     def test_check_says_what_it_takes(self):
         check = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "check")
         for option, code in ("--help", 0), ("-j2", 2):
@@ -280,7 +282,8 @@ class ResultsStayTest(stack.TestCase):
         with open(output, "rb") as file:
             self.assertNotEqual(file.read(), b"yesterday\n")
 
-    # Tests the programs that record a run: each alone, and the launcher, whose logger is told too.
+    # Tests the programs that record a run, each alone, and the launcher, which passes the option on to its
+    # logger.
     def test_logs(self):
         old = self.path("old.lcmlog")
         demo = [stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--duration", "0.05"]
@@ -297,7 +300,7 @@ class ResultsStayTest(stack.TestCase):
                 refused = self.run_program(program, *demo, option, self.log, expect=2)
                 self.assertRegex(refused.stderr, r"^[^\n]*run\.lcmlog: found a file of this name[^\n]*--force[^\n]*\n$")
 
-    # Tests that a recording in parts looks for all of them before it begins.
+    # Tests that a recording in parts looks for all existing parts before it begins.
     def test_parts_of_a_recording(self):
         with open(self.path("new-001.lcmlog"), "wb") as file:
             file.write(b"yesterday")
@@ -306,7 +309,7 @@ class ResultsStayTest(stack.TestCase):
         self.assertIn("new-001.lcmlog: found a file of this name", refused.stderr)
         self.assertFalse(os.path.exists(self.path("new.lcmlog")))
 
-    # Tests what is made of logs.
+    # Tests the files that are made from logs.
     def test_results(self):
         for name, arguments in (("x.csv", ["export", self.log, "-o"]), ("x.mat", ["export", self.log, "-o"]),
                                 ("x.h5", ["export", self.log, "-o"]), ("x.mcap", ["export", self.log, "-o"]),

@@ -11,12 +11,13 @@ OUTAGE_S = 2.0
 AT_REST, IN_MOTION = 3900, 450  # ticks of demo.toml at which an outage begins
 RAMP = 200  # ticks, the default of limits.pressure_ramp_s
 BAD = ("--loss", LOSS, "--delay", DELAY, "--jitter", JITTER, "--seed", 7)
-# limits.stale_input_s exceeds a round trip plus late wake-ups on a shared machine. The gains of demo.toml, made for an
-# immediate network, let the arm swing by 0.2 rad where a round trip takes 40 ms: these gains suit it.
+# limits.stale_input_s exceeds a round trip plus late wake-ups on a shared machine. The gains of demo.toml are
+# made for an immediate network and let the arm swing by 0.2 rad where a round trip takes 40 ms. These gains
+# suit such a network.
 DESIGNED_FOR_IT = ("--set", "limits.stale_input_s=0.2", "--set", "position.c1=2000", "--set", "position.c2=400")
-# rad, of steps of 0.1 (two_hosts.GENTLE) or 0.3: the test machine may itself be late for half of the ticks.
+# rad, for steps of 0.1 (two_hosts.GENTLE) or 0.3: the test machine may itself be late for half of the ticks.
 SETTLED = 0.05
-# Channels with numbered messages, and the host that sends them.
+# Channels with numbered messages that the rig's host sends.
 RIG_CHANNELS = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND")
 DESK_CHANNELS = ("HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
 LAYOUT = {"hydro-plant": "rig", "hydro-pressure-ctrl": "rig", "hydro-position-ctrl": "desk"}
@@ -37,7 +38,7 @@ class BadNetworkCase(two_hosts.TestCase):
             (session, seen), = numbers.items()
             absent = set(range(min(seen), max(seen))) - set(seen)
             dropped = {n for name, s, n, _ in record["missing"][way] if (name, s) == (channel, session)}
-            # What the end of the run overtook was still in flight when the logger left.
+            # Messages overtaken by the end of the run were still in flight when the logger left.
             settled = max(seen) - 100
             self.assertEqual({n for n in absent if n < settled}, {n for n in dropped if min(seen) < n < settled}, channel)
             self.assertEqual(by_info[channel], len(absent), channel)
@@ -71,8 +72,8 @@ class BadNetworkCase(two_hosts.TestCase):
 class BadNetworkTest(BadNetworkCase):
     relay_options = (*BAD, "--outage", AT_REST, OUTAGE_S)
 
-    # Tests that in real time the stack survives loss, delay and overtaking, is safe in an outage and settles after it,
-    # and that each host's log tells exactly what was lost on the way to it.
+    # Tests that in real time the stack survives loss, delay and overtaking, is safe in an outage and settles
+    # after it, and that each host's log tells exactly which messages were lost on the way to it.
     def test_realtime(self):
         self.run_both("--time", "realtime", "--duration", "10", *DESIGNED_FOR_IT, *two_hosts.GENTLE, logs=two_hosts.HOSTS)
         record = self.relay_record()
@@ -87,7 +88,8 @@ class BadNetworkTest(BadNetworkCase):
         self.assert_loss_is_told(record, self.log_of("rig"), "b>a", DESK_CHANNELS)
 
         log = event_log.Log(self.log_of("rig"))
-        # Nothing is lost on the plant's own host (the plant waits for one logger, which may have been the other one).
+        # Nothing is lost on the plant's own host, except at the beginning: the plant waits for one logger,
+        # which may have been the other one.
         for channel in RIG_CHANNELS:
             numbers = [message.sequence for message in log.of(channel)]
             self.assertEqual(numbers, list(range(numbers[0], numbers[-1] + 1)), channel)
@@ -99,8 +101,8 @@ class BadNetworkTest(BadNetworkCase):
 class OutageInMotionTest(BadNetworkCase):
     relay_options = (*BAD, "--outage", IN_MOTION, OUTAGE_S)
 
-    # Tests an outage while the arm is moving: in the end it rests on its target, or a limit has ended the run with zero
-    # volts; which of the two depends on where the last pressure took it.
+    # Tests an outage while the arm is moving. In the end the arm rests on its target, or a limit has ended
+    # the run with zero volts; which of the two depends on where the last pressure took it.
     def test_realtime(self):
         launches = self.start_both("--time", "realtime", "--duration", "8", *DESIGNED_FOR_IT, logs=("rig",))
         code = launches["rig"].wait(90)
@@ -125,8 +127,9 @@ def by_number(messages):
 class LockstepTest(BadNetworkCase):
     relay_options = BAD
 
-    # Tests that loss, delay and overtaking change no bit of a lockstep run: messages that the run waits for are
-    # requested again. Nobody waits for the references, which are for the log alone: it lacks those that were lost.
+    # Tests that loss, delay and overtaking change no bit of a lockstep run, because messages for which the
+    # run waits are requested again. No process waits for the references, which are for the log alone, so the
+    # log lacks those that were lost.
     def test_lockstep(self):
         self.run_both("--time", "lockstep", "--duration", "0.5", logs=("rig",))
         record = self.relay_record()
@@ -147,7 +150,8 @@ class LockstepTest(BadNetworkCase):
 class OutageInLockstepTest(BadNetworkCase):
     relay_options = (*BAD, "--outage", 200, 3.0)
 
-    # Tests that a lockstep run whose network is out ends with an error that names who has not answered.
+    # Tests that a lockstep run whose network is out ends with an error that names the processes that have not
+    # answered.
     def test_outage(self):
         launches = self.start_both("--time", "lockstep", "--duration", "5", logs=("rig",))
         self.assertEqual(launches["rig"].wait(60), 1, launches["rig"].report())
@@ -160,7 +164,7 @@ class OutageInLockstepTest(BadNetworkCase):
 class LostStopTest(BadNetworkCase):
     relay_options = ("--drop-first", "HYDRO_STOP", 3)
 
-    # Tests that a run ends on the other host too when the plant's own message about its end is lost.
+    # Tests that a run ends on the other host too when the plant's message about its end is lost.
     def test_lost_stop(self):
         launches = self.run_both("--time", "lockstep", "--duration", "0.2", logs=("rig",))
         record = self.relay_record()

@@ -92,8 +92,8 @@ class BatchTest(stack.TestCase):
         self.batch(self.study(), "--out", self.path("reference"), "--jobs", 1)
         return results(self.path("reference"))
 
-    # Tests that one worker, three, and ranges of cases in another order with overlaps give the same bytes, and that the numbers are those of
-    # hydro-sim and hydro-log by themselves.
+    # Tests that one worker, three workers, and overlapping ranges of cases in another order give the same
+    # bytes, and that the numbers are those of hydro-sim and hydro-log by themselves.
     def test_same_whatever_runs_it(self):
         study, reference = self.study(), self.reference()
         self.assertEqual(len(reference), CASES + 2)
@@ -139,7 +139,8 @@ class BatchTest(stack.TestCase):
         with open(self.path("hand.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["tracking"]["rms_error_rad"], row["numbers"]["rms_error_rad"])
 
-    # Tests that the shipped study of torture runs hydro-torture from seeds that the study draws, and has its numbers.
+    # Tests that the shipped torture study runs hydro-torture from seeds that the study draws, and has its
+    # numbers.
     def test_torture_is_a_study(self):
         with open(os.path.join(os.path.dirname(stack.CONFIG), "examples", "studies", "torture.toml"), encoding="utf-8") as file:
             shipped = file.read()
@@ -154,8 +155,8 @@ class BatchTest(stack.TestCase):
             self.assertGreater(row["numbers"]["faults_injected"], 0)
             self.assertGreater(row["numbers"]["ticks"], 1000)
 
-    # Tests that a driver killed at any point leaves whole cases, that the next goes on, repeats none of them, and that the results are those
-    # of a study that was never killed.
+    # Tests that a driver killed at any point leaves whole cases, that the next driver continues without
+    # repeating any, and that the results are those of a study that was never killed.
     def test_killed_driver_goes_on(self):
         study, reference = self.study(), self.reference()
         dice, kept, kills = random.Random(5), {}, 0
@@ -174,7 +175,7 @@ class BatchTest(stack.TestCase):
                     self.assertEqual(file.read(), reference[os.path.relpath(os.path.join(path, "result.json"), self.path("out"))])
             kept = now
         print(f"killed {kills} times", flush=True)
-        # As a kill in the middle of the report leaves them; the notes are the user's.
+        # The files that a kill in the middle of the report leaves. The notes belong to the user.
         for name in ("table.csv.part", "table.json.part1", "worst.svg.part", "notes.part"):
             with open(self.path(f"out/{name}"), "w", encoding="utf-8") as file:
                 file.write("half")
@@ -186,7 +187,8 @@ class BatchTest(stack.TestCase):
                          sorted(["cases", "config.toml", "inputs", "model.toml", "notes.part", "staging", "study.toml", "times",
                                  *self.report_files()]))
 
-    # Tests that cases that a power cut left torn run again in the same run, which says so, and end as they were.
+    # Tests that cases torn by a power cut run again in the same run, which says so, and have the same results
+    # as before.
     def test_torn_cases_run_again(self):
         reference = self.reference()
         for number, text in ((3, b""), (17, b"\0" * 134)):
@@ -196,7 +198,8 @@ class BatchTest(stack.TestCase):
         self.assertIn("2 stored results are not whole; their cases run again", done.stderr)
         self.assertEqual(results(self.path("reference")), reference)
 
-    # Tests that --again runs failed cases once, also where a torn result has others run after them.
+    # Tests that --again runs failed cases once, even where other cases run again because their results are
+    # torn.
     def test_again_beside_a_torn_case(self):
         ran = self.path("ran")
         study = self.study('[[grid]]\nkey = "a"\nvalues = [1, 2]\n[[step]]\nrun = ["sh", "-c", '
@@ -209,7 +212,7 @@ class BatchTest(stack.TestCase):
         with open(ran, encoding="utf-8") as file:
             self.assertEqual(sorted(file.read().split()), ["1", "1", "2", "2"])
 
-    # Tests that the studies of docs/studies.md are studies whose cases are all done.
+    # Tests that the studies in docs/studies.md can be run, and that all their cases succeed.
     def test_the_pages_studies(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
         with open(os.path.join(root, "docs", "studies.md"), encoding="utf-8") as file:
@@ -224,7 +227,8 @@ class BatchTest(stack.TestCase):
     def report_files(self):
         return [name for name in os.listdir(self.path("reference")) if name.startswith("table.") or name.endswith((".svg", ".html"))]
 
-    # Tests that a driver killed while it prepared the folder is followed by one that goes on, and leaves nothing half-written.
+    # Tests that after a driver was killed while it prepared the folder, the next one continues and leaves
+    # nothing half-written.
     def test_killed_in_preparation(self):
         os.makedirs(self.path("out/inputs"))
         for name in ("config.toml.part", "study.toml.part1"):
@@ -234,7 +238,8 @@ class BatchTest(stack.TestCase):
         self.assertEqual(results(self.path("out")), self.reference())
         self.assertEqual([name for name in os.listdir(self.path("out")) if ".part" in name], [])
 
-    # Tests that a worker killed in mid-range loses nothing: another does what is left, and does no whole case again.
+    # Tests that a worker killed in the middle of its range loses nothing: another one runs the remaining
+    # cases, and repeats no whole case.
     def test_killed_worker(self):
         study, reference = self.study(), self.reference()
         self.batch(study, "--out", self.path("out"), "--jobs", 1)
@@ -251,7 +256,8 @@ class BatchTest(stack.TestCase):
         self.batch("--finish", self.path("out"))
         self.assertEqual(results(self.path("out")), reference)
 
-    # Tests that SIGINT and SIGTERM end a study cleanly: one line, exit code 1, no process left, and the rest runs afterwards.
+    # Tests that SIGINT and SIGTERM end a study cleanly: one line, exit code 1, no process left, and the
+    # remaining cases can be run afterwards.
     def test_stop_signals(self):
         study = self.study('draws = 6\n[[step]]\nrun = ["sh", "-c", "echo $$ > pid; exec sleep 0.3", "{case}"]\n')
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -267,8 +273,8 @@ class BatchTest(stack.TestCase):
             self.assertRegex(self.batch("--status", self.path("out")).stdout, r"6 cases: [2-5] done, 0 failed, [1-4] missing")
             self.batch(study, "--out", self.path("out"))
 
-    # Tests that a second driver is refused with the first's name, that --status tells of it meanwhile, and that after its end, however
-    # sudden, the folder is free.
+    # Tests that a second driver is refused with the first one's name, that --status reports the first one
+    # meanwhile, and that the folder is free after its end, however sudden.
     def test_one_driver_at_a_time(self):
         study = self.study('[[grid]]\nkey = "a"\nvalues = [1, 2]\n[[step]]\nrun = ["sleep", "60"]\n')
         driver = self.start("hydro-batch", study, "--out", self.path("out"))
@@ -282,7 +288,8 @@ class BatchTest(stack.TestCase):
         third = self.start("hydro-batch", study, "--out", self.path("out"))
         self.wait_until(lambda: str(third.pid) in self.batch("--status", self.path("out")).stdout, "the third")
 
-    # Tests that failed cases are retried, named with their reason, in the table and the exit code, kept on going on, and run again when asked.
+    # Tests that failed cases are retried, named with their reason, shown in the table and the exit code, kept
+    # when the study continues, and run again on request.
     def test_failed_cases(self):
         study = self.study(f"""retries = 2
 [[grid]]
@@ -313,7 +320,8 @@ run = ["sh", "-c", "echo {{case}} >> {self.folder}/ran; [ {{value:k}} != 2 ] || 
             raise unittest.SkipTest("a small file system cannot be mounted here: " + done.stderr.strip())
         return done
 
-    # Tests that a full disk below the study ends it on one line, with every case whole or absent, and that it goes on with more room.
+    # Tests that a full disk below the study ends it with one line and with every case whole or absent, and
+    # that it continues when there is room again.
     def test_full_disk(self):
         reference = self.reference()
         batch = stack.program("hydro-batch")
@@ -335,7 +343,8 @@ cp -r small/out out
             self.assertLessEqual(set(before), set(after))
         self.assertEqual(results(self.path("out")), reference)
 
-    # Tests that a full disk where cases run ends the study, too: no case has failed because of it.
+    # Tests that a full disk where cases run also ends the study, and that no case counts as failed because of
+    # it.
     def test_full_scratch(self):
         reference = self.reference()
         batch = stack.program("hydro-batch")
@@ -349,8 +358,8 @@ find out/cases -name '*.failed' | wc -l
             self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*: No space left on device\n\Z")
         self.assertEqual(results(self.path("out")), reference)
 
-    # Tests that whichever of two cases finds the disk full, in whatever it writes, no case has failed because of it, and that the reason is
-    # said: one case fits on some of these disks, two on the last.
+    # Tests that no case counts as failed when one of two cases finds the disk full, whatever it is writing,
+    # and that the reason is given. One case fits on some of these disks, and two fit on the last.
     def test_scratch_of_any_size(self):
         reference, batch = self.reference(), stack.program("hydro-batch")
         sizes = (100, 145, 150, 155, 180, 220, 260, 290, 320)
@@ -370,7 +379,8 @@ done
                 self.assertRegex(file.read(), r"\Ahydro-batch: [^\n]*: No space left on device\n\Z" if said[1] == "1" else r"\A\Z")
         self.assertEqual(results(self.path("out")), reference)
 
-    # Tests that wrong input ends with exit code 2 and one line that says what is wrong, and that nothing is made.
+    # Tests that wrong input ends with exit code 2 and one line that says what is wrong, and that nothing is
+    # created.
     def test_wrong_input(self):
         study = self.study()
         self.batch(study, "--out", self.path("out"), "--jobs", 2)

@@ -12,7 +12,8 @@ _TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.B
 LIBRARY = os.path.join(_TOOLS, "libsimulated_comedi.so")
 ACTUATOR = os.path.join(_TOOLS, "simulated_actuator")
 
-# SimulatedBoard of tests/plant/driver/simulated_board.h: eight bytes each, but the doorbell in between.
+# SimulatedBoard of tests/plant/driver/simulated_board.h: eight bytes for each field, except the doorbell in
+# between.
 _NAMES = ("magic order attended doorbell asked_ns "
           + " ".join(f"input{i}" for i in range(8)) + " counter0 counter1 output0 output1 lines directions "
           "opened closed reads delayed_reads writes nonzero_writes line_writes edges enabled trips "

@@ -11,7 +11,8 @@ import outcome
 import two_hosts
 
 
-# Voltages that move nothing, since messages suffice here, whatever ticks the test machine is late for.
+# Voltages that do not move the arm. Messages are enough here, and the ticks for which the test machine is
+# late do not matter.
 STILL = ("--set", "reference.signal=voltage", "--set", "reference.steps=[[0.2, 0.2]]")
 
 
@@ -34,7 +35,8 @@ class ClocksTest(two_hosts.TestCase):
         sent = {s.tick: s.utime for s in log.states}
         return [(c.utime - sent[c.tick]) * 1e-6 for c in log.pressure_commands if c.tick in sent]
 
-    # Tests that a lockstep run over hosts whose clocks are 10 s apart and drift by 1 % is that of hydro-sim, bit by bit.
+    # Tests that a lockstep run over hosts whose clocks are 10 s apart and drift by 1 % is that of hydro-sim,
+    # bit by bit.
     def test_lockstep(self):
         self.run_both("--time", "lockstep", "--duration", "1", environments={"desk": self.shifted(10, drift=0.01)})
         log_file = self.log_of("desk")
@@ -56,8 +58,8 @@ class ClocksTest(two_hosts.TestCase):
                 self.assertLess(value, 9, (report.role, name))
             self.assertEqual(report.lost_messages, 0, report)
 
-    # Tests that in real time a clock that is 10 s behind, drifts, and jumps forward by 30 s during the run disturbs
-    # nothing.
+    # Tests that in real time a clock that is 10 s behind, drifts, and jumps forward by 30 s during the run
+    # disturbs nothing.
     def test_realtime_forward(self):
         self.run_both("--time", "realtime", "--duration", "3", *STILL, *two_hosts.PATIENT,
                       environments={"desk": self.shifted(-10, drift=0.005, step_s=30, step_after_s=1.5)})
@@ -67,7 +69,7 @@ class ClocksTest(two_hosts.TestCase):
         self.assertGreater(difference[-1], 19)
         self.assert_nothing_but_the_clock(log)
 
-    # Tests the same for the clock of the plant's host, set back during the run.
+    # Tests the same for the clock of the plant's host, which is set back during the run.
     def test_realtime_back(self):
         self.run_both("--time", "realtime", "--duration", "3", *STILL, *two_hosts.PATIENT,
                       environments={"rig": self.shifted(10, drift=-0.005, step_s=-30, step_after_s=1.5)})

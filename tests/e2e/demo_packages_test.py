@@ -28,7 +28,7 @@ class DemoPackagesTest(unittest.TestCase):
             self.assertIn("tools", sources)
             self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "tests", "tune/search"}, set())
 
-    # Tests that ./demo requests only these, and that the full build still needs the rest.
+    # Tests that ./demo requests only these packages, and that the full build still needs the others.
     def test_the_rest_is_asked_for_by_the_rest(self):
         script = (ROOT / "scripts/install-dependencies").read_text()
         basic, rest = script.split("demo) ;;")

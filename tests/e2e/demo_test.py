@@ -11,10 +11,11 @@ import stack
 
 
 class DemoTest(stack.TestCase):
-    # Tests that the demo ends in order with the arm at its target, that no message is lost, and that each process
-    # reports how it kept time.
+    # Tests that the demo ends in order with the arm at its target, that no message is lost, and that each
+    # process reports how it kept time.
     def test_arm_reaches_its_target(self):
-        # Without most of its ticks, 1000 a second, a loop is another one, which may overshoot: a busy machine runs it at a slower pace.
+        # A loop without most of its 1000 ticks a second behaves differently and may overshoot, so a busy
+        # machine runs it at a slower pace.
         for speed in (1, 0.25, 0.1):
             log_file, json_file = self.path(f"demo{speed}.lcmlog"), self.path(f"summary{speed}.json")
             launch = self.launch(stack.config("demo.toml"), "--log", log_file, "--set", f"time.speed={speed}")
@@ -28,7 +29,8 @@ class DemoTest(stack.TestCase):
         self.assertEqual(summary["missing_messages"], 0, summary)
 
         log = event_log.Log(log_file)
-        # The same two from the log itself. The reference ends at 0.1 rad; friction leaves a small error.
+        # The same two values from the log itself. The reference ends at 0.1 rad; friction leaves a small
+        # error.
         self.assertAlmostEqual(log.arm_references[-1].value, summary["tracking"]["target_rad"])
         self.assertAlmostEqual(log.states[-1].arm_angle, log.arm_references[-1].value, delta=0.01)
         for kind in event_log.NUMBERED:
@@ -41,7 +43,7 @@ class DemoTest(stack.TestCase):
         for state in log.states:
             self.assertEqual(state.tick, expected + state.skipped_ticks)
             expected = state.tick + 1
-        # The log describes itself and holds a farewell from everybody that the logger waited for.
+        # The log describes itself and holds the last message of every process for which the logger waited.
         self.assertEqual(log.descriptions[0].program, "hydro-plant")
         self.assertIn("[reference]", log.descriptions[0].config_text)
         self.assertIn("[parameters]", log.descriptions[0].model_text)

@@ -57,7 +57,7 @@ class DiagnoseTest(stack.TestCase):
         self.assertEqual(run.stdout, "", run.report())
         self.assertFalse(os.path.exists(self.path("out")), run.report())
 
-    # Tests data that nothing can be learnt from: exit 2 and one line with run, signal and row.
+    # Tests data from which nothing can be learnt: exit code 2 and one line with run, signal and row.
     def test_unusable_data(self):
         good = self.rows
         for what, run, pattern in [
@@ -74,7 +74,7 @@ class DiagnoseTest(stack.TestCase):
             with self.subTest(what):
                 self.assert_refused(pattern, self.run_file(**run), "--model", TABLE1, "--out", self.path("out"))
 
-    # Tests options that are missing, malformed or contradict each other.
+    # Tests options that are missing, malformed or contradictory.
     def test_wrong_usage(self):
         run = self.run_file()
         given = [run, "--model", TABLE1, "--out", self.path("out")]
@@ -114,8 +114,9 @@ class DiagnoseTest(stack.TestCase):
         sidecar = SIDECAR.replace("clamped", "free") + 'arm_angle = "arm"\n'
         return self.run_file(name, rows, [*COLUMNS, "arm"], sidecar)
 
-    # Tests --check: exit code 0 and 1, the line that mends the sidecar, 2 for what cannot be used; and that a diagnosis
-    # of such a recording says the same first and names nothing; and that its report stays unless --force is given.
+    # Tests --check: exit codes 0 and 1, the line that mends the sidecar, and 2 for unusable input. Also tests
+    # that a diagnosis of such a recording begins with the same text and names no effect, and that its report
+    # stays unless --force is given.
     def test_check(self):
         def check(run):
             return self.start("hydro-diagnose", run, "--model", TABLE1, "--check")
@@ -157,8 +158,8 @@ class DiagnoseTest(stack.TestCase):
         self.assertRegex(refused.stderr, r"^[^\n]*report\.html: found a file of this name[^\n]*--force[^\n]*\n$")
         self.run_program(*again, "--force", timeout=LONG)
 
-    # Tests that a simulated log is diagnosed, that its reports are whole, and the same a second time but for
-    # how long it took.
+    # Tests that a simulated log is diagnosed, and that its reports are whole and the same a second time,
+    # except for the time that it took.
     def test_reports(self):
         log = self.path("run.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1.5", "--set",

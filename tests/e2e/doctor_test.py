@@ -54,8 +54,8 @@ class DoctorTest(stack.TestCase):
         environment = {**os.environ, "PATH": stack.BIN + ":" + os.environ["PATH"]}
         subprocess.run(self.inside("sh", "-c", cure), check=True, capture_output=True, env=environment)
 
-    # Tests a machine without a multicast route: the missing route and the failed delivery are both named, the command
-    # fixes both, and the other checks are still done.
+    # Tests a machine without a multicast route: the missing route and the failed delivery are both named, one
+    # command fixes both, and the other checks are still made.
     def test_no_route(self):
         config = stack.config("demo.toml")
         done = self.doctor(config, expect=1)
@@ -68,7 +68,8 @@ class DoctorTest(stack.TestCase):
         done = self.doctor(config, expect=0)
         self.assertTrue(done.stdout.endswith("all is well\n"), done.stdout)
 
-    # Tests that a stack on several hosts requires a route that leaves the machine, and an interface that is up.
+    # Tests that a stack on several hosts requires a route that leaves the machine, and an interface that is
+    # up.
     def test_way_out(self):
         self.ip("link", "set", "lo", "up")
         far_end = self.space + "f"
@@ -104,7 +105,8 @@ class DoctorTest(stack.TestCase):
         done = self.doctor(config)
         self.assertNotIn("ttl and hosts", self.problems(done), done.stdout)
 
-    # Tests that a stack that runs on the port is heard and named, and that one with other channels is no problem.
+    # Tests that a stack that runs on the port is heard and named, and that a stack with other channels is no
+    # problem.
     def test_other_stack(self):
         self.ip("link", "set", "lo", "up")
         self.ip("route", "add", "224.0.0.0/4", "dev", "lo")
@@ -117,7 +119,7 @@ class DoctorTest(stack.TestCase):
         self.assertEqual(self.problems(done), {"other stacks"}, done.stdout)
         self.assertRegex(self.findings(done.stdout)["other stacks"][1], "plant on .*position_ctrl on|position_ctrl on .*plant")
         self.assertNotIn("other stacks", self.problems(self.doctor(config, "--set", "bus.channel_suffix=_2")))
-        # As the doctor says, with the program that was tested.
+        # The command that the doctor recommends, with the program under test.
         cure = self.findings(done.stdout)["other stacks"][2]
         self.assertTrue(cure.startswith(f"hydro-launch {config} --stop"), cure)
         subprocess.run(self.inside(*[stack.program("hydro-launch"), config, "--stop"]), check=True, capture_output=True)
@@ -140,13 +142,13 @@ class DoctorTest(stack.TestCase):
         done = self.doctor(config, prefix=weak, expect=1)
         self.assertLessEqual({"real-time priority", "locked memory", "processors"}, self.problems(done), done.stdout)
         self.assertIn("rtprio is 0, requested is 80", done.stdout)
-        # The same limits do not matter to a process with the capabilities (root cannot raise the limits everywhere
-        # either).
+        # The same limits do not matter to a process with the capabilities. (In some places, root cannot raise
+        # the limits either.)
         problems = self.problems(self.doctor(config, prefix=weak[:3], expect=1))
         self.assertIn("processors", problems)
         self.assertFalse({"real-time priority", "locked memory"} & problems, problems)
 
-    # Tests that a bad configuration is an error as everywhere, and that none is required.
+    # Tests that a bad configuration is an error, as in every program, and that none is required.
     def test_configuration(self):
         done = self.doctor(self.path("none.toml"), expect=2)
         self.assertIn("none.toml", done.stderr)

@@ -22,7 +22,7 @@ class DriverCase(stack.TestCase):
         self.board = board.Board(self)
 
     def options(self, the_board, *settings):
-        # With a driver the default is "explicit": fault_limits_test tests that.
+        # With a driver the default is "explicit", which fault_limits_test tests.
         options = [f"driver.device={the_board.file}", f"limits.stale_input_s={STALE}", 'limits.rearm="restart"', *settings]
         return [argument for option in options for argument in ("--set", option)]
 
@@ -47,7 +47,7 @@ class DriverCase(stack.TestCase):
         self.assertEqual(registers["output0"], board.ZERO_CODE, what)
 
 
-# Real-time priorities, where allowed: the test machine may have much else to do.
+# Real-time priorities where allowed, because the test machine may be busy with other work.
 PRIORITY = 10
 PROCESSES = "process=[" + ", ".join(
     f'{{ program = "{name}", priority = {PRIORITY} }}'
@@ -71,8 +71,8 @@ class DriverRunTest(DriverCase):
         with open(json_file, encoding="utf-8") as file:
             return event_log.Log(log_file), json.load(file)
 
-    # Tests that when only hydro-driver replaces hydro-plant, the arm still reaches its reference, that scales and signs
-    # are those of the wiring, and that the watchdog line changes at each tick.
+    # Tests that the arm still reaches its reference when only hydro-driver replaces hydro-plant, that scales
+    # and signs are those of the wiring, and that the watchdog line changes at each tick.
     def test_arm_reaches_its_reference(self):
         log, summary = self.launched()
         self.assertTrue(summary["tracking"]["at_target"], summary)
@@ -80,7 +80,8 @@ class DriverRunTest(DriverCase):
         self.assertIn("driver", {s.role for s in log.statistics})
         self.assertEqual(log.descriptions[0].program, "hydro-driver")
         self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
-        # The board's output, read back after the last zero: half a step of 16 bits over 20 V, 2 V at the motor per V.
+        # The board's output, read back after the last zero: half a step of 16 bits over 20 V, 2 V at the
+        # motor per V.
         (left,) = log.outputs_left
         self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
         self.assertLess(abs(left.voltage), 4e-4)
@@ -93,23 +94,24 @@ class DriverRunTest(DriverCase):
             self.assertGreater(min(getattr(s, name) for s in log.states), 99)
             self.assertGreater(max(getattr(s, name) for s in log.states), 110)
             self.assertAlmostEqual(getattr(last, name), registers[name], delta=5)
-        # The encoder's counter has wrapped; the angle has not.
+        # The encoder's counter has wrapped, but the angle has not.
         self.assertGreater(max(s.motor_angle for s in log.states), 1)
         counts = round(last.motor_angle / (2 * math.pi / 4096))
         self.assertAlmostEqual(counts & board.MAX_COUNT, registers["counter0"], delta=20)
-        # Tachometer and encoder, two inputs of different kinds, agree: signs and scales of both are right.
+        # Tachometer and encoder are inputs of different kinds. They agree, so the signs and scales of both
+        # are right.
         turned = sum(b.motor_speed * (b.time - a.time) for a, b in zip(log.states, log.states[1:])
                      if b.arm_angle > 0.02 and b.time < 1.0)
         first, then = [[s for s in log.states if s.arm_angle > 0.02 and s.time < 1.0][i] for i in (0, -1)]
         self.assertGreater(turned, 1)
         self.assertAlmostEqual(turned, then.motor_angle - first.motor_angle, delta=0.15 * turned)
 
-        # One voltage and one change of the watchdog line for each tick; the rest are the zeros at both ends.
+        # One voltage and one change of the watchdog line for each tick, plus the zeros at both ends.
         ticks = len(log.states) - 1
         self.assertEqual(registers["edges"] // 2 * 2, (ticks + 1) // 2 * 2)
         self.assertIn(registers["writes"] - ticks, (3, 4, 5))
         self.assertEqual(registers["directions"], 1)
-        # The watchdog's only trip is the one of half a second after the run, if that has passed by now.
+        # The watchdog's only trip is the one half a second after the run, if that time has passed by now.
         self.assertEqual(registers["trips"], 0 if registers["enabled"] else 1)
         self.assertEqual(registers["delayed_reads"], 4 * len(log.states))  # settle_ns, of the analog inputs only
         self.assert_zero(self.board, "complete run")
@@ -131,8 +133,8 @@ class DriverRunTest(DriverCase):
         self.assertEqual(min(s.voltage for s in log.states), -0.5)
         self.assert_zero(self.board, "limited run")
 
-    # Tests that opening the board sets it to zero, and that nothing else and no watchdog follows before the roll is
-    # complete and a command has come.
+    # Tests that opening the board sets it to zero, and that no other output and no watchdog change follows
+    # before all processes are present and a command has come.
     def test_zero_until_all_are_there(self):
         self.assertNotEqual(self.board.output0, board.ZERO_CODE)  # what a program that crashed has left
         run = self.run_by_hand(controllers=False)
@@ -178,7 +180,8 @@ class WaysOutTest(DriverCase):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             self.leave(number.name, self.signal_(number), 0)
 
-    # Tests signals that end a process: zero first, then the process dies of the signal as it would have.
+    # Tests signals that end a process: first zero volts, then the process dies of the signal as it would have
+    # without the handler.
     def test_ending_signals(self):
         for number in (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGQUIT, signal.SIGPIPE,
                        signal.SIGUSR1, signal.SIGALRM, signal.SIGXCPU, signal.SIGRTMIN):
@@ -191,7 +194,7 @@ class WaysOutTest(DriverCase):
                            ("throw_number", -signal.SIGABRT), ("throw", 1), ("exit", 3), ("quick_exit", 3)):
             self.leave(name, self.order(name), code)
 
-    # Tests exits that give the process no chance: its guardian writes the zero.
+    # Tests exits that leave the process no chance to act, so that its guardian writes the zero.
     def test_guardian(self):
         self.leave("SIGKILL", self.signal_(signal.SIGKILL), -signal.SIGKILL, at_once=False)
         self.leave("underscore_exit", self.order("underscore_exit"), 3, at_once=False)
@@ -203,8 +206,8 @@ class WaysOutTest(DriverCase):
             self.assertIn("board_error", driver.stderr)
             self.assertRegex(driver.stderr, "driver[.]\\w+: (reading|writing) subdevice")
 
-    # Tests that the end of the guardian, or a guardian that stands still, ends the run with zero volts and its name: a kill of
-    # the driver would leave the voltage.
+    # Tests that the run ends with zero volts and the guardian's name when the guardian ends or stands still,
+    # because killing the driver would then leave the voltage.
     def test_guardian_gone(self):
         for number in (signal.SIGKILL, signal.SIGSTOP):
             def act(driver, _, number=number):
@@ -214,7 +217,8 @@ class WaysOutTest(DriverCase):
             driver = self.leave(f"guardian {number.name}", act, 1)
             self.assertIn("guardian_gone", driver.stderr)
 
-    # Tests a stop message from another process, here the pressure loop's when the motor exceeds its speed limit.
+    # Tests a stop message from another process, here the pressure loop's message when the motor exceeds its
+    # speed limit.
     def test_stop_message(self):
         self.leave("stop message", lambda *_: None, 1, "limits.motor_speed=200", driven=False)
         self.assertTrue(any("fault motor_speed_limit" in p.stderr for p in self.processes))
@@ -238,8 +242,8 @@ class DriverFaultTest(DriverCase):
         return self.log.wait_for("HYDRO_FAULT", lambda f: f.code == code and bool(f.active) == active,
                                  f"fault {code}, active {active}", start=start)
 
-    # Tests that a pressure sensor at the end of its range, and one with a broken wire, read NaN, give zero volts and a
-    # fault that names the sensor, and that the run resumes when they are good again.
+    # Tests that a pressure sensor at the end of its range, and one with a broken wire, read NaN, give zero
+    # volts and a fault that names the sensor, and that the run resumes when they are good again.
     def test_sensor_faults(self):
         spans = []
         for order, says in (("input0_high", "p1 reads 10 V"), ("input0_open", "p1 reads 0.0001526 V.*minimum_V")):
@@ -263,7 +267,7 @@ class DriverFaultTest(DriverCase):
                 self.assertEqual((state.voltage, state.command_tick), (0, -1), state)
             self.assertTrue(all(math.isnan(s.p1) for s in during if s.tick <= begin + 50))
             self.assertFalse(any(math.isnan(s.p2) for s in during))
-        # Good again means ten readings in a row.
+        # "Good again" means ten readings in a row.
         good = [s for s in log.states if spans[0][0] < s.tick <= spans[0][1] and not math.isnan(s.p1)]
         self.assertGreaterEqual(len(good), 9)
 
@@ -274,8 +278,8 @@ class DriverFaultTest(DriverCase):
         self.log.wait_for_tick(tick + 500)
         self.assertFalse([f for f in self.finish().faults if f.code == "board_error"])
 
-    # Tests that a hanging driver keeps the voltage, which shows what the hardware watchdog is for: it takes the voltage
-    # from the motor.
+    # Tests that a hanging driver keeps the voltage, which shows the purpose of the hardware watchdog: it
+    # takes the voltage from the motor.
     def test_hang_is_for_the_watchdog(self):
         self.run_["driver"].send(signal.SIGSTOP)
         tripped = self.board.wait_for(lambda b: b["trips"] == 1 and b["enabled"] == 0, "the watchdog")
@@ -284,7 +288,7 @@ class DriverFaultTest(DriverCase):
         self.board.wait_for(lambda b: b["enabled"] == 1, "the watchdog line again")
         self.finish()
 
-    # Tests Ctrl-Z: zero volts before the process stops, and a run that goes on after it.
+    # Tests Ctrl-Z: zero volts before the process stops, and a run that continues after it.
     def test_suspended(self):
         self.run_["driver"].send(signal.SIGTSTP)
         self.board.wait_for(lambda b: b["enabled"] == 0, "the driver to stop")
@@ -294,7 +298,8 @@ class DriverFaultTest(DriverCase):
         self.board.wait_for(lambda b: b["nonzero_writes"] > written, "a voltage again")
         self.finish()
 
-    # Tests that a board that accepts nothing any more ends the run with 1, and that only the watchdog is left.
+    # Tests that a board that no longer accepts anything ends the run with 1, and that only the watchdog is
+    # left.
     def test_board_that_takes_no_zero(self):
         self.board.order("writes_fail")
         self.assertEqual(self.run_["driver"].wait(), 1, self.run_["driver"].report())
@@ -305,7 +310,8 @@ class DriverFaultTest(DriverCase):
 
 
 class LaunchedDriverTest(DriverCase):
-    # Tests that a driver killed under hydro-launch is named, that the output is zero and nothing is left.
+    # Tests that a driver killed under hydro-launch is named, that the output is zero and that no process is
+    # left.
     def test_killed(self):
         launch = self.launch(stack.config("driver.toml"), "--duration", "0", *self.options(self.board, SINE))
         self.board.wait_until_driven()
@@ -337,7 +343,7 @@ class DriverInputTest(DriverCase):
                              'time.mode: found "lockstep", allowed "realtime" with hydro-driver')
         self.assertEqual(self.board.opened, 0)
 
-    # Tests that what the board does not have is named by its key.
+    # Tests that anything that the board lacks is named by its key.
     def test_board_without_it(self):
         for setting, says in (
                 ("driver.device=/dev/no-such-board", "driver.device: found .*/dev/no-such-board.* .No such file"),
@@ -350,7 +356,8 @@ class DriverInputTest(DriverCase):
                 ("driver.watchdog.subdevice=3", "driver.watchdog.subdevice: .* a digital output")):
             self.assertRegex(self.refused(setting), says)
 
-    # Tests that --check-sensors shows signals, drives nothing, not even to zero, and ends with 1 for a broken wire.
+    # Tests that --check-sensors shows signals, writes no output, not even zero, and ends with 1 for a broken
+    # wire.
     def test_check_sensors(self):
         arguments = (stack.config("driver.toml"), *self.options(self.board), "--check-sensors", "--duration", "0.2")
         good = self.run_program("hydro-driver", *arguments)

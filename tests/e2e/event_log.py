@@ -13,7 +13,7 @@ import zlib
 SYNC_WORD = 0xEDA1DA01
 HEADER = struct.Struct(">IqqII")  # sync word, event number, timestamp us, channel length, data length
 
-# How struct packs a field that is not a string: docs/messages.md names the types.
+# How struct packs a field that is not a string. docs/messages.md names the types.
 CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "boolean": "b", "byte": "B",
          "string": "s"}
 PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "messages.md")

@@ -8,10 +8,10 @@ import xml.etree.ElementTree as xml
 import outcome
 import stack
 
-# All of them take well under 30 s on two free cores; this machine may be shared.
+# All of them take well under 30 s on two free cores, but this machine may be shared.
 LONG = 240
 
-# What contract and documentation promise; "a.b" is nested.
+# The keys that contract and documentation promise; "a.b" is nested.
 KEYS = {
     "fig2": ["table1.sticks", "stribeck.sticks", "stribeck.period_s", "stribeck.swing_psi"],
     "fig3": ["peak_p2_psi", "peak_dp_psi", "peak_time_s", "stick_time_s", "slip_time_s", "slip_dp_psi"],
@@ -93,7 +93,7 @@ class ExperimentTest(stack.TestCase):
             self.assertIn(f'<section id="{name}">', index)
             self.assertIn(f'href="#{name}"', index)
         self.assertNotIn("failed", re.sub(r"<style>.*?</style>", "", index, flags=re.S))
-        # Self-contained, and every id in it once.
+        # The page is self-contained, and every id occurs in it once.
         self.assertFalse(re.findall(r"<script|<link|\ssrc=|@import|url\((?!#)", index))
         ids = re.findall(r"""\sid=["']([^"']+)""", index)
         self.assertEqual(len(ids), len(set(ids)), sorted(i for i in set(ids) if ids.count(i) > 1)[:5])
@@ -119,7 +119,8 @@ class ExperimentTest(stack.TestCase):
         self.assertTrue(logs)
         simulated, real = (json.loads(self.read(folder, "fig5.json")) for folder in ("lockstep", "realtime"))
         self.assertTrue(real["options"]["real_time"])
-        # Late wake-ups on a shared machine disturb it; it is the same experiment all the same.
+        # Late wake-ups on a shared machine disturb it, but it must still be recognisable as the same
+        # experiment.
         self.assertLess(abs(real["rms_error_psi"] - simulated["rms_error_psi"]), 0.5 * simulated["rms_error_psi"] + 20)
 
 

@@ -9,8 +9,8 @@ import lcm_peer
 import stack
 
 RATE = 1000  # Hz, of demo.toml
-# s, limits.stale_input_s: above the lateness of wake-ups on a shared machine (up to 150 ms), so that only the test's
-# own actions cause a fault.
+# s, limits.stale_input_s. It is above the lateness of wake-ups on a shared machine (up to 150 ms), so that
+# only the test's own actions cause a fault.
 STALE = 0.3
 # The promise of docs/safety.md: ticks from the detection of a fault to zero volts.
 ZERO_WITHIN = 5

@@ -66,7 +66,8 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage != s.voltage], [])
         self.assert_in_time(log, fault)
 
-    # Tests that a command beyond the amplifier's limit has no effect, not even clipped; a rounding error is allowed.
+    # Tests that a command beyond the amplifier's limit has no effect, not even clipped; a rounding error is
+    # allowed.
     def test_excessive(self):
         self.run_with(self.for_ticks(120, lambda s: [repeated(voltage=-LIMIT * 1.001)]))
         log = self.check_zero_and_back("excessive_motor_command", least=5)
@@ -103,8 +104,8 @@ class MotorCommandTest(fault_case.FaultCase):
         log = self.check_zero_and_back("stale_motor_command", least=20)
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
-    # Tests that a command overtaken by newer ones (another route through a network) is not obeyed when it arrives, and
-    # that control goes on under the newer ones.
+    # Tests that a command overtaken by newer ones (on another route through a network) is not obeyed when it
+    # arrives, and that control continues with the newer ones.
     def test_reordered(self):
         self.run_with(self.once(lambda s: [repeated(), repeated(voltage=2.0, sequence=-1, tick=s.tick - 50)]))
         self.wait_for_fault("repeated_motor_command", source="plant")
@@ -127,13 +128,14 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s.lost_messages for s in whole], [7])
         self.assertEqual({f.code for f in log.faults} - {"late_plant"}, set())
 
-    # Tests that a command for a future tick is refused and zeroes the voltage until a sensible one comes.
+    # Tests that a command for a future tick is refused and zeroes the voltage until a valid one comes.
     def test_future(self):
         self.run_with(self.for_ticks(120, lambda s: [repeated(voltage=2.0, tick=s.tick + 1000)]))
         log = self.check_zero_and_back("future_motor_command", least=5)
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
-    # Tests that one command of the loop's own session for a tick that never comes does not make every later one old.
+    # Tests that after one command from the loop's own session for a tick that never comes, later commands do
+    # not count as old.
     def test_one_far_tick(self):
         self.run_with(self.once(lambda s: [repeated(voltage=2.0, tick=1 << 62)]))
         self.wait_for_fault("future_motor_command")
@@ -142,7 +144,7 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
         self.assertNotIn("stale_motor_command", {f.code for f in log.faults})
 
-    # Tests the same for a number that it never reaches.
+    # Tests the same for a sequence number that the loop never reaches.
     def test_one_far_number(self):
         def commands(state):
             self.pressure_loop.peer.publish("HYDRO_MOTOR_COMMAND", **repeated(tick=state.tick, sequence=1 << 62))
@@ -170,8 +172,8 @@ class MotorCommandTest(fault_case.FaultCase):
         slept = sum(s.skipped_ticks for s in log.states if BAD <= s.tick <= fault.tick)
         self.assertLessEqual(fault.tick - BAD, STALE * SLOW + 5 + slept + 20)
 
-    # Tests that neither of two motor-command senders is obeyed, that both are named, and that the first resumes when
-    # the second has gone.
+    # Tests that neither of two motor-command senders is obeyed, that both are named, and that the first
+    # resumes when the second has gone.
     def test_two_senders(self):
         second = 777
         self.run_with(self.for_ticks(120, lambda s: [repeated(), repeated(second, voltage=2.0, sequence=s.tick)]),
@@ -184,7 +186,7 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertIn("pressure_ctrl on test (process 1)", fault.text)
         self.assertIn(f"(session {second})", fault.text)
 
-    # Tests that a command of another type or version is not obeyed, but counted and named.
+    # Tests that a command of another type or version is not obeyed, but is counted and named.
     def test_undecodable(self):
         self.run_with(self.once(lambda s: [repeated()]))
         peer = self.peer()
@@ -203,7 +205,8 @@ class MotorCommandTest(fault_case.FaultCase):
         gone = [f for f in log.faults if f.code == "undecodable_message" and not f.active]
         self.assertTrue(gone)
 
-    # Tests that another stack on this port and group is noticed and named, and that one of another group on this port is not even heard.
+    # Tests that another stack on this port and group is noticed and named, and that a stack of another group
+    # on this port is not even heard.
     def test_other_stack(self):
         self.run_with(self.once(lambda s: [repeated()]))
         far, other = self.peer(group="239.255.76.99"), self.peer()
@@ -257,14 +260,15 @@ class PressureCommandTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual({f.code for f in log.faults if f.source == "pressure_ctrl"} - {"stale_state"}, set())
 
-    # Tests that a reference for a tick far in the future is refused, and zeroes the voltage until a sensible one comes.
+    # Tests that a reference for a tick far in the future is refused, and zeroes the voltage until a valid one
+    # comes.
     def test_future(self):
         self.run_with(lambda tick: [{"pressure_ref": 100.0, "tick": tick + 5000}])
         log = self.check("future_pressure_command")
         self.assertEqual([c for c in log.motor_commands if c.pressure_ref == 100.0], [])
 
-    # Tests that a loop that answers every sample, but too late, counts as stale: its reference goes to zero, then the
-    # voltage.
+    # Tests that a loop that answers every sample, but too late, counts as stale: its reference goes to zero,
+    # then the voltage.
     def test_late(self):
         hold = 6 + int(STALE * fault_case.RATE)
         self.SPAN = 2 * hold + 400
@@ -275,7 +279,8 @@ class PressureCommandTest(fault_case.FaultCase):
         safe = [c for c in log.motor_commands if c.status == event_log.SAFE and c.tick >= fault.tick]
         self.assertGreater(len(safe), 3)
         self.assertEqual([c for c in safe if c.voltage != 0], [])
-        # The first ones, for tick 0, were not too old yet; then it is never the whole of it.
+        # The first commands, for tick 0, were not too old yet. After that, the reference never has its full
+        # value.
         whole = [c for c in log.motor_commands if c.pressure_ref == 100.0]
         self.assertEqual([c for c in whole if c.tick > hold], [])
 
@@ -289,7 +294,7 @@ class PressureCommandTest(fault_case.FaultCase):
         self.assertIn("(session 777)", fault.text)
         self.assertEqual([c for c in log.motor_commands if c.pressure_ref == 100.0], [])
 
-    # Tests that repeated or overtaken commands are not obeyed, and that the one in force becomes stale.
+    # Tests that repeated or overtaken commands are not obeyed, and that the command in force becomes stale.
     def test_repeated(self):
         self.SPAN = int(STALE * fault_case.RATE) + 700
         self.run_with(lambda tick: [{"pressure_ref": 100.0, "sequence": -1, "tick": tick}])
@@ -330,7 +335,7 @@ class StateTest(fault_case.FaultCase):
                 self.wait_until(lambda k=kind, t=tick: answered(k, t), f"{kind} of tick {tick}")
         return commands["HYDRO_MOTOR_COMMAND"]
 
-    # Tests that a pressure or a speed that is not a number is answered with zero volts in that same tick.
+    # Tests that a pressure or a speed that is not a number is answered with zero volts in the same tick.
     def test_pressures_and_speed(self):
         commands = self.run_with(p2=float("nan"), motor_speed=float("inf"))
         self.wait_for_fault("nonfinite_state", source="pressure_ctrl")
@@ -343,7 +348,8 @@ class StateTest(fault_case.FaultCase):
         self.assertNotEqual(commands[BAD - 1].voltage, 0)
         self.assertNotEqual(commands[self.GOOD].voltage, 0)
 
-    # Tests that without the arm's angle the position loop commands zero volts, in force a tick later.
+    # Tests that without the arm's angle the position loop commands zero volts, which are in force a tick
+    # later.
     def test_arm_angle(self):
         commands = self.run_with(arm_angle=float("nan"))
         self.wait_for_fault("nonfinite_arm_angle", source="position_ctrl")

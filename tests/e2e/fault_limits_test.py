@@ -7,7 +7,8 @@ import fault_case
 import lcm_peer
 import outcome
 
-# A pressure that drives the arm away for as long as it is commanded; negative: the other way.
+# A pressure that drives the arm in one direction for as long as it is commanded; a negative one drives it the
+# other way.
 PUSH = 'signal = "pressure"\nkind = "steps"\nsteps = [[0.1, {}]]'
 
 
@@ -34,11 +35,11 @@ class LimitTest(fault_case.FaultCase):
         self.assertTrue([s for s in log.stops if s.exit_code == 1 and code in s.reason])
         last = log.motor_commands[-1]
         self.assertEqual((last.status, last.voltage), (event_log.STOPPED, 0))
-        # The pressure loop finds the same by itself, unless the plant's stop arrived first.
+        # The pressure loop finds the same fault by itself, unless the plant's stop arrived first.
         self.assertLessEqual(set(faults), {"plant", "pressure_ctrl"})
 
-    # Tests that a pressure above its limit, on either side, zeroes the voltage in the tick that measures it and ends
-    # the run.
+    # Tests that a pressure above its limit, on either side, zeroes the voltage in the tick that measures it
+    # and ends the run.
     def test_pressure(self):
         for push in (100, -100):
             with self.subTest(push=push):
@@ -47,13 +48,13 @@ class LimitTest(fault_case.FaultCase):
     def test_motor_speed(self):
         self.run_to_limit("limits.motor_speed", "motor_speed_limit", lambda s: abs(s.motor_speed), 30, -100)
 
-    # Tests the arm: long before V_1 or V_2 is 0, of which the model itself would die.
+    # Tests the arm's limit, which lies far before V_1 or V_2 is 0, where the model itself would fail.
     def test_arm_angle(self):
         for push in (100, -100):
             with self.subTest(push=push):
                 self.run_to_limit("limits.arm_angle", "arm_angle_limit", lambda s: abs(s.arm_angle), 0.05, push)
 
-    # Tests that a run whose arm is driven to its end is stopped by the default of that limit, 0.98 V_ms/c.
+    # Tests that a run whose arm is driven to its end is stopped by the default limit, 0.98 V_ms/c.
     def test_arm_angle_default(self):
         self.start_stack(config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("arm_angle_limit", source="plant")
@@ -87,8 +88,8 @@ class RearmTest(fault_case.FaultCase):
         if forecast["lowest"] == forecast["highest"]:
             self.assertAlmostEqual(reference, forecast["target"], delta=1e-6)
 
-    # Tests that the voltage stays zero long after the pressure has fallen, that a re-arm ends this, and that exceeding
-    # the limit again raises the fault again.
+    # Tests that the voltage stays zero long after the pressure has fallen, that a re-arm ends this, and that
+    # exceeding the limit again raises the fault again.
     def test_pressure(self):
         self.start_explicit("--set", "limits.pressure=115", config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("pressure_limit", source="plant")
@@ -111,7 +112,7 @@ class RearmTest(fault_case.FaultCase):
         self.assertEqual(self.assert_zero_during(log, "pressure_limit", "plant", least=300), 0)
         self.assertEqual([(r.kind, r.source) for r in log.rearms[:2]], [(0, "launch"), (1, "plant")])
 
-    # Tests that an input that is good again does not end the fault by itself.
+    # Tests that the fault does not end by itself when an input is good again.
     def test_stale_command(self):
         self.start_explicit()
         self.wait_for_voltage()
@@ -134,7 +135,8 @@ class RearmTest(fault_case.FaultCase):
         self.check_forecast(log, told)
         self.assertEqual(self.assert_zero_during(log, "stale_motor_command", "plant", least=300), 0)
 
-    # Tests that the pressure loop's faults are latched too: its safe output keeps the voltage at zero afterwards.
+    # Tests that the pressure loop's faults are latched too, and that its safe output keeps the voltage at
+    # zero afterwards.
     def test_controller_fault(self):
         self.start_explicit("--set", "limits.pressure_ramp_s=0")
         self.wait_for_voltage()
@@ -152,8 +154,8 @@ class RearmTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual(self.assert_zero_during(log, "controller_fault", "plant", least=300), 0)
 
-    # Tests that in a stack with a key a re-arm and a stop need the key, and that with it they work as they do without
-    # one.
+    # Tests that in a stack with a key a re-arm and a stop need the key, and that with the key they work as
+    # they do in a stack without one.
     def test_with_a_key(self):
         key = ("--set", f"bus.key_file={self.path('bus.key')}")
         self.run_program("hydro-launch", self.moving(), *key, "--make-key")
@@ -187,7 +189,7 @@ class RearmTest(fault_case.FaultCase):
         self.assertEqual(self.assert_zero_during(log, "arm_angle_limit", "plant", least=200), 0)
         self.assertEqual([f for f in log.faults if f.code == fault.code and not f.active], [])
 
-    # Tests that a re-arm meant for another run (as a played log contains), or an old one, ends nothing.
+    # Tests that a re-arm meant for another run (as in a played log), or an old one, has no effect.
     def test_requests_of_another_run(self):
         self.start_explicit()
         self.wait_for_voltage()
@@ -229,13 +231,23 @@ class RearmTest(fault_case.FaultCase):
             file.write(data[:whole])
         return self.path("copy.lcmlog")
 
-    # Tests that where faults end by themselves there is nothing to re-arm, and that a re-arm without a stack says so.
+    # Tests that there is nothing to re-arm where faults end by themselves, and that a re-arm without a stack
+    # says so.
     def test_nothing_to_rearm(self):
         self.start_stack()
         self.wait_for_voltage()
         self.assertRegex(self.rearm(1).stderr, 'refused by the plant: limits.rearm is "restart"')
         self.finish()
         self.assertRegex(self.rearm(1).stderr, "no plant or driver is heard")
+
+    # The same with limits.rearm = "explicit", for people and for programs.
+    def test_no_latched_fault(self):
+        self.start_explicit()
+        self.wait_for_voltage()
+        self.assertRegex(self.rearm(1).stderr, "refused by the plant: no fault is latched")
+        told = json.loads(self.run_program("hydro-launch", *self.run_.arguments, "--rearm", "--json", expect=1).stdout)
+        self.assertEqual((told["rearmed"], told["forecasts"]), (False, []))
+        self.finish()
 
     # Tests that a run that ends at zero volts, never re-armed, has failed.
     def test_ends_latched(self):

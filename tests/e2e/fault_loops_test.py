@@ -41,8 +41,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_states(100)
         self.check_stale_motor_command(self.finish())
 
-    # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which this machine's late
-    # wake-ups stay below a tick or two.
+    # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which the late
+    # wake-ups of this machine stay below a tick or two.
     def test_five_ticks(self):
         rate, limit = 50, 5
         voltage = self.config_with('signal = "voltage"\nkind = "steps"\ninitial = 1.5')
@@ -63,8 +63,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertGreater(len(after), 10)
         self.assertEqual([s for s in after if s.voltage != 0], [])
 
-    # Tests the same for a pressure loop that hangs, that its late answers to old states move nothing, and that control
-    # comes back with it.
+    # Tests the same for a pressure loop that hangs, that its late answers to old states have no effect, and
+    # that control returns when it continues.
     def test_pressure_loop_hangs(self):
         self.start_moving()
         self.run_["pressure_ctrl"].send(signal.SIGSTOP)
@@ -80,8 +80,9 @@ class FaultLoopsTest(fault_case.FaultCase):
             if state.command_tick >= 0:
                 self.assertLessEqual(state.tick - state.command_tick, STALE * RATE + 10 + 2 * slept, state)
 
-    # Tests that without a position loop the last pressure reference is held for the stale limit, then goes to zero in a
-    # line, and that then the voltage is zero: in ticks exactly, since the pressure loop counts them.
+    # Tests that without a position loop the last pressure reference is held for the stale limit and then goes
+    # to zero in a line, after which the voltage is zero. The numbers of ticks are exact, because the pressure
+    # loop counts ticks.
     def check_position_loop_gone(self, log):
         last = next(f for f in log.faults if f.code == "stale_pressure_command")
         newest = [m for kind, m in self.before_fault(log, last.code) if kind == "HYDRO_PRESSURE_COMMAND"][-1]
@@ -94,7 +95,8 @@ class FaultLoopsTest(fault_case.FaultCase):
               f"detected {last.tick - newest.tick} ticks after the last pressure command", flush=True)
         for commands in (held, ramp, done):
             self.assertGreater(len(commands), 3)
-        # The first state behind the limit raised it: later only by ticks for which there was no state.
+        # The first state after the limit raised the fault. It is late only by ticks for which there was no
+        # state.
         self.assertEqual(last.tick, min(c.tick for c in ramp))
         for c in held:
             self.assertEqual((c.status, c.pressure_ref), (event_log.LAW, newest.pressure_ref), c)
@@ -105,7 +107,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         for c in done:
             self.assertEqual((c.status, c.voltage), (event_log.SAFE, 0), c)
         self.assertFalse([f for f in log.faults if f.code == "stale_motor_command"], "the pressure loop went on")
-        # The plant obeys: from the first safe command on no voltage.
+        # The plant obeys: there is no voltage after the first safe command.
         safe = min(c.tick for c in done)
         later = [s for s in log.states if s.command_tick >= safe and s.command_tick in {c.tick for c in done}]
         self.assertGreater(len(later), 20)
@@ -130,8 +132,9 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_voltage()
         self.check_position_loop_gone(self.finish())
 
-    # Tests that the pressure loop answers a hanging plant with zero volts, and that the plant, when it goes on, obeys
-    # no command from before: zero volts until a command computed from a later state.
+    # Tests that the pressure loop answers a hanging plant with zero volts, and that the plant, when it
+    # continues, obeys no command from before but stays at zero volts until a command computed from a later
+    # state.
     def test_plant_hangs(self):
         self.start_moving()
         self.run_["plant"].send(signal.SIGSTOP)
@@ -151,7 +154,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertGreater(awake.skipped_ticks, STALE * RATE)
         after = next(s for s in log.states if s.tick > fault.tick and s.command_tick >= 0)
         self.assertGreaterEqual(after.command_tick, fault.tick)
-        # The position loop held its reference and came back: the replay does the same, by what the log says of the faults.
+        # The position loop held its reference and returned from there. The replay does the same, because the
+        # log holds the faults.
         self.assertIn("position: identical", self.run_program("hydro-log", "replay", self.log_file).stdout)
 
     # Tests that the pressure loop commands zero volts once when the plant has died.
@@ -178,11 +182,12 @@ class FaultLoopsTest(fault_case.FaultCase):
     def check_control_went_on(self, states, commands):
         answered = {c.tick for c in commands if c.status == event_log.LAW}
         self.assertGreater(len(states), 200)
-        # Those at the very end were overtaken by the run's end.
+        # Commands at the very end were overtaken by the run's end.
         self.assertEqual([s.tick for s in states if s.tick not in answered and s.tick < max(answered)], [])
         self.assertTrue([s for s in states if s.voltage != 0])
 
-    # Tests that control goes on without a logger, that the plant says so, and that it notices when one is back.
+    # Tests that control continues without a logger, that the plant reports this, and that it notices when a
+    # logger is back.
     def test_logger_dies(self):
         self.start_moving("--set", "limits.stale_logger_s=0.6")
         self.run_["logger"].kill()
@@ -197,8 +202,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertEqual({f.code for f in after.faults if f.active} - {"logger_gone"}, set())
         self.check_control_went_on(after.states[:-1], after.motor_commands)
 
-    # Tests that a full disk ends the logger with 1 and a log that is readable up to there, while control goes on and
-    # the plant says why nobody records any more.
+    # Tests that a full disk ends the logger with 1 and a log that is readable up to that point, while control
+    # continues and the plant says why the run is no longer recorded.
     def test_disk_full(self):
         self.start_stack(roles=())
         self.run_.start("logger", "-o", self.log_file)

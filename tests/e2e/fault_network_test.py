@@ -55,7 +55,8 @@ class NetworkTest(fault_case.FaultCase):
         return process
 
     def start_hosts(self):
-        # A logger that has heard nothing new has nothing to say: it is gone when it is silent for a while.
+        # A logger that has heard nothing new sends nothing, and counts as gone when it has been silent for a
+        # while.
         self.arguments = [self.moving(), "--set", f"bus.url={URL}", "--time", "realtime", "--duration", "0", "--set",
                           f"limits.stale_input_s={STALE}", "--set", "limits.stale_logger_s=0.5"]
         self.rig = [self.start_on(RIG, "logger", "-o", self.log_file), self.start_on(RIG, "pressure_ctrl")]
@@ -87,7 +88,7 @@ class NetworkTest(fault_case.FaultCase):
             self.assertEqual(process.wait(), 0, process.report())
         log = event_log.Log(self.log_file)
         self.assertIn("logger on", gone.text)
-        # The rig's own processes went on: each state was answered, at last with zero volts.
+        # The rig's own processes continued: each state was answered, in the end with zero volts.
         safe = [c for c in log.motor_commands if c.status == event_log.SAFE]
         self.assertGreater(len(safe), 50)
         self.assertEqual([c for c in safe if c.voltage != 0], [])
@@ -95,7 +96,7 @@ class NetworkTest(fault_case.FaultCase):
         self.assertGreaterEqual(safe[0].tick - newest.tick, 6 + STALE * RATE + RAMP)
         after = [s for s in log.states if s.command_tick in {c.tick for c in safe}]
         self.assertEqual([s for s in after if s.voltage != 0], [])
-        # The desk's log tells what it has not heard.
+        # The desk's log says which messages it has not heard.
         desk = event_log.Log(self.path("desk.lcmlog"))
         missing = event_log.missing_numbers(desk.states)
         lost = sum(len(numbers) for numbers in missing.values())
@@ -106,23 +107,24 @@ class NetworkTest(fault_case.FaultCase):
         self.assertGreater(reported[0], 100)
         return log, desk
 
-    # Tests a cable that is pulled at the switch: both hosts keep their interfaces.
+    # Tests a cable that is pulled at the switch, so that both hosts keep their interfaces.
     def test_cable(self):
         self.cable_out_and_in(lambda: ip("-n", SWITCH, "link", "set", "desk", "down"),
                               lambda: ip("-n", SWITCH, "link", "set", "desk", "up"))
 
-    # Tests an interface that is taken down and up: what cannot be sent is lost and reported, and ends nobody.
+    # Tests an interface that is taken down and up: what cannot be sent is lost and reported, and no process
+    # ends because of it.
     def test_interface(self):
         def back():
-            # With no states to answer, the loop sends its report once a second only.
+            # With no states to answer, the loop only sends its report once a second.
             self.desk[0].wait_for("fault unsent_message")
             ip("-n", DESK, "link", "set", "veth0", "up")
             ip("-n", DESK, "route", "add", "224.0.0.0/4", "dev", "veth0")  # it went with the interface
         self.cable_out_and_in(lambda: ip("-n", DESK, "link", "set", "veth0", "down"), back)
         self.assertRegex(self.desk[0].stderr, "fault unsent_message: [0-9]+ messages could not be sent")
 
-    # Tests that --stop ends a stack whose network has gone, within the time that it takes the plant to look, though no
-    # process would have stopped by itself.
+    # Tests that --stop ends a stack whose network is gone, within the time that the plant needs to look,
+    # although no process would have stopped by itself.
     def test_stop_without_network(self):
         self.arguments = [self.config_with('signal = "voltage"\nkind = "steps"\nsteps = [[0.0, 1.0]]'), "--set", f"bus.url={URL}",
                           "--time", "realtime", "--duration", "0", "--set", "limits.stale_input_s=60", "--set",

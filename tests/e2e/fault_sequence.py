@@ -6,8 +6,9 @@ import re
 
 import event_log
 
-# s of simulated time. Two processes that notice faults closer together than this do so in either order, on real processes and
-# under another seed of the simulator; what one process notices is always in order.
+# s of simulated time. Two processes that notice faults closer together than this do so in either order, both
+# with real processes and with another seed of the simulator. The faults that one process notices are always
+# in order.
 RACE = 0.02
 
 Fault = collections.namedtuple("Fault", "time source code active latched")
@@ -48,7 +49,8 @@ def difference(expected, found):
         for number, (a, b) in enumerate(zip(wanted + ["nothing more"], had + ["nothing more"])):
             if a != b:
                 return f"fault {number} of {source} is: {b}; expected is: {a}"
-    # Each process's own sequence is the same, so its n-th fault there is its n-th fault here.
+    # Each process's own sequence is the same in both runs, so its n-th fault in one is its n-th fault in the
+    # other.
     position = {}
     for number, fault in enumerate(found):
         position.setdefault(fault.source, []).append(number)

@@ -18,20 +18,21 @@ EXPECTED = [BEGINS, OTHER, ENDS, CLOSE]
 
 
 class DifferenceTest(unittest.TestCase):
-    # Tests that the times of the run that is compared do not matter, only its order.
+    # Tests that only the order of the faults in the compared run matters, and not their times.
     def test_same(self):
         self.assertIsNone(difference(EXPECTED, EXPECTED))
         self.assertIsNone(difference(EXPECTED, [fault._replace(time=7.0) for fault in EXPECTED]))
         self.assertIsNone(difference([], []))
 
-    # Tests that faults of two processes at the same moment may come in either order, and others may not.
+    # Tests that faults of two processes at the same moment may come in either order, and that others may not.
     def test_order_of_two_processes(self):
         self.assertIsNone(difference(EXPECTED, [BEGINS, OTHER, CLOSE, ENDS]))
         self.assertEqual(difference(EXPECTED, [OTHER, BEGINS, ENDS, CLOSE]),
                          "pressure_ctrl stale_pressure_command begins comes before plant stale_motor_command begins")
         self.assertIsNotNone(difference(EXPECTED, [BEGINS, ENDS, OTHER, CLOSE]))
 
-    # Tests that each single fault that is missing, comes twice, comes from another process or is another is noticed.
+    # Tests that each single fault is noticed that is missing, comes twice, comes from another process or is a
+    # different one.
     def test_each_fault_counts(self):
         for n, fault in enumerate(EXPECTED):
             before, after = EXPECTED[:n], EXPECTED[n + 1:]
@@ -41,7 +42,7 @@ class DifferenceTest(unittest.TestCase):
         self.assertIsNotNone(difference([], [BEGINS]))
         self.assertIsNotNone(difference([BEGINS], []))
 
-    # Tests that two of one process in the wrong order are noticed, however close they are.
+    # Tests that two faults of one process in the wrong order are noticed, however close they are.
     def test_order_of_one_process(self):
         close = ENDS._replace(time=1.001)
         self.assertIsNotNone(difference([BEGINS, close], [close, BEGINS]))
@@ -54,9 +55,10 @@ class ScheduleTest(stack.TestCase):
             file.write(schedule.text(seed, later))
         return torture_schedule.simulate(self, torture_schedule.Schedule(path))
 
-    # Tests that the simulator gives the same faults in the same order whatever the latencies, the order in which processes start
-    # and the phase of the reference are: what differs on real processes is no chance then. And that each schedule has faults, and
-    # no two the same, so that none can pass for another.
+    # Tests that the simulator gives the same faults in the same order, whatever the latencies, the order in
+    # which processes start and the phase of the reference are, so that differences with real processes are no
+    # accident. Also tests that each schedule has faults and that no two schedules have the same ones, so that
+    # none can pass for another.
     def test_no_chance(self):
         schedules = torture_schedule.all_schedules()
         self.assertEqual(len(schedules), 26)

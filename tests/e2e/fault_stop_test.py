@@ -20,7 +20,8 @@ class StopTest(fault_case.FaultCase):
         log = event_log.Log(self.log_file)
         stop = log.stops[0]
         self.assertEqual(stop.source, source)
-        # States that the plant sent after the stop had arrived at the logger: zero volts, or none.
+        # States that the plant sent after the stop had arrived at the logger. They have zero volts, or there
+        # are none.
         first = next(n for n, (kind, _) in enumerate(log.items) if kind == "HYDRO_STOP")
         after = [m for kind, m in log.items[first:] if kind == "HYDRO_STATE"]
         print(f"{self.id().split('.')[-1]}: {len(after)} states after the stop", flush=True)
@@ -44,7 +45,7 @@ class StopTest(fault_case.FaultCase):
         self.assertRegex(stopper.stdout, "stopped: 4 processes have ended")
         self.check_stopped("launch")
 
-    # Tests that it ends a stack under hydro-launch, which ends with 0.
+    # Tests that it ends a stack under hydro-launch, which then ends with 0.
     def test_stop_launched(self):
         launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file)
         stack.LiveLog(self, self.log_file).wait_for_tick(200)
@@ -53,8 +54,8 @@ class StopTest(fault_case.FaultCase):
         self.assertEqual(launch.wait(), 0, launch.report())
         self.assertRegex(launch.stdout, "stopped by launch: hydro-launch --stop")
 
-    # Tests that --stop ends a stack while anybody sends packets that liblcm's own receiver does not survive, and that the
-    # launcher and the doctor survive them too.
+    # Tests that --stop ends a stack while packets arrive that liblcm's own receiver does not survive, and
+    # that the launcher and the doctor survive them too.
     def test_stop_among_poisoned_packets(self):
         launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file)
         stack.LiveLog(self, self.log_file).wait_for_tick(50)
@@ -80,7 +81,8 @@ class StopTest(fault_case.FaultCase):
             sender.join()
             peer.close()
 
-    # Tests that a logger that is killed takes its stack with it, unless the configuration says that it is not required.
+    # Tests that a logger that is killed takes its stack with it, unless the configuration says that it is not
+    # required.
     def test_logger_is_killed(self):
         for required in ("true", "false"):
             with self.subTest(required):
@@ -97,8 +99,8 @@ class StopTest(fault_case.FaultCase):
                 self.assertEqual(launch.wait(), 1, launch.report())
                 self.assertEqual("stopped by SIGINT" in launch.stdout, required == "false", launch.report())
 
-    # Tests that a launcher that is stopped (Ctrl-Z at its terminal) leaves no motor running that nobody watches: zero volts
-    # until it goes on, and then a reference that starts from where the arm is.
+    # Tests that a suspended launcher (Ctrl-Z at its terminal) leaves no motor running unwatched: zero volts
+    # until it continues, and then a reference that starts from the arm's position.
     def test_launcher_is_suspended(self):
         launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file, "--set", "limits.stale_supervisor_s=0.5",
                              "--set", f"limits.stale_input_s={fault_case.STALE}")
@@ -120,7 +122,8 @@ class StopTest(fault_case.FaultCase):
         arm = next(s.arm_angle for s in log.states if s.tick == back.tick)
         self.assertAlmostEqual(back.value, arm, delta=0.005)
 
-    # Tests that without a stack it says so, with exit code 1, and that it does not go with --rearm.
+    # Tests that it says so when there is no stack, with exit code 1, and that it cannot be combined with
+    # --rearm.
     def test_nobody(self):
         arguments = (stack.config("demo.toml"), "--set", f"bus.url={self.url}")
         nobody = self.run_program("hydro-launch", *arguments, "--stop", expect=1)

@@ -11,7 +11,8 @@ import fault_case
 import outcome
 import stack
 
-# A surrogate, an overlong form, a byte that no character has, and one that is cut: each ended a writer of JSON.
+# A surrogate, an overlong form, a byte that occurs in no character, and a truncated character. Each of them
+# once ended a writer of JSON.
 WRONG = b"\xed\xa0\x80 \xc0\xaf \xff \xe2\x82"
 PLACE = "placeholder"  # as long as WRONG
 
@@ -42,7 +43,8 @@ class ForeignTextTest(fault_case.FaultCase):
         with open(path, "rb") as file:
             return [json.loads(line) for line in file.read().decode("utf-8", "strict").splitlines()]
 
-    # Tests that hydro-launch --json goes on under such faults, of strangers and in the name of its own plant, and ends in order.
+    # Tests that hydro-launch --json continues after such faults, from strangers and in the name of its own
+    # plant, and ends in order.
     def test_launch(self):
         hashes = self.fault_hashes()
         out = self.path("launch.jsonl")

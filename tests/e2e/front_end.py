@@ -31,7 +31,8 @@ class FrontEnd:
         self.start()
         self.machine = case.start(CONVERTERS, "unix:" + self.converters, model, rate)
         self.machine.wait_for("^ready")
-        # Hardware is never late because other tests run. Where that is not allowed, they are.
+        # Real hardware is never late because other tests run, so these get priority. Where that is not
+        # allowed, they may be late.
         threads = [int(thread) for process in (self.board, self.machine) for thread in os.listdir(f"/proc/{process.pid}/task")]
         with contextlib.suppress(PermissionError, ProcessLookupError):
             for thread in threads:

@@ -54,13 +54,13 @@ class LinksTest(BoardTest):
         self.assertEqual(computer.sample(lambda s: s["state"] == READY)["voltage"], 0)
         return computer
 
-    # Tests the whole way from the hello to zero volts and back over UDP, and that the end of the process is a clean one.
+    # Tests the whole way from the hello to zero volts and back over UDP, and that the process ends cleanly.
     def test_udp(self):
         self.hello_to_zero(self.udp())
         self.process.send(signal.SIGTERM)
         self.assertEqual(self.process.wait(), 0)
 
-    # Tests the same over a terminal, whose name is taken away at the end.
+    # Tests the same over a terminal, whose name is removed at the end.
     def test_terminal(self):
         self.board(f"pty:{self.path('tty')}")
         self.process.wait_for("^link")
@@ -69,8 +69,8 @@ class LinksTest(BoardTest):
         self.assertEqual(self.process.wait(), 0)
         self.assertFalse(os.path.lexists(self.path("tty")))
 
-    # Tests the same over a Unix socket, and that a cable that is out for longer than the watchdog is a trip, one that is in again gives
-    # samples at once, and only a re-arm gives volts.
+    # Tests the same over a Unix socket. A cable that is out for longer than the watchdog trips the device; a
+    # cable that is in again gives samples at once, and volts only after a re-arm.
     def test_cable(self):
         self.board(f"unix:{self.path('link')}")
         self.process.wait_for("^link")
@@ -86,7 +86,8 @@ class LinksTest(BoardTest):
         computer.arm(send=lambda: computer.voltage(3))
         computer.sample(lambda s: s["voltage"] == 3, send=lambda: computer.voltage(3))
 
-    # Tests that a device that is reset while it drives is at zero, deaf to what is still sent, and known by its boot.
+    # Tests that a device that is reset while it drives is at zero, ignores what is still sent, and is
+    # recognised as rebooted.
     def test_reset(self):
         computer = Computer(self.udp())
         body = settings(watchdog=500, sensors=SENSORS)
@@ -102,7 +103,7 @@ class LinksTest(BoardTest):
         self.assertEqual(computer.ask(SETTINGS, body, SETTINGS_HELD)["refused"], 0)
         self.assertEqual(computer.sample(send=lambda: computer.voltage(1))["state"], READY)
 
-    # Tests that a second computer is told who is in command, and does not disturb.
+    # Tests that a second computer is told which computer is in command, and disturbs nothing.
     def test_second_computer(self):
         port = self.udp()
         computer = Computer(port)
@@ -174,7 +175,8 @@ class TickTest(BoardTest):
         trips = self.computer.samples[-1]["trips"]
         self.computer.send(ARM, struct.pack("<II", fingerprint(self.computer.body), trips))
 
-    # Tests that N ticks after the last command, and not one earlier, the output is at zero; then that a re-arm ends that.
+    # Tests that the output is at zero N ticks after the last command, and not one tick earlier, and that a
+    # re-arm ends that.
     def test_watchdog(self):
         for n in 1, 3, 50:
             with self.subTest(n):
@@ -193,7 +195,7 @@ class TickTest(BoardTest):
                     self.tick()
                 self.wait_until(lambda: self.computer.poll() is not None and self.computer.samples[-1]["state"] == READY, "zero")
 
-    # Tests that forged frames, of another session or with another fingerprint, move nothing.
+    # Tests that forged frames, of another session or with another fingerprint, have no effect.
     def test_forged(self):
         self.connect(watchdog=50)
         self.computer.voltage(2)
@@ -208,7 +210,8 @@ class TickTest(BoardTest):
         self.wait_until(lambda: self.computer.poll() is not None and self.computer.samples[-1]["state"] == TRIPPED, "the trip")
         self.assertEqual(self.computer.samples[-1]["faults_latched"], FINGERPRINT)
 
-    # Tests the loop on the device: its voltage follows eq. (16) from one tick to the next, and a change of gains makes no jump.
+    # Tests the loop on the device: its voltage follows eq. (16) from one tick to the next, and a change of
+    # gains causes no jump.
     def test_loop_on_the_device(self):
         self.connect(mode=2, watchdog=50, transfer=10, sensors=[*SENSORS, sensor(2, 0, 16), sensor(3)])
         for p2, expected in ((1.0, 2.0), (2.0, 1.0), (4.0, -1.0)):
@@ -253,8 +256,8 @@ class QemuTest(BoardTest):
         self.addCleanup(stream.close)
         return stream
 
-    # Tests that it boots, says what it is, takes settings, arms and drives; that N of its own ticks after the last command it is at zero; and
-    # that a reset leaves it there, known by another boot.
+    # Tests that the device boots, says what it is, takes settings, arms and drives, that it is at zero N of
+    # its own ticks after the last command, and that a reset leaves it at zero with another boot number.
     def test_boots_drives_and_goes_to_zero(self):
         n = 60
         body = settings(watchdog=n, sensors=SENSORS)
@@ -267,7 +270,7 @@ class QemuTest(BoardTest):
         begin = len(self.computer.samples)
         tripped = self.computer.sample(lambda s: s["state"] == TRIPPED, seconds=30)
         self.assertEqual((tripped["voltage"], tripped["faults_latched"]), (0, WATCHDOG))
-        # Samples of every tick: the last armed one says when its command was taken.
+        # There is a sample for every tick, and the last armed one says when its command was taken.
         last = [s for s in self.computer.samples[begin - 1:] if s["state"] == ARMED][-1]
         self.assertEqual(last["voltage"], 2.5)
         self.assertEqual(tripped["tick"] - (last["tick"] - last["command_age"]), n)

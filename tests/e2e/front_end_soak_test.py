@@ -22,7 +22,8 @@ STAGE_S = 4
 FRAMES = [{kind: rate for kind in ("lost", "doubled", "late")} for rate in (1e-5, 1e-4, 1e-3, 1e-2)]
 BITS = [{"bit": rate} for rate in (1e-5, 1e-4, 1e-3)]
 NO_FRAME_IS_WHOLE = {"bit": 1e-2}  # 1 sample in 5000, 1 command in 60
-# Where more than half of the samples are lost, a loop is some ticks later than it is designed for, and this machine has no end stops.
+# Where more than half of the samples are lost, a loop is some ticks later than the delay for which it was
+# designed, and this machine has no end stops.
 GENTLE = ('reference={ signal = "arm_angle", kind = "sine", amplitude = 0.1, frequency_hz = 0.5 }', "driver.voltage.limit_V=3",
           "pressure.natural_frequency_rad_s=20", "pressure.damping_ratio=1", "position.c1=600", "position.c2=300")
 STILL_S = 0.12  # a machine that stood still for so long may have tripped a device, whose watchdog bears 0.2 s
@@ -181,8 +182,8 @@ class SoakTest(front_end_test.FrontEndCase):
         self.assertEqual(unexplained, [])
         self.assertGreaterEqual(len(w.trips), self.cut_trips)
         self.assertGreater(w.obeyed, 0.5 * w.samples)
-        # Either side counts what arrived at it and nothing else. What was on its way when a cable was pulled, or a device reset itself or the
-        # run ended, reached nobody.
+        # Each side counts what arrived at it and nothing else. What was under way when a cable was pulled, a
+        # device reset itself or the run ended did not arrive at all.
         most = 10 + 10 * (self.cut_trips + self.resets)
         order = self.wire.order
         for name, found, expected in (("damaged at the driver", damaged, back["damaged"]), ("lost", lost, order.lost),

@@ -1,10 +1,12 @@
 """hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
 
 import json
+import os
 import re
 import signal
 import socket
 import struct
+import time
 
 import event_log
 import front_end
@@ -81,7 +83,8 @@ class FrontEndRunTest(FrontEndCase):
             summary = json.load(file)
         log = event_log.Log(log_file)
         self.assertTrue(summary["tracking"]["at_target"], summary)
-        # What acted until a tick answers the tick before the last: the link adds no tick to what a board in the computer takes.
+        # The voltage that acted until a tick answers the tick before the last. The link adds no tick compared
+        # with a board in the computer.
         delays = sorted(s.tick - s.command_tick for s in log.states if s.command_tick >= 0)
         self.assertGreater(len(delays), 0.5 * len(log.states))
         self.assertEqual(delays[len(delays) // 10], 2, "of a busy computer's commands most may be late")
@@ -89,10 +92,10 @@ class FrontEndRunTest(FrontEndCase):
         (left,) = log.outputs_left
         self.assertEqual((left.role, bool(left.accepted), left.voltage), ("driver", True, 0))
         front.wait_until_zero()
-        # The machine's own word.
+        # This comes from the machine itself.
         self.assertAlmostEqual(log.states[-1].arm_angle, 0.1, delta=0.01)
         self.assertAlmostEqual(front.shown()[-1][5], 0.1, delta=0.02)
-        # The encoder's counter has wrapped; the angle has not.
+        # The encoder's counter has wrapped, but the angle has not.
         self.assertGreater(max(s.motor_angle for s in log.states), 1)
         self.assertLess(max(abs(b.motor_angle - a.motor_angle) for a, b in zip(log.states, log.states[1:])), 50)
 
@@ -134,7 +137,7 @@ class LastLineTest(FrontEndCase):
         self.assertEqual(after["state"], wire.TRIPPED)
         self.assertEqual(after["faults_latched"], wire.WATCHDOG)
         ticks = round(self.watchdog * self.front.rate)
-        # A board that is a process may wake up late, and then counts several ticks as one.
+        # A board that is a process may wake up late, and then it counts several ticks as one.
         samples = self.relay.samples()
         late = max(b["tick"] - a["tick"] for a, b in zip(samples, samples[1:]))
         self.assertGreaterEqual(age, ticks)
@@ -159,9 +162,39 @@ class LastLineTest(FrontEndCase):
         run["driver"].send(signal.SIGTERM)
         self.assertEqual(run["driver"].wait(), 0)
 
-    # Tests the end by a signal that nothing can catch.
+    def guardian(self, run):
+        with open(f"/proc/{run['driver'].pid}/task/{run['driver'].pid}/children", encoding="ascii") as children:
+            for child in children.read().split():
+                with open(f"/proc/{child}/comm", encoding="ascii") as name:
+                    if name.read() == "hydro-zero\n":
+                        return int(child)
+        self.fail("the driver has no guardian")
+
+    def zero_by_the_guardian(self, link):
+        front = front_end.FrontEnd(self, link)
+        run = self.run_by_hand(front.url, "driver.watchdog_s=0.9", "limits.stale_input_s=1.0")
+        front.wait_until_driven()
+        begun = time.monotonic()
+        run["driver"].kill()
+        front.wait_until_zero()
+        self.assertLess(time.monotonic() - begun, 0.6)  # with room for a busy machine
+
+    # Tests the end by a signal that nothing can catch: the guardian asks for zero volts, long before the device's watchdog would give them.
     def test_killed(self):
+        self.zero_by_the_guardian("udp")
+
+    def test_killed_on_a_terminal(self):
+        self.zero_by_the_guardian("pty")
+
+    def test_killed_on_a_socket(self):
+        self.zero_by_the_guardian("unix")
+
+    # Tests that nobody is needed for zero volts.
+    def test_killed_with_its_guardian(self):
         run = self.driven()
+        guardian = self.guardian(run)
+        run["driver"].send(signal.SIGSTOP)  # else it would ask for zero volts when its guardian has gone
+        os.kill(guardian, signal.SIGKILL)
         run["driver"].kill()
         self.front.wait_until_zero()
         front_end.wait(lambda: not self.armed(), "a sample that says so")
@@ -171,6 +204,14 @@ class LastLineTest(FrontEndCase):
         self.assertEqual(after["voltage"], 0)
         self.assertLess(age, round(self.watchdog * self.front.rate) + late)
 
+    # Tests that a driver without its guardian does not go on.
+    def test_guardian_gone(self):
+        run = self.driven()
+        os.kill(self.guardian(run), signal.SIGKILL)
+        self.assertEqual(run["driver"].wait(), 1)
+        self.assertIn("the guardian (hydro-zero)", run["driver"].stderr)
+        self.front.wait_until_zero()
+
     # Tests that an ordered end leaves the device disarmed, at once.
     def test_ordered_end(self):
         run = self.driven()
@@ -179,7 +220,8 @@ class LastLineTest(FrontEndCase):
         self.assertEqual(self.relay.newest()[2]["state"], wire.READY)
         self.front.wait_until_zero()
 
-    # Tests that a run whose device does not say that its output is at zero has failed, and says so; the device's watchdog makes it zero.
+    # Tests that a run has failed, and says so, when its device does not confirm that its output is at zero.
+    # The device's watchdog then makes it zero.
     def test_end_without_the_device(self):
         run = self.driven()
         self.relay.cut = True
@@ -189,7 +231,8 @@ class LastLineTest(FrontEndCase):
                       run["driver"].stderr)
         self.front.wait_until_zero()
 
-    # Tests that a reset in mid-run is noticed, gives zero volts, and that the device drives again only with its settings.
+    # Tests that a reset during the run is noticed and gives zero volts, and that the device drives again only
+    # with its settings.
     def test_reset(self):
         run = self.driven()
         boots = lambda: {fields["boot"] for kind, _, _, fields in self.relay.frames() if kind == wire.IDENTITY}
@@ -200,7 +243,7 @@ class LastLineTest(FrontEndCase):
         self.front.wait_until_driven()
         self.assertEqual(len(boots()), 2)
 
-    # Tests frames that somebody else has made: those of another session change nothing but counts, on both sides.
+    # Tests forged frames: those of another session change only counts, on both sides.
     def test_forged_frames(self):
         run = self.driven()
         session, sequence, fields = front_end.wait(self.relay.newest, "a sample")
@@ -216,7 +259,8 @@ class LastLineTest(FrontEndCase):
         self.assertGreaterEqual(int(run["driver"].wait_for(r"(\d+) repeated or late").group(1)), 20)
         self.assertNotIn(9.0, [s["voltage"] for s in self.relay.samples()])
 
-    # Tests a command made for other settings, whole and of the right session: the device stops, the driver says why.
+    # Tests a command that was made for other settings but is whole and of the right session: the device
+    # stops, and the driver says why.
     def test_wrong_fingerprint(self):
         run = self.driven()
         session, _, _ = front_end.wait(self.relay.newest, "a sample")
@@ -226,7 +270,7 @@ class LastLineTest(FrontEndCase):
         run["driver"].wait_for("a command made for other settings")
         self.assertNotIn(5.0, [s["voltage"] for s in self.relay.samples()])
 
-    # Tests that with limits.rearm = "explicit" a device that has tripped stays at zero until somebody asks.
+    # Tests that with limits.rearm = "explicit" a device that has tripped stays at zero until it is re-armed.
     def test_explicit_rearm(self):
         run = self.driven('limits.rearm="explicit"')
         self.relay.cut = True
@@ -259,7 +303,7 @@ class LoopOnDeviceTest(FrontEndCase):
         log = event_log.Log(log_file)
         by_law = [c for c in log.motor_commands if c.status == 0]
         self.assertGreater(len(by_law), 0.5 * len(log.states))
-        # Single precision, which only the device has.
+        # The values are in single precision, which only the device uses.
         self.assertEqual({struct.unpack("<f", struct.pack("<f", c.voltage))[0] == c.voltage for c in by_law}, {True})
         replay = self.run_program("hydro-log", "replay", log_file, timeout=120)
         self.assertRegex(replay.stdout, r"pressure: equal in single precision, \d+ motor commands of the device")
@@ -334,7 +378,7 @@ class EmulatorTest(Emulated, FrontEndCase):
         launch = self.launch_until_arrived(front, 0.02, log_file, *self.slow(), STEP, *settings, seconds=60)
         log = event_log.Log(log_file)
         self.assertRegex(launch.stderr + launch.stdout, r"\(mps2-an386, firmware [\d.]+, 100 ticks/s\)")
-        # The machine's own word, and the driver's.
+        # The first comes from the machine itself, the second from the driver.
         self.assertAlmostEqual(front.shown()[-1][5], 0.1, delta=0.03)
         self.assertAlmostEqual(log.states[-1].arm_angle, 0.1, delta=0.03)
         self.assertGreater(max(s.voltage for s in log.states), 1)
@@ -368,7 +412,7 @@ class FrontEndInputTest(FrontEndCase):
         self.assertEqual(len(lines), 1, process.report())
         return lines[0]
 
-    # Tests each way in which the device is not there, not the right one, or not ours.
+    # Tests each case in which the device is missing, the wrong one, or not one of ours.
     def test_refused(self):
         self.assertIn('driver.url: found "/dev/ttyNone0" (No such file or directory), allowed a serial port',
                       self.refused("serial:/dev/ttyNone0"))
@@ -383,7 +427,7 @@ class FrontEndInputTest(FrontEndCase):
         self.assertIn("found nothing that answers at udp://127.0.0.1:", line)
         self.assertIn("within 0.3 s (time.start_timeout_s), allowed a front end", line)
 
-    # Tests a port that another program has, and a device that another session commands.
+    # Tests a port that another program uses, and a device that another session commands.
     def test_busy(self):
         front = front_end.FrontEnd(self, "pty")
         first = self.run_by_hand(front.url)
@@ -405,7 +449,7 @@ class FrontEndInputTest(FrontEndCase):
                       self.refused(front.url, "plant.rate_hz=500", "position.sample_interval_s=0.006",
                                    "driver.motor_angle.channel=7"))
 
-    # Tests the table of readings: nothing is armed for it.
+    # Tests the table of readings, for which nothing is armed.
     def test_check_sensors(self):
         front = front_end.FrontEnd(self)
         relay = front_end.Relay(self, front.port)

@@ -278,7 +278,8 @@ class Machine:
                 self.held, self.heard = fields["volts"], time.monotonic()
                 if self.answers:
                     self.give(fields["tick"])
-        # An emulator may sleep until something arrives: the same values again, should it have missed its own clock.
+        # An emulator may sleep until something arrives, so this sends the same values again, in case it has
+        # missed its own clock.
         if self.kick_s and self.outputs and time.monotonic() > self.heard + self.kick_s:
             self.heard = time.monotonic()
             self.give(self.outputs[-1][0])

@@ -10,7 +10,7 @@ import stack
 
 LONG = 1100  # s; some 100 on a quiet machine, but it gives way to the tests beside it
 NOISE = {"p1_psi": 1.5, "p2_psi": 1.5, "motor_speed_rad_s": 0.3, "arm_angle_rad": 0.0001}
-# The pump's friction grows with the pressures, which Table 1 leaves out.
+# The pump's friction grows with the pressures, an effect that Table 1 leaves out.
 HIDDEN = '\n[effects."pump.pressure_friction"]\nf = 0.0006\n'
 
 
@@ -26,7 +26,7 @@ class GapClosedTest(stack.TestCase):
         with open(self.path(name), "w", encoding="utf-8") as file:
             file.write(text)
 
-    # Four processes, their plant with `model`, as fast as they can; the log.
+    # Runs four processes, whose plant has `model`, as fast as they can. Returns the log.
     def record(self, model, name, *options):
         log = self.path(name + ".lcmlog")
         noise = [word for key, value in NOISE.items() for word in ("--set", f"noise.{key}={value}")]
@@ -47,8 +47,8 @@ class GapClosedTest(stack.TestCase):
         with open(table, encoding="utf-8") as file:
             return [float(row[name]) for row in csv.DictReader(file)]
 
-    # Tests that the effect is named with its size, that the gap finder has nothing to say against the model it
-    # wrote, and that the stack with that model does what the other did.
+    # Tests that the effect is named with its size, that the gap finder finds nothing wrong with the model
+    # that it wrote, and that the stack with that model behaves like the other one.
     def test_circle(self):
         moves = [("a", "reference.steps=[[0.1, 0.2], [1.2, -0.1]]"), ("b", "reference.steps=[[0.2, -0.15], [1.4, 0.25]]"),
                  ("c", "reference.steps=[[0.15, 0.1], [0.9, 0.3], [1.7, 0.0]]")]
@@ -68,7 +68,7 @@ class GapClosedTest(stack.TestCase):
         again = self.diagnose("out/model.toml", "again", *logs)
         self.assertEqual(again["verdict"], "nothing_missing", again["sentence"])
 
-        # The same move and noise with three plants: the hidden one's angle is met with the new model only.
+        # The same move and noise with three plants: only the new model reproduces the hidden plant's angle.
         same = ("--set", moves[0][1], "--seed", "0")
         arm = {name: self.column(self.record(model, name, *same), "arm_angle_rad")
                for name, model in (("unknown", "hidden.toml"), ("before", "given.toml"), ("after", "out/model.toml"))}

@@ -26,7 +26,8 @@ class HostsTest(two_hosts.TestCase):
         self.assertLess(abs(two_hosts.final_error(log)), 0.03)
         self.assertEqual({s.role for s in log.statuses} - {"launch"}, {"plant", "pressure_ctrl", "position_ctrl", "logger"})
 
-    # Tests that with ttl=0 no message leaves its host: the run does not start, and each side names those it waits for.
+    # Tests that with ttl=0 no message leaves its host: the run does not start, and each side names the
+    # processes for which it waits.
     def test_ttl_0_stays(self):
         options = ("--set", "bus.url=" + two_hosts.URL.replace("ttl=1", "ttl=0"), "--set", "time.start_timeout_s=6")
         launches = self.start_both("--time", "lockstep", "--duration", "1", *options)

@@ -10,7 +10,7 @@ import outcome
 import stack
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Of the sources and their build folder, or installed.
+# From the sources and their build folder, or installed.
 JARS = os.environ.get("HYDRO_JARS", os.path.join(os.path.dirname(stack.BIN), "generated", "java"))
 SPY = os.environ.get("HYDRO_SPY", os.path.join(ROOT, "packaging", "java", "hydro-spy"))
 TYPES = os.path.join(ROOT, "lcmtypes")
@@ -38,7 +38,7 @@ class JavaTest(stack.TestCase):
             self.assertIn(f"{channel}=", java.stdout)
         self.assertEqual(float(java.stdout.split()[-1]), log.of("HYDRO_STATE")[-1].arm_angle)
 
-    # Tests that lcm-spy comes up beside a stack, with all types.
+    # Tests that lcm-spy starts beside a stack, with all types.
     def test_spy(self):
         if not all(map(shutil.which, ("Xvfb", "xwininfo"))) or not os.path.exists("/usr/share/java/jchart2d.jar"):
             self.skipTest("needs Xvfb (xvfb), xwininfo (x11-utils) and libjchart2d-java")
@@ -51,7 +51,7 @@ class JavaTest(stack.TestCase):
                         "the window of lcm-spy")
         self.assertTrue(spy.running, spy.report())
 
-    # Tests that what is wrong is said in one line.
+    # Tests that errors are reported in one line.
     def test_bad_input(self):
         for arguments, said in ((["--speed"], "hydro-spy: found --speed, allowed --url URL or a configuration\n"),
                                 (["gone.toml"], "hydro-spy: gone.toml: cannot be read\n")):

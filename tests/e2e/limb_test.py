@@ -11,7 +11,7 @@ import two_hosts
 
 JOINTS = ("hip", "knee")
 LIMB = stack.config("limb.toml")
-# Where the knee has processes of its own.
+# The knee has processes of its own here.
 MIXED = """
 [[process]]
 program = "hydro-limb"
@@ -30,7 +30,7 @@ program = "hydro-position-ctrl"
 joint = "knee"
 {second}
 """
-# Nothing on a loaded machine is late by that much.
+# s; even on a loaded machine, nothing is late by that much.
 PATIENT = ("--set", "limits.stale_input_s=5", "--set", "limits.stale_supervisor_s=5")
 
 
@@ -59,7 +59,8 @@ def two_limbs(case):
 
 
 class LimbTest(stack.TestCase):
-    # Tests that in lockstep each joint of a limb gives, bit by bit, what it gives in hydro-sim and alone in processes of its own.
+    # Tests that in lockstep each joint of a limb gives, bit by bit, what it gives in hydro-sim and alone in
+    # processes of its own.
     def test_lockstep(self):
         short = ("--duration", "0.5")
         together = self.path("together.lcmlog")
@@ -74,15 +75,15 @@ class LimbTest(stack.TestCase):
             suffix = ("--suffix", f"_{joint}")
             self.assert_identical(together, alone, *suffix)
             self.assert_identical(together, simulated, *suffix)
-            # The same by this folder's own reader.
+            # The same comparison with this folder's own reader.
             logs = [event_log.Log(log, f"_{joint}") for log in (together, alone)]
             for kind in event_log.NUMBERED:
                 messages = [{m._replace(utime=0, session=0) for m in log.of(kind)} for log in logs]
                 self.assertEqual(messages[0], messages[1], kind)
             self.assertEqual(logs[0].states[-1].tick, 500)
 
-    # Tests that in real time a joint's states are on its own channels at the chosen rate, counted without a gap, up to the last,
-    # and that every output is left at zero.
+    # Tests that in real time a joint's states are on its own channels at the chosen rate, numbered without a
+    # gap up to the last, and that every output is left at zero.
     def test_realtime(self):
         log_file = self.path("run.lcmlog")
         launch = self.launch(LIMB, "--time", "realtime", "--duration", "1.5", "--log", log_file, *PATIENT)
@@ -92,7 +93,7 @@ class LimbTest(stack.TestCase):
             for kind in event_log.NUMBERED:
                 self.assertEqual(event_log.missing_numbers(log.of(kind)), {}, kind)
             self.assertEqual(log.states[-1].tick, 1500)
-            # One state in each 20 ticks, whose first is not that of every joint, and the last one.
+            # One state in every 20 ticks, and the last one. The first is not the same for every joint.
             self.assertLessEqual(len(log.states), 1500 // 20 + 3)
             self.assertGreater(len(log.states), 30)
             self.assertTrue(any(s.voltage != 0 for s in log.states))
@@ -100,8 +101,8 @@ class LimbTest(stack.TestCase):
             self.assertIn(f"{joint} plant: the output reads back 0 V", launch.stdout)
         self.assertEqual({s.role for s in event_log.Log(log_file).statuses} - {"launch"}, {"limb", "logger"})
 
-    # Tests that a flood of another's states and of processes that do not exist, while the limb runs, stops it not, makes none of its faults,
-    # and that what is remembered of it is bounded.
+    # Tests that a flood of foreign states and of processes that do not exist neither stops the running limb
+    # nor causes any of its faults, and that the memory for them is bounded.
     def test_a_flood(self):
         log_file, sim = self.path("run.lcmlog"), self.path("sim.lcmlog")
         self.run_program("hydro-sim", LIMB, "--duration", "0.1", "-o", sim)
@@ -136,7 +137,8 @@ class LimbTest(stack.TestCase):
         logger.send(signal.SIGTERM)
         logger.wait()
 
-    # Tests that a fault of one joint, which a re-arm has to end, holds the other at zero volts, and that the other says whose it is.
+    # Tests that a fault of one joint, which only a re-arm ends, holds the other at zero volts, and that the
+    # other joint says whose fault it is.
     def test_a_fault_of_one_joint(self):
         log_file = self.path("run.lcmlog")
         launch = self.launch(LIMB, "--time", "realtime", "--duration", "1.5", "--log", log_file, *PATIENT, "--set",
@@ -158,8 +160,8 @@ class LimbTest(stack.TestCase):
     def test_mixed(self):
         self.check_mixed(with_processes(self, "mixed.toml"))
 
-    # Tests the same with a key; that each joint's values can be changed then, in the limb and in processes of its own; and that a
-    # fault without a seal holds nobody.
+    # Tests the same with a key. Also tests that each joint's values can then be changed, in the limb and in
+    # processes of its own, and that a fault without a seal stops no joint.
     def test_mixed_with_a_key(self):
         config = with_processes(self, "keyed.toml")
         key = ("--set", "bus.key_file=" + self.path("limb.key"))
@@ -207,7 +209,8 @@ class LimbTest(stack.TestCase):
         self.assertEqual(launch.wait(60), 0, launch.report())
         self.assertEqual(stack.still_running([pressure_loop]), [])
 
-    # Tests that joints whose processes nobody has launched together end together all the same when one passes its limit.
+    # Tests that joints whose processes were not launched together still end together when one passes its
+    # limit.
     def test_ends_without_a_launcher(self):
         options = ("--time", "realtime", "--duration", "0", "--set", f"bus.url={self.url}", "--set", "limits.stale_input_s=5")
         low = ("--set", "joint.hip.limits.motor_speed=20")
@@ -217,8 +220,8 @@ class LimbTest(stack.TestCase):
             self.assertEqual(limb.wait(60), 1, limb.report())
         limbs[1].wait_for("joint hip: .*motor_speed_limit")
 
-    # Tests that a second limb on the same channels, which no launcher has seen, holds both at zero volts within two seconds, and that
-    # both name it.
+    # Tests that a second limb on the same channels, which no launcher has seen, holds both at zero volts
+    # within two seconds, and that both name it.
     def test_another_limb(self):
         log_file = self.path("run.lcmlog")
         launch = self.launch(LIMB, "--time", "realtime", "--duration", "0", "--log", log_file, *PATIENT)
@@ -234,7 +237,8 @@ class LimbTest(stack.TestCase):
         self.assertIn(launch.wait(60), (0, 1), launch.report())
         other.wait(60)
 
-    # Tests that two limbs of one configuration run on one host, and that the log has both from their first states on.
+    # Tests that two limbs of one configuration run on one host, and that the log has both from their first
+    # states on.
     def test_two_limbs_and_two_own_joints(self):
         with open(LIMB, encoding="utf-8") as file:
             text = file.read().replace('"models/', f'"{os.path.dirname(LIMB)}/models/').split("[[process]]")[0]
@@ -322,7 +326,8 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
         self.assertIn("hip plant: the output reads back 0 V", launches["rig"].stdout)
         self.assertIn("knee plant: the output reads back 0 V", launches["desk"].stdout)
 
-    # Tests that half a limb does not begin: each half waits for the other, and names it when it does not come.
+    # Tests that half a limb does not begin: each half waits for the other, and names it when it does not
+    # come.
     def test_half_a_limb(self):
         config = with_processes(self, "hosts.toml", 'host = "rig"', 'host = "desk"')
         for host, other in (("rig", "joint knee"), ("desk", "joint hip")):
@@ -333,7 +338,8 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
             for joint in JOINTS:
                 self.assertEqual(event_log.Log(self.log_of(host), f"_{joint}").states, [], joint)
 
-    # Tests that with "others_go_on" a joint that passes its limit on one host ends alone: that of the other host goes on to its end.
+    # Tests that with "others_go_on" a joint that passes its limit on one host ends alone, and the joint on
+    # the other host continues to its end.
     def test_others_go_on(self):
         config = two_limbs(self)
         launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "2", "--log", self.log_of(host), "--set",
@@ -350,7 +356,8 @@ class LimbOnTwoHostsTest(two_hosts.TestCase):
 class LimbCableTest(two_hosts.TestCase):
     relay_options = ("--outage", 600, 1.5)
 
-    # Tests that joints on two hosts are at zero volts while neither host hears the other, and go on when they are heard again.
+    # Tests that joints on two hosts are at zero volts while neither host hears the other, and continue when
+    # they hear each other again.
     def test_cable_out(self):
         config = two_limbs(self)
         launches = {host: self.launch_on(host, "--time", "realtime", "--duration", "0", "--log", self.log_of(host), "--set",

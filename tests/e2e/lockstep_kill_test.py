@@ -14,7 +14,7 @@ import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 LIMIT = 2.0  # s, what is promised
-# Far longer than the tests: a run must not end by itself during a test.
+# Far longer than the tests, so that no run ends by itself during a test.
 OPTIONS = ("--time", "lockstep", "--duration", "3600")
 
 
@@ -39,7 +39,7 @@ class LockstepKillTest(stack.TestCase):
     def check_log(self):
         log = event_log.Log(self.path("run.lcmlog"), torn_tail=True)
         last = log.states[-1].tick
-        # Lockstep does not advance without an answer: at most the unanswered tick lacks one.
+        # Lockstep does not advance without an answer, so at most the last tick lacks one.
         self.assertLessEqual(last - max(c.tick for c in log.motor_commands), 1)
         return log
 
@@ -54,7 +54,7 @@ class LockstepKillTest(stack.TestCase):
     def test_plant_killed(self):
         run = self.kill_by_hand("plant")
         log = self.check_log()
-        # The pressure loop's last word to the actuator is zero volts.
+        # The pressure loop's last command to the actuator is zero volts.
         self.assertEqual((log.motor_commands[-1].status, log.motor_commands[-1].voltage), (event_log.STOPPED, 0))
         self.assertIn(log.stops[0].source, ("pressure_ctrl", "position_ctrl"))
         self.assertIn("the plant has sent no state", log.stops[0].reason)
@@ -79,7 +79,7 @@ class LockstepKillTest(stack.TestCase):
         self.check_log()
         self.assert_named(run, "logger")
 
-    # Tests that a loop that stalls counts as dead, and is told so when it goes on.
+    # Tests that a loop that stalls counts as dead, and is told so when it continues.
     def test_pressure_ctrl_stalled(self):
         run = self.start_by_hand()
         since = time.monotonic()
@@ -126,7 +126,8 @@ class LaunchedLockstepKillTest(stack.TestCase):
         self.assertRegex(launch.stderr, f"{stack.PROGRAMS[victim]} was killed by signal 9")
         self.assertEqual(stack.still_running(pids.values()), [])
 
-    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, leaves no orphan.
+    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, and leaves no
+    # orphan.
     def test_plant_killed(self):
         self.kill_under_launch("plant")
 
@@ -139,7 +140,7 @@ class LaunchedLockstepKillTest(stack.TestCase):
     def test_logger_killed(self):
         self.kill_under_launch("logger")
 
-    # Tests that a loop that stalls ends a launched run, too, and is not left behind.
+    # Tests that a loop that stalls also ends a launched run, and is not left behind.
     def test_pressure_ctrl_stalled(self):
         launch, pids = self.start_launch()
         os.kill(pids["pressure_ctrl"], signal.SIGSTOP)

@@ -4,7 +4,7 @@ import event_log
 import outcome
 import stack
 
-# More plant time than this would only take longer.
+# A longer run would only take more time.
 PAPER = (stack.config("paper.toml"), "--set", "time.duration_s=1.2", "--set",
          "reference.steps=[[0.1,0.1],[0.7,-0.1]]")
 DEMO = (stack.config("demo.toml"),)  # 6.5 s at 1 kHz, with sensor noise
@@ -35,7 +35,7 @@ class LockstepTest(stack.TestCase):
         self.assert_identical(first, loaded)
         self.assert_identical(first, sim)
 
-        # hydro-log compare is not alone in saying so: the same by this folder's own reader.
+        # This folder's own reader must agree with hydro-log compare.
         logs = [event_log.Log(path) for path in (first, loaded, sim)]
         for kind in event_log.NUMBERED + ("HYDRO_FAULT",):
             messages = [{m._replace(utime=0, session=0) for m in log.of(kind)} for log in logs]
@@ -51,7 +51,8 @@ class LockstepTest(stack.TestCase):
     def test_demo_with_noise(self):
         self.compare_all_ways(*DEMO)
 
-    # Tests the same for a loop without delay: each motor command acts from the tick that it was computed from.
+    # Tests the same for a loop without delay, where each motor command acts from the tick from which it was
+    # computed.
     def test_without_command_delay(self):
         for name, arguments in (("paper", PAPER), ("demo", DEMO)):
             with self.subTest(name):

@@ -16,8 +16,9 @@ import stack
 RATE = 5000
 DURATION = 20
 FLUSH = 0.05  # s, the promise: what is older has been written when the logger is killed
-# Between the arrival of a packet and the promise's clock stand two wake-ups of the logger, of the thread that receives
-# and of the one that writes; on this kind of machine each is late by up to 150 ms when the neighbours are busy.
+# s. Between the arrival of a packet and the clock to which the promise refers, two threads of the logger wake
+# up, one that receives and one that writes. On this kind of machine each is late by up to 150 ms when the
+# neighbours are busy.
 WAKE_UPS = 0.3
 
 
@@ -32,9 +33,10 @@ class LoggerTest(stack.TestCase):
         logger = self.start("hydro-logger", *arguments, "-o", log_file, *more)
         return log_file, logger
 
-    # Tests that nothing is lost at 5 kHz, and what a kill and a rotation leave.
+    # Tests that nothing is lost at 5 kHz, and what remains after a kill and a rotation.
     def test_five_kilohertz(self):
-        # A voltage that does not move the motor: a loop of which a busy machine skips many ticks would reach a limit, and end the run.
+        # The voltage does not move the motor. Otherwise, a loop of which a busy machine skips many ticks
+        # would reach a limit and end the run.
         run = self.stack(stack.config("paper.toml"), "--time", "realtime", "--duration", DURATION, "--set",
                          'reference={ signal = "voltage", kind = "steps", steps = [[0.2, 0.1]] }')
         whole_file = self.path("whole.lcmlog")
@@ -62,13 +64,13 @@ class LoggerTest(stack.TestCase):
     def check_whole(self, log):
         for kind in event_log.NUMBERED:
             self.assertEqual(event_log.missing_numbers(log.of(kind)), {}, kind)
-        # To the last: the plant ran to its end, and each sender's goodbye is there.
+        # Nothing is missing at the end: the plant ran to its end, and each sender's last message is there.
         self.assertEqual(log.states[-1].tick, DURATION * RATE)
         self.assertEqual(log.motor_commands[-1].status, event_log.STOPPED)
         gone = {s.role for s in log.statuses if s.state == event_log.DONE}
         self.assertLessEqual({"plant", "pressure_ctrl", "position_ctrl"}, gone)
         self.assertEqual([(o.role, bool(o.accepted), o.voltage) for o in log.outputs_left], [("plant", True, 0)])
-        # Where no state was sent the plant says so; where one was sent the pressure loop answered it.
+        # Where no state was sent, the plant says so. Where one was sent, the pressure loop answered it.
         expected = 0
         for state in log.states:
             self.assertEqual(state.tick, expected + state.skipped_ticks)
@@ -86,8 +88,8 @@ class LoggerTest(stack.TestCase):
         torn = event_log.read_events(killed_file, torn_tail=True)
         self.assertEqual(len(repaired), len(torn))
         have = {identity(event) for event in repaired}
-        # Each logger stamps what it receives itself, so around the moment at which this one subscribed the order of the
-        # two records says nothing; the claim is about what comes after that.
+        # Each logger stamps what it receives itself, so the order of the two records means nothing around the
+        # moment at which this one subscribed. The claim is about what comes after that.
         first = repaired[0].utime * 1e-6 + WAKE_UPS
         due = [e for e in whole.events if first < e.utime * 1e-6 < kill_time - FLUSH - WAKE_UPS]
         self.assertGreater(len(due), RATE)  # of a plant that may skip many ticks
@@ -120,7 +122,8 @@ class LoggerTest(stack.TestCase):
             self.assertEqual(end.text, "" if piece == pieces[-1] else "goes on in " + os.path.basename(pieces[number + 1]))
             info = self.run_program("hydro-log", "info", piece)
             self.assertIn("hydro-plant", info.stdout)  # it describes itself
-        # Together they hold, in order, everything sent between the rotating logger's start and its end.
+        # Together the parts hold, in order, everything that was sent between the rotating logger's start and
+        # its end.
         joined = [identity(e) for e in events]
         numbered = [item for item in joined if item[0] in event_log.NUMBERED]
         reference = [identity(e) for e in whole.events if e.channel in event_log.NUMBERED]
@@ -134,7 +137,8 @@ class LoggerTest(stack.TestCase):
 
 
 class DeletedLogTest(stack.TestCase):
-    # Tests that a log that is deleted, or whose folder is moved, is named, that the logger goes on, and that it ends with 1.
+    # Tests that a log that is deleted, or whose folder is moved, is named, that the logger continues, and
+    # that it ends with 1.
     def test_deleted_or_moved(self):
         for gone in ("deleted", "moved"):
             with self.subTest(gone):
@@ -154,7 +158,7 @@ class DeletedLogTest(stack.TestCase):
                 self.assertEqual(logger.wait(), 1, logger.report())
 
 
-    # Tests the same of --log of a program whose work is another.
+    # Tests the same for --log of a program that is not a logger.
     def test_deleted_log_of_a_loop(self):
         log_file = self.path("run.lcmlog")
         loop = self.start("hydro-pressure-ctrl", stack.config("demo.toml"), "--set", f"bus.url={self.new_url()}", "--log", log_file)
@@ -167,8 +171,8 @@ class DeletedLogTest(stack.TestCase):
 
 
 class TornLogTest(stack.TestCase):
-    # Tests that a log cut off within its last message is read to there, with a word on it, and that a repair loses only that
-    # message.
+    # Tests that a log cut off within its last message is read up to there, with a warning, and that a repair
+    # loses only that message.
     def test_torn_tail(self):
         log_file = self.path("run.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.2", "-o", log_file)

@@ -21,7 +21,7 @@ class MachinesTest(stack.TestCase):
         return subprocess.run([sys.executable, "-B", STUDY, *arguments, "--diagnose", stack.program("hydro-diagnose"), "--out",
                                self.path("out")], capture_output=True, text=True, timeout=LONG, check=False)
 
-    # Tests that the page says of each machine which measurements were not there, and where they are.
+    # Tests that the page says for each machine which measurements are missing, and where they can be found.
     def test_without_measurements(self):
         os.mkdir(self.path("empty"))
         run = self.study(self.path("empty"))
@@ -29,7 +29,7 @@ class MachinesTest(stack.TestCase):
         self.assertEqual(run.stdout.count("The measurements were not there."), len(FOLDERS))
         self.assertEqual(run.stdout.count("- Source: github.com/"), len(FOLDERS))
 
-    # Tests that mistakes end in one line.
+    # Tests that mistakes are reported in one line.
     def test_mistakes(self):
         for arguments, said in ((["."] + ["--machine", "emps"], "found 'emps', allowed one of buoy_pto"),
                                 ([self.path("none")], "found no such file, allowed a folder of measurements")):
@@ -38,7 +38,8 @@ class MachinesTest(stack.TestCase):
             self.assertIn(said, run.stderr)
             self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
 
-    # Tests that a machine's section has what the report says: verdict, each thing that the recordings show, gaps, and what stays open.
+    # Tests that a machine's section has what the report says: the verdict, everything that the recordings
+    # show, gaps, and what remains open.
     @unittest.skipUnless(os.path.isdir(os.path.join(DATA, "ak80_pendulum")),
                          "the measured data are not here: examples/machines/README.md says where they are")
     def test_one_machine(self):

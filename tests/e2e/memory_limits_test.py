@@ -9,9 +9,11 @@ import subprocess
 import outcome
 import stack
 
-# bytes: far below what the programs need, mostly not even for their libraries, to more than enough.
+# bytes, from far below what the programs need, mostly not even enough for their libraries, to more than
+# enough.
 LEAST, MOST, STEPS = 30 << 20, 240 << 20, 24
-# How a program ends whose libraries, or what is set up before its main(), do not fit: nobody can say anything better there.
+# How a program ends when its libraries, or what is set up before its main(), do not fit. No better message is
+# possible there.
 BEFORE_MAIN = (127, -signal.SIGABRT, -signal.SIGSEGV)
 
 
@@ -24,14 +26,15 @@ class MemoryLimitsTest(stack.TestCase):
         return subprocess.run([stack.program(argv[0]), *argv[1:]], cwd=self.folder, capture_output=True, text=True, errors="replace",
                               preexec_fn=limit_memory, timeout=stack.PATIENCE * 4, check=False)
 
-    # That a program with more memory than one which has begun its work does not end as one that could not.
+    # Checks that a program with more memory than one that began its work does not end like one that could
+    # not.
     def assert_end(self, code, begun, said):
         self.assertIn(code, (0, 1) if begun else (0, 1, *BEFORE_MAIN), said)
 
     def outputs(self):
         return sorted(os.path.basename(name) for name in glob.glob(self.path("out*")))
 
-    # Tries a program with less and more memory. Its output is that of a run without a limit, or none.
+    # Tries a program with less and more memory. Its output must be that of a run without a limit, or nothing.
     def check(self, output, *argv):
         expected = None
         if output:
@@ -58,7 +61,7 @@ class MemoryLimitsTest(stack.TestCase):
                 self.assertRegex(done.stderr, r"\A" + argv[0] + r": [^\n]*out of memory: [^\n]*\n\Z", said)
         self.assertLessEqual({0, 1}, ends, f"{argv}: of all limits none was too small for it, or all were")
 
-    # Tests the programs that read logs and tables as large as a minute's.
+    # Tests the programs that read logs and tables, with data as large as that of a minute.
     def test_logs(self):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "40", "-o", self.path("run.lcmlog"))
         self.run_program("hydro-log", "export", self.path("run.lcmlog"), "-o", self.path("run.csv"))
@@ -70,7 +73,8 @@ class MemoryLimitsTest(stack.TestCase):
             with self.subTest(" ".join(argv)):
                 self.check(output, "hydro-log", *argv)
 
-    # Tests that a simulation records all of its run, or nothing: what it writes depends on no clock.
+    # Tests that a simulation records all of its run, or nothing, because what it writes does not depend on a
+    # clock.
     def test_simulation(self):
         def export(name):
             self.run_program("hydro-log", "export", self.path(name), "-o", self.path("table.csv"))

@@ -24,11 +24,11 @@ class OrderTest(stack.TestCase):
         for kind in event_log.NUMBERED:
             numbers = [m.sequence for m in unrepeated(log.of(kind))]
             self.assertEqual(numbers, list(range(len(numbers))), kind)
-        # The pressure loop's last word is zero volts.
+        # The pressure loop's last command is zero volts.
         last = unrepeated(log.motor_commands)[-1]
         self.assertEqual((last.status, last.voltage), (event_log.STOPPED, 0))
 
-        # First appearance of each message in the file.
+        # The first appearance of each message in the file.
         place = {}
         for position, (kind, message) in enumerate(log.items):
             if kind in event_log.NUMBERED and getattr(message, "status", None) != event_log.STOPPED:
@@ -48,7 +48,7 @@ class OrderTest(stack.TestCase):
         for (kind, tick), position in place.items():
             if tick < last_tick:
                 self.assertLess(position, place["HYDRO_STATE", tick + 1], (kind, tick))
-        # What acted on the actuator is what was commanded.
+        # The voltage that acted on the actuator is the one that was commanded.
         voltage = {c.tick: c.voltage for c in laws}
         for state in log.states[1:]:
             source = state.tick - 1 - delay
@@ -57,7 +57,7 @@ class OrderTest(stack.TestCase):
         for state in log.states:
             self.assertEqual(state.skipped_ticks, 0)
 
-    # Tests the order with the delay of a tick that hardware has.
+    # Tests the order with the delay of one tick that hardware has.
     def test_order(self):
         self.check(self.record(), 2500, 25, 1)
 

@@ -47,7 +47,7 @@ class OutcomeTest(unittest.TestCase):
                 run = self.run_file(name)
                 self.assertEqual(run.returncode, code, run.stderr)
 
-    # Tests that the reason is printed, and the number where only some were skipped.
+    # Tests that the reason is printed, and the number of skipped tests where only some were skipped.
     def test_reasons(self):
         self.assertRegex(self.run_file("skips_itself").stderr, r"(?m)^SKIPPED test_a .*: no board here$")
         partly = self.run_file("skips_one_of_two").stderr
@@ -55,7 +55,8 @@ class OutcomeTest(unittest.TestCase):
         self.assertRegex(partly, r"(?m)^SKIPPED 1 of 2 tests; the others passed$")
         self.assertNotIn("SKIPPED", self.run_file("passes").stderr)
 
-    # Tests that ctest says "Skipped", that scripts/run-tests gives the reason before ctest's summary, and that a failure stays one.
+    # Tests that ctest says "Skipped", that scripts/run-tests gives the reason before ctest's summary, and
+    # that a failure stays one.
     def test_in_ctest(self):
         def run(*names):
             lines = "".join(f'add_test({name} "{sys.executable}" "-B" "{self.folder}/{name}.py")\n'
@@ -76,14 +77,15 @@ class OutcomeTest(unittest.TestCase):
         self.assertNotEqual(bad.returncode, 0, bad.stdout)
         self.assertRegex(bad.stdout, r"skips_and_fails \.*\*\*\*Failed")
 
-    # Tests that every end-to-end test ends by outcome.main().
+    # Tests that every end-to-end test ends with outcome.main().
     def test_all_end_so(self):
         for path in sorted(HERE.glob("*_test.py")):
             if path != pathlib.Path(__file__).resolve():
                 self.assertTrue(path.read_text().endswith('if __name__ == "__main__":\n    outcome.main()\n'), path.name)
 
-    # Tests that ctest knows the exit code of each of them, and GoogleTest's word for skips of each test that it runs
-    # alone. Of several in one process ctest would only see that none failed, so there a skip is a failure.
+    # Tests that ctest knows the exit code of each of them, and also GoogleTest's message about skips for each
+    # test that it runs alone. With several tests in one process ctest would only see that none failed, so
+    # there a skip is a failure.
     @unittest.skipUnless(BUILD, "needs HYDRO_BUILD, a build folder: ctest sets it")
     def test_ctest_knows(self):
         listing = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], capture_output=True, text=True, check=True)

@@ -35,7 +35,8 @@ class OutsideDiagnoseTest(stack.TestCase):
         self.assertLess(gaps["after"], 1.2)
         self.assertLessEqual(gaps["after"], gaps["refit_only"] * 1.001)
 
-    # Tests that a signal in every second row, or in rows of its own, has the noise of its own samples, and that nothing is made of it.
+    # Tests that a signal in every second row, or in rows of its own, has the noise of its own samples, and
+    # that this leads to no finding.
     def test_a_signal_in_every_second_row(self):
         for name in ("topics11", "topics12", "each2"):
             report = self.diagnose("noise-of-a-signal-in-every-second-row", [name], "--free", "b,T_s")
@@ -43,19 +44,20 @@ class OutsideDiagnoseTest(stack.TestCase):
             self.assertAlmostEqual(report["gap"]["signals"]["motor_speed"]["noise"], 0.1, delta=0.01)
             self.assertFalse([remark for remark in report["remarks"] if "spike" in remark])
 
-    # Tests that what a value explains as well as an effect is a value.
+    # Tests that the diagnosis names a value when a value explains the gap as well as an effect does.
     def test_a_parameter_and_its_double(self):
         folder = "parameter-and-its-double"
         self.assert_only_values(self.diagnose(folder, ["only_Ts"], "--free", "b,T_s"), {"T_s": 0.015})
         for name in ("b_and_Ts", "reference"):
             self.assert_only_values(self.diagnose(folder, [name], "--free", "b,T_s"), FRICTION)
 
-    # Tests that nothing said predicts worse than the refit, of runs of a fifth of a second.
+    # Tests with runs of a fifth of a second that no reported result predicts worse than the refit.
     def test_a_refit_is_not_dropped(self):
         for name in ("fast2k", "fast5k", "fast"):
             self.assert_only_values(self.diagnose("refit-dropped-for-windows", [name], "--free", "b,T_s"), FRICTION)
 
-    # Tests that models that predict the same have the same verdict, whatever part of their numbers the runs cannot show.
+    # Tests that models that predict the same get the same verdict, whatever part of their numbers the runs
+    # cannot show.
     def test_a_refit_is_not_lost(self):
         folder, runs = "refit-lost-in-nan", ["run", "run2"]
         self.assert_only_values(self.diagnose(folder, runs, "--free", "k_1,J,b,T_s,c_E,c_I,mgl"), FRICTION)
@@ -64,7 +66,8 @@ class OutsideDiagnoseTest(stack.TestCase):
             self.assertEqual(report["verdict"], "parameters", report["sentence"])
             self.assertLess(report["gap"]["held_out"]["after"], 1.2)
 
-    # Tests that numbers that a recorder stored with a sign and a table has without are found before anything else.
+    # Tests that signed numbers of a recorder that appear in a table without their sign are found before
+    # anything else.
     def test_an_unsigned_command(self):
         base = os.path.join(OUTSIDE, "unsigned-command")
         for name, counts in (("unsigned", 65536), ("uns12", 4096), ("uns8", 256)):

@@ -15,7 +15,8 @@ OUTSIDE = os.environ.get("HYDRO_OUTSIDE", os.path.join(os.path.dirname(ROOT), "s
 CHECK = ["hydro-diagnose", "{0}.csv", "--model", "model.toml", "--check"]
 FEW = r"found \d+ samples, allowed 100 or more"
 
-# For each folder the tables, the command on each, and what is demanded: exit code, what it says, what it must not say.
+# For each folder the tables, the command on each, and the requirements: exit code, what it must say, what it
+# must not say.
 TABLES = [
     ("05-two-samples-with-one-time", ["run"], 2, r"line 4, column t_ms: found 0\.001 s.* 1500 of 4000 rows .*every = 0\.000625", None),
     ("05-two-samples-with-one-time", ["last_twice"], 0, r"a row left out that repeats the one before.*line 1002", None),
@@ -46,7 +47,7 @@ class OutsideTest(stack.TestCase):
         super().setUp()
         os.symlink(os.path.dirname(stack.config("demo.toml")), self.path("config"))
 
-    # Runs a command in a copy of the folder; its exit code, and all that it says.
+    # Runs a command in a copy of the folder. Returns its exit code and all of its output.
     def run_in(self, folder, *argv):
         copy = self.path(folder)
         if not os.path.isdir(copy):
@@ -56,13 +57,13 @@ class OutsideTest(stack.TestCase):
         done = subprocess.run(command + list(argv[1:]), cwd=copy, capture_output=True, text=True, errors="replace", timeout=120)
         return done.returncode, done.stdout + done.stderr
 
-    # Runs one that must work.
+    # Runs a command that must succeed.
     def do_in(self, folder, *argv):
         code, said = self.run_in(folder, *argv)
         self.assertEqual(code, 0, said)
         return said
 
-    # Tests that each table is read, or refused, as its case demands: with the line and what helps.
+    # Tests that each table is read, or refused, as its case demands, with the line and a remedy.
     def test_tables(self):
         for folder, tables, code, says, never in TABLES:
             for table in tables:
@@ -73,14 +74,14 @@ class OutsideTest(stack.TestCase):
                     if never:
                         self.assertNotRegex(said, never)
 
-    # Tests that a file cut in its last number is not imported as another number.
+    # Tests that a file that was cut off inside its last number is not imported with another number.
     def test_cut_in_a_number(self):
         said = self.do_in("cut-in-a-number", "hydro-log", "import", "cut.csv", "-o", "cut.lcmlog")
         self.assertRegex(said, r"the last line left out, 3, which has no end and is cut")
         table = self.do_in("cut-in-a-number", "hydro-log", "export", "cut.lcmlog", "-o", "-")
         self.assertEqual(len([line for line in table.splitlines() if re.match(r"\d", line)]), 1, table)
 
-    # Tests that advice on a file that is named otherwise can be followed.
+    # Tests that the advice for a file with another kind of name can be followed.
     def test_lvm(self):
         for argv in (["hydro-diagnose", "run.lvm", "--model", "model.toml", "--check"],
                      ["hydro-log", "import", "run.lvm", "-o", "RUN.lcmlog"]):
@@ -89,7 +90,7 @@ class OutsideTest(stack.TestCase):
             self.assertRegex(said, r"named? .*\.csv.*rename it|names that end in \.csv.*rename it")
         self.assertFalse(os.path.exists(os.path.join(self.path("lvm-dead-end"), "RUN.lcmlog")))
 
-    # Tests that a silence and a clock that is set are named, and that rates leave them out.
+    # Tests that a silence and a clock that was set are named, and that rates leave them out.
     def test_gap_and_clock(self):
         folder = "gap-and-clock-in-info"
         self.do_in(folder, "hydro-sim", "config/demo.toml", "--duration", "1", "-o", "a.lcmlog")
@@ -101,7 +102,7 @@ class OutsideTest(stack.TestCase):
             self.assertRegex(info, r"HYDRO_STATE +1001 +\d{3,4}\.\d\d ")
             self.assertRegex(info, r"\A\S+: \d+ messages, \d+ bytes, 1(\.0\d*)? s\n")
 
-    # Tests that a log of nothing is not mended into a run of nothing.
+    # Tests that a log without messages is not mended into an empty run.
     def test_repair_of_nothing(self):
         folder = "repair-of-nothing"
         self.do_in(folder, "hydro-sim", "config/demo.toml", "--duration", "0.5", "-o", "a.lcmlog")
@@ -140,7 +141,7 @@ class OutsideTest(stack.TestCase):
             ranges = re.findall(r"^arm_ref \(rad\) +(\S+) +(\S+)", info, re.M)
             self.assertEqual(ranges, [("0", "0.3"), ("-0.3", "0")], info)
 
-    # Tests that a whole number may have a point.
+    # Tests that a whole number may be written with a decimal point.
     def test_whole_number_with_a_point(self):
         self.do_in("whole-number-with-a-point", "hydro-sim", "config/demo.toml", "--set", "noise.seed=1.0", "--duration", "0.1",
                    "-o", "x.lcmlog")
@@ -167,7 +168,7 @@ class OutsideTest(stack.TestCase):
         self.assertNotIn(",,", named)
         self.assertEqual(re.sub(r"\bnan\b", "", named), plain)
 
-    # Tests that a program says what a file of another program is, and who reads it.
+    # Tests that a program recognises a file of another program, and says which program reads it.
     def test_files_of_other_programs(self):
         folder = "gap-and-clock-in-info"
         self.do_in(folder, "hydro-sim", "config/demo.toml", "--duration", "0.2", "-o", "a.lcmlog")

@@ -15,13 +15,13 @@ import outcome
 import stack
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# The module and the types that lcm-gen made: of the sources and their build folder, or installed.
+# The module and the types that lcm-gen made, either from the sources and their build folder or installed.
 PYTHON = os.environ.get("HYDRO_PYTHON", os.pathsep.join([os.path.join(ROOT, "bus", "python"), os.path.join(os.path.dirname(stack.BIN), "generated", "python")]))
 EXAMPLE = os.path.join(os.environ.get("HYDRO_EXAMPLES", os.path.join(ROOT, "examples")), "own_controller")
 PID, CONFIG = os.path.join(EXAMPLE, "pid.py"), os.path.join(EXAMPLE, "own.toml")
 TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))  # where the example in C++ is built
 TARGET = 0.3  # rad, of pid.py
-# Slower than real time: where a busy machine skips many ticks, no loop brings the arm to its target.
+# Slower than real time, because no loop brings the arm to its target on a busy machine that skips many ticks.
 PACE = ("--set", "time.speed=0.25")
 
 
@@ -33,7 +33,8 @@ class OwnControllerTest(fault_case.FaultCase):
     def start_own(self):
         return self.start(sys.executable, "-B", PID, self.url, label="pid.py")
 
-    # Tests that it moves the arm to its target in real time, without a fault of the loops, and ends with the run.
+    # Tests that it moves the arm to its target in real time, without a fault of the loops, and ends with the
+    # run.
     def test_realtime(self):
         own = self.start_own()
         self.start_stack(config=CONFIG, roles=("logger", "pressure_ctrl"))
@@ -45,7 +46,7 @@ class OwnControllerTest(fault_case.FaultCase):
         statuses = [s.state for s in log.of("HYDRO_PROCESS_STATUS") if s.role == "position_ctrl"]
         self.assertEqual(sorted(set(statuses), key=statuses.index), [event_log.READY, event_log.RUNNING, event_log.DONE])
 
-    # Tests that it is killed without harm: what it asked for last goes to zero, and the voltage with it.
+    # Tests that killing it does no harm: its last reference goes to zero, and the voltage with it.
     def test_killed(self):
         own = self.start_own()
         self.start_stack(config=CONFIG, roles=("logger", "pressure_ctrl"))
@@ -91,8 +92,8 @@ class OwnControllerTest(fault_case.FaultCase):
     def pid_of_own(self):
         return self.log.wait_for("HYDRO_PROCESS_STATUS", lambda s: s.role == "position_ctrl", "the loop").pid
 
-    # Tests that hydro-launch starts it, that in lockstep its runs are identical, also when it stands still meanwhile and the plant asks
-    # again, and that a replay through it gives what was recorded.
+    # Tests that hydro-launch starts it, that its runs in lockstep are identical, even when it stands still
+    # for a while and the plant asks again, and that a replay through it gives what was recorded.
     def test_launched_in_lockstep(self):
         def hang():
             self.log.wait_for_tick(50)
@@ -142,7 +143,8 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertGreater(answers, 100)
         self.assertIn(f": identical, {answers} pressure commands from ", replay.stdout)
 
-    # Tests that our loop's values can be changed as soon as the stack is ready, and what is the foreign loop's is refused with the reason.
+    # Tests that our loop's values can be changed as soon as the stack is ready, and that changes of the
+    # foreign loop's values are refused with the reason.
     def test_tuning(self):
         config = self.config_of(f'["{sys.executable}", "-B", "{PID}"]')
         launch = self.launch(config, "--duration", "0", "--log", self.path("run.lcmlog"))
@@ -155,8 +157,8 @@ class OwnControllerTest(fault_case.FaultCase):
         launch.send(signal.SIGINT)
         self.assertEqual(launch.wait(), 0, launch.report())
 
-    # Tests that the run ends at zero volts, with 1 and a reason, when it is killed, fails, or leaves; and that what it has started
-    # ends with it.
+    # Tests that the run ends at zero volts, with 1 and a reason, when it is killed, fails, or leaves, and
+    # that the processes that it has started end with it.
     def test_launched_dies(self):
         fails = self.variant("fails.py", "    asked =", "    if state.tick >= 200: 1 / 0\n    asked =")
         leaves = self.variant("leaves.py", "    asked =", "    if state.tick >= 200: os._exit(0)\n    asked =")
@@ -180,7 +182,8 @@ class OwnControllerTest(fault_case.FaultCase):
             self.assertRegex(launch.stdout, "the output reads back 0 V")
             self.assertEqual(event_log.Log(log).of("HYDRO_MOTOR_COMMAND")[-1].voltage, 0)
 
-    # Tests that a script that starts the loop is watched as the loop is, and that nothing is left of it when it is killed.
+    # Tests that a script that starts the loop is watched as the loop itself is, and that no process of it is
+    # left when it is killed.
     def test_launched_by_a_script(self):
         self.script("start.sh", f'#!/bin/sh\n{sys.executable} -B "{PID}"\nexit $?\n')
         config = self.config_of('["./start.sh"]')
@@ -196,7 +199,7 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertIn("./start.sh (position_ctrl) was killed by signal 9", launch.stderr)
         self.wait_until(lambda: not os.path.exists(f"/proc/{loop}"), "the loop has ended")
 
-    # Tests that one that is never ready is named, and one that does not end is killed.
+    # Tests that a controller that is never ready is named, and that one that does not end is killed.
     def test_launched_hangs(self):
         launch = self.launch(self.config_of('["sleep", "60"]'), "--set", "time.start_timeout_s=0.5")
         self.assertEqual(launch.wait(60), 1, launch.report())
@@ -208,7 +211,7 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertEqual(launch.wait(60), 1, launch.report())
         self.assertIn("./deaf.py (position_ctrl) did not end on SIGTERM and was killed", launch.stderr)
 
-    # Tests that what cannot be started is refused before anything is.
+    # Tests that anything that cannot be started is refused before any process starts.
     def test_launched_wrongly(self):
         self.script("plain.py", "", 0o644)
         for command, more, said in (
@@ -238,7 +241,7 @@ class OwnControllerTest(fault_case.FaultCase):
         replay = self.run_program("hydro-log", "replay", self.path("sim.lcmlog"))
         self.assertRegex(replay.stdout, r"position: identical, 21 ")
 
-    # Tests that the skeleton runs at once, and never takes the place of somebody's work.
+    # Tests that the skeleton runs at once, and never overwrites existing work.
     def test_new_controller(self):
         made = self.run_program("hydro-launch", "new-controller", "mine")
         self.assertIn("hydro-launch mine.toml --duration 3 --log mine.lcmlog", made.stdout)
@@ -252,7 +255,8 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertFalse(os.path.exists(self.path("mine.py")))
         self.assertIn('found "a/b", allowed a name of letters', self.run_program("hydro-launch", "new-controller", "a/b", expect=2).stderr)
 
-    # Tests a pressure loop of one's own: in lockstep twice identical, replayed by what it had heard.
+    # Tests a pressure loop of the user's own: two lockstep runs are identical, and the replay uses what it
+    # had heard.
     def test_pressure_loop(self):
         self.script("pressure.py", """#!/usr/bin/env python3
 import sys
@@ -327,7 +331,8 @@ sys.exit(loop.run())
 
         return loop, hear
 
-    # Tests that while an open-loop command is in force a pressure loop passes its voltage on, and asks answer() again after it.
+    # Tests that while an open-loop command is in force a pressure loop passes its voltage on, and calls
+    # answer() again after it.
     def test_open_loop(self):
         asked = []
 
@@ -344,7 +349,8 @@ sys.exit(loop.run())
         self.assertEqual([(c.voltage, c.status, c.pressure_command_tick) for c in sent], [(1.0, 0, -1), (-2.5, 1, 0), (1.0, 0, 1)])
         self.assertEqual(asked, [0, 2])
 
-    # Tests that a stale pressure command gives zero volts, then a fault that ends with the next good one.
+    # Tests that a stale pressure command gives zero volts, and then a fault that ends with the next good
+    # command.
     def test_stale_command(self):
         os.environ["HYDRO_STALE_TICKS"] = "3"
         self.addCleanup(lambda: os.environ.pop("HYDRO_STALE_TICKS"))
@@ -363,7 +369,8 @@ sys.exit(loop.run())
         faults = [(number, m.tick, m.code, m.active, m.value, m.limit) for number, m in enumerate(sent) if hasattr(m, "latched")]
         self.assertEqual(faults, [(5, 4, "stale_pressure_command", True, 4.0, 3.0), (8, 6, "stale_pressure_command", False, 1.0, 3.0)])
 
-    # Tests that in lockstep a state that overtook the command it needs is answered when that comes, as it would have been.
+    # Tests that in lockstep a state that overtook the command it needs is answered when the command comes, as
+    # if it had come in time.
     def test_overtaken_command(self):
         os.environ.update(HYDRO_TIME="lockstep", HYDRO_POSITION_EVERY="2", HYDRO_COMMAND_DELAY="1")
         self.addCleanup(lambda: [os.environ.pop(name) for name in ("HYDRO_TIME", "HYDRO_POSITION_EVERY", "HYDRO_COMMAND_DELAY")])
@@ -376,7 +383,8 @@ sys.exit(loop.run())
         self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=2)), 3)  # the command of tick 0 is in force still
         self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=3)), 3)
 
-    # Tests that a reference is published before its answer, and that an answer() that returns its command is told what to do.
+    # Tests that a reference is published before its answer, and that the author of an answer() that returns
+    # its command is told what to do.
     def test_reference_and_returned_value(self):
         _, hear = self.loop_on("position_ctrl", "HYDRO_PRESSURE_COMMAND", "pressure_command_t", lambda state, command: None, every=2,
                                reference=lambda state: state.tick / 10)
@@ -401,7 +409,7 @@ sys.exit(loop.run())
         self.assertEqual([f for f in log.faults if f.code.startswith(("second_", "undecodable", "excessive", "nonfinite", "future"))], [])
         return a
 
-    # Tests the example in C++; a replay through it, too, gives what was recorded.
+    # Tests the example in C++. A replay through it also gives what was recorded.
     def test_cpp(self):
         built = os.path.join(TOOLS, "own_pd")
         if not os.path.exists(built):
@@ -409,7 +417,7 @@ sys.exit(loop.run())
         log = self.check_example(f'["{built}"]')
         self.assertIn("identical, 241 ", self.run_program("hydro-log", "replay", "--controller", built, log).stdout)
 
-    # Tests the examples in Octave: in the loop, and over a recorded run by exchange of files.
+    # Tests the examples in Octave: in the loop, and on a recorded run by exchange of files.
     def test_octave(self):
         if not shutil.which("octave-cli"):
             self.skipTest("needs octave-cli: apt-get install octave")
@@ -431,7 +439,7 @@ sys.exit(loop.run())
         self.assertEqual(own.wait(), 1)
         self.assertIn('found url "udp://1.2.3.4:5", allowed is e.g. "udpm://', own.stderr)
 
-    # Tests that LCM's own programs understand it, and it them, in messages of one packet and of many.
+    # Tests that it and LCM's own programs understand each other, in messages of one packet and of many.
     def test_lcms_own_programs(self):
         logger, player = shutil.which("lcm-logger"), shutil.which("lcm-logplayer")
         if not logger or not player:

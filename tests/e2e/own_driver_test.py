@@ -3,6 +3,7 @@
 import fcntl
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -18,7 +19,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 EXAMPLES = os.path.join(os.environ.get("HYDRO_EXAMPLES", os.path.join(ROOT, "examples")), "own_driver")
 TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))  # where the examples are built
 
-# A box that does not hear what a guardian says: its datagrams have the sequence 0.
+# A box that does not hear what a guardian sends, whose datagrams have the sequence number 0.
 DEAF = """
 import socket, struct, subprocess, sys, threading
 device = subprocess.Popen(sys.argv[3:], stdin=sys.stdin)
@@ -86,7 +87,8 @@ class OwnDriverCase(stack.TestCase):
         for old, new in (*built.items(), *changes):
             self.assertIn(old, text) if (old, new) in changes else None
             text = text.replace(old, new)
-        # Real-time priorities, where allowed: the test machine may have much else to do. The device inherits its driver's.
+        # Real-time priorities where allowed, because the test machine may be busy with other work. The device
+        # inherits its driver's priority.
         text = re.sub(r'(?m)^((role = "driver")|(program = "hydro-p.*"))$', r"\1\npriority = 10", text)
         path = self.path((name or example) + ".toml")
         with open(path, "w", encoding="utf-8") as file:
@@ -101,8 +103,8 @@ class OwnDriverCase(stack.TestCase):
 
 
 class OwnDriverTest(OwnDriverCase):
-    # Tests that hydro-launch runs each example with its simulated device: the arm reaches its target through scales, inputs and
-    # outputs of the example, and it is the driver's run in the log.
+    # Tests that hydro-launch runs each example with its simulated device. The arm reaches its target through
+    # scales, inputs and outputs of the example, and the log shows the driver's run.
     def test_arm_reaches_its_target(self):
         for example in ("udp_box", "cia402", "serial_board"):
             with self.subTest(example):
@@ -142,7 +144,7 @@ class OwnDriverTest(OwnDriverCase):
         self.assertRegex(table, r"(?m)^device silent .* kept .*board_error, exit code 1")
         self.assertRegex(table, r"(?m)^read-back lies .* kept .*said at the end: ")
 
-    # Tests that a broken promise is found: the zero of a guardian that its device does not hear.
+    # Tests that a broken promise is found: the device does not hear the zero of a guardian.
     def test_broken_promise(self):
         with open(self.path("deaf.py"), "w", encoding="utf-8") as file:
             file.write(DEAF)
@@ -155,8 +157,9 @@ class OwnDriverTest(OwnDriverCase):
         self.assertRegex(table, r"(?m)^dead loops .* kept ")
         self.assertRegex(table, r"(?m)^1 kept, 1 broken, 0 not tried$")
 
-    # Tests that a driver that is killed under hydro-launch, which then kills all that is left of its group, still leaves
-    # zero volts, by its guardian and before the box's own watchdog; that the launch names it and ends with 1.
+    # Tests a driver that is killed under hydro-launch, which then kills everything that is left of its group.
+    # Its guardian still leaves zero volts, before the box's own watchdog does, and the launch names the
+    # driver and ends with 1.
     def test_killed_under_hydro_launch(self):
         device = self.device()
         launch = self.launch(self.config(), "--duration", "0", "--set", "driver.simulated_device=[]",
@@ -171,7 +174,7 @@ class OwnDriverTest(OwnDriverCase):
         self.assertRegex(launch.stderr, "make sure that the output is at zero")
         self.wait_until(lambda: device.output() == 0, "zero volts")
 
-    # Tests that a launcher that hangs is noticed by a driver of the user's own as by ours: zero volts.
+    # Tests that a driver of the user's own notices a launcher that hangs, as ours does: zero volts.
     def test_launcher_hangs(self):
         device = self.device()
         launch = self.launch(self.config(), "--duration", "0", "--set", "driver.simulated_device=[]", "--set", 'limits.rearm="restart"',
@@ -204,7 +207,8 @@ class OwnDriverInputTest(OwnDriverCase):
         self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
         return process.stderr
 
-    # Tests what the configuration may not say of a driver: each refused before anything is started, in one line.
+    # Tests what the configuration may not say about a driver. Each case is refused in one line, before any
+    # process is started.
     def test_configuration(self):
         cases = [
             ((('kind = "own"', 'kind = "comedi"'),), 'driver: "own": found an unknown key'),
@@ -229,7 +233,8 @@ class OwnDriverInputTest(OwnDriverCase):
         self.assertRegex(self.refused(program="hydro-driver"), r'driver.kind: found "own", allowed "comedi".* with hydro-driver; a driver of your own '
                          r'is started by \[\[process\]\] with command = \[\.\.\.\] and role = "driver"')
 
-    # Tests what only the driver knows: exit 2 and one line, which names the input, the key of its own, the device's address.
+    # Tests errors that only the driver can detect: exit code 2 and one line, which names the input, the
+    # driver's own key, or the device's address.
     def test_driver(self):
         for changes, says in (
                 ((('input = "ai3"', 'input = "ai9"'),), r'driver.arm_angle.input: found "ai9", allowed "ai0", "ai1", "ai2" or "ai3", which udp://\S+ has'),
@@ -246,7 +251,8 @@ class OwnDriverInputTest(OwnDriverCase):
         self.assertEqual((nobody.returncode, nobody.stderr.count("\n")), (2, 1), nobody.stderr)
         self.assertIn("found no CONFIG", nobody.stderr)
 
-    # Tests the same of a board on a serial port: a rate that does not exist, and ports that are none, missing or somebody else's.
+    # Tests the same for a board on a serial port: a rate that does not exist, and names that are not ports,
+    # are missing or belong to another program.
     def test_serial_board(self):
         taken, end = os.openpty()
         self.addCleanup(os.close, taken)
@@ -283,6 +289,25 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
             self.assertIn(says, process.stderr)
 
+    # Tests limits of files, memory and processes: what is said names the limit, or has what the driver itself said of it.
+    def test_limits(self):
+        config = self.config()
+        limits = [(resource.RLIMIT_NOFILE, count) for count in (5, 6, 8, 9, 10, 11, 12)]
+        limits += [(resource.RLIMIT_AS, size << 20) for size in (36, 48)]
+        limits += [(resource.RLIMIT_NPROC, 1)] if os.geteuid() else []
+        met = set()
+        for which, limit in limits:
+            with self.subTest(which=which, limit=limit):
+                done = subprocess.run([stack.program("hydro-driver-check"), config, "--only", "start"], capture_output=True, text=True, timeout=60,
+                                      check=False, preexec_fn=lambda which=which, limit=limit: resource.setrlimit(which, (limit, limit)))
+                said = done.stderr + done.stdout
+                if done.returncode == 0 or "error while loading shared libraries" in said:
+                    continue
+                met.add(which)
+                self.assertIn(done.returncode, (1, 2))
+                self.assertRegex(said, "`?ulimit -[nuv]")
+        self.assertIn(resource.RLIMIT_NOFILE, met)
+
     # Tests that what a simulated device says is neither kept nor waited for without an end, by the check and by the driver.
     def test_device_that_talks(self):
         config = self.config()
@@ -296,7 +321,7 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertEqual(driver.returncode, 1, driver.stderr)
             self.assertRegex(driver.stderr, rf'driver.simulated_device: \S+ must say "ready" within 5 s, but {instead}; start it by hand')
 
-    # Tests what new-driver writes, that nothing is overwritten, and bad names.
+    # Tests what new-driver writes, that it overwrites nothing, and bad names.
     def test_new_driver(self):
         made = self.run_program("hydro-launch", "new-driver", "mine")
         self.assertIn("wrote mine/: mine.cc", made.stdout)
@@ -311,7 +336,7 @@ class OwnDriverInputTest(OwnDriverCase):
         for name in ("a/b", "1st", "", "simulated_device"):
             self.assertRegex(self.run_program("hydro-launch", "--new-driver", name, expect=2).stderr, "--new-driver.*allowed|new-driver")
         self.assertFalse(os.path.exists(self.path("simulated_device")))
-        # Where it is built, it runs: what the configuration names is where CMake puts it.
+        # It also runs where it is built, because the configuration names the place where CMake puts it.
         os.mkdir(self.path("mine/build"))
         shutil.copy(os.path.join(TOOLS, "udp_box"), self.path("mine/build/mine"))
         shutil.copy(os.path.join(TOOLS, "udp_box_device"), self.path("mine/build/simulated_device"))

@@ -27,8 +27,8 @@ class OwnEffectTest(stack.TestCase):
                          "--set", f"reference.steps={steps}", "--duration", "1.3", "-o", self.path(name))
         return self.path(name)
 
-    # Tests that runs of a rig with the spring lead the gap finder to it, with its values, and that the model it writes needs no
-    # other file: neither does a log.
+    # Tests that runs of a rig with the spring lead the gap finder to the spring, with its values, and that
+    # neither the model that it writes nor a log needs another file.
     def test_is_found(self):
         runs = [self.simulate(f"{i}.lcmlog", steps, self.path("sprung.toml"), i) for i, steps in enumerate(STEPS)]
         os.remove(self.path("sprung.toml"))
@@ -47,7 +47,7 @@ class OwnEffectTest(stack.TestCase):
         same = self.run_program("hydro-diagnose", again, "--model", self.path("out/model.toml"), "--out", self.path("out2"))
         self.assertRegex(same.stdout, "^nothing")
 
-    # Tests what people get wrong: a misspelt name, the file of another effect, the same effect twice.
+    # Tests common mistakes: a misspelt name, the file of another effect, the same effect twice.
     def test_mistakes(self):
         def refused(pattern, *arguments):
             run = self.run_program(*arguments, expect=2)

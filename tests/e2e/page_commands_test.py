@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = os.environ.get("HYDRO_BIN", str(ROOT / "build/bin"))
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SCRIPTS = {"hydro-spy": ROOT / "packaging/java/hydro-spy"}  # programs that are not compiled
-# A command: at the line's beginning, behind a prompt or after what joins commands.
+# A command: at the beginning of the line, after a prompt or after something that joins commands.
 COMMAND = re.compile(r"(?:^|[;&|(]|\bdo|[\w-]*\$)\s*(?:\S*/)?(hydro-[a-z-]+)(?=\s|$)(.*)")
 
 
@@ -44,7 +44,8 @@ def commands(page):
             if joined.endswith("\\"):
                 joined = joined[:-1]
                 continue
-            # What a diagram or a program's own output says looks otherwise: "hydro-launch: re-armed", boxes.
+            # The lines of a diagram or of a program's own output look different: "hydro-launch: re-armed",
+            # boxes.
             found += [(block_line, *each) for each in split(joined)]
             joined = ""
         else:
@@ -86,7 +87,7 @@ def problems(program, words):
 
 
 class PageCommandsTest(unittest.TestCase):
-    # Tests that no page shows a program, a verb or an option that is gone.
+    # Tests that no page shows a program, a verb or an option that no longer exists.
     def test_pages(self):
         found, count = [], 0
         for page in PAGES:
@@ -96,7 +97,7 @@ class PageCommandsTest(unittest.TestCase):
         self.assertGreater(count, 150)
         self.assertEqual(found, [], "\n".join(found))
 
-    # Tests the check itself: lines that go on, comments, prompts, spans, and what is wrong.
+    # Tests the check itself: continued lines, comments, prompts, spans, and mistakes.
     def test_what_is_wrong_is_found(self):
         page = ("`hydro-sim a.toml --seed 1` and `hydro-sim`\n```sh\nx=1; build/bin/hydro-sim b.toml \\\n  --sed 2   # --no\nrig$ hydro-log sumary x.lcmlog & hydro-launch halt x.toml\n"
                 "hydro-log info -x && hydro-gone\n```\n")

@@ -17,7 +17,7 @@ import stack
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OWN_TESTS = {"start.md": "start_page_test.py", "your_tools.md": "your_tools_test.py", "own_controller.md": "own_controller_test.py",
              "own_driver.md": "own_driver_test.py", "front_end.md": "front_end_test.py"}
-# What begins a command; what a page shows as a program's output, a diagram or a file does not.
+# What begins a command. A program's output, a diagram or a file in a page does not begin like this.
 COMMAND = re.compile(r"(?:\$ |\w+\$ +)?((?:build/(?:bin|tests)/|\./|scripts/)[\w./-]+|hydro-[a-z-]+(?![\w:-])|for|mkdir|cp|cd|cmake|export|fpath=|apt|javac|openssl|nginx|"
                      r"npm|node|systemd-sysusers|systemctl|journalctl)(?=[\s=(]|$)")
 
@@ -55,7 +55,8 @@ HERE = "changes this machine"
 BOARD = "needs a board"
 SHORT = "shorter"
 
-# By page: (options of a stack that runs beside them, or none; lines before the first, {beginning of a line: what becomes of it}).
+# By page: (options of a stack that runs beside the commands, or none; lines to run first; {beginning of a
+# line: what is done with it}).
 PAGES = {
     "README.md": (None, "", {
         "./demo   ": Not("installs packages", "demo"),
@@ -248,7 +249,7 @@ class PageLinesTest(stack.TestCase):
         for test in OWN_TESTS.values():
             self.assertTrue(list((ROOT / "tests").rglob(test)), test)
 
-    # Tests that what is said to be run by another test is a test's name.
+    # Tests that every test that is named as running something exists.
     def test_other_tests(self):
         names = " ".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("CMakeLists.txt"))
         for _, _, table in PAGES.values():

@@ -60,7 +60,7 @@ class Machine:
         d = self.rates(torque, [v + step * r for v, r in zip(y, c)])
         speed, p1, p2, self.angle, self.arm_speed = (
             v + step / 6 * (r + 2 * s + 2 * t + u) for v, r, s, t, u in zip(y, a, b, c, d))
-        # A pump that turns round stops first; whether it goes on is the friction's to say, in the next step.
+        # A pump that reverses stops first. In the next step, friction decides whether it continues.
         self.speed = 0.0 if speed * self.speed < 0 else speed
         self.p1, self.p2 = max(p1, p["p_3"]), max(p2, p["p_3"])
 

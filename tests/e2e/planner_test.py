@@ -102,7 +102,8 @@ class PlannerTest(fault_case.FaultCase):
         if generator is None:
             self.skipTest("needs lcm-gen: apt-get install liblcm-bin")
         types = [os.path.join(TYPES, f"hydro_{name}_t.lcm") for name in ("arm_plan", "state")]
-        # The package's name is one of this test's own: another test's types are not found in its place.
+        # The package has a name of this test's own, so that another test's types cannot be found in its
+        # place.
         subprocess.run([generator, "-p", "--ppath", self.path("python"), *types], check=True, capture_output=True)
         sys.path.insert(0, self.path("python"))
         self.addCleanup(sys.path.remove, self.path("python"))
@@ -132,13 +133,13 @@ class PlannerTest(fault_case.FaultCase):
     def assert_on_course(self, log, course, last):
         """The reference is the planned angle at every sample."""
         references = self.answered(log, round(course.start * fault_case.RATE), last)
-        # A cubic over STEP between points with the course's angles and speeds differs from it by at most STEP^4/384 of the fourth
-        # derivative, which is up to 5 AMPLITUDE (2 pi FREQUENCY)^4: 1e-8 rad.
+        # A cubic over STEP between points with the course's angles and speeds differs from it by at most
+        # STEP^4/384 of the fourth derivative, which is up to 5 AMPLITUDE (2 pi FREQUENCY)^4: 1e-8 rad.
         for tick, value in references.items():
             self.assertAlmostEqual(value, course.at(tick / fault_case.RATE)[0], delta=2e-8, msg=f"tick {tick}")
 
-    # Tests that the types as lcm-gen writes them for Python need nothing but the standard library, and encode what the description of
-    # the format says.
+    # Tests that the types that lcm-gen writes for Python need nothing but the standard library, and encode as
+    # the description of the format says.
     def test_generated_types(self):
         plan = self.arm_plan_t()
         plan.utime, plan.tick, plan.session, plan.sequence, plan.count = 1, 2, 3, 4, 2
@@ -148,15 +149,17 @@ class PlannerTest(fault_case.FaultCase):
         self.assertEqual(tuple(decoded), (1, 2, 3, 4, 2, (0.5, 1), (0.1, -0.1), (2, 3), (4, 5)))
         again = self.arm_plan_t.decode(data)
         self.assertEqual(list(again.arm_angle), [0.1, -0.1])
-        # Alone in an interpreter without any installed package (-I -S).
+        # Runs alone in an interpreter without any installed package (-I -S).
         done = subprocess.run([sys.executable, "-I", "-S", "-B", "-c", f"import sys; sys.path.insert(0, {self.path('python')!r})\n"
                                "from hydro.arm_plan_t import arm_plan_t; print(arm_plan_t().encode().hex())"],
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout.strip()), (0, self.arm_plan_t().encode().hex()), done.stderr)
 
-    # Tests that the arm goes where the planner wants it: the reference exactly, the arm within what the laws leave.
+    # Tests that the arm goes where the planner wants it: the reference exactly, and the arm to within the
+    # errors of the laws.
     def test_the_arm_follows(self):
-        # At a quarter of the pace: a wake-up that is 10 ms late holds a voltage for 10 ticks more, by which the arm is off its plan.
+        # It runs at a quarter of the pace, because a wake-up that is 10 ms late holds a voltage for 10 more
+        # ticks, by which the arm leaves its plan.
         course = Course(self.start_planned("--set", "time.speed=0.25").time + 0.5)
         planner = self.planner(course)
         end = self.log.wait_for("HYDRO_STATE", lambda s: s.time >= course.start + 1 / FREQUENCY, "there and back")
@@ -169,12 +172,13 @@ class PlannerTest(fault_case.FaultCase):
         self.assertGreater(max(s.arm_angle for s in moved), 1.9 * AMPLITUDE)
         worst = max(abs(s.arm_angle - course.at(s.time)[0]) for s in moved)
         print(f"arm off its plan by at most {worst:.5f} rad", flush=True)
-        # Neither loop has an integral. The motor's own inertia, friction and drag take up to 17 + 4 + 2 in-lbf, which the pressure loop
-        # (k_1 k_p = 0.53 in-lbf/psi) makes of an error of 44 psi; the arm's inertia takes 8 psi more. At c1 = 6000 psi/rad that is 0.0087 rad.
+        # Neither loop has an integral term. The motor's own inertia, friction and drag take up to 17 + 4 + 2
+        # in-lbf, for which the pressure loop (k_1 k_p = 0.53 in-lbf/psi) needs an error of 44 psi; the arm's
+        # inertia takes 8 psi more. At c1 = 6000 psi/rad that is 0.0087 rad.
         self.assertLess(worst, 0.01)
 
-    # Tests that a planner that plans at each sample is followed as well: the newest plan replaces the one before, but does not keep it from
-    # ever acting.
+    # Tests that a planner that plans at every sample is followed as well: the newest plan replaces the one
+    # before, but does not keep it from ever acting.
     def test_fast_planner(self):
         course = Course(self.start_planned().time + 0.5)
         planner = self.planner(course, every=0.005)
@@ -191,7 +195,8 @@ class PlannerTest(fault_case.FaultCase):
         self.finish()
         self.assertIn("position: identical", self.run_program("hydro-log", "replay", self.log_file, timeout=120).stdout)
 
-    # Tests that what the limits do not allow is refused and told, while the reference goes on as the plan before it says.
+    # Tests that plans beyond the limits are refused and reported, while the reference continues along the
+    # plan before.
     def test_beyond_the_limits(self):
         course = Course(self.start_planned().time + 0.5)
         planner = self.planner(course)
@@ -207,7 +212,7 @@ class PlannerTest(fault_case.FaultCase):
         self.assert_on_course(log, course, fault.tick)
         self.assertLess(max(abs(r.value) for r in log.arm_references), 2 * AMPLITUDE + 1e-6)
 
-    # Tests that a second planner is not followed while there is one, and is told why.
+    # Tests that a second planner is not followed while there is a first one, and is told why.
     def test_second_planner(self):
         course = Course(self.start_planned().time + 0.5)
         self.planner(course)
@@ -221,8 +226,8 @@ class PlannerTest(fault_case.FaultCase):
         self.assertEqual({p.session for p in log.of("HYDRO_ARM_PLAN")}, {77, 78})
         self.assert_on_course(log, course, log.arm_references[-1].tick)
 
-    # Tests that the reference holds where it is when the planner falls silent for longer than it may, that this is told, and that the next
-    # plan ends it.
+    # Tests that the reference holds its value when the planner is silent for longer than allowed, that this
+    # is reported, and that the next plan ends it.
     def test_silence(self):
         course = Course(self.start_planned().time + 0.5)
         planner = self.planner(course)

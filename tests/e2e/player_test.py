@@ -29,7 +29,7 @@ class PlayerTest(stack.TestCase):
         live = stack.LiveLog(self, again)
         live.wait_for("HYDRO_PROCESS_STATUS", lambda s: s.role == "pressure_ctrl" and s.state == event_log.READY,
                       "a pressure loop that is ready")
-        # What the recorded pressure loop said is left out: the new one is to say it.
+        # The messages of the recorded pressure loop are left out, because the new loop must send them.
         player = self.start(PLAYER, "-l", url, "-e", "HYDRO_(STATE|PRESSURE_COMMAND)$", recorded)
         self.assertEqual(player.wait(60), 0, player.report())
         before = event_log.Log(recorded)
@@ -66,8 +66,8 @@ class PlayerTest(stack.TestCase):
     def test_played_to_realtime(self):
         self.play("realtime")
 
-    # Tests that the check events of a log stay in it: lcm-logplayer passes over them without a word, and a peer of the network
-    # receives exactly the messages.
+    # Tests that the check events of a log stay in it: lcm-logplayer skips them without a message, and a peer
+    # of the network receives exactly the messages.
     @unittest.skipUnless(PLAYER, "lcm-logplayer is not installed")
     def test_check_events_are_not_played(self):
         log_file = self.path("sim.lcmlog")
@@ -78,7 +78,7 @@ class PlayerTest(stack.TestCase):
         self.addCleanup(peer.close)
         player = self.start(PLAYER, "-l", url, "-s", "0.5", log_file)
         expected = [(e.channel, e.data) for e in event_log.read_events(log_file)]
-        # LCM's own check of multicast sends itself a message first.
+        # LCM's own test of multicast first sends itself a message.
         received = []
         while len(received) < len(expected) and (more := peer.receive(5)):
             received += [m for m in more if m[0].startswith("HYDRO_") or event_log.CHECK_CHANNEL in m[0]]
@@ -96,16 +96,16 @@ class PlayerTest(stack.TestCase):
     def test_replay_lockstep(self):
         self.assert_replays(self.record())
 
-    # Tests that it reproduces those of a run in real time, whatever arrived late there.
+    # Tests that it reproduces the controllers of a run in real time, whatever arrived late there.
     def test_replay_realtime(self):
         self.assert_replays(self.record("--duration", "2", time="realtime"))
 
-    # Tests that it reproduces those of a run in real time without a command delay, where the command in force at a tick
-    # depends on what had arrived.
+    # Tests that it reproduces the controllers of a run in real time without a command delay, where the
+    # command in force at a tick depends on what had arrived.
     def test_replay_realtime_without_delay(self):
         self.assert_replays(self.record("--duration", "2", "--set", "plant.command_delay_ticks=0", time="realtime"))
 
-    # Tests that replay notices differences: a log whose commands came from other gains than it states.
+    # Tests that replay notices differences, with a log whose commands came from other gains than it states.
     def test_replay_finds_a_difference(self):
         log_file = self.record("--duration", "0.5")
         events = event_log.read_events(log_file)

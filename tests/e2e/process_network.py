@@ -52,7 +52,7 @@ class Switch:
         for space in (self.middle, *self.spaces.values()):
             self._ip("netns", "add", space)
             case.addCleanup(subprocess.run, ["ip", "netns", "del", space], capture_output=True)
-        # Without snooping each multicast packet goes to every port.
+        # Without snooping, each multicast packet goes to every port.
         self._ip("-n", self.middle, "link", "add", "net", "type", "bridge", "mcast_snooping", "0", "stp_state", "0", "forward_delay", "0")
         self._space(case, self.middle, 250)
         for number, space in enumerate(self.spaces.values()):

@@ -8,6 +8,7 @@ import signal
 import subprocess
 
 import event_log
+import front_end_wire
 import outcome
 import stack
 
@@ -18,6 +19,14 @@ class ProcessStartCase(stack.TestCase):
         return subprocess.run([stack.program(argv[0]), *argv[1:]], cwd=self.folder, preexec_fn=prepare, timeout=stack.PATIENCE * 4,
                               check=False, stdin=subprocess.DEVNULL, text=True, errors="replace", **options)
 
+    def start_prepared(self, prepare, *argv):
+        """The same, for one that goes on until the end of the test."""
+        process = subprocess.Popen([stack.program(argv[0]), *argv[1:]], cwd=self.folder, preexec_fn=prepare, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
     def record(self):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "2", "-o", self.path("run.lcmlog"))
         self.run_program("hydro-log", "export", "run.lcmlog", "-o", self.path("run.csv"))
@@ -25,7 +34,7 @@ class ProcessStartCase(stack.TestCase):
 
 class ClosedStreamsTest(ProcessStartCase):
     def run_closed(self, closed, *argv):
-        # Python closes its own copies only after this: what is closed here stays so for the program.
+        # Python closes its own copies only after this, so what is closed here stays closed for the program.
         return self.run_prepared(lambda: [os.close(number) for number in closed], *argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     # Tests that a launch ends, and that its log holds the run and no text, whichever streams are closed.
@@ -40,8 +49,8 @@ class ClosedStreamsTest(ProcessStartCase):
                     self.assertEqual(len(event_log.Log(log).states), 501)
                     self.run_program("hydro-log", "info", log)
 
-    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and that what it writes into files
-    # is what it writes otherwise.
+    # Tests that a program whose results cannot be printed says so with exit code 1, as on a full disk, and
+    # that its files are the same as usual.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-log", "summary", "run.lcmlog"),
@@ -67,13 +76,29 @@ class ClosedStreamsTest(ProcessStartCase):
                 with self.subTest(name, closed=closed):
                     self.assertEqual(self.run_closed(closed, name, "missing.toml").returncode, 2)
 
+    # Tests that a front end which is a process puts frames and nothing else onto its link, whichever streams are closed.
+    def test_front_end(self):
+        for closed in ((1,), (2,), (0, 1), (1, 2), (0, 1, 2)):
+            with self.subTest(closed=closed):
+                path = self.path("".join(map(str, closed)) + ".socket")
+                board = self.start_prepared(lambda numbers=closed: [os.close(number) for number in numbers], "hydro-front-end", f"unix:{path}")
+                self.wait_until(lambda found=path: os.path.exists(found), "a front end that listens")
+                link = {int(name): os.readlink(f"/proc/{board.pid}/fd/{name}") for name in os.listdir(f"/proc/{board.pid}/fd")}
+                self.assertEqual([number for number, target in link.items() if target.startswith("socket:") and number < 3], [], link)
+                port = front_end_wire.Stream(path)
+                self.addCleanup(port.close)
+                computer = front_end_wire.Computer(port)
+                computer.connect(front_end_wire.settings(watchdog=200, sensors=[front_end_wire.sensor(1, 0), front_end_wire.sensor(1, 1)]))
+                self.assertEqual(computer.sample()["p1"], 1)
+
 
 class FullDiskTest(ProcessStartCase):
     def run_full(self, *argv):
         with open("/dev/full", "w", encoding="utf-8") as full:
             return self.run_prepared(None, *argv, stdout=full, stderr=subprocess.PIPE)
 
-    # Tests that every program ends with 1 and one line when what it has to print cannot be written: --help and --version.
+    # Tests that every program ends with 1 and one line when the output of --help or --version cannot be
+    # written.
     def test_help(self):
         programs = sorted(name for name in os.listdir(stack.BIN) if name.startswith("hydro-") and os.access(stack.program(name), os.X_OK))
         self.assertGreater(len(programs), 0)
@@ -84,7 +109,7 @@ class FullDiskTest(ProcessStartCase):
                     self.assertEqual((done.returncode, done.stderr),
                                      (1, f"{name}: the standard output cannot be written: No space left on device\n"))
 
-    # Tests the same of results, and of a launch, whose stack comes to its end all the same.
+    # Tests the same for results, and for a launch, whose stack still comes to its end.
     def test_results(self):
         self.record()
         for argv in (("hydro-log", "info", "run.lcmlog"), ("hydro-sim", stack.config("demo.toml"), "--duration", "2")):
@@ -100,7 +125,7 @@ class FullDiskTest(ProcessStartCase):
 
 
 class OneLineTest(ProcessStartCase):
-    # Tests that a fault that ends the run is said once by the process that has found it.
+    # Tests that a fault that ends the run is reported once, by the process that found it.
     def test_fault(self):
         done = self.run_prepared(None, "hydro-launch", stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--time", "lockstep",
                                  "--duration", "0.5", "--set", "limits.pressure=120", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -109,7 +134,8 @@ class OneLineTest(ProcessStartCase):
         self.assertEqual(len(own), 1, done.stderr)
         self.assertRegex(own[0], r"fault pressure_limit: tick \d+: p2 is 1\d\d")
 
-    # Tests that a program says nothing else of an input that it refuses: neither what it left out of a log nor that a model is fast.
+    # Tests that a program says nothing else about an input that it refuses: neither what it left out of a log
+    # nor that a model is fast.
     def test_refusals(self):
         with open(self.path("fast.toml"), "w", encoding="utf-8") as file, \
                 open(stack.config("models/table1.toml"), encoding="utf-8") as given:
@@ -126,7 +152,8 @@ class OneLineTest(ProcessStartCase):
 
 
 class SlowModelTest(ProcessStartCase):
-    # Tests that a model that takes some seven times as long as it moves is stopped by a signal within a tick, alone and in a launch.
+    # Tests that a signal stops a model that runs some seven times slower than real time within a tick, alone
+    # and in a launch.
     def test_stop(self):
         with open(self.path("slow.toml"), "w", encoding="utf-8") as file, open(stack.config("models/table1.toml"), encoding="utf-8") as given:
             text = given.read()
@@ -181,7 +208,8 @@ class FileSizeLimitTest(ProcessStartCase):
             with self.subTest(" ".join(argv)):
                 self.check(["out", "arm", "pressure", "fig2"], *argv, limits=(0,))
 
-    # Tests that of a key and of a controller to begin with nothing is left either, and that the machine, not the user, is at fault.
+    # Tests that no part of a key or of a skeleton controller is left either, and that the message blames the
+    # machine and not the user.
     def test_small_files(self):
         with open(stack.config("demo.toml"), encoding="utf-8") as file:
             config = file.read().replace("models/table1.toml", stack.config("models/table1.toml"))

@@ -13,15 +13,15 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 EXAMPLE = os.path.join(ROOT, "examples", "buoy_pto")
 DATA = os.path.join(os.environ.get("HYDRO_DATA", ""), "buoy_pto")
 SINE, FRICTION = "sine_moves_2021-07-26", "friction_moves_bias_current"
-# The whole catalogue takes ten times as long, and finds the same.
+# The whole catalogue would take ten times as long, and would find the same effects.
 EFFECTS = 'effects = ["valve.relief", "pump.pressure_friction"]\n'
 LONG = 1700  # s; some 250 on a quiet machine, but it gives way to the tests beside it
 
 
 @unittest.skipUnless(os.path.isdir(DATA), "the measured data are not here: examples/buoy_pto/README.md says where they are")
 class RealDataTest(stack.TestCase):
-    # Tests that the clocks, the relief valve and the friction of a real rig are found on one record, and that the
-    # model then predicts another, which was not fitted.
+    # Tests that the clocks, the relief valve and the friction of a real rig are found from one record, and
+    # that the model then predicts another record, which was not fitted.
     def test_wave_energy_take_off(self):
         for name in (SINE, FRICTION):
             shutil.copy(os.path.join(DATA, name + ".csv"), self.path(name + ".csv"))
@@ -44,8 +44,9 @@ class RealDataTest(stack.TestCase):
 
         found = {effect["id"]: effect["parameters"] for effect in report["effects"]}
         self.assertIn("valve.relief", found)
-        # The valve regulates from 2850 psi on. One record shows `set` and the rest of its losses only together: the interval has to say so
-        # (measured: 2399 [0, 6739]; the balances alone put it at 2881, and an earlier search came to 2950).
+        # The valve regulates from 2850 psi on. One record shows `set` and the rest of its losses only
+        # together, and the interval has to say so (measured: 2399 [0, 6739]; the balances alone give 2881,
+        # and an earlier search gave 2950).
         low, high = found["valve.relief"]["set"]["ci95"]
         self.assertLess(low, 2850)
         self.assertGreater(high, 2850)
@@ -53,11 +54,12 @@ class RealDataTest(stack.TestCase):
         signals = report["gap"]["signals"]
         p1, p2 = (signals[name]["held_out"]["after"] for name in ("p1", "p2"))
         rpm = signals["motor_speed"]["held_out"]["after"] * 30 / math.pi
-        # The rig's published simulator is off by 529 rpm and 240 psi there. The half of its speed, 264 rpm, is missed: 289 are reached with
-        # the clocks that the balances show (0.33 and 0.31 s, 0.27 and 0.26 s). 129 were, with a command that another 0.1 s of delay made
-        # predict better, and the torque balance worse.
+        # The rig's published simulator is off by 529 rpm and 240 psi there. The aim of half its speed error,
+        # 264 rpm, is missed: the error is 289 rpm with the clocks that the balances show (0.33 and 0.31 s,
+        # 0.27 and 0.26 s). It was 129 rpm with another 0.1 s of delay in the command, which improved this
+        # prediction but worsened the torque balance.
         self.assertLess(rpm, 310, signals)
-        # Of p2 - p1 188 psi are reached, not the half of 240.
+        # The error of p2 - p1 is 188 psi, more than half of 240.
         self.assertLess(math.hypot(p1, p2), 195, signals)
 
 

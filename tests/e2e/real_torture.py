@@ -82,7 +82,7 @@ class RealTorture:
     def operator(self, flag):
         return self.start_program("operator", "hydro-launch", flag)
 
-    # What is injected: each yields the times at which it goes on.
+    # The injected faults. Each yields the times at which it continues.
 
     def hang(self, injection):
         process = self.find(injection.target)
@@ -107,7 +107,7 @@ class RealTorture:
         self.other.add(injection.target)
         self.kill(injection.target, self.now() + 0.02)
         yield injection.at + injection.duration
-        # A busy machine may take longer to start it: it is refused once, however long that takes.
+        # A busy machine may take longer to start the process. It is refused once, however long that takes.
         while self.processes[injection.target] is before or self.find(injection.target):
             yield self.now() + 0.005
         self.other.discard(injection.target)
@@ -131,7 +131,8 @@ class RealTorture:
     loss = delay = bad_link
 
     def stop(self, _):
-        # hydro-launch asks until nobody is left, also those who are started again meanwhile; the simulated operator gives up.
+        # hydro-launch asks until no process is left, including those that are started again in the meantime.
+        # The simulated operator gives up earlier.
         operator = self.operator("--stop")
         yield self.now() + PATIENCE
         if operator.running:

@@ -15,7 +15,8 @@ import stack
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 RATE = 1000  # Hz, of demo.toml
 RAMP = 200  # ticks, the default of limits.pressure_ramp_s
-# s, limits.stale_input_s: above what wake-ups are late by here (up to 150 ms), so that only a dead process is stale.
+# s, limits.stale_input_s. It is above the lateness of wake-ups here (up to 150 ms), so that only a dead
+# process is stale.
 STALE = 0.3
 
 
@@ -63,7 +64,8 @@ class RealtimeKillTest(stack.TestCase):
                                  lambda c: c.tick > after_tick and c.status == event_log.LAW and c.voltage != 0,
                                  "commands of the law again", start=self.log.count("HYDRO_MOTOR_COMMAND"))
 
-    # Tests that without a pressure loop the plant goes to zero volts and says so, and that a new one takes over.
+    # Tests that without a pressure loop the plant goes to zero volts and says so, and that a new one takes
+    # over.
     def test_pressure_ctrl_killed(self):
         self.run_["pressure_ctrl"].kill()
         self.run_["pressure_ctrl"].wait()
@@ -82,14 +84,14 @@ class RealtimeKillTest(stack.TestCase):
         self.assertTrue(safe)
         for state in safe:
             self.assertEqual((state.voltage, state.command_tick), (0, -1), state)
-        # The voltage was held no longer than the limit and the ticks that it takes to notice: one for the command's
-        # own delay, one to act, and as many as the plant slept through.
+        # The voltage was held no longer than the limit plus the ticks that it takes to notice: one for the
+        # command's own delay, one to act, and those through which the plant slept.
         held = max(s.tick for s in log.states if s.command_tick == last_command)
         slept = max(s.skipped_ticks for s in log.states)
         self.assertLessEqual(held - last_command, STALE * RATE + 3 + slept + 2)
 
-    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again.
-    # fault_loops_test.py tests the way there.
+    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is a
+    # position loop again. fault_loops_test.py tests how it gets there.
     def test_position_ctrl_killed(self):
         self.run_["position_ctrl"].kill()
         self.run_["position_ctrl"].wait()
@@ -105,15 +107,15 @@ class RealtimeKillTest(stack.TestCase):
         for command in between:
             self.assertEqual((command.status, command.voltage), (event_log.SAFE, 0), command)
         self.assertFalse([f for f in log.faults if f.code == "stale_motor_command"])  # the pressure loop went on
-        # Both loops' clocks are the ticks: the fault came exactly where the command was too old.
+        # The clock of both loops is the tick, so the fault came exactly where the command was too old.
         last = max(c.tick for c in log.pressure_commands if c.tick <= fault.tick)
         interval = 5
         limit = 1 + interval + math.ceil(STALE * RATE)
         first_safe = min(c.tick for c in log.motor_commands if c.status == event_log.SAFE)
         self.assertGreaterEqual(first_safe - last, limit + RAMP)
 
-    # Tests that without a plant the pressure loop commands zero volts once and names the fault, and that a new plant
-    # finds everybody where it left them.
+    # Tests that without a plant the pressure loop commands zero volts once and names the fault, and that a
+    # new plant can continue with all the other processes.
     def test_plant_killed(self):
         self.run_["plant"].kill()
         self.run_["plant"].wait()
@@ -165,7 +167,8 @@ class LaunchedRealtimeKillTest(stack.TestCase):
         self.assertRegex(launch.stderr, f"{stack.PROGRAMS[victim]} was killed by signal 9")
         self.assertEqual(stack.still_running(pids.values()), [])
 
-    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, leaves no orphan.
+    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, and leaves no
+    # orphan.
     def test_plant_killed(self):
         self.kill_under_launch("plant")
 

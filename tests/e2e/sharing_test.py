@@ -36,7 +36,7 @@ class SharingTest(stack.TestCase):
 
     def start_with_second_plant(self):
         """Both plants wait for the same controllers."""
-        # Above what wake-ups are late by here: neither plant is to be taken for gone before it is.
+        # Above the lateness of wake-ups here, so that neither plant counts as gone before it is.
         run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--set",
                          "limits.stale_input_s=0.4")
         plants = [run.start("plant", "--expect", "logger", label=f"plant {n}") for n in (1, 2)]
@@ -47,8 +47,8 @@ class SharingTest(stack.TestCase):
         run.start("pressure_ctrl")
         return stack.LiveLog(self, self.path("run.lcmlog")), plants
 
-    # Tests that with two plants on one set of channels the pressure loop goes to zero volts and names the fault, and
-    # resumes when one of them has gone.
+    # Tests that with two plants on one set of channels the pressure loop goes to zero volts and names the
+    # fault, and resumes when one of them has gone.
     def test_two_plants(self):
         log, plants = self.start_with_second_plant()
         fault = log.wait_for("HYDRO_FAULT", lambda f: f.code == "second_state_sender" and f.active,
@@ -63,7 +63,7 @@ class SharingTest(stack.TestCase):
         self.assertGreater(len(between), 50)
         for command in between:
             self.assertEqual((command.status, command.voltage), (event_log.SAFE, 0), command)
-        # Both actuators stand without voltage.
+        # Neither actuator has a voltage.
         log.update()
         begin = len(log.messages["HYDRO_STATE"])
         self.wait_until(lambda: log.count("HYDRO_STATE") > begin + 200, "more states")
@@ -77,8 +77,8 @@ class SharingTest(stack.TestCase):
         plants[0].send(signal.SIGTERM)
         self.assertEqual(plants[0].wait(), 0, plants[0].report())
 
-    # Tests that a second launch on the same channels refuses before it starts anything, names who runs there, and harms
-    # neither the first run nor its end.
+    # Tests that a second launch on the same channels refuses before it starts anything, names what runs
+    # there, and harms neither the first run nor its end.
     def test_second_launch_is_refused(self):
         log_file = self.path("first.lcmlog")
         first = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--log", log_file,
@@ -97,7 +97,7 @@ class SharingTest(stack.TestCase):
         whole = event_log.Log(log_file)
         self.assertEqual({f.code for f in whole.faults} - {"late_plant"}, set())
 
-    # Tests that of two launches in the same instant one runs, undisturbed, and the other refuses.
+    # Tests that of two launches at the same instant one runs undisturbed and the other refuses.
     def test_two_launches_at_once(self):
         launches = [self.launch(stack.config("demo.toml"), "--duration", "1", "--set", "limits.stale_input_s=0.5") for _ in range(2)]
         codes = sorted(launch.wait() for launch in launches)
@@ -107,7 +107,8 @@ class SharingTest(stack.TestCase):
         ran = next(launch for launch in launches if launch.wait() == 0)
         self.assertNotRegex(ran.report(), "second_|other_stack")
 
-    # Tests that a launch refuses beside one whose processes are all stopped, so that none can say that it is there.
+    # Tests that a launch refuses beside a stack whose processes are all stopped and cannot say that they are
+    # there.
     def test_stopped_stack_counts(self):
         first = self.launch(stack.config("demo.toml"), "--duration", "0", "--set", "limits.stale_input_s=0.5")
         first.wait_for("ready after")
@@ -117,7 +118,7 @@ class SharingTest(stack.TestCase):
         try:
             second = self.launch(stack.config("demo.toml"), "--duration", "1")
             self.assertEqual(second.wait(), 2, second.report())
-            # --stop does not wait for what cannot answer; the launcher, which can, kills it.
+            # --stop does not wait for processes that cannot answer. The launcher, which can, kills them.
             stopper = self.launch(stack.config("demo.toml"), "--stop")
             self.assertEqual(stopper.wait(), 0, stopper.report())
             self.assertEqual(first.wait(), 1, first.report())
@@ -136,7 +137,8 @@ class SharingTest(stack.TestCase):
         self.assertEqual(second.wait(), 2, second.report())
         self.assertRegex(second.stderr, r"found a stack on udpm:.* that runs: pressure_ctrl on .* \(process \d+\); end it with .*--stop")
 
-    # Tests that a stop with another run's address ends nobody, and that one with this run's address ends all.
+    # Tests that a stop with another run's address ends no process, and that one with this run's address ends
+    # all.
     def test_stop_of_another_run_is_none(self):
         run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--set",
                          "limits.stale_input_s=0.4")

@@ -1,7 +1,8 @@
 /* Preloaded into programs (LD_PRELOAD): their CLOCK_REALTIME is off by
- *   HYDRO_CLOCK_OFFSET_S + HYDRO_CLOCK_DRIFT x the time since the start + HYDRO_CLOCK_STEP_S from HYDRO_CLOCK_STEP_AFTER_S on,
- * as on a host whose clock is wrong, drifts or is set while the program runs. CLOCK_MONOTONIC is left alone, as there.
- * (A time namespace shifts only the monotonic and the boot clock.) */
+ *   HYDRO_CLOCK_OFFSET_S + HYDRO_CLOCK_DRIFT x the time since the start + HYDRO_CLOCK_STEP_S from
+ * HYDRO_CLOCK_STEP_AFTER_S on, as on a host whose clock is wrong, drifts or is set while the program runs.
+ * CLOCK_MONOTONIC is left alone, as there. (A time namespace shifts only the monotonic and the boot clock.)
+ */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdlib.h>

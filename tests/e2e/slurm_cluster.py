@@ -20,12 +20,13 @@ import tempfile
 import time
 
 PATIENCE = 60
-# Debian keeps daemons where the path of a user does not lead.
+# Debian installs daemons in folders that are not in a user's PATH.
 PATH = os.environ.get("PATH", "") + os.pathsep + "/usr/sbin" + os.pathsep + "/sbin"
 TOOLS = {"slurmctld": "slurmctld", "slurmd": "slurmd", "sbatch": "slurm-client", "munged": "munge"}
 
-# Short times, so that a test need not wait: a node that does not answer is down within seconds, a job that was on it begins again
-# `cred_expire` later, and finished jobs are soon forgotten. By default slurmctld looks for jobs to start only every 3 s.
+# Short times, so that tests need not wait: a node that does not answer is down within seconds, a job that was
+# on it begins again `cred_expire` later, and finished jobs are soon forgotten. By default slurmctld looks for
+# jobs to start only every 3 s.
 _CONF = """\
 ClusterName=hydro
 SlurmctldHost={host}(127.0.0.1)
@@ -148,7 +149,8 @@ class Cluster:
         text += f"PartitionName=all Nodes={','.join(self.nodes)} Default=YES MaxTime=INFINITE State=UP\n"
         with open(self._path("slurm.conf"), "w", encoding="utf-8") as file:
             file.write(text)
-        # Without accounting and cgroups nothing is asked of this, but where it is missing slurmd looks in /etc/slurm.
+        # Without accounting and cgroups nothing here is used, but where the file is missing slurmd looks in
+        # /etc/slurm.
         with open(self._path("cgroup.conf"), "w", encoding="utf-8"):
             pass
 

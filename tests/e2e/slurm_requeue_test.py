@@ -8,7 +8,8 @@ setUpModule = slurm_test.setUpModule
 
 
 class RequeueTest(slurm_test.ClusterCase):
-    # Tests that the jobs of a node that dies run again by themselves (Slurm waits two minutes), also when no driver is there.
+    # Tests that the jobs of a node that dies run again by themselves (Slurm waits two minutes), even when
+    # there is no driver.
     def test_dead_node(self):
         driver = self.start_on_slurm("--detach", free=4)
         self.assertEqual(driver.wait(), 0, driver.report())
@@ -23,7 +24,7 @@ class RequeueTest(slurm_test.ClusterCase):
 
 
 class ControllerTest(slurm_test.ClusterCase):
-    # Tests that a study outlives its cluster's controller: the driver waits for another.
+    # Tests that a study outlives its cluster's controller: the driver waits for a new one.
     def test_dead_controller(self):
         driver = self.start_on_slurm(free=4)
         self.wait_for_begun(8)
@@ -41,7 +42,7 @@ class ControllerTest(slurm_test.ClusterCase):
 class OwnTimesTest(slurm_test.ClusterCase):
     settings = {name: None for name in ("SchedulerParameters", "KillWait", "MessageTimeout", "TCPTimeout")}
 
-    # Tests a study on a cluster that looks for jobs as rarely as Slurm does unless it is told otherwise.
+    # Tests a study on a cluster that looks for jobs as rarely as Slurm does by default.
     def test_ends(self):
         self.open_gate()
         driver = self.start_on_slurm()

@@ -36,7 +36,7 @@ max = 1
 y = "out.json:/y"
 """
 CASES = 14
-# Paths that a script must not take apart.
+# Paths that a script must not split.
 FOLDER = "it's a \"fol%der\" $HOME"
 
 
@@ -50,7 +50,8 @@ class ClusterCase(stack.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        # The end of each node's processes, and of all others, is part of the test: it fails where one is left.
+        # The end of each node's processes, and of all others, is part of the test, which fails when one is
+        # left.
         cls.cluster = cls.enterClassContext(slurm_cluster.Cluster(cls.nodes, cls.cpus, cls.settings))
 
     def setUp(self):
@@ -123,7 +124,8 @@ class ClusterCase(stack.TestCase):
 
 
 class SlurmTest(ClusterCase):
-    # Tests that a study of simulations gives on the cluster what it gives here, to the bit, with jobs of any size.
+    # Tests that a study of simulations gives the same on the cluster as here, to the bit, with jobs of any
+    # size.
     def test_simulations(self):
         with open(self.path("sims.toml"), "w", encoding="utf-8") as file:
             file.write(f"""\
@@ -145,7 +147,8 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.assertEqual(tables["cluster"], tables["here"])
         self.assertEqual(tables["here"]["table.csv"].count(b",done,"), 6)
 
-    # Tests that the jobs' size is chosen so that starting one costs less than a twentieth of it, and said with its reason.
+    # Tests that the jobs' size is chosen so that starting one costs less than a twentieth of it, and is
+    # reported with its reason.
     def test_grouping(self):
         self.open_gate()
         driver = self.start_study("--slurm", "--case-time", "3")
@@ -169,7 +172,8 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.check_end(second)
         self.assertEqual(len(self.arrays()), 1)
 
-    # Tests that a driver killed after it submitted an array and before it could note that down runs nothing twice.
+    # Tests that a driver killed after it submitted an array and before it could record that runs nothing
+    # twice.
     def test_killed_while_submitting(self):
         tools = self.path("tools")
         os.makedirs(tools)
@@ -185,7 +189,8 @@ rms = "summary.json:/tracking/rms_error_rad"
         os.environ["PATH"] = path
         self.check_end(self.start_on_slurm())
 
-    # Tests that a cancelled array's cases are submitted again, those that ended are not, and Ctrl-C cancels the jobs.
+    # Tests that the cases of a cancelled array are submitted again, except those that ended, and that Ctrl-C
+    # cancels the jobs.
     def test_cancelled(self):
         driver = self.start_on_slurm(free=4)
         self.wait_for_begun(8)
@@ -200,7 +205,7 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.open_gate()
         self.check_end(self.start_on_slurm())
 
-    # Tests that a study whose jobs end without a case each time is given up, saying why.
+    # Tests that a study is given up, with the reason, when its jobs repeatedly end without a case.
     def test_given_up(self):
         os.environ["TMPDIR"] = "/proc"  # where no case can have its folder
         driver = self.start_on_slurm()
@@ -213,7 +218,8 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.open_gate()
         self.check_end(self.start_on_slurm())
 
-    # Tests that --detach leaves the jobs to themselves, and that the same command then makes the tables.
+    # Tests that --detach leaves the jobs running by themselves, and that the same command then makes the
+    # tables.
     def test_detached(self):
         driver = self.start_on_slurm("--detach", "--jobs-at-once", "3")
         self.assertEqual(driver.wait(), 0, driver.report())
@@ -225,14 +231,14 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.check_end(self.start_on_slurm())
         self.assertEqual(len(self.arrays()), 1)
 
-    # Tests that what Slurm refuses is one line and leaves nothing in the queue.
+    # Tests that a refusal by Slurm is reported in one line and leaves nothing in the queue.
     def test_refused(self):
         driver = self.start_on_slurm("--partition", "nowhere")
         self.assertEqual(driver.wait(), 2)
         self.assertRegex(driver.stderr, r"\Ahydro-batch: sbatch: .*[Ii]nvalid partition.*\n\Z")
         self.assertEqual(self.cluster.ask("squeue", "--noheader"), "")
 
-    # Tests that a full disk loses nothing: the driver says so, and goes on when there is room again.
+    # Tests that a full disk loses nothing: the driver says so, and continues when there is room again.
     def test_full_disk(self):
         os.makedirs(self.out)
         mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "hydro-test", self.out], capture_output=True, text=True)
@@ -257,7 +263,8 @@ rms = "summary.json:/tracking/rms_error_rad"
         self.check_end(self.start_on_slurm(), once=False)
         self.assertEqual({case: self.noted("ended")[case] for case in stored}, dict.fromkeys(range(4), 1))
 
-    # Tests that the cases of a node that dies are run again, those of the other node and those that ended are not.
+    # Tests that the cases of a node that dies are run again, and that those of the other node and those that
+    # ended are not.
     def test_dead_node(self):
         driver = self.start_on_slurm("--sbatch=--no-requeue", free=4)
         self.wait_for_begun(8)

@@ -24,10 +24,11 @@ _ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 BIN = os.environ.get("HYDRO_BIN", os.path.join(_ROOT, "build", "bin"))
 CONFIG = os.environ.get("HYDRO_CONFIG", os.path.join(_ROOT, "config"))
 
-# How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is shared.
+# s to wait for what should come soon. No test passes because of it, so it may be long, because the machine is
+# shared.
 PATIENCE = 60
-# Added to a limit on wall time that is a promise of the programs: wake-ups here are late by up to 150 ms each, and a
-# process on two cores that others keep busy may get its turn a few hundred milliseconds late.
+# s, added to a limit on wall time that the programs promise. Wake-ups here are late by up to 150 ms each, and
+# a process on two cores that others keep busy may get its turn a few hundred milliseconds late.
 MACHINE_MARGIN = 2.5
 
 PROGRAMS = {
@@ -58,7 +59,7 @@ class Port:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.bind(("", 0))  # not to one address: a port on which any group is heard is not free
         self.socket.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)  # it hears nothing itself
-        # After the choice, which so avoids every port in use.
+        # This comes after the choice, so that the choice avoids every port in use.
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self.url = f"udpm://239.255.76.67:{self.socket.getsockname()[1]}?ttl=0"
 

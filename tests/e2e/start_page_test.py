@@ -54,7 +54,7 @@ class StartPageTest(stack.TestCase):
             process.wait()
         return process.stdout + process.stderr
 
-    # Tests that the lines run, leave what the page says, and print what it says.
+    # Tests that the lines run, leave the files that the page names, and print what the page shows.
     def test_lines(self):
         found = dict(sections())
         self.assertEqual(list(found), list(EXPECTED))
@@ -66,7 +66,7 @@ class StartPageTest(stack.TestCase):
             self.assertTrue(os.path.getsize(self.path(name)) > 0, name)
         self.assertIn("p1_Pa", pathlib.Path(self.path("run_si.csv")).read_text())
 
-    # Tests that the run in SI units is that of the paper's units, up to the digits of its numbers.
+    # Tests that the run in SI units is the same as in the paper's units, up to the digits of its numbers.
     def test_si_is_the_same_run(self):
         columns = []
         for name in ("demo", "demo_si"):

@@ -14,14 +14,16 @@ import time
 import outcome
 
 EVERY = 0.01  # s
-# s: below the least limits.stale_input_s of a configuration (0.1 s), above what a loaded scheduler adds to a sleep.
+# s. This is below the smallest limits.stale_input_s of a configuration (0.1 s) and above what a loaded
+# scheduler adds to a sleep.
 LATE = 0.08
 RUNS = 3
 
 
 def run(command):
     """The exit code of the command, and by how many seconds this process woke up late at most while it ran."""
-    # From look to look and not only over the sleep: the machine may stand still anywhere, while the command starts too.
+    # Measured from one check to the next and not only over the sleep, because the machine may stand still at
+    # any time, even while the command starts.
     latest, looked = 0, time.monotonic()
     with subprocess.Popen(command) as child:
         running = True

@@ -28,7 +28,7 @@ class SteadyTest(unittest.TestCase):
         with open(self.runs, encoding="utf-8") as file:
             return len(file.readlines())
 
-    # Tests that a test that fails on a machine that runs has failed, at once.
+    # Tests that a test that fails on a steady machine has failed, at once.
     def test_steady_machine(self):
         self.assertEqual(self.steady(NEVER, "exit 1").returncode, 1)
         self.assertEqual(self.count(), 1)
@@ -40,25 +40,25 @@ class SteadyTest(unittest.TestCase):
         self.assertEqual(self.count(), 3)
         self.assertRegex(failed.stderr, "stood still for .* ms while this test ran: run 3 of 3")
 
-    # Tests that a test that passes when it is repeated has passed, and that it is not repeated then.
+    # Tests that a test that passes on repetition has passed, and that it is not repeated after that.
     def test_passes_later(self):
         self.assertEqual(self.steady(ALWAYS, 'test "$run" -ge 2').returncode, 0)
         self.assertEqual(self.count(), 2)
 
-    # Tests that what passed or was skipped is not repeated.
+    # Tests that a test that passed or was skipped is not repeated.
     def test_passed(self):
         self.assertEqual(self.steady(ALWAYS, "exit 0").returncode, 0)
         self.assertEqual(self.steady(ALWAYS, "exit 77").returncode, 77)
         self.assertEqual(self.count(), 2)
 
-    # Tests that a machine that stands still is seen: this process stops steady.py for 0.3 s, on a busy machine before it
-    # has heard that its child runs.
+    # Tests that a standstill of the machine is noticed: this process stops steady.py for 0.3 s, on a busy
+    # machine before it has heard that its child runs.
     def test_standing_still_is_seen(self):
         script = 'if [ "$run" = 1 ]; then kill -STOP $PPID; sleep 0.3; kill -CONT $PPID; exit 1; fi'
         self.assertEqual(self.steady("0.2", script).returncode, 0)
         self.assertEqual(self.count(), 2)
 
-    # Tests that a test that a signal ended has failed, as in a shell.
+    # Tests that a test that was ended by a signal has failed, as in a shell.
     def test_signal(self):
         self.assertEqual(self.steady(NEVER, "kill -SEGV $$").returncode, 128 + 11)
 

@@ -20,7 +20,7 @@ class StopTest(stack.TestCase):
         self.assertEqual(log.stops[0].exit_code, 0, log.stops)
         return log
 
-    # Tests that a signal to hydro-launch ends the stack in order, and leaves nobody behind.
+    # Tests that a signal to hydro-launch ends the stack in order, and leaves no process behind.
     def test_launch_stopped(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             for mode in ("realtime", "lockstep"):
@@ -37,7 +37,8 @@ class StopTest(stack.TestCase):
                     self.assertEqual(stack.still_running(pids), [])
                     self.check_end(log_file)
 
-    # Tests that a simulation that is stopped says so and when, and that its log is whole up to there and says it, too.
+    # Tests that a stopped simulation says so, and when it stopped, and that its log is whole up to there and
+    # says the same.
     def test_simulation_stopped(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(signal=number):
@@ -55,7 +56,8 @@ class StopTest(stack.TestCase):
                 summary = self.run_program("hydro-log", "summary", log_file).stdout
                 self.assertRegex(summary, rf"\Athe run was stopped at tick \d+: plant: hydro-sim was stopped by signal {number:d}\n")
 
-    # Tests that the processes of a stack may start in any order: all wait until everybody is there, and none hangs.
+    # Tests that the processes of a stack may start in any order: each waits until all are there, and none
+    # hangs.
     def test_any_order(self):
         alone = self.path("alone.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.3", "-o", alone)

@@ -95,7 +95,8 @@ class SurroundingsTest(stack.TestCase):
         gap = next(one["typical"] for one in report["gap"]["horizons"] if abs(one["seconds"] - 0.4) < 1e-9)
         self.assertLess(gap["after"], 0.1 * gap["before"])
 
-    # Tests that a recorded force moves the model's arm as it did the machine's, which is a riddle without it.
+    # Tests that a recorded force moves the model's arm as it moved the machine's, which cannot be explained
+    # without the force.
     def test_force_on_the_arm(self):
         self.record(0, (20, 20), lambda t: 60 * math.sin(7 * t) + 25 * math.sin(20 * t))
 

@@ -20,7 +20,7 @@ class SystemdTest(stack.TestCase):
         self.prefix = self.path("prefix")
         subprocess.run(["cmake", "--install", BUILD, "--component", "systemd", "--prefix", self.prefix], check=True,
                        capture_output=True)
-        # What else the units refer to.
+        # Other files to which the units refer.
         os.mkdir(os.path.join(self.prefix, "bin"))
         os.symlink(stack.program("hydro-launch"), os.path.join(self.prefix, "bin", "hydro-launch"))
         self.units = os.path.join(self.prefix, "lib", "systemd", "system")
@@ -39,7 +39,8 @@ class SystemdTest(stack.TestCase):
         done = subprocess.run(["systemd-analyze", "verify", "--man=no", path], capture_output=True, text=True)
         return "" if done.returncode == 0 and not done.stderr else f"exit {done.returncode}: {done.stderr}"
 
-    # Tests that systemd reads what cmake --install leaves without a complaint, and that the check would notice one.
+    # Tests that systemd reads what cmake --install leaves without a complaint, and that the check would
+    # notice one.
     def test_verify(self):
         if shutil.which("systemd-analyze") is None:
             self.skipTest("needs systemd-analyze")
@@ -48,7 +49,7 @@ class SystemdTest(stack.TestCase):
         os.remove(os.path.join(self.prefix, "bin", "hydro-launch"))
         self.assertIn("hydro-launch", self.verify("hydro@.service", "hydro@demo.service"))
 
-    # Tests what the documentation promises: nothing is ever restarted, real-time limits, an end in order.
+    # Tests what the documentation promises: nothing is ever restarted, real-time limits, an ordered end.
     def test_promises(self):
         service = self.unit("hydro@.service")["Service"]
         self.assertEqual(service["Restart"], "no")

@@ -50,8 +50,9 @@ class PlacementTest(stack.TestCase):
                     threads.append(int(task))
         return threads
 
-    # Tests processor, priority and memory of every program, each with other values, the logger included: for all
-    # threads, because a thread without them would delay the others. Nobody waits for the one that prints.
+    # Tests processor, priority and memory of every program, including the logger, each with other values.
+    # They apply to all threads, because a thread without them would delay the others. The thread that prints
+    # is exempt, because no other waits for it.
     def test_each_program(self):
         if not permitted():
             self.skipTest("real-time priority and locked memory are not permitted to this user")
@@ -80,7 +81,7 @@ class PlacementTest(stack.TestCase):
                 wished = 0 if aside else priority
                 self.assertEqual(os.sched_getscheduler(thread), os.SCHED_FIFO if wished else os.SCHED_OTHER, role)
                 self.assertEqual(os.sched_getparam(thread).sched_priority, wished, role)
-            # By default memory is locked where there is a priority; the key says otherwise.
+            # By default, memory is locked where there is a priority; the key can change that.
             is_locked = locked_kb(pids[role]) > 0
             self.assertEqual(is_locked, lock != "false" and (priority > 0 or lock == "true"), role)
         self.assertEqual(asides, {"plant": 1, "pressure_ctrl": 0, "position_ctrl": 0, "logger": 0})

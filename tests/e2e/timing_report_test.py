@@ -14,7 +14,8 @@ TIMES = ("period_us", "latency_us", "round_trip_us")
 
 
 class ReportTest(stack.TestCase):
-    # Tests both reports of one run against each other, against themselves and against the contents of the log.
+    # Tests both reports of one run against each other, against themselves and against the contents of the
+    # log.
     def test_report(self):
         log_file, report_file = self.path("run.lcmlog"), self.path("report.json")
         launch = self.launch(stack.config("demo.toml"), "--duration", str(DURATION), "--log", log_file, "--timing",
@@ -32,7 +33,7 @@ class ReportTest(stack.TestCase):
         timing = self.run_program("hydro-log", "timing", log_file, "--json", again_file, "--page", page_file)
         with open(again_file, encoding="utf-8") as file:
             again = json.load(file)
-        # The logger's own last words are not in its log: they were said after it.
+        # The logger's own last messages are not in its log, because it sent them afterwards.
         for one, other in zip(self.by_role(report).items(), self.by_role(again).items()):
             if one[0] != "logger":
                 self.assertEqual(one, other)
@@ -59,7 +60,7 @@ class ReportTest(stack.TestCase):
         answered = {c.tick for c in log.motor_commands if c.status != event_log.STOPPED}
         self.assertLessEqual(trips["count"], len(answered))
         self.assertGreaterEqual(trips["count"], len(answered) - 50)
-        # From the sending of a state to its command's arrival holds the pressure loop's own time.
+        # The time from sending a state to its command's arrival includes the pressure loop's own time.
         self.assertGreater(trips["min"], processes["pressure_ctrl"]["histograms"]["latency_us"]["min"])
         self.assertEqual(processes["pressure_ctrl"]["total"]["cycles"], len(answered))
         self.assertEqual(processes["position_ctrl"]["total"]["cycles"], len(log.pressure_commands))
@@ -83,7 +84,7 @@ class ReportTest(stack.TestCase):
                 self.assertEqual(edges, sorted(edges), where)
                 self.assertLessEqual(edges[0], histogram["min"], where)
                 self.assertGreaterEqual(edges[-1], histogram["max"], where)
-            # The percentiles of the report on the whole run are those of the histogram, to within its ranges.
+            # The percentiles in the report on the whole run are those of the histogram, to within its ranges.
             total = process["total"]
             for name in ("period_us", "latency_us"):
                 for key in ("p50", "p99"):
@@ -100,7 +101,7 @@ class ReportTest(stack.TestCase):
         self.assertEqual(plots, page.count("</svg>"))
         for process in report["processes"]:
             self.assertIn(f"<h2>{process['role']} on ", page)
-        # It needs nothing from elsewhere.
+        # The page needs nothing from elsewhere.
         self.assertEqual(re.findall(r"(?:src|href)\s*=|url\(|@import|<script", page), [])
         self.assertNotIn("nan", page)
 

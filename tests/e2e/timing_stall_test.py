@@ -11,28 +11,29 @@ MOST = int(STALL * timing_case.RATE)
 
 class StallTest(timing_case.TimingCase):
     def start_at_rest(self, **options):
-        # What is commanded at the moment goes on acting for a while: nothing is.
+        # The command in force continues to act for a while, so the reference asks for no motion.
         self.start_stack("--set", f"limits.stale_input_s={STALE}", "--set", "reference.steps=[[0, 0]]", "--set",
                          "noise={}", **options)
 
     def stall(self, role, **options):
         self.start_at_rest(**options)
         self.hold(role, STALL)
-        # Control is back when the law acts again on states from after the stall.
+        # Control has returned when the law acts again on states from after the stall.
         states = self.live.count("HYDRO_STATE")
         resumed = self.live.wait_for("HYDRO_STATE", lambda s: True, "a state after the stall", start=states)
         self.live.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW and c.tick > resumed.tick,
                            "a command of the law after the stall", start=self.live.count("HYDRO_MOTOR_COMMAND"))
         self.live.wait_for_tick(self.live.messages["HYDRO_STATE"][-1].tick + 300)
         log = self.finish()
-        # Whatever happened: ticks once and in order, samples in their phase, causes before effects.
+        # In all cases ticks come once and in order, samples come in their phase, and causes come before
+        # effects.
         skipped = self.check_ticks(log)
         self.check_phase(log)
         self.check_cause_and_effect(log)
         return log, skipped
 
-    # Tests that a stalled plant skips all ticks of that time at once, counts them, and says so in its next state; the
-    # slow loop counts the samples for which there was no state.
+    # Tests that a stalled plant skips all ticks of that time at once, counts them, and reports them in its
+    # next state, and that the slow loop counts the samples for which there was no state.
     def test_plant(self):
         log, skipped = self.stall("plant")
         longest = max(s.skipped_ticks for s in log.states)
@@ -48,7 +49,8 @@ class StallTest(timing_case.TimingCase):
         answered = {c.tick for c in log.motor_commands if c.status != event_log.STOPPED}
         unanswered = [s.tick for s in log.states if s.tick not in answered and s.tick < max(answered)]
         total = self.totals(log)["pressure_ctrl"]
-        # It loses pressure commands too; of those that it did not lose some may never have been in force.
+        # The loop loses pressure commands too, and some of those that it did not lose may never have been in
+        # force.
         used = {c.pressure_command_tick for c in log.motor_commands}
         unused = [c for c in log.pressure_commands if c.tick not in used]
         print(f"{len(unanswered)} states unanswered, {total.lost_messages} messages lost")
@@ -56,11 +58,11 @@ class StallTest(timing_case.TimingCase):
             self.assertGreater(len(unanswered), 0)
         self.assertGreaterEqual(total.lost_messages, len(unanswered))
         self.assertLessEqual(total.lost_messages, len(unanswered) + len(unused))
-        # What was sent meanwhile either waited or was lost.
+        # What was sent in the meantime either waited or was lost.
         waited = self.histogram(log, "pressure_ctrl", "queue_depth").highest
         self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
 
-    # Tests that a stalled slow loop goes on in its phase and counts the samples and states that it missed.
+    # Tests that a stalled slow loop continues in its phase and counts the samples and states that it missed.
     def test_position_ctrl(self):
         log, _ = self.stall("position_ctrl", few_may_wait="position_ctrl")
         total = self.totals(log)["position_ctrl"]
@@ -68,13 +70,13 @@ class StallTest(timing_case.TimingCase):
         last = max(sampled)
         due = [s.tick for s in log.states if s.tick % timing_case.INTERVAL == 0 and s.tick < last]
         missed = [tick for tick in due if tick not in sampled]
-        # What was due and had a state, and what the plant itself had skipped.
+        # The samples that were due and had a state, and those that the plant itself had skipped.
         absent = last // timing_case.INTERVAL + 1 - len([t for t in due if t != last]) - 1
         self.assertEqual(total.missed_deadlines, len(missed) + absent)
         waited = self.histogram(log, "position_ctrl", "queue_depth").highest
         self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
 
-    # Tests that a stalled logger neither disturbs control nor hides what it did not get.
+    # Tests that a stalled logger neither disturbs control nor hides which messages it did not get.
     def test_logger(self):
         self.start_at_rest()
         before = self.live.count("HYDRO_STATE")

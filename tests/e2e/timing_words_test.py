@@ -28,8 +28,8 @@ class WordsTest(stack.TestCase):
         os.set_blocking(writing, True)
         return reading, writing
 
-    # Tests that a plant whose output nobody reads goes on ticking while it has something to print: a fault begins and
-    # ends. When its output is read at last, it is all there.
+    # Tests that a plant whose output is not read continues to tick while it has something to print, at the
+    # beginning and end of a fault. When its output is read at last, all of it is there.
     def test_full_pipe(self):
         log_file = self.path("run.lcmlog")
         run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--set",

@@ -45,14 +45,14 @@ class TortureRealTest(fault_case.FaultCase):
             print(f"{schedule.name}: {different or f'{len(found)} faults, the same'}", flush=True)
             if not different:
                 return
-            # A machine that stalls a process for longer than its limit is one more fault than the schedule has. The plant says so;
-            # one that says so whenever it is asked is wrong.
+            # When a machine stalls a process for longer than its limit, the run has one fault more than the
+            # schedule. The plant reports this. A plant that reports it in every attempt is wrong.
             if late(found) <= late(expected) or not left:
                 self.fail(f"{different}\nsimulated:\n{fault_sequence.listed(expected)}real:\n{fault_sequence.listed(found)}")
             print(f"{schedule.name}: once more, because this machine has stalled the plant", flush=True)
 
-    # Tests that it is noticed when the real processes meet something else than the simulated ones: a loop hangs for longer than its
-    # limit here, not there.
+    # Tests that it is noticed when the real processes meet something different from the simulated ones: here
+    # a loop hangs for longer than its limit, there it does not.
     def test_another_run_is_noticed(self):
         schedule = torture_schedule.Schedule(os.path.join(torture_schedule.SHIPPED, "far_tick.torture"))
         expected = torture_schedule.simulate(self, schedule)

@@ -39,8 +39,8 @@ class Schedule:
         """What of the faults in a run of it does not depend on chance."""
         for injection in self.injections:
             if injection.kind == "other_configuration":
-                # The process that is refused: it leaves without a fault if it hears the plant first, and complains of another
-                # process if it hears that first.
+                # These are the faults of the process that is refused. It leaves without a fault if it hears
+                # the plant first, and reports another process if it hears that first.
                 faults = [f for f in faults if (f.source, f.code) != (injection.target, "other_configuration")]
         return faults
 

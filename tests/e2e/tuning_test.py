@@ -25,7 +25,8 @@ class TuningTest(fault_case.FaultCase):
         self.assertIn("pressure: identical", done.stdout)
         self.assertIn("position: identical", done.stdout)
 
-    # Tests that a change acts on the tick that is named, in both loops, that the replay of its log follows it, and that the summary tells it.
+    # Tests that a change acts on the named tick in both loops, that the replay of its log follows it, and
+    # that the summary reports it.
     def test_change_and_undo(self):
         self.start_moving()
         done = self.set("position.c2=900", "pressure.natural_frequency_rad_s=140")
@@ -36,7 +37,7 @@ class TuningTest(fault_case.FaultCase):
         self.set("--undo")
         self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +1200 ")
         log = self.finish()
-        # Each loop from its first tick at or after the one that is named, which a late plant may have skipped.
+        # Each loop acts from its first tick at or after the named one, which a late plant may have skipped.
         for since, every in ((tick[3], 1), (tick[2], 5)):
             self.assertEqual(int(since), min(s.tick for s in log.states if s.tick >= int(tick[1]) and s.tick % every == 0))
         self.assertEqual([f for f in log.faults if f.code not in ("late_plant", "stale_state", "stale_motor_command")], [])
@@ -45,7 +46,7 @@ class TuningTest(fault_case.FaultCase):
         self.assertIn(f"tuned: version 1 from tick {tick[1]} on: position.c2 = 900, pressure.natural_frequency_rad_s = 140 (hydro-set)", summary)
         self.assertRegex(summary, r"(?m)^tuned: version 2 from tick \d+ on: position\.c2 as configured, pressure\.natural_frequency_rad_s as configured \(hydro-set\)$")
 
-    # Tests that what is refused is said with the reason and exit code 1, and changes nothing.
+    # Tests that a refusal is reported with its reason and exit code 1, and changes nothing.
     def test_refused(self):
         self.start_moving()
         for changes, says in (
@@ -55,7 +56,7 @@ class TuningTest(fault_case.FaultCase):
             done = self.set(*changes, expect=1)
             self.assertRegex(done.stderr, says)
             self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
-        # What nobody could do is said without asking the stack.
+        # Requests that can never succeed are refused without asking the stack.
         for changes, says in ((("plant.rate_hz=500",), "plant.rate_hz: cannot be changed while the stack runs"),
                               (("position.c3=5",), 'position.c3: no such value, did you mean "position.c1"'),
                               (("c2=900",), "c2: no such value, did you mean position.c2?")):
@@ -63,7 +64,7 @@ class TuningTest(fault_case.FaultCase):
         self.assertIn("in force: version 0: as configured", self.set("--list").stdout)
         self.finish()
 
-    # Tests wrong usage, and that nobody is there.
+    # Tests wrong usage, and the case that no stack is there.
     def test_bad_usage(self):
         self.config_file = stack.config("demo.toml")
         for arguments, says in (((), "found nothing to do"), (("position.c2=1", "--undo"), "--undo: found"),
@@ -79,12 +80,13 @@ class TuningTest(fault_case.FaultCase):
         self.config_file = lonely
         self.assertIn("no running stack is heard on " + self.url, self.set("position.c2=1", expect=1).stderr)
 
-    # Tests that the saved file is the configuration with only the changed lines changed, and that a stack starts with it.
+    # Tests that the saved file is the configuration with only the changed lines changed, and that a stack
+    # starts with it.
     def test_save(self):
         self.start_moving()
         saved = self.path("saved.toml")
         self.set("position.c2=900", "--save", saved)
-        # To the standard output it goes alone; what else is said goes to the standard error.
+        # On standard output the file stands alone; all other text goes to standard error.
         printed = self.set("--list", "--save", "-")
         self.assertRegex(printed.stdout, r"^#")
         self.assertRegex(printed.stdout, r"(?m)^c2 = 900 +# psi s/rad")
@@ -95,7 +97,7 @@ class TuningTest(fault_case.FaultCase):
         self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")
         self.run_program("hydro-sim", saved, "--duration", "0.2", "-o", self.path("saved.lcmlog"))
 
-    # Tests that in a stack with a key only who has it changes anything.
+    # Tests that in a stack with a key only a holder of the key can change anything.
     def test_sealed(self):
         key = self.path("stack.key")
         self.config_file = self.moving()
@@ -109,7 +111,8 @@ class TuningTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual({s.version for s in log.of("HYDRO_SETTINGS")}, {0, 1})
 
-    # Tests that a controller that is killed and started again acts by the values in force, from its first command on.
+    # Tests that a controller that is killed and started again uses the values in force from its first command
+    # on.
     def test_controller_restarted(self):
         self.start_moving()
         self.set("position.c2=900")

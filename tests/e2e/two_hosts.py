@@ -15,9 +15,10 @@ URL = f"udpm://{GROUP}:{PORT}?ttl=1"  # nothing crosses with ttl=0
 HOSTS = ("rig", "desk")
 
 
-# Small steps from a standing start and back: a machine that is late for many ticks does not take the arm to its limit.
+# Small steps from a standing start and back, so that a machine that is late for many ticks does not take the
+# arm to its limit.
 GENTLE = ("--set", "reference.steps=[[0.2, 0.1], [2.2, 0.0], [4.4, 0.1]]")
-# Nothing on such a machine is late by that much.
+# Even on such a machine, nothing is late by that much.
 PATIENT = ("--set", "limits.stale_input_s=5")
 
 
@@ -31,9 +32,10 @@ def sections(hosts):
 
 
 class TestCase(stack.TestCase):
-    # Where the programs run. Without a section for it, a logger runs on each host whose launch is given --log.
+    # The hosts on which the programs run. Without a section for it, a logger runs on each host whose launch
+    # is given --log.
     layout = {"hydro-plant": "rig", "hydro-pressure-ctrl": "rig", "hydro-position-ctrl": "desk", "hydro-logger": "desk"}
-    # Options of relay.py; None: a cable.
+    # Options of relay.py. None: a cable.
     relay_options = None
 
     def setUp(self):

@@ -54,7 +54,8 @@ class UncertainMachinesTest(stack.TestCase):
         self.check_the_papers_equations()
 
     def check_the_stack(self):
-        # The stack waits for 0.1 s before the step, so its integrator takes other steps: its tolerance is 1e-8.
+        # The stack waits for 0.1 s before the step, so its integrator takes other steps. Its tolerance is
+        # 1e-8.
         numbers = {*range(14), *self.slowest[:3], *self.most_overshoot[:3]}
         self.assertGreaterEqual(len(numbers), 17)
         for number in sorted(numbers):

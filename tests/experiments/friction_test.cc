@@ -254,7 +254,8 @@ TEST(PumpFrictionTest, Errors) {
               HasSubstr("found 2 different speeds in 4 steady holds"));
 }
 
-// Tests that times in another unit than is said, which would make days of holds, are refused at once with the unit that is meant.
+// Tests that times in another unit than is said, which would make days of holds, are refused at once with the
+// unit that is meant.
 TEST(FrictionRunFile, TimesInAnotherUnit) {
   const std::string stem = testing::TempDir() + "/friction_times";
   const runs::MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);

@@ -30,7 +30,8 @@ class ConverterLinkTest : public ::testing::Test {
   hydro_readings readings_{};
 };
 
-// Tests that there are no values before the first, that they are as sent, and that they hold until they are stale.
+// Tests that there are no values before the first, that they are as sent, and that they hold until they are
+// stale.
 TEST_F(ConverterLinkTest, ValuesHoldUntilTheyAreStale) {
   Read();
   EXPECT_FALSE(readings_.answered);

@@ -37,7 +37,8 @@ inline hydro_sensor_settings Rate(float share = 1) {
   return {HYDRO_SENSOR_RATE, 0, 0, 1, 0, share, -kInfinity, kInfinity};
 }
 
-// p1 and p2 at 100 psi per V, the motor's encoder at 0.01 rad a count, the arm at 1 rad per V; a watchdog of 20 ticks.
+// p1 and p2 at 100 psi per V, the motor's encoder at 0.01 rad a count, the arm at 1 rad per V; a watchdog of
+// 20 ticks.
 inline hydro_settings BenchSettings(uint8_t mode = HYDRO_REMOTE_IO) {
   hydro_settings settings{};
   settings.mode = mode;

@@ -26,7 +26,8 @@ class DeviceLoopTest : public ::testing::Test {
   DeviceBench bench_{Settings()};
 };
 
-// Tests that the voltage of each tick is what the computer's law gives for the sample of that tick, saturation included.
+// Tests that the voltage of each tick is what the computer's law gives for the sample of that tick,
+// saturation included.
 TEST_F(DeviceLoopTest, VoltageIsThatOfTheComputersLaw) {
   bench_.Armed();
   std::mt19937 random(2);
@@ -52,8 +53,8 @@ TEST_F(DeviceLoopTest, VoltageIsThatOfTheComputersLaw) {
   EXPECT_LT(saturated, 4500);
 }
 
-// Tests that a change of gains leaves the voltage where it was in its tick, and that it then goes to the new law's in
-// even steps; and that a second change on the way does not make it jump either.
+// Tests that a change of gains leaves the voltage where it was in its tick, and that it then goes to the new
+// law's in even steps; and that a second change on the way does not make it jump either.
 TEST_F(DeviceLoopTest, ChangeOfGainsIsBumpless) {
   bench_.Armed();
   const hydro_gains before{0.01F, 0, 0, 0}, after{0.02F, 0, 0, 0}, last{0.005F, 0, 0, 0};
@@ -73,7 +74,8 @@ TEST_F(DeviceLoopTest, ChangeOfGainsIsBumpless) {
   EXPECT_EQ(bench_.sample.transfer, 0);
 }
 
-// Tests that there is no transfer from a voltage that was not the law's: after arming, and after a voltage passed on.
+// Tests that there is no transfer from a voltage that was not the law's: after arming, and after a voltage
+// passed on.
 TEST_F(DeviceLoopTest, NoTransferFromElsewhere) {
   bench_.Armed();
   bench_.Tick();

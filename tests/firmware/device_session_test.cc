@@ -35,7 +35,8 @@ TEST(DeviceSessionTest, Handshake) {
   EXPECT_EQ(hydro_fingerprint(&held->body.held.settings), hydro_fingerprint(&bench.settings));
 }
 
-// Tests that settings which are refused leave those in force, and that none are taken while the device is armed.
+// Tests that settings which are refused leave those in force, and that none are taken while the device is
+// armed.
 TEST(DeviceSessionTest, SettingsRefused) {
   DeviceBench bench;
   bench.Ready();
@@ -55,8 +56,8 @@ TEST(DeviceSessionTest, SettingsRefused) {
   EXPECT_EQ(bench.Sent(HYDRO_SETTINGS_HELD)->body.held.refused, HYDRO_REFUSED_ARMED);
 }
 
-// Tests that commands made for other settings are not obeyed and trip an armed device, and that an arm request is not
-// taken with another fingerprint.
+// Tests that commands made for other settings are not obeyed and trip an armed device, and that an arm
+// request is not taken with another fingerprint.
 TEST(DeviceSessionTest, WrongFingerprint) {
   DeviceBench bench;
   bench.Ready();
@@ -174,8 +175,8 @@ TEST(DeviceSessionTest, ZeroIsObeyedFromAnybody) {
   }
 }
 
-// Tests that a second computer gets an answer but not the device, while the first one drives or is heard; and gets it,
-// without settings, a quarter of a second after the first one fell silent.
+// Tests that a second computer gets an answer but not the device, while the first one drives or is heard; and
+// gets it, without settings, a quarter of a second after the first one fell silent.
 TEST(DeviceSessionTest, SecondComputer) {
   DeviceBench bench;
   bench.Armed();
@@ -254,8 +255,8 @@ TEST(DeviceSessionTest, SamplesEverySoManyTicks) {
   }
 }
 
-// Tests that bit errors, losses, repetitions and exchanges of commands at rates from 1e-5 to 1e-2 change nothing but
-// counts: the device stays armed, and obeys commands that were sent, in their order.
+// Tests that bit errors, losses, repetitions and exchanges of commands at rates from 1e-5 to 1e-2 change
+// nothing but counts: the device stays armed, and obeys commands that were sent, in their order.
 TEST(DeviceSessionTest, DamagedLink) {
   for (const double rate : {1e-5, 1e-4, 1e-3, 1e-2}) {
     std::mt19937 random(13);

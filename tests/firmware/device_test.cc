@@ -63,8 +63,8 @@ TEST(DeviceTest, VoltageIsLimited) {
   }
 }
 
-// Tests that N ticks after the tick that took the last command the output is at zero, for several N: not one tick
-// earlier, not one later.
+// Tests that N ticks after the tick that took the last command the output is at zero, for several N: not one
+// tick earlier, not one later.
 TEST(DeviceTest, WatchdogCountsTicks) {
   for (const uint32_t n : {1U, 2U, 20U, 1000U}) {
     hydro_settings settings = BenchSettings();
@@ -80,7 +80,8 @@ TEST(DeviceTest, WatchdogCountsTicks) {
   }
 }
 
-// Tests that arming without any command trips too, that missed ticks count, and that commands in time keep it armed.
+// Tests that arming without any command trips too, that missed ticks count, and that commands in time keep it
+// armed.
 TEST(DeviceTest, WatchdogFromArmingOn) {
   DeviceBench bench;
   bench.Armed();
@@ -106,8 +107,8 @@ TEST(DeviceTest, WatchdogFromArmingOn) {
   }
 }
 
-// Tests each cause: zero volts in the tick that finds it, the fault latched, no obedience afterwards, no re-arm while
-// it is present, and obedience after a re-arm once it has gone.
+// Tests each cause: zero volts in the tick that finds it, the fault latched, no obedience afterwards, no
+// re-arm while it is present, and obedience after a re-arm once it has gone.
 TEST(DeviceTest, CausesOfZeroVolts) {
   struct Cause {
     const char* what;
@@ -223,8 +224,9 @@ TEST(DeviceTest, CommandsThatAreNone) {
   }
 }
 
-// Tests that in any sequence of frames, readings and missed ticks the output is at zero unless the device is armed, and
-// never beyond its limit: 300000 random ticks, most of them on devices that are armed again and again.
+// Tests that in any sequence of frames, readings and missed ticks the output is at zero unless the device is
+// armed, and never beyond its limit: 300000 random ticks, most of them on devices that are armed again and
+// again.
 TEST(DeviceTest, NeverDrivesUnasked) {
   std::mt19937 random(11);
   int armed = 0, driving = 0;

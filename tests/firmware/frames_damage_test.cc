@@ -1,4 +1,5 @@
-// What damage on the wire does: nothing damaged is taken for a frame, and the next frame that arrives whole is found.
+// What damage on the wire does: nothing damaged is taken for a frame, and the next frame that arrives whole
+// is found.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,8 +66,8 @@ TEST_F(FramesDamageTest, Truncated) {
   }
 }
 
-// Tests a byte that is lost, one that comes twice, two that change places, and a foreign one, at each position. A
-// neighbour of the same value makes no damage, nor do delimiters that come twice.
+// Tests a byte that is lost, one that comes twice, two that change places, and a foreign one, at each
+// position. A neighbour of the same value makes no damage, nor do delimiters that come twice.
 TEST_F(FramesDamageTest, BytesLostDoubledExchangedAdded) {
   for (const uint8_t kind : kKinds) {
     const Bytes wire = Wire(AnyFrame(kind, random_));
@@ -116,8 +117,8 @@ TEST_F(FramesDamageTest, NoEnd) {
   EXPECT_EQ(receiver.bad, 0U);
 }
 
-// Tests streams at bit error rates from 1e-5 to 1e-2: what is found was sent, in order and once, and every frame whose
-// bytes all arrived whole is found.
+// Tests streams at bit error rates from 1e-5 to 1e-2: what is found was sent, in order and once, and every
+// frame whose bytes all arrived whole is found.
 TEST_F(FramesDamageTest, BitErrorRates) {
   for (const double rate : {1e-5, 1e-4, 1e-3, 1e-2}) {
     std::bernoulli_distribution wrong(rate);
@@ -144,7 +145,8 @@ TEST_F(FramesDamageTest, BitErrorRates) {
   }
 }
 
-// Tests that noise is never taken for a frame: two million bytes, of which some are drawn to look like frames.
+// Tests that noise is never taken for a frame: two million bytes, of which some are drawn to look like
+// frames.
 TEST_F(FramesDamageTest, Noise) {
   hydro_receiver receiver{};
   for (int piece = 0; piece < 40000; ++piece) {

@@ -107,8 +107,8 @@ TEST(FramesTest, FieldsOfASample) {
   EXPECT_EQ(sample.frames_refused, 0x1F20);
 }
 
-// Tests that a hello and an identity of a later protocol, which may be longer, are found and say so, and that no other
-// frame of another protocol is.
+// Tests that a hello and an identity of a later protocol, which may be longer, are found and say so, and that
+// no other frame of another protocol is.
 TEST(FramesTest, OtherProtocols) {
   for (const uint8_t kind : kKinds) {
     for (const size_t more : {0, 5}) {

@@ -37,8 +37,8 @@ double Size(const hydro_gains& gains, const hydro_law_input& input) {
          std::fabs(double{gains.reference_feedforward} * double{input.pressure_ref});
 }
 
-// Tests that a million random inputs give the voltages of the C++ law, to the rounding of single precision: no term
-// passes through more than six roundings of 2^-24.
+// Tests that a million random inputs give the voltages of the C++ law, to the rounding of single precision:
+// no term passes through more than six roundings of 2^-24.
 TEST(LawTest, GivesTheVoltagesOfTheComputersLaw) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;

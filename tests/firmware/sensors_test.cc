@@ -46,7 +46,8 @@ TEST_F(SensorsTest, ScaleAndOffset) {
   EXPECT_EQ(hydro_sensors_faults(&sensors_), 0);
 }
 
-// Tests that a counter is followed over its wrap both ways, whatever its bits, and begins below zero just below the wrap.
+// Tests that a counter is followed over its wrap both ways, whatever its bits, and begins below zero just
+// below the wrap.
 TEST_F(SensorsTest, CounterWraps) {
   for (const uint8_t bits : {8, 16, 24, 31, 32}) {
     hydro_sensors_begin(&sensors_);
@@ -98,7 +99,8 @@ TEST_F(SensorsTest, CounterIsLost) {
   EXPECT_TRUE(std::isnan(Value(HYDRO_MOTOR_SPEED)));
 }
 
-// Tests that a speed is the rate of its angle over the ticks that passed: one, several, and those without an answer.
+// Tests that a speed is the rate of its angle over the ticks that passed: one, several, and those without an
+// answer.
 TEST_F(SensorsTest, RatesOverTicks) {
   const auto speed = [&](uint32_t count, uint32_t elapsed) {
     readings_.counter[0] = count;
@@ -115,7 +117,8 @@ TEST_F(SensorsTest, RatesOverTicks) {
   EXPECT_FLOAT_EQ(speed(58, 1), 0);
 }
 
-// Tests the low pass: its first value is the reading, then each tick takes over its share; after a gap it begins anew.
+// Tests the low pass: its first value is the reading, then each tick takes over its share; after a gap it
+// begins anew.
 TEST_F(SensorsTest, LowPass) {
   settings_.sensors[HYDRO_P1].low_pass_share = 0.25F;
   const auto read = [&](float volts) {
@@ -132,7 +135,8 @@ TEST_F(SensorsTest, LowPass) {
   EXPECT_FLOAT_EQ(read(2), 200);
 }
 
-// Tests which readings are credible: within the ends of the range, or the limits that are given instead; and numbers.
+// Tests which readings are credible: within the ends of the range, or the limits that are given instead; and
+// numbers.
 TEST_F(SensorsTest, CredibleReadings) {
   const auto credible = [&](float volts, float low, float high) {
     hydro_sensors_begin(&sensors_);

@@ -39,8 +39,8 @@ void Directions::TakeOff(Series* from) const {
   for (const Series& direction : all_) foreign_rig::Add(-Dot(direction, *from), direction, from);
 }
 
-// One column after the other takes what is best within its limits: a convex problem, which this solves however
-// alike the columns are (Tseng 2001), if slowly; they are few.
+// One column after the other takes what is best within its limits: a convex problem, which this solves
+// however alike the columns are (Tseng 2001), if slowly; they are few.
 void TakeOffWithin(const std::vector<Series>& columns, const std::vector<double>& limits, Series* from) {
   constexpr int kSweeps = 20000;
   const size_t count = columns.size();

@@ -24,8 +24,8 @@ class Directions {
   std::vector<Series> all_;  // orthonormal
 };
 
-// Takes off `from` the sum of multiples of `columns` that leaves the least squares; none beyond +/- its limit.
-// Columns may be combinations of each other, or 0.
+// Takes off `from` the sum of multiples of `columns` that leaves the least squares; none beyond +/- its
+// limit. Columns may be combinations of each other, or 0.
 void TakeOffWithin(const std::vector<Series>& columns, const std::vector<double>& limits, Series* from);
 
 }  // namespace foreign_rig

@@ -4,7 +4,8 @@
 // What other values of the plain model's parameters, or another start of each window, could explain is taken
 // off (to first order), since no one would miss an effect that they explain: an offset of both pressures is
 // another supply pressure and other starts. Values are as far off as a model file may have them: with any
-// values at all a gain of the pressures would be nothing, since the equations are the same for scaled pressures.
+// values at all a gain of the pressures would be nothing, since the equations are the same for scaled
+// pressures.
 #pragma once
 
 #include <vector>
@@ -15,8 +16,8 @@
 
 namespace foreign_rig {
 
-// Of the order of the machine's own time constants (J/b is 2 s): effects that act slowly show, and chance does
-// not grow.
+// Of the order of the machine's own time constants (J/b is 2 s): effects that act slowly show, and chance
+// does not grow.
 inline constexpr double kWindow = 1.2;  // s
 
 class GapMeter {
@@ -28,8 +29,8 @@ class GapMeter {
   // Infinite where the machine breaks.
   double Between(const Rig& with, const Rig& without) const;
 
-  // The same, and what is left of it beyond what other values of `without`, within twice their uncertainty, and
-  // other starts of its windows explain. Takes some ten times as long.
+  // The same, and what is left of it beyond what other values of `without`, within twice their uncertainty,
+  // and other starts of its windows explain. Takes some ten times as long.
   struct Parts {
     double gap, beyond;
   };

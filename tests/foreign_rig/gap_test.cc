@@ -1,4 +1,5 @@
-// The gap between a rig and one that lacks what is hidden in it: what other values and starts explain is none.
+// The gap between a rig and one that lacks what is hidden in it: what other values and starts explain is
+// none.
 #include "tests/foreign_rig/gap.h"
 
 #include <gtest/gtest.h>
@@ -26,8 +27,8 @@ TEST(Directions, TakeOffWhatTheySpan) {
   EXPECT_NEAR(across[3], 2, 1e-12);
 }
 
-// Tests that columns explain up to their limits and share what they both explain, also where they are alike or
-// nothing.
+// Tests that columns explain up to their limits and share what they both explain, also where they are alike
+// or nothing.
 TEST(Directions, LimitsAreKept) {
   Series y = {10, 4, 1};
   TakeOffWithin({{1, 0, 0}, {0, 2, 0}, {0, 0, 0}}, {3, 5, 1}, &y);
@@ -94,8 +95,8 @@ TEST_F(Gap, EqualOffsetsAreOtherStarts) {
   EXPECT_GT(Kept(opposed), 2 * kept);
 }
 
-// Tests that other values take a part of a small gain and less of a large one: equations of scaled pressures are
-// the same with scaled values, which are not known to be so far off.
+// Tests that other values take a part of a small gain and less of a large one: equations of scaled pressures
+// are the same with scaled values, which are not known to be so far off.
 TEST_F(Gap, GainIsPartlyOtherValues) {
   Effects small, large;
   small.gain = 0.015;

@@ -1,5 +1,5 @@
-// How a run begins: the day's values, bristles, pipes, and a state in which nothing moves; and what of a start
-// is free.
+// How a run begins: the day's values, bristles, pipes, and a state in which nothing moves; and what of a
+// start is free.
 #include <algorithm>
 #include <cmath>
 

@@ -41,8 +41,8 @@ Sized FindSize(const GapMeter& meter, const Rig& plain, double smallest, double 
   const auto gap_at = [&](double size) { return meter.Between(put(size), plain); };
   Sized found;
   found.size = std::sqrt(smallest * largest);
-  // What values and starts take of the gap is guessed, then corrected by how the rest grew with the whole: faster,
-  // where values explain all up to their limits.
+  // What values and starts take of the gap is guessed, then corrected by how the rest grew with the whole:
+  // faster, where values explain all up to their limits.
   double goal = asked / 0.6;
   GapMeter::Parts last{0, 0};
   for (int round = 0; round < 6; ++round) {

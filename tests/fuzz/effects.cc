@@ -13,7 +13,8 @@
 namespace hydro::fuzz {
 namespace {
 
-// With the values of its examples, as a plant runs it for some ticks. Formulas may lead anywhere: that is a ModelError.
+// With the values of its examples, as a plant runs it for some ticks. Formulas may lead anywhere: that is a
+// ModelError.
 void Runs(const std::shared_ptr<const model::EffectFormulas>& formulas) {
   model::ModelDescription rig = settings::ParseModel(settings::kModelText, "model.toml");
   model::EffectDescription effect;

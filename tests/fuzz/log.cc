@@ -59,8 +59,8 @@ void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
   Accepts([&] { hydro_log::Replay(log, hydro_log::ReplayedController::kPosition, 0); });
 }
 
-// The bytes as the data of messages in a log with checksums, of which one byte is then changed: whatever it is,
-// the log is not called complete, and what is read of it is its beginning.
+// The bytes as the data of messages in a log with checksums, of which one byte is then changed: whatever it
+// is, the log is not called complete, and what is read of it is its beginning.
 void ChangeOneByte(const uint8_t* data, size_t size, const ScratchFolder& folder) {
   if (size < 8) return;
   const std::string file = folder.Path("checked");

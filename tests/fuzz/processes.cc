@@ -49,8 +49,8 @@ class Input {
 };
 
 // Sends the next message: a byte for its row in the table of messages, one for the time since the previous
-// message, one for the size, and its fields (the type's hash goes before them). Messages in `left_out` are not
-// sent.
+// message, one for the size, and its fields (the type's hash goes before them). Messages in `left_out` are
+// not sent.
 void SendNext(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock,
               std::optional<size_t> left_out) {
   static const bus::Channels channels;
@@ -128,8 +128,8 @@ void Processes(const uint8_t* data, size_t size) {
   position.Finish();
 }
 
-// The plant with its voltage guard hears one message of the input at each state that it sends, re-arm requests
-// among them. Nobody else sends states here.
+// The plant with its voltage guard hears one message of the input at each state that it sends, re-arm
+// requests among them. Nobody else sends states here.
 void Plant(const uint8_t* data, size_t size) {
   Stage stage(data, size);
   Input& input = stage.input;

@@ -29,7 +29,8 @@ loop_statistics_t Report(double interval_s, int64_t cycles, double p50_us, doubl
 // Tests that hearing nothing prints nothing.
 TEST(RunSummaryTest, EmptyWithoutReports) { EXPECT_THAT(RunSummary().Lines(), IsEmpty()); }
 
-// Tests that a status has what the last report says, with a fault that lasts, and fits a terminal of 80 columns.
+// Tests that a status has what the last report says, with a fault that lasts, and fits a terminal of 80
+// columns.
 TEST(RunSummaryTest, Status) {
   RunSummary summary;
   EXPECT_THAT(summary.Status(), IsEmpty());

@@ -196,8 +196,8 @@ TEST_F(StackLaunchTest, ASlowReaderGetsAll) {
   EXPECT_EQ(slow.unread_bytes, 0u) << "all was taken";
 }
 
-// Tests that another host's logger keeps nobody from starting a stack that is spread over hosts, as another plant does; and on one
-// machine it does.
+// Tests that another host's logger keeps nobody from starting a stack that is spread over hosts, as another
+// plant does; and on one machine it does.
 TEST_F(StackLaunchTest, AnotherHostsLoggerIsNoOtherStack) {
   std::string other = "logger";
   bus_.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [&](const process_status_t& status) {

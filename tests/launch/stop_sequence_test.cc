@@ -47,7 +47,8 @@ TEST_F(StopSequenceTest, NothingBeforeItBegins) {
   EXPECT_EQ(stop_.running_first(), 2);
 }
 
-// Tests that SIGTERM waits for its time, that a later call can bring it forward only, and that each child gets it once.
+// Tests that SIGTERM waits for its time, that a later call can bring it forward only, and that each child
+// gets it once.
 TEST_F(StopSequenceTest, SigtermWhenItIsDue) {
   stop_.Begin(start_ + 3s);
   stop_.Begin(start_ + 4s);
@@ -79,7 +80,8 @@ TEST_F(StopSequenceTest, LastOnesLast) {
   EXPECT_EQ(logger_.signals, Signals{SIGTERM});
 }
 
-// Tests that a child that does not end is killed after its grace, once, and that the others wait for it no longer.
+// Tests that a child that does not end is killed after its grace, once, and that the others wait for it no
+// longer.
 TEST_F(StopSequenceTest, SigkillAfterTheGrace) {
   stop_.Begin(start_);
   stop_.TakeSteps(start_);

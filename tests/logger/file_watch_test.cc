@@ -42,7 +42,8 @@ TEST_F(FileWatchTest, ReplacedOrMoved) {
   EXPECT_EQ(watch.LookNow(), std::nullopt);
 }
 
-// Tests that a file is noticed that another program has cut, wholly or in part, or overwritten, and that growing is none of these.
+// Tests that a file is noticed that another program has cut, wholly or in part, or overwritten, and that
+// growing is none of these.
 TEST_F(FileWatchTest, CutOrOverwritten) {
   const std::string recorded(300'000, 'x'), more(100'000, 'y');
   const auto after = [&](const auto& happens) {

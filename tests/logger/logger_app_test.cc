@@ -111,8 +111,8 @@ TEST_F(LoggerAppTest, RotatesBySize) {
   for (int64_t i = 0; i < 1000; ++i) EXPECT_EQ(all[static_cast<size_t>(i)], i);
 }
 
-// Tests that each file of a rotation says that it is whole and where the recording goes on, and the last that it
-// is the end.
+// Tests that each file of a rotation says that it is whole and where the recording goes on, and the last that
+// it is the end.
 TEST_F(LoggerAppTest, RotationIsNoCut) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 20000});
   SendStates(0, 299);
@@ -128,8 +128,8 @@ TEST_F(LoggerAppTest, RotationIsNoCut) {
   }
 }
 
-// Tests that the files of a rotation joined in order are one complete log, and that one that is missing, repeated or in
-// another place is noticed.
+// Tests that the files of a rotation joined in order are one complete log, and that one that is missing,
+// repeated or in another place is noticed.
 TEST_F(LoggerAppTest, JoinedParts) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 20000});
   SendStates(0, 299);
@@ -155,8 +155,8 @@ TEST_F(LoggerAppTest, JoinedParts) {
   }
 }
 
-// Tests that a check event from the bus is not recorded, and that of refused messages a bounded number is, with
-// a remark on the rest.
+// Tests that a check event from the bus is not recorded, and that of refused messages a bounded number is,
+// with a remark on the rest.
 TEST_F(LoggerAppTest, RefusedMessagesAreBounded) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});
   const std::string data(100, 'x');

@@ -1,5 +1,5 @@
-// Tests that the balances vanish along exact simulations, that their derivatives are right, and that the states of effects are
-// found again along a known motion.
+// Tests that the balances vanish along exact simulations, that their derivatives are right, and that the
+// states of effects are found again along a known motion.
 #include "model/balances.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,8 @@ using model::BalancesOf;
 using model::KnownMotion;
 
 constexpr double kStep = 5e-4;  // s
-// What balances are measured by: the motor's torque, the pump's flow at 100 rad/s, the arm's torque at 1000 psi.
+// What balances are measured by: the motor's torque, the pump's flow at 100 rad/s, the arm's torque at 1000
+// psi.
 constexpr double kTorque = 40, kFlow = 0.8, kArm = 3680;
 
 // A simulation, sampled just before each command acts.
@@ -152,8 +153,8 @@ TEST(Balances, VanishAlongTheMotion) {
   }
 }
 
-// Tests that effects with states leave little: these are integrated along samples of the motion, which is not smooth where the
-// command jumps.
+// Tests that effects with states leave little: these are integrated along samples of the motion, which is not
+// smooth where the command jumps.
 TEST(Balances, FollowTheStatesOfEffects) {
   size_t tested = 0;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
@@ -245,7 +246,8 @@ TEST(Balances, DerivativesByEffectsAreDifferenceQuotients) {
   }
 }
 
-// Tests that a command that acts late does so between samples: the torque just before and how early before the sample's end.
+// Tests that a command that acts late does so between samples: the torque just before and how early before
+// the sample's end.
 TEST(Balances, SayWhenALateCommandActed) {
   const model::ModelDescription machine = Table1Model({{"amp.delay", {{"delay", 2.25 * kStep}}, {}}});
   model::BalanceEquations equations(machine, Held(model::Shaft::kClamped));

@@ -75,8 +75,8 @@ model::Stimulus Levels(const Case& c) {
   return stimulus;
 }
 
-// Tests that the plant's simulation and Respond read the same at every sample of a run in which the pump sticks and
-// slips both ways and the switches of valves and effects change.
+// Tests that the plant's simulation and Respond read the same at every sample of a run in which the pump
+// sticks and slips both ways and the switches of valves and effects change.
 TEST_P(OneMachine, PlantAndFitAgree) {
   const Case& c = GetParam();
   const model::Stimulus stimulus = Levels(c);

@@ -221,7 +221,8 @@ TEST(Response, DerivativesEqualDifferenceQuotients) {
   }
 }
 
-// Tests that a shaft that starts turned meets the same teeth as with another phase, though its sensor counts from 0.
+// Tests that a shaft that starts turned meets the same teeth as with another phase, though its sensor counts
+// from 0.
 TEST(Response, TurnedShaft) {
   const auto cogging = [](double phase) {
     return Table1Model({{"motor.cogging", {{"amplitude", 2}, {"periods", 6}, {"phase", phase}}, {}}});
@@ -255,8 +256,8 @@ TEST(Response, DerivativesByTheUnseenStart) {
   ExpectDerivatives(model, LevelsFor(kHoldings[0]), start, unknowns, 1e-4, "unseen");
 }
 
-// Tests that an accumulator which has taken in some oil already begins with the pressure of that, holds both sides at it, and has
-// the derivative.
+// Tests that an accumulator which has taken in some oil already begins with the pressure of that, holds both
+// sides at it, and has the derivative.
 TEST(Response, AccumulatorThatBeginsFull) {
   const model::ModelDescription model = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
   model::StartState start = SomeStart(110, 110);
@@ -326,7 +327,8 @@ TEST(Response, AConstantForceIsAWeight) {
   EXPECT_GT(Difference(weight.values, Respond(light, stimulus, SomeStart(), {}, {}).values), 0.01);
 }
 
-// Tests that a force that changes gives the arm its impulse: with the bypass open nothing else accelerates it.
+// Tests that a force that changes gives the arm its impulse: with the bypass open nothing else accelerates
+// it.
 TEST(Response, AForceGivesItsImpulse) {
   model::ModelDescription model = Table1Model();
   model.parameters.mgl = 0;
@@ -339,7 +341,8 @@ TEST(Response, AForceGivesItsImpulse) {
   EXPECT_NEAR(response.values[3].back(), 0.05 + impulse / model.parameters.J_a, 1e-9);
 }
 
-// Tests that warm oil is that of a model with less viscous friction and more leakage, and that it may warm up during the run.
+// Tests that warm oil is that of a model with less viscous friction and more leakage, and that it may warm up
+// during the run.
 TEST(Response, WarmOilIsThinner) {
   const model::ModelDescription given = Table1Model({{"fluid.viscosity", {{"rate", 0.03}}, {}}});
   model::ModelDescription warm = Table1Model();

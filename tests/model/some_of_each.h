@@ -24,8 +24,8 @@ inline model::EffectDescription ExampleOf(const model::EffectInfo& info) {
   return effect;
 }
 
-// Whether a command acts later than it is given. Such an effect's derivatives are those of its stops, and have
-// tests of their own.
+// Whether a command acts later than it is given. Such an effect's derivatives are those of its stops, and
+// have tests of their own.
 inline bool DelaysCommands(const model::EffectInfo& info) {
   const std::unique_ptr<model::Effect> effect = model::FindCatalogueEntry(info.id)->make(ExampleOf(info));
   effect->Command(0, 1);

@@ -31,8 +31,8 @@ StartState StateOf(const Measurement& measured) {
 
 double Voltage(double time) { return 4 * std::sin(9 * time); }
 
-// Tests that an actuator that begins in the state of another, at its time and in the middle of its motion, moves as that one,
-// to what the integration's tolerance of 1e-8 leaves: free and with the shaft clamped.
+// Tests that an actuator that begins in the state of another, at its time and in the middle of its motion,
+// moves as that one, to what the integration's tolerance of 1e-8 leaves: free and with the shaft clamped.
 TEST(StartedActuatorTest, GoesOnAsTheOther) {
   for (const Shaft shaft : {Shaft::kFree, Shaft::kClamped}) {
     ActuatorOptions options;
@@ -55,8 +55,8 @@ TEST(StartedActuatorTest, GoesOnAsTheOther) {
   }
 }
 
-// Tests that a measured pressure below the accumulator's, which noise may make, begins at the accumulator's, and that a state that
-// cannot be is refused.
+// Tests that a measured pressure below the accumulator's, which noise may make, begins at the accumulator's,
+// and that a state that cannot be is refused.
 TEST(StartedActuatorTest, BeginsWhereItCan) {
   StartState start{};
   start[kP1] = -5;

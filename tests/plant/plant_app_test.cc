@@ -371,7 +371,8 @@ TEST_F(PlantAppTest, SecondCommandSenderGivesZeroVolts) {
   EXPECT_EQ(faults_[0].code, "second_motor_command_sender");
 }
 
-// Tests that what came while two sent does not act after one of them has gone, although in lockstep the tick waits so long.
+// Tests that what came while two sent does not act after one of them has gone, although in lockstep the tick
+// waits so long.
 TEST_F(PlantAppTest, CommandSentBesideAnotherNeverActs) {
   bus::Clock::TimePoint answered_from{};
   on_state_ = [&](const state_t& s) {
@@ -433,8 +434,8 @@ TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
   EXPECT_LT(states_.back().tick, 20000);
 }
 
-// Tests that where a plant has slept while the held voltage drove the arm through its limit and out of its volume, the limit is named, with
-// the angle, and not the model.
+// Tests that where a plant has slept while the held voltage drove the arm through its limit and out of its
+// volume, the limit is named, with the angle, and not the model.
 TEST_F(PlantAppTest, SleepingThroughALimitNamesTheLimit) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;

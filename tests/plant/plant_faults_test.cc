@@ -201,7 +201,8 @@ class SilentJointTest : public PlantFaultsTest {
   }
 };
 
-// Tests that a joint that was heard and is no longer holds zero volts until it is heard again, and that the fault says which.
+// Tests that a joint that was heard and is no longer holds zero volts until it is heard again, and that the
+// fault says which.
 TEST_F(SilentJointTest, HoldsZeroVolts) {
   on_state_ = [this](const state_t& s) {
     if (s.tick <= 40 || s.tick >= 70) KneeIsHeard();
@@ -216,7 +217,8 @@ TEST_F(SilentJointTest, HoldsZeroVolts) {
   ExpectVoltage(74, 100, 1.5);
 }
 
-// Tests that with explicit re-arming the motor does not start again when the joint is heard again, but by a re-arm.
+// Tests that with explicit re-arming the motor does not start again when the joint is heard again, but by a
+// re-arm.
 TEST_F(SilentJointTest, WaitsForARearm) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   on_state_ = [this](const state_t& s) {
@@ -233,8 +235,8 @@ TEST_F(SilentJointTest, WaitsForARearm) {
   ExpectVoltage(83, 100, 1.5);
 }
 
-// Tests that a stop of a joint, or its failure, ends this one's run too, with its name and exit code; but not where it ends at the run's last
-// tick, and not where joints do not concern each other.
+// Tests that a stop of a joint, or its failure, ends this one's run too, with its name and exit code; but not
+// where it ends at the run's last tick, and not where joints do not concern each other.
 TEST_F(SilentJointTest, ItsEndIsOurs) {
   const auto run = [this](int64_t at, int exit_code, int64_t addressee) {
     StartAgain();
@@ -276,7 +278,8 @@ TEST_F(SilentJointTest, ItsFailureIsOurs) {
   EXPECT_LT(states_.back().tick, 53);
 }
 
-// Tests that the run waits for a joint of another process that it was told to expect, and names it when it does not come.
+// Tests that the run waits for a joint of another process that it was told to expect, and names it when it
+// does not come.
 TEST_F(SilentJointTest, IsExpected) {
   config_.time.start_timeout_s = 0.5;
   expected_ = {"joint:knee"};
@@ -308,7 +311,8 @@ TEST_F(SilentJointTest, ANewcomerIsToldOfFaults) {
   EXPECT_EQ(told[before], "joint_gone");
 }
 
-// Tests that neither a joint that was never heard nor one that has said that it leaves is missed, though a state of it comes late.
+// Tests that neither a joint that was never heard nor one that has said that it leaves is missed, though a
+// state of it comes late.
 TEST_F(SilentJointTest, WhoLeavesIsNotMissed) {
   EXPECT_EQ(Run(), 0);
   EXPECT_THAT(faults_, IsEmpty());
@@ -390,8 +394,8 @@ TEST_F(PlantFaultsTest, OneFarNumberDeafensNobody) {
   EXPECT_GT(states_.back().command_tick, 95);
 }
 
-// Tests that a launcher that falls silent after it has been heard gives zero volts until it is heard again, and that
-// one that was never there is not missed.
+// Tests that a launcher that falls silent after it has been heard gives zero volts until it is heard again,
+// and that one that was never there is not missed.
 TEST_F(PlantFaultsTest, SupervisorGone) {
   config_.last_tick = 400;
   config_.limits.stale_supervisor_s = 0.1;
@@ -478,6 +482,7 @@ TEST_F(PlantFaultsTest, Rearm) {
   EXPECT_EQ(answers_[3].kind, rearm_t::ACCEPTED);
   EXPECT_EQ(answers_[3].text, "ended excessive_motor_command");
   EXPECT_EQ(answers_[3].addressee, 5);
+  EXPECT_EQ(answers_[4].kind, rearm_t::NOTHING_LATCHED);
   EXPECT_EQ(answers_[4].text, "no fault is latched");
   ExpectVoltage(12, 6001, 0);
   ExpectVoltage(6003, 7000, 1.5);
@@ -529,8 +534,8 @@ TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
   ExpectVoltage(54, 100, 1.5);
 }
 
-// Tests that a fault which its sender no longer has, or which nobody claims, refuses no re-arm: the message that said
-// that it has ended may be lost, and one with wrong bits may name a process that never was.
+// Tests that a fault which its sender no longer has, or which nobody claims, refuses no re-arm: the message
+// that said that it has ended may be lost, and one with wrong bits may name a process that never was.
 TEST_F(PlantFaultsTest, FaultThatNobodyClaims) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   config_.last_tick = 6000;
@@ -614,7 +619,8 @@ TEST_F(PlantFaultsTest, LoggerGone) {
   ExpectVoltage(600, 3000, 1.5);
 }
 
-// Tests that made-up loggers, each heard once, are not missed, and do not hide that one is gone that had recorded.
+// Tests that made-up loggers, each heard once, are not missed, and do not hide that one is gone that had
+// recorded.
 TEST_F(PlantFaultsTest, MadeUpLoggers) {
   config_.last_tick = 3000;
   config_.limits.stale_logger_s = 0.5;

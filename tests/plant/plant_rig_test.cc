@@ -39,10 +39,14 @@ class RecordingRig : public Rig {
   OutputLeft Zero() noexcept override {
     output = 0;
     ++zeros;
+    if (waits && when_late_) std::exchange(when_late_, {})();
+    if (after_waiting) after_waiting();
     return {.accepted = accepts_zero, .voltage = reads_back};
   }
 
   bool accepts_zero = true;
+  bool waits = false;  // for its device, which does not answer
+  std::function<void()> after_waiting;
   double reads_back = 0;
 
   std::function<void(int64_t)> on_read;
@@ -132,6 +136,34 @@ TEST_F(PlantRigTest, ARefusedZeroIsAFailure) {
   EXPECT_EQ(Run(), 1);
   EXPECT_THAT(failure_,
               ::testing::HasSubstr("the output has not taken zero volts at the end, and reads back 1.25 V"));
+}
+
+// Tests that where the device has to be waited for at the end, the others are told of the end before, with
+// its reason: they need not wonder why no states come. What comes of it is this process's own failure.
+TEST_F(PlantRigTest, TheEndIsSaidBeforeALateZero) {
+  std::vector<stop_t> stops;
+  bus_.Subscribe<stop_t>("HYDRO_STOP", [&](const stop_t& stop) { stops.push_back(stop); });
+  for (const bool broken : {false, true}) {
+    stops.clear();
+    size_t said = 0;
+    rig_.waits = true;
+    rig_.accepts_zero = false;
+    rig_.after_waiting = [&] {
+      while (bus_.HandleUntil(clock_.Now()) > 0) {
+      }
+      said = stops.size();
+    };
+    if (broken) {
+      rig_.on_read = [](int64_t tick) {
+        if (tick == 7) throw RigError("board_error", "does not answer");
+      };
+    }
+    EXPECT_EQ(Run(), 1);
+    EXPECT_EQ(said, 1U);
+    ASSERT_EQ(stops.size(), 1U) << "once";
+    EXPECT_EQ(stops[0].exit_code, broken ? 1 : 0);
+    EXPECT_THAT(stops[0].reason, ::testing::HasSubstr(broken ? "does not answer" : "the run is complete"));
+  }
 }
 
 // Tests that without a command nothing but zero is driven.

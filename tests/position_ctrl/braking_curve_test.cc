@@ -54,8 +54,8 @@ TEST(BrakingCurve, LimitsTheSpeed) {
   EXPECT_LT(curve.Speed(0.01), 0.5);
 }
 
-// Tests that eq. (17) with the curve's reference asks for c2 (speed of the curve - measured speed), and that without a
-// deceleration it is as it was.
+// Tests that eq. (17) with the curve's reference asks for c2 (speed of the curve - measured speed), and that
+// without a deceleration it is as it was.
 TEST(BrakingCurve, GoesBeforeEquation17) {
   const PositionLawSettings settings = {.c1 = 20000, .c2 = 1000, .sample_interval = 0.005};
   const BrakingCurve curve(settings.c1 / settings.c2, kDeceleration);

@@ -33,7 +33,8 @@ PlanFollower Follower(double largest_speed = kNone) {
   return {0.1, {.timeout_s = 0.2, .delay_s = 0, .largest_speed = largest_speed, .largest_angle = 1}, 1000};
 }
 
-// Tests that the reference goes through the points with their speeds: a cubic's own points and speeds give that cubic.
+// Tests that the reference goes through the points with their speeds: a cubic's own points and speeds give
+// that cubic.
 TEST(PlanFollower, GoesThroughThePoints) {
   const auto angle = [](double t) { return 0.1 + 2 * t - 30 * t * t + 100 * t * t * t; };
   const auto speed = [](double t) { return 2 - 60 * t + 300 * t * t; };
@@ -55,8 +56,8 @@ TEST(PlanFollower, GoesThroughThePoints) {
   EXPECT_EQ(follower.At(150).speed, 0);
 }
 
-// Tests that a plan which comes while another waits for its delay leaves that one its turn, however fast they come; and that one
-// which acts sooner takes the place of those that wait.
+// Tests that a plan which comes while another waits for its delay leaves that one its turn, however fast they
+// come; and that one which acts sooner takes the place of those that wait.
 TEST(PlanFollower, EachOfManyPlansHasItsTurn) {
   PlanFollower follower(0.1, {.timeout_s = 0.2, .delay_s = 0.01, .largest_speed = kNone, .largest_angle = 1},
                         1000);
@@ -101,7 +102,8 @@ TEST(PlanFollower, RefusesWhatWouldGoAstray) {
   arm_plan_t torque = Plan(1, 0, {0, 1}, {0, 0}, {0, 0});
   torque.torque = {1e308, -1e308};
   EXPECT_THAT(why(torque), HasSubstr("point 0: all numbers"));
-  // Up with 40 rad/s and back within a second: a cubic with its maximum 4/27 of that above, a third of the way.
+  // Up with 40 rad/s and back within a second: a cubic with its maximum 4/27 of that above, a third of the
+  // way.
   EXPECT_THAT(why(Plan(1, 0, {0, 1}, {0, 0}, {40, 0})),
               HasSubstr("behind point 0, by its speeds: found arm angle 5.926 rad"));
   EXPECT_THAT(why(Plan(1, 0, {0, 1, 2}, {0.9, 0, 0}, {0, 0, -7})),
@@ -127,7 +129,8 @@ TEST(PlanFollower, AStrayPlanDeafensNobody) {
   EXPECT_EQ(follower.At(11).angle, 0.2);
 }
 
-// Tests that the reference never leaves the largest angle, whichever way ticks and speeds go, and that after a restart it begins anew.
+// Tests that the reference never leaves the largest angle, whichever way ticks and speeds go, and that after
+// a restart it begins anew.
 TEST(PlanFollower, NeverLeavesTheLargestAngle) {
   PlanFollower follower = Follower(2);
   ASSERT_EQ(follower.Take(Plan(1, 0, {0}, {0.9}, {0}), 6000), "");
@@ -171,7 +174,8 @@ TEST(PlanFollower, LimitsTheSpeed) {
   EXPECT_DOUBLE_EQ(follower.At(30).angle, 0.115);
 }
 
-// Tests that the newest plan counts, whatever comes behind it, and that another planner's only when the first is silent.
+// Tests that the newest plan counts, whatever comes behind it, and that another planner's only when the first
+// is silent.
 TEST(PlanFollower, FollowsOnePlannersNewest) {
   PlanFollower follower = Follower();
   ASSERT_EQ(follower.Take(Plan(1, 5, {0}, {0.2}, {0}), 0), "");
@@ -183,8 +187,8 @@ TEST(PlanFollower, FollowsOnePlannersNewest) {
   EXPECT_EQ(follower.At(305).angle, 0.4);
 }
 
-// Tests that one number that the planner has not reached deafens the loop no longer than a silent planner would, and that what is
-// repeated after that is still not followed.
+// Tests that one number that the planner has not reached deafens the loop no longer than a silent planner
+// would, and that what is repeated after that is still not followed.
 TEST(PlanFollower, OneFarNumberDeafensNobody) {
   PlanFollower follower = Follower();
   ASSERT_EQ(follower.Take(Plan(1, 7, {0.1}, {0.2}, {0}), 0), "");

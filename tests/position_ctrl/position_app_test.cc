@@ -109,8 +109,8 @@ TEST_F(PositionAppTest, AppliesEquation17) {
   EXPECT_FALSE(commands_[1].open_loop);
 }
 
-// Tests that after zero volts the reference starts from where the arm is and comes back in return_s, and that the
-// start of a run, when no command is in force yet, is no such case.
+// Tests that after zero volts the reference starts from where the arm is and comes back in return_s, and that
+// the start of a run, when no command is in force yet, is no such case.
 TEST_F(PositionAppTest, ReferenceReturnsWithoutAJump) {
   settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
   config.limits.return_s = 0.02;
@@ -140,8 +140,8 @@ TEST_F(PositionAppTest, ShortHoldDoesNotJump) {
   EXPECT_NEAR(references_[4].value, 0.09, 0.004);
 }
 
-// Tests that a loop that joins a run which has gone on without it, and one whose pressure loop reports a fault that zeroes
-// the voltage, start from where the arm is.
+// Tests that a loop that joins a run which has gone on without it, and one whose pressure loop reports a
+// fault that zeroes the voltage, start from where the arm is.
 TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
   config.time.mode = settings::TimeMode::kRealtime;
@@ -218,8 +218,8 @@ class PlannerTest : public PositionAppTest {
   }
 };
 
-// Tests that a plan is followed from ten milliseconds after the tick that it was made from, with its speed and torque ahead of
-// eq. (17): c1 = 1000, c2 = 30, k_2 = 3.68.
+// Tests that a plan is followed from ten milliseconds after the tick that it was made from, with its speed
+// and torque ahead of eq. (17): c1 = 1000, c2 = 30, k_2 = 3.68.
 TEST_F(PlannerTest, APlanIsFollowed) {
   StartPlanned();
   SendState(0, 0.02);

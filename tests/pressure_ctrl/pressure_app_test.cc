@@ -75,8 +75,8 @@ class PressureAppTest : public ::testing::Test {
   int64_t plant_session_ = 3;
 };
 
-// Tests that a command for a tick that never comes, received before the first state, when nobody can tell, does not hold up all
-// others.
+// Tests that a command for a tick that never comes, received before the first state, when nobody can tell,
+// does not hold up all others.
 TEST_F(PressureAppTest, FarCommandBeforeTheFirstState) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -198,8 +198,8 @@ TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
   EXPECT_TRUE(faults_[0].active);
 }
 
-// Tests that a law of the user's own gets the state and the reference in force, that its voltage is cut to the limit, and that one
-// that is not a number gives zero volts and a fault.
+// Tests that a law of the user's own gets the state and the reference in force, that its voltage is cut to
+// the limit, and that one that is not a number gives zero volts and a fault.
 TEST_F(PressureAppTest, RunsALawOfTheUsersOwn) {
   const settings::StackConfig config = SmallStack();
   const double limit = tuning::ValuesOf(config).pressure.voltage_limit;
@@ -424,7 +424,8 @@ TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
   EXPECT_TRUE(stops_.empty());
 }
 
-// Tests that a noisy pressure on its way back through its limit raises its fault once, and that the fault ends well below the limit.
+// Tests that a noisy pressure on its way back through its limit raises its fault once, and that the fault
+// ends well below the limit.
 TEST_F(PressureAppTest, NoiseAtALimitIsOneFault) {
   settings::StackConfig config = SmallStack();
   config.limits.rearm = settings::Rearm::kExplicit;

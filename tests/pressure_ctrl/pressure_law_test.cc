@@ -82,7 +82,8 @@ TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedForAwayFromMidstroke) {
   }
 }
 
-// Tests the same where areas, volumes and the pump's ports are unequal, for the load pressure that then takes the place of dp.
+// Tests the same where areas, volumes and the pump's ports are unequal, for the load pressure that then takes
+// the place of dp.
 TEST(PressureLawTest, DerivedGainsServeUnequalSides) {
   model::ModelDescription model;
   model.parameters = Table1();
@@ -117,8 +118,8 @@ TEST(PressureLawTest, DerivedGainsServeUnequalSides) {
   }
 }
 
-// Tests that with unequal sides the loop holds c_2 p2 - c_1 p1 over c, and that its feed-forward is the torque that the pump needs
-// while the side without load is at p_3, whichever side that is.
+// Tests that with unequal sides the loop holds c_2 p2 - c_1 p1 over c, and that its feed-forward is the
+// torque that the pump needs while the side without load is at p_3, whichever side that is.
 TEST(PressureLawTest, HoldsTheLoadPressureOfUnequalSides) {
   const double areas = 0.2, displacements = 0.1, charge = 100;
   PressureLawSettings settings;

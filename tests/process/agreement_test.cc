@@ -99,7 +99,8 @@ TEST(RemoteFaultsTest, Ends) {
   EXPECT_FALSE(faults.any(now + 2501ms));
 }
 
-// Tests that a fault counts of which only its sender's list is heard, and that a flood of made-up ones never hides it.
+// Tests that a fault counts of which only its sender's list is heard, and that a flood of made-up ones never
+// hides it.
 TEST(RemoteFaultsTest, ListsCount) {
   RemoteFaults faults([](std::string_view role, std::string_view) { return role == "pressure_ctrl"; });
   bus::Clock::TimePoint now{1h};
@@ -127,7 +128,8 @@ TEST(RemoteFaultsTest, ListsCount) {
   EXPECT_FALSE(faults.any(now));
 }
 
-// Tests that one message that says otherwise does not undo that a process agrees: a configuration does not change while it lives.
+// Tests that one message that says otherwise does not undo that a process agrees: a configuration does not
+// change while it lives.
 TEST(AgreementTest, WhoHasAgreedStaysAgreed) {
   Agreement agreement("a = 1\n");
   configuration_t announced;

@@ -40,7 +40,8 @@ class ChildLinesTest : public ::testing::Test {
   int out_ = -1, in_ = -1;
 };
 
-// Tests that lines come one by one, in however many pieces they were said, and that the end is told from silence.
+// Tests that lines come one by one, in however many pieces they were said, and that the end is told from
+// silence.
 TEST_F(ChildLinesTest, Lines) {
   ChildLines lines(out_);
   std::string line;
@@ -84,7 +85,8 @@ TEST_F(ChildLinesTest, EndlessLine) {
   talker.join();
 }
 
-// Tests that a child which says a byte now and then, or line after line, is not waited for beyond the deadline.
+// Tests that a child which says a byte now and then, or line after line, is not waited for beyond the
+// deadline.
 TEST_F(ChildLinesTest, DoesNotWaitForAChatterer) {
   for (const std::string_view word : {"x", "not yet\n"}) {
     std::atomic<bool> ended = false;

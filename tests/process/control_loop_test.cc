@@ -85,7 +85,8 @@ TEST_F(ControlLoopTest, AnswersWhatIsDue) {
   EXPECT_EQ(loop.missed(), 2) << "4 and 6";
 }
 
-// Tests that a state that comes again is answered again, one that others overtook is answered, and a forged one is not.
+// Tests that a state that comes again is answered again, one that others overtook is answered, and a forged
+// one is not.
 TEST_F(ControlLoopTest, StatesThatComeAgain) {
   NotedLoop loop(bus_, clock_, config_, 5);
   for (const int64_t tick : {0, 1, 2, 3, 4, 6}) State(tick, tick);
@@ -98,7 +99,8 @@ TEST_F(ControlLoopTest, StatesThatComeAgain) {
   EXPECT_EQ(loop.participant().tick(), 6);
 }
 
-// Tests that another plant, and the same record from its beginning, begin anew; a second plant beside the first does not.
+// Tests that another plant, and the same record from its beginning, begin anew; a second plant beside the
+// first does not.
 TEST_F(ControlLoopTest, BeginsAnew) {
   config_.limits.stale_input_s = 0.05;
   NotedLoop loop(bus_, clock_, config_, 1);
@@ -115,7 +117,8 @@ TEST_F(ControlLoopTest, BeginsAnew) {
   EXPECT_THAT(loop.notes, ElementsAre("anew", "state 0 after 0", "answer 0"));
 }
 
-// Tests that a state which must wait is as if it had not come, and that an answer that lacks something is none.
+// Tests that a state which must wait is as if it had not come, and that an answer that lacks something is
+// none.
 TEST_F(ControlLoopTest, WhatWaits) {
   NotedLoop loop(bus_, clock_, config_, 1);
   loop.waits = true;

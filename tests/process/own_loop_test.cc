@@ -47,8 +47,8 @@ class OwnPositionLoopTest : public ::testing::Test {
   std::vector<int> states_;
 };
 
-// Tests the life of a loop: READY, RUNNING at the first state, an answer to each sample, the same again when its state comes again,
-// and at an end of its own a last command that asks for zero volts.
+// Tests the life of a loop: READY, RUNNING at the first state, an answer to each sample, the same again when
+// its state comes again, and at an end of its own a last command that asks for zero volts.
 TEST_F(OwnPositionLoopTest, AnswersEachSampleOnce) {
   OwnPositionLoop loop(bus_, clock_, config_, [this](const state_t& state, pressure_command_t* command) {
     ++asked_;

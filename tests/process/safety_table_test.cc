@@ -65,8 +65,8 @@ TEST(SafetyTableTest, HasEveryCode) {
   EXPECT_EQ(named, known);
 }
 
-// Tests that what a row promises of the voltage is what its codes do: zero volts where one of them zeroes it, a ramp where
-// the strongest is a ramp, and otherwise control goes on.
+// Tests that what a row promises of the voltage is what its codes do: zero volts where one of them zeroes it,
+// a ramp where the strongest is a ramp, and otherwise control goes on.
 TEST(SafetyTableTest, OutputsAreThoseOfTheCodes) {
   for (const SafetyRow& row : SafetyTable()) {
     if (row.codes.empty()) continue;
@@ -75,7 +75,8 @@ TEST(SafetyTableTest, OutputsAreThoseOfTheCodes) {
   }
 }
 
-// Tests that no row allows more ticks than the promise, and that the text of a limit says what a program reads.
+// Tests that no row allows more ticks than the promise, and that the text of a limit says what a program
+// reads.
 TEST(SafetyTableTest, LimitsSayWhatIsChecked) {
   int stated = 0;
   for (const SafetyRow& row : SafetyTable()) {
@@ -95,8 +96,9 @@ TEST(SafetyTableTest, LimitsSayWhatIsChecked) {
   EXPECT_GT(stated, 15);
 }
 
-// Tests that with limits.rearm = "explicit" no motor starts again unasked: what zeroed the voltage needs a re-arm, or ends
-// the run. A plant that was started anew was asked to; a joint that follows another's fault waits for that one's re-arm.
+// Tests that with limits.rearm = "explicit" no motor starts again unasked: what zeroed the voltage needs a
+// re-arm, or ends the run. A plant that was started anew was asked to; a joint that follows another's fault
+// waits for that one's re-arm.
 TEST(SafetyTableTest, ExplicitAsksForARearm) {
   for (const SafetyRow& row : SafetyTable()) {
     const bool zero = row.output == SafeOutput::kZeroVolts || row.output == SafeOutput::kReferenceRamped;

@@ -66,8 +66,8 @@ int EncodedSize(Number) {
   return sizeof(Number);
 }
 
-// Tests that the list of fields leaves out none except utime and session. A difference in a field that the list
-// lacks would go unnoticed.
+// Tests that the list of fields leaves out none except utime and session. A difference in a field that the
+// list lacks would go unnoticed.
 TEST(CompareTest, ListsEveryField) {
   bus::ForEachMessage([]<class Message>(const bus::MessageRow<Message>& row) {
     if constexpr (ComparedMessage<Message>) {

@@ -106,7 +106,8 @@ TEST_F(InfoTest, RepeatedStops) {
   EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
 }
 
-// Tests that a stop over the bus, which knows no tick, and the plant's, which it asked over its socket, are one stop.
+// Tests that a stop over the bus, which knows no tick, and the plant's, which it asked over its socket, are
+// one stop.
 TEST_F(InfoTest, HandedOnStop) {
   for (const bool asker_first : {true, false}) {
     RunLog log;

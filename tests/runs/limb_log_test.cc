@@ -51,7 +51,8 @@ RunMessages Sampled(int64_t ticks, int64_t interval) {
 
 class LimbLogTest : public log::LogTest {
  protected:
-  // A log with these runs, each on channels of its suffix; and on those of `limbs` what the limbs say themselves.
+  // A log with these runs, each on channels of its suffix; and on those of `limbs` what the limbs say
+  // themselves.
   std::string Write(const std::vector<std::pair<std::string, RunMessages>>& runs,
                     const std::vector<std::string>& limbs = {""}) {
     std::vector<log::EventContents> all;
@@ -87,7 +88,8 @@ TEST_F(LimbLogTest, ChoosesAJoint) {
               HasSubstr("--joint: found \"ankle\", allowed \"hip\" or \"knee\""));
 }
 
-// Tests that a simulated limb, which has no channels beside those of its joints, is read likewise, and one joint alone by its name or without.
+// Tests that a simulated limb, which has no channels beside those of its joints, is read likewise, and one
+// joint alone by its name or without.
 TEST_F(LimbLogTest, WithoutTheLimbsOwnChannels) {
   Write({{"_hip", log::SampleRun(3)}, {"_knee", log::SampleRun(5)}}, {});
   EXPECT_EQ(StatesOf({.joint = "knee"}), 5u);
@@ -137,8 +139,8 @@ TEST_F(LimbLogTest, AllJoints) {
   EXPECT_FALSE(ReadLimbLog(Path("log"), {.joint = "hip"}).whole());
 }
 
-// Tests that joints come in the order of the limb's configuration where the log has it, that those it does not name come last, and that
-// text that is no configuration changes nothing.
+// Tests that joints come in the order of the limb's configuration where the log has it, that those it does
+// not name come last, and that text that is no configuration changes nothing.
 TEST_F(LimbLogTest, JointsInTheOrderOfTheConfiguration) {
   const auto names = [&](const std::string& config_text) {
     Write({{"_ankle", log::SampleRun(3)}, {"_hip", log::SampleRun(3)}, {"_knee", log::SampleRun(3)}});
@@ -206,7 +208,8 @@ TEST_F(LimbLogTest, ARowForEachJoint) {
   }
 }
 
-// Tests that a joint with states of several runs has no figures over them, and that its limb is refused where one run is wanted.
+// Tests that a joint with states of several runs has no figures over them, and that its limb is refused where
+// one run is wanted.
 TEST_F(LimbLogTest, SeveralRunsOfAJoint) {
   RunMessages two = log::SampleRun(5);
   const RunMessages first = two;
@@ -226,7 +229,8 @@ TEST_F(LimbLogTest, SeveralRunsOfAJoint) {
   EXPECT_THAT(LimbInfoText(info), HasSubstr("joint knee has states of several runs: --joint shows each"));
 }
 
-// Tests that what a limb leaves out on purpose is neither missing nor lost, and that what is missing besides is.
+// Tests that what a limb leaves out on purpose is neither missing nor lost, and that what is missing besides
+// is.
 TEST_F(LimbLogTest, SamplesAreNotGaps) {
   RunMessages run = Sampled(401, 20);
   EXPECT_EQ(SampleTicks(run), 20);

@@ -88,7 +88,8 @@ TEST_F(RunImportTest, ExportedRunComesBack) {
   ExpectComesBack(ExportRun(ReadRunLog(Path("run"))));
 }
 
-// Tests that tables in the units of other systems, as export writes them, come back bit by bit in logs that say their units.
+// Tests that tables in the units of other systems, as export writes them, come back bit by bit in logs that
+// say their units.
 TEST_F(RunImportTest, OtherUnitsComeBack) {
   const UnitSystem systems[] = {kSiUnits, {"mm", "N"}, {"cm", "daN"}, {"mm", "N", true}, {"in", "lbf", true}};
   for (const UnitSystem& units : systems) {

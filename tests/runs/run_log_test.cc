@@ -41,8 +41,8 @@ TEST_F(RunLogTest, SeveralSuffixes) {
               AllOf(HasSubstr("no channel with suffix '_3'"), HasSubstr("'', '_2'")));
 }
 
-// Tests that a stray packet on another stack's channel does not make a log unreadable: the stack that describes
-// its run is read, or without any description the one of nearly all states.
+// Tests that a stray packet on another stack's channel does not make a log unreadable: the stack that
+// describes its run is read, or without any description the one of nearly all states.
 TEST_F(RunLogTest, StraySuffix) {
   log::WriteRun(Path("log"), log::SampleRun(30));
   std::vector<log::EventContents> events = log::ReadEvents(Path("log"));

@@ -75,7 +75,8 @@ TEST_F(RunPartsTest, TheShaftChanges) {
   EXPECT_DOUBLE_EQ(runs[1].time.front(), 4);
 }
 
-// Tests that the bypass may change at stated times or as a column says, and that what is too short for a run is left out and said.
+// Tests that the bypass may change at stated times or as a column says, and that what is too short for a run
+// is left out and said.
 TEST_F(RunPartsTest, TheBypassChanges) {
   const std::vector<MeasuredRun> stated =
       Read("shaft = \"free\"\nbypass = [{ is = false }, { from = 9.5, is = true }]");

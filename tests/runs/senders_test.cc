@@ -53,7 +53,8 @@ TEST_F(SendersTest, OneRun) {
   EXPECT_FALSE(Summarise(Log(run), false).several_runs);
 }
 
-// Tests that runs of two senders are refused by those who want one, and told apart by info: each with its own range.
+// Tests that runs of two senders are refused by those who want one, and told apart by info: each with its own
+// range.
 TEST_F(SendersTest, TwoSenders) {
   RunMessages both = RunOf(11, 0);
   Append(RunOf(21, 100), &both);
@@ -85,8 +86,8 @@ TEST_F(SendersTest, TwoSenders) {
   EXPECT_THAT(InfoJson(info), AllOf(HasSubstr("\"several_runs\": true"), HasSubstr("\"session\": 21")));
 }
 
-// Tests that two runs of one session are found by states that contradict each other, and split where their numbers begin
-// again; and that mixed ones are not split by guessing.
+// Tests that two runs of one session are found by states that contradict each other, and split where their
+// numbers begin again; and that mixed ones are not split by guessing.
 TEST_F(SendersTest, OneSession) {
   RunMessages both = RunOf(0, 0);
   Append(RunOf(0, 100), &both);
@@ -145,7 +146,8 @@ TEST_F(SendersTest, ClockSteps) {
   EXPECT_TRUE(ReadRunLog(Path("log")).clock_steps.empty());
 }
 
-// Tests that recordings that were joined last as long as they do together, whatever the clock did between them.
+// Tests that recordings that were joined last as long as they do together, whatever the clock did between
+// them.
 TEST_F(SendersTest, JoinedRecordings) {
   log::WriteRun(Path("log"), log::SampleRun(101));
   for (const int64_t between : {int64_t{3600'000'000}, int64_t{-50'000}, int64_t{-86400'000'000}}) {
@@ -171,7 +173,8 @@ TEST_F(SendersTest, JoinedRecordings) {
   }
 }
 
-// Tests that rows far apart, as of a slow recording, are no silence, and that a plant time that begins again is another run.
+// Tests that rows far apart, as of a slow recording, are no silence, and that a plant time that begins again
+// is another run.
 TEST(ClockWatchTest, SlowStates) {
   ClockWatch slow;
   for (int64_t k = 0; k < 10; ++k) slow.Take(k, 10'000'000 * k, 10.0 * static_cast<double>(k));

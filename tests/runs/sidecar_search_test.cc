@@ -19,7 +19,8 @@ class SidecarSearchTest : public log::LogTest {
   void WriteTable(const std::string& name) { Write(name, "t,u\n0,1\n1,2\n"); }
 };
 
-// Tests that one sidecar serves every table whose name fits its pattern, and that each keeps a name of its own.
+// Tests that one sidecar serves every table whose name fits its pattern, and that each keeps a name of its
+// own.
 TEST_F(SidecarSearchTest, OneForMany) {
   for (const char* name : {"run1.csv", "run2.csv", "other.csv"}) WriteTable(name);
   Write("bench.toml", "tables = \"run*.csv\"\n" + std::string(kRest));
@@ -46,7 +47,8 @@ TEST_F(SidecarSearchTest, OwnSidecarWins) {
   EXPECT_TRUE(ReadMeasuredRun(Path("run2.csv")).bypass);
 }
 
-// Tests that two patterns that fit are an error with both files, and a pattern that is no text serves nothing.
+// Tests that two patterns that fit are an error with both files, and a pattern that is no text serves
+// nothing.
 TEST_F(SidecarSearchTest, TwoPatterns) {
   WriteTable("run1.csv");
   Write("a.toml", "tables = \"run*.csv\"\n" + std::string(kRest));

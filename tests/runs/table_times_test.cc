@@ -1,4 +1,5 @@
-// Times as recorders write them: repeated, rounded, rolled over, set, in bursts, and angles and commands of few bits.
+// Times as recorders write them: repeated, rounded, rolled over, set, in bursts, and angles and commands of
+// few bits.
 #include "runs/table_times.h"
 
 #include <gmock/gmock.h>

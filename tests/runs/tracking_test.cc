@@ -144,8 +144,8 @@ run_description_t InUnits(const std::string& length) {
   return description;
 }
 
-// Tests that a linear arm is judged and shown in its own unit: 0.05 mm from its target it is there, 0.2 mm from it not, whether its
-// position is in mm or in m; with --si in m.
+// Tests that a linear arm is judged and shown in its own unit: 0.05 mm from its target it is there, 0.2 mm
+// from it not, whether its position is in mm or in m; with --si in m.
 TEST(TrackingTest, ALinearArmHasLengths) {
   for (const std::string length : {"mm", "m"}) {
     const double mm = length == "mm" ? 1 : 1e-3;
@@ -171,8 +171,8 @@ TEST(TrackingTest, ALinearArmHasLengths) {
   }
 }
 
-// Tests that what ended a run early stands first, and what was reached then, in the past tense of that end; and that
-// a run which lasted as long as it should has no such line, whatever was sent after it.
+// Tests that what ended a run early stands first, and what was reached then, in the past tense of that end;
+// and that a run which lasted as long as it should has no such line, whatever was sent after it.
 TEST(TrackingTest, WhatEndedARunStandsFirst) {
   using ::testing::HasSubstr;
   using ::testing::Not;
@@ -217,8 +217,8 @@ TEST(TrackingTest, WhatEndedARunStandsFirst) {
       << "nothing was followed";
 }
 
-// Tests that a reference which follows the arm, because the voltage is held at zero, is no target: neither at the end
-// of a run nor in JSON. Tables without commands have none that could be held.
+// Tests that a reference which follows the arm, because the voltage is held at zero, is no target: neither at
+// the end of a run nor in JSON. Tables without commands have none that could be held.
 TEST(TrackingTest, AHeldVoltageHasNoTarget) {
   RunLog log = MakeRun(
       500, [](double) { return 0.2; }, [](double) { return 0.2; });
@@ -233,8 +233,9 @@ TEST(TrackingTest, AHeldVoltageHasNoTarget) {
   EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)), ::testing::HasSubstr("\"at_target\": null"));
 }
 
-// Tests that the same holds where the pressure loop holds the voltage at zero by its safe commands and the position loop follows the arm; and
-// that a safe command under a reference that goes its own way, as in lockstep, leaves the target what it is.
+// Tests that the same holds where the pressure loop holds the voltage at zero by its safe commands and the
+// position loop follows the arm; and that a safe command under a reference that goes its own way, as in
+// lockstep, leaves the target what it is.
 TEST(TrackingTest, SafeCommandsHoldToo) {
   const auto arm = [](double t) { return 0.1 + 0.01 * std::sin(20 * t); };
   for (const bool follows : {true, false}) {
@@ -255,8 +256,8 @@ TEST(TrackingTest, SafeCommandsHoldToo) {
   }
 }
 
-// Tests that a run which a fault ended right after a step is said to be on its way to a target, not to follow a reference that moves, and that
-// its error there counts from the step.
+// Tests that a run which a fault ended right after a step is said to be on its way to a target, not to follow
+// a reference that moves, and that its error there counts from the step.
 TEST(TrackingTest, AStepJustBeforeTheEndIsATarget) {
   const auto still = [](double) { return 0.1; };
   RunLog log = MakeRun(500, still, [](double t) { return t < 0.48 ? 0.1 : 0.3; });
@@ -269,8 +270,8 @@ TEST(TrackingTest, AStepJustBeforeTheEndIsATarget) {
       << "a ramp moves";
 }
 
-// Tests that skipped ticks are a share of those that went by, as in hydro-launch's table; and that a fault of a sender which knew of no tick
-// is not put at tick -1.
+// Tests that skipped ticks are a share of those that went by, as in hydro-launch's table; and that a fault of
+// a sender which knew of no tick is not put at tick -1.
 TEST(TrackingTest, CountsOfTicks) {
   const auto still = [](double) { return 0.2; };
   RunLog log = MakeRun(400, still, still);
@@ -305,8 +306,9 @@ tuned_settings_t Version(int64_t version, const std::string& changes, int64_t se
   return settings;
 }
 
-// Tests that each version is told by what it changed of the one before it, with values that came back; of a log that begins in the middle, the
-// first by how it differs from the configuration; and two plants' versions apart.
+// Tests that each version is told by what it changed of the one before it, with values that came back; of a
+// log that begins in the middle, the first by how it differs from the configuration; and two plants' versions
+// apart.
 TEST(TuningHistoryTest, WhatEachVersionChanged) {
   RunMessages run;
   std::vector<tuned_settings_t>& told = run.Of<tuned_settings_t>();

@@ -10,8 +10,8 @@ const Access& Server() {
   return access;
 }
 
-// Tests that only the names of this machine at this port, and those that are configured, pass as hosts: a name that
-// resolves to 127.0.0.1 is not one.
+// Tests that only the names of this machine at this port, and those that are configured, pass as hosts: a
+// name that resolves to 127.0.0.1 is not one.
 TEST(AccessTest, Hosts) {
   for (const char* host : {"127.0.0.1:8765", "localhost:8765", "LOCALHOST:8765", "[::1]:8765", "rig.lab"}) {
     EXPECT_TRUE(Server().HostAllowed(host)) << host;

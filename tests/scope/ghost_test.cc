@@ -47,8 +47,9 @@ double Worst(const settings::StackConfig& model, const std::vector<GhostSample>&
   return worst;
 }
 
-// Tests that the ghost of the very model that was simulated stays on it to what integration leaves, with and without being
-// set to it again. Pressures here are some 100 psi, and the tolerances 1e-8 and 1e-6 of that add up over slips and sticks.
+// Tests that the ghost of the very model that was simulated stays on it to what integration leaves, with and
+// without being set to it again. Pressures here are some 100 psi, and the tolerances 1e-8 and 1e-6 of that
+// add up over slips and sticks.
 TEST(GhostTest, FollowsItsOwnModel) {
   const auto config = DemoConfig(kQuiet);
   const auto samples = Samples(config);
@@ -57,8 +58,8 @@ TEST(GhostTest, FollowsItsOwnModel) {
   EXPECT_LT(Worst(config, samples, 0.5), 0.05);
 }
 
-// Tests that a wrong friction shows: the gap is hundreds of times larger than with the right model, and smaller where the
-// ghost is set to the measured state more often.
+// Tests that a wrong friction shows: the gap is hundreds of times larger than with the right model, and
+// smaller where the ghost is set to the measured state more often.
 TEST(GhostTest, WrongFrictionShows) {
   const auto config = DemoConfig(kQuiet);
   const auto samples = Samples(config);
@@ -115,7 +116,8 @@ TEST(GhostTest, BeginsAnewAfterAGap) {
   EXPECT_EQ(ghost.starts(), 3);
 }
 
-// Tests that without measured speeds it begins from the angles' rates, and that without pressures it says why it does not.
+// Tests that without measured speeds it begins from the angles' rates, and that without pressures it says why
+// it does not.
 TEST(GhostTest, BeginsFromWhatIsMeasured) {
   const auto config = DemoConfig(kQuiet);
   auto samples = Samples(config);

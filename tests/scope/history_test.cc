@@ -31,7 +31,8 @@ History Filled(int rows, uint64_t most_rows = std::numeric_limits<uint64_t>::max
   return history;
 }
 
-// Tests that the extremes of any stretch are those of its samples, missing ones left out, whatever blocks it touches.
+// Tests that the extremes of any stretch are those of its samples, missing ones left out, whatever blocks it
+// touches.
 TEST(HistoryTest, ExtremesEqualThoseOfTheSamples) {
   const History history = Filled(20000);
   std::mt19937 random(2);

@@ -64,7 +64,8 @@ class IntakeTest : public ::testing::Test {
                  }};
 };
 
-// Tests that every state of a recorded run becomes a row with its exact values, and that the commands stand at their ticks.
+// Tests that every state of a recorded run becomes a row with its exact values, and that the commands stand
+// at their ticks.
 TEST_F(IntakeTest, TakesARun) {
   std::vector<state_t> states;
   std::vector<motor_command_t> commands;
@@ -116,8 +117,8 @@ TEST_F(IntakeTest, Gaps) {
   EXPECT_EQ(runs_[0]->events.At(1).t, 0.006);
 }
 
-// Tests that ticks which a numbered record passes over without saying so are a gap (rows that were taken out of an imported table), and those
-// that a late plant says it has skipped are none.
+// Tests that ticks which a numbered record passes over without saying so are a gap (rows that were taken out
+// of an imported table), and those that a late plant says it has skipped are none.
 TEST_F(IntakeTest, MissingTicks) {
   state_t state{};
   state.session = 7;
@@ -148,8 +149,8 @@ TEST_F(IntakeTest, FaultsAreEventsOnce) {
   EXPECT_EQ(runs_[0]->events.At(1).source, "pressure_ctrl");
 }
 
-// Tests that a fault whose message was lost is known from the list, and its end too: not at the first list without it, which may
-// have been sent before.
+// Tests that a fault whose message was lost is known from the list, and its end too: not at the first list
+// without it, which may have been sent before.
 TEST_F(IntakeTest, LostFaultsAreMadeGood) {
   State(0);
   ActiveFaults("stale_state limit");

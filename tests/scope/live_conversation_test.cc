@@ -101,7 +101,8 @@ TEST_F(LiveConversationTest, Answers) {
   EXPECT_EQ(none["data"]["t"], json());
 }
 
-// Tests that what cannot be done is answered with why: unknown channels and runs, and what a log or a read-only scope refuses.
+// Tests that what cannot be done is answered with why: unknown channels and runs, and what a log or a
+// read-only scope refuses.
 TEST_F(LiveConversationTest, RefusesWithAReason) {
   const auto conversation = Converse();
   for (const char* request :
@@ -117,7 +118,8 @@ TEST_F(LiveConversationTest, RefusesWithAReason) {
   }
 }
 
-// Tests that it stops listening rather than keep requests without end, and listens again when answers were taken.
+// Tests that it stops listening rather than keep requests without end, and listens again when answers were
+// taken.
 TEST_F(LiveConversationTest, ListensToSoMuch) {
   const auto conversation = Converse();
   int heard = 0;
@@ -187,7 +189,8 @@ TEST_F(LiveConversationTest, TellsWhatWasDropped) {
   EXPECT_TRUE(told);
 }
 
-// Tests that a restart is told, the new run's events are numbered anew, and the old run stays under another number.
+// Tests that a restart is told, the new run's events are numbered anew, and the old run stays under another
+// number.
 TEST_F(LiveConversationTest, FollowsARestart) {
   runs_.live()->session = 1;
   runs_.live()->events.Add({0, 0.1, "fault", "", "", "before"});

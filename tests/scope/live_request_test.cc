@@ -35,7 +35,8 @@ TEST(LiveRequestTest, Reads) {
             "position.c2=900");
 }
 
-// Tests that whatever is wrong is named, with what is allowed, and the request's number is known where it has one.
+// Tests that whatever is wrong is named, with what is allowed, and the request's number is known where it has
+// one.
 TEST(LiveRequestTest, RefusesNonsense) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "allowed is a JSON object"},

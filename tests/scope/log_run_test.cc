@@ -53,7 +53,8 @@ TEST(LogRunTest, RefusesOthers) {
   EXPECT_THROW(OpenLogRuns(file, "nothing", &problem), InputError);
 }
 
-// Tests that each joint of a limb is a run, in the order of its configuration, that one can be chosen, and that what the limb itself says counts for each.
+// Tests that each joint of a limb is a run, in the order of its configuration, that one can be chosen, and
+// that what the limb itself says counts for each.
 TEST(LogRunTest, OpensTheJointsOfALimb) {
   const std::string file = TestFile("limb.lcmlog");
   log::LogWriter writer(file, Opening::kTemporary);

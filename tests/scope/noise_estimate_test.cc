@@ -9,7 +9,8 @@
 namespace hydro::scope {
 namespace {
 
-// Tests that noise on a motion is found to a tenth: 2048 second differences leave some 3 %, and neither steps nor spikes count.
+// Tests that noise on a motion is found to a tenth: 2048 second differences leave some 3 %, and neither steps
+// nor spikes count.
 TEST(NoiseEstimateTest, FindsTheNoiseOnAMotion) {
   NoiseEstimate estimate;
   std::mt19937 random(1);
@@ -22,7 +23,8 @@ TEST(NoiseEstimateTest, FindsTheNoiseOnAMotion) {
   EXPECT_NEAR(estimate.sigma(), 0.5, 0.05);
 }
 
-// Tests that it says nothing before it has enough, nor of a signal without noise, and that a gap does not count.
+// Tests that it says nothing before it has enough, nor of a signal without noise, and that a gap does not
+// count.
 TEST(NoiseEstimateTest, SaysNothingWithoutNoise) {
   NoiseEstimate estimate;
   std::mt19937 random(1);

@@ -40,7 +40,8 @@ class PendingTicksTest : public ::testing::Test {
   PendingTicks ticks_{[this](double, const PendingTicks::Row& row) { rows_.push_back(row); }};
 };
 
-// Tests that a command stands at its tick though it came after the next states, and its latency is from its own state on.
+// Tests that a command stands at its tick though it came after the next states, and its latency is from its
+// own state on.
 TEST_F(PendingTicksTest, LateCommands) {
   for (int64_t tick = 0; tick < 4; ++tick) State(tick, 100 * tick);
   Command(1, 5, 350);

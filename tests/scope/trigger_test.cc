@@ -53,7 +53,8 @@ std::vector<double> Square(int periods, int low, int high) {
   return values;
 }
 
-// Tests that a capture lies still: its edge is at the same place in each, and its time is exactly the sample's.
+// Tests that a capture lies still: its edge is at the same place in each, and its time is exactly the
+// sample's.
 TEST(TriggerTest, StandsStillOnAnEdge) {
   auto run = MadeRun();
   Trigger trigger(Request(), run);
@@ -144,8 +145,8 @@ TEST(TriggerTest, Auto) {
   }
 }
 
-// Tests that every sample is looked at: a spike of one sample triggers also a client that asks once in a while, which gets the
-// newest capture and a count of the others.
+// Tests that every sample is looked at: a spike of one sample triggers also a client that asks once in a
+// while, which gets the newest capture and a count of the others.
 TEST(TriggerTest, ASlowClientGetsTheNewest) {
   auto run = MadeRun();
   TriggerRequest request = Request();

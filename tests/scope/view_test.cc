@@ -52,8 +52,8 @@ class Client {
   std::map<int64_t, std::pair<double, double>> bins_;
 };
 
-// Tests that what a client has seen at the end is what it would get at once, to the last bit, however the samples were cut
-// into frames; and that few bins are sent twice.
+// Tests that what a client has seen at the end is what it would get at once, to the last bit, however the
+// samples were cut into frames; and that few bins are sent twice.
 TEST(ViewTest, FramesAddUpToTheRun) {
   auto run = MadeRun(5000);
   View view(Request(2, 500), run);

@@ -169,7 +169,8 @@ class WebServerTest : public ::testing::Test {
   std::thread thread_;
 };
 
-// Tests who gets what: public files without a token, the rest with it, and no one by another host or from another origin.
+// Tests who gets what: public files without a token, the rest with it, and no one by another host or from
+// another origin.
 TEST_F(WebServerTest, ChecksEveryRequest) {
   const std::string bearer = std::string("Authorization: Bearer ") + kToken + "\r\n";
   const std::string close = "Connection: close\r\n";
@@ -250,8 +251,8 @@ TEST_F(WebServerTest, LimitsConnections) {
   EXPECT_TRUE(Eventually([&] { return Ask(Head("GET /", "Connection: close\r\n")) == "HTTP/1.1 200"; }));
 }
 
-// Tests that for a client that does not read, nothing more is made than the kernel's buffers take, and that it is closed in
-// the end, while another goes on.
+// Tests that for a client that does not read, nothing more is made than the kernel's buffers take, and that
+// it is closed in the end, while another goes on.
 TEST_F(WebServerTest, AStuckClientGrowsNothing) {
   const Client stuck(server_.port());
   stuck.Send(Upgrade(std::string("/live?token=") + kToken));

@@ -1,4 +1,5 @@
-// What the readers of the configuration's sections know of its keys: default, what is allowed, where a key applies.
+// What the readers of the configuration's sections know of its keys: default, what is allowed, where a key
+// applies.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// configuration_page [--write] PAGE: checks the tables of PAGE (docs/configuration.md) against the readers of the
-// configuration's sections; with --write, brings them up to date.
+// configuration_page [--write] PAGE: checks the tables of PAGE (docs/configuration.md) against the readers of
+// the configuration's sections; with --write, brings them up to date.
 #include <cstdio>
 #include <exception>
 #include <fstream>

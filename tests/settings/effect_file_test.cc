@@ -1,4 +1,5 @@
-// Effects written as text: the whole catalogue so written moves as the catalogue does, and what is wrong is named.
+// Effects written as text: the whole catalogue so written moves as the catalogue does, and what is wrong is
+// named.
 #include "settings/effect_file.h"
 
 #include <gmock/gmock.h>
@@ -115,8 +116,8 @@ double Difference(const std::vector<model::Measurement>& a, const std::vector<mo
 
 class WrittenCatalogue : public ::testing::TestWithParam<std::string> {};
 
-// Tests that an effect of the catalogue, written as text, gives the same trajectories to 1e-9: with the shaft free, clamped, and
-// with the bypass open.
+// Tests that an effect of the catalogue, written as text, gives the same trajectories to 1e-9: with the shaft
+// free, clamped, and with the bypass open.
 TEST_P(WrittenCatalogue, MovesAsTheCompiledOne) {
   const Pair pair(GetParam());
   for (const bool clamped : {false, true}) {
@@ -311,8 +312,8 @@ TEST_F(EffectFileTest, NotANumber) {
   }
 }
 
-// Tests that a model file finds the effect's file beside itself, that its text then says everything, and that the text of a model
-// from anywhere else opens no file.
+// Tests that a model file finds the effect's file beside itself, that its text then says everything, and that
+// the text of a model from anywhere else opens no file.
 TEST_F(EffectFileTest, AModelNamesItsFile) {
   const std::string folder = ::testing::TempDir() + "/own_effect_model";
   std::filesystem::create_directories(folder);

@@ -49,8 +49,8 @@ class LimbConfigTest : public FolderTest {
   }
 };
 
-// Tests that a joint has what all have in common, with its own over it, on channels of its own, and that a choice among
-// alternatives drops the common one.
+// Tests that a joint has what all have in common, with its own over it, on channels of its own, and that a
+// choice among alternatives drops the common one.
 TEST_F(LimbConfigTest, OwnOverCommon) {
   const LimbConfig limb = Load();
   ASSERT_EQ(limb.joints.size(), 2U);
@@ -72,7 +72,8 @@ TEST_F(LimbConfigTest, OwnOverCommon) {
   EXPECT_EQ(limb.limb.telemetry_hz, 100);
 }
 
-// Tests that each joint's noise has a seed of its own, counted up from the configuration's, and that a joint may state one.
+// Tests that each joint's noise has a seed of its own, counted up from the configuration's, and that a joint
+// may state one.
 TEST_F(LimbConfigTest, Seeds) {
   const std::string own = std::string(kJoints) + "[[joint]]\nname = \"ankle\"\n[joint.noise]\nseed = 77\n";
   const auto seeds = [&](const std::vector<std::string>& overrides) {
@@ -95,7 +96,8 @@ TEST_F(LimbConfigTest, Overrides) {
   EXPECT_EQ(one.limb.on_joint_fault, OnJointFault::kOthersGoOn);
 }
 
-// Tests that a joint alone is the joint of the limb: the same text, and knows the others, whose faults concern it.
+// Tests that a joint alone is the joint of the limb: the same text, and knows the others, whose faults
+// concern it.
 TEST_F(LimbConfigTest, JointAlone) {
   const LimbConfig limb = Load();
   const StackConfig alone = LoadStackConfig(File(std::string(kConfigText) + kJoints), {"joint=knee"});
@@ -110,7 +112,8 @@ TEST_F(LimbConfigTest, JointAlone) {
   EXPECT_TRUE(alone.joints_concern_each_other);
 }
 
-// Tests that in real time a joint alone waits for another's states as long as for any input, and three of their intervals.
+// Tests that in real time a joint alone waits for another's states as long as for any input, and three of
+// their intervals.
 TEST_F(LimbConfigTest, JointAloneMissesTheOthers) {
   const StackConfig alone = LoadStackConfig(File(std::string(kConfigText) + kJoints),
                                             {"joint=knee", "time.mode=realtime", "time.speed=0.5",
@@ -189,7 +192,8 @@ TEST_F(LimbConfigTest, Wrong) {
   }
 }
 
-// Tests that single brackets around the name of a list are told from other mistakes, at the line of the first.
+// Tests that single brackets around the name of a list are told from other mistakes, at the line of the
+// first.
 TEST_F(LimbConfigTest, SingleBrackets) {
   const size_t lines = static_cast<size_t>(std::ranges::count(std::string(kConfigText), '\n'));
   const std::string one = "[joint]\nname = \"a\"\n", listed = "[[joint]]\nname = \"b\"\n";
@@ -201,7 +205,8 @@ TEST_F(LimbConfigTest, SingleBrackets) {
   EXPECT_THAT(Error(listed + "[arm]\n[arm.link]\nmass = 1\n"), HasSubstr("write [[arm.link]]"));
 }
 
-// Tests that a mistake in a joint's own section, or one that only this joint makes, names the joint; one of all joints does not.
+// Tests that a mistake in a joint's own section, or one that only this joint makes, names the joint; one of
+// all joints does not.
 TEST_F(LimbConfigTest, ErrorsNameTheJoint) {
   const std::string text = "[[joint]]\nname = \"hip\"\n[[joint]]\nname = \"knee\"\n";
   EXPECT_THAT(Error(text + "[joint.position]\nC2 = 1\n"),
@@ -221,7 +226,8 @@ TEST_F(LimbConfigTest, ErrorsNameTheJoint) {
               ContainsRegex("limb.toml:[0-9]+: joint knee: reference.steps: found arm angle"));
 }
 
-// Tests that an arm is for joints that turn, all in one system of units, and that its values may have units of their own.
+// Tests that an arm is for joints that turn, all in one system of units, and that its values may have units
+// of their own.
 TEST_F(LimbConfigTest, AnArmIsOfJointsThatTurn) {
   const std::string link = "[[arm.link]]\nmass = 0.02\nlength = \"38.1 cm\"\ncentre = 7\ninertia = 0.4\n";
   const std::string arm = "[arm]\ngravity = \"9.80665 m/s^2\"\n" + link + link;
@@ -261,8 +267,8 @@ TEST_F(LimbConfigTest, Arm) {
               HasSubstr("found some of the joints of an [arm], allowed all of them in one hydro-limb"));
 }
 
-// Tests that numbers keep their units in limbs as in stacks: under a model of an option, of all joints or of one, and under a joint's own
-// model beside sections that hold for all.
+// Tests that numbers keep their units in limbs as in stacks: under a model of an option, of all joints or of
+// one, and under a joint's own model beside sections that hold for all.
 TEST_F(LimbConfigTest, NumbersKeepTheirUnits) {
   Write("si.toml", std::string("units = \"si\"\n") + kModelText);
   const auto refusal =

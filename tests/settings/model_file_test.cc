@@ -33,7 +33,8 @@ TEST(ModelFileTest, TakesTheDisplacementItself) {
   EXPECT_EQ(ParseModel(Changed("r = 1.83\nd = 2.20\n", "c = 3.7\n"), "m.toml").parameters.c, 3.7);
 }
 
-// Tests that two sides give their mean and their difference, which the equations have as an effect; and the same by a ratio.
+// Tests that two sides give their mean and their difference, which the equations have as an effect; and the
+// same by a ratio.
 TEST(ModelFileTest, ReadsUnequalSides) {
   const std::string text = Replaced(
       Replaced(Changed("r = 1.83\nd = 2.20\n", "c_1 = 3\nc_2 = 5\n"), "V_ms = 3.16\n", "V_1 = 2\nV_2 = 6\n"),

@@ -45,7 +45,8 @@ double Value(const TomlNode& root, const std::string& section, const std::string
 
 constexpr UnitSystem kLinear{"mm", "N", true};
 
-// Tests that a text with a unit becomes a number in the model's unit, whichever that is; a number stays what it is.
+// Tests that a text with a unit becomes a number in the model's unit, whichever that is; a number stays what
+// it is.
 TEST(QuantityKeys, TextsAreInTheModelsUnits) {
   const std::string text = R"([limits]
 pressure = "138 bar"
@@ -73,7 +74,8 @@ c1 = "40 MPa/rad"
   EXPECT_DOUBLE_EQ(Value(bar, "limits", "pressure"), 138);
 }
 
-// Tests that a reference's values are in the unit of its signal, also in lists, and a motion's in that of the arm.
+// Tests that a reference's values are in the unit of its signal, also in lists, and a motion's in that of the
+// arm.
 TEST(QuantityKeys, ReferencesAreInTheUnitOfTheirSignal) {
   const TomlNode arm = Read(
       "[reference]\nsteps = [[\"200 ms\", \"3 cm\"], [1, 12]]\ninitial = \"1 cm\"\nmax_speed = \"0.1 m/s\"\n"
@@ -92,7 +94,8 @@ TEST(QuantityKeys, ReferencesAreInTheUnitOfTheirSignal) {
               HasSubstr("stack.toml:3: reference.amplitude: found \"5 bar\", allowed a number (in in-lbf)"));
 }
 
-// Tests that a former name is read where its unit is the model's, and refused with the lines to write where not.
+// Tests that a former name is read where its unit is the model's, and refused with the lines to write where
+// not.
 TEST(QuantityKeys, FormerNamesMustBeTrue) {
   EXPECT_EQ(Value(Read("[limits]\npressure_psi = 1500\n", {}), "limits", "pressure"), 1500);
   EXPECT_EQ(Value(Read("[limits]\narm_angle_rad = 0.5\n", kSiUnits), "limits", "arm_angle"), 0.5);
@@ -183,7 +186,8 @@ TEST(QuantityKeys, DefaultsAreThePapers) {
   EXPECT_EQ(With({}, {}).limits.pressure_psi, 2000);
 }
 
-// Tests that the effective text says numbers under present names, so that what a log records depends on no unit in a text.
+// Tests that the effective text says numbers under present names, so that what a log records depends on no
+// unit in a text.
 TEST(QuantityKeys, TheEffectiveTextHasNumbers) {
   const StackConfig config = With({"[limits]", "pressure = \"2000 psi\"", "arm_angle_rad = 0.5"}, {});
   EXPECT_THAT(config.text, HasSubstr("pressure = 2000"));

@@ -30,9 +30,9 @@ TEST(ShippedFilesTest, StacksLoad) {
   EXPECT_GE(stacks, 1);
 }
 
-// Tests that a model in other units is refused under the numbers of a configuration, in both directions, and taken where
-// the numbers that it changes have a unit of their own or are given with it; and that numbers for another model are told
-// from a limit.
+// Tests that a model in other units is refused under the numbers of a configuration, in both directions, and
+// taken where the numbers that it changes have a unit of their own or are given with it; and that numbers for
+// another model are told from a limit.
 TEST(ShippedFilesTest, AModelInOtherUnits) {
   const auto error = [](const char* config, std::vector<std::string> overrides) {
     return InputErrorOf([&] { LoadStackConfig((kConfig / config).string(), overrides); });
@@ -55,8 +55,8 @@ TEST(ShippedFilesTest, AModelInOtherUnits) {
   EXPECT_EQ(error("demo.toml", {"limits.pressure=inf"}), "");
 }
 
-// Tests that of a model that cannot be read, or is none, its own error is told, not its units; that the model in whose place it stands need not be
-// there; and that the joints of a limb are judged like a stack.
+// Tests that of a model that cannot be read, or is none, its own error is told, not its units; that the model
+// in whose place it stands need not be there; and that the joints of a limb are judged like a stack.
 TEST(ShippedFilesTest, AModelThatCannotBeRead) {
   using ::testing::HasSubstr;
   const auto error = [](const char* config, const std::string& model) {

@@ -217,7 +217,8 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.last_tick, 62500);
 }
 
-// Tests a controller of the user's own: what is read, that the text keeps it, and what takes its place without processes.
+// Tests a controller of the user's own: what is read, that the text keeps it, and what takes its place
+// without processes.
 TEST(StackConfigTest, ProgramOfTheUsersOwn) {
   const StackConfig config = Parsed(std::string(kConfigText) +
                                     "\n[[process]]\nprogram = \"hydro-plant\"\n[[process]]\ncommand = "
@@ -347,7 +348,8 @@ TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
               HasSubstr("b.toml:1: model.file: found nothing, allowed the path of a model file"));
 }
 
-// Tests that mistakes of a first day are answered with what is meant: a model as CONFIG, a model that is not there, a key without its section.
+// Tests that mistakes of a first day are answered with what is meant: a model as CONFIG, a model that is not
+// there, a key without its section.
 TEST_F(StackConfigFolderTest, MistakesOfAFirstDay) {
   const std::string model = Write("model.toml", kModelText), config = Write("stack.toml", kConfigText);
   EXPECT_THAT(

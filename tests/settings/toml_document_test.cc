@@ -37,7 +37,8 @@ TEST(TomlDocumentTest, RefusesWhatIsNotToml) {
   }
 }
 
-// Tests that a file of another program is told what it is and who reads it, instead of which of its bytes is no TOML.
+// Tests that a file of another program is told what it is and who reads it, instead of which of its bytes is
+// no TOML.
 TEST(TomlDocumentTest, FilesOfOtherPrograms) {
   EXPECT_EQ(InputErrorOf([&] { ParseToml("\xed\xa1\xda\x01....", "run.lcmlog"); }),
             "run.lcmlog: found an LCM event log, allowed a TOML file; hydro-log info run.lcmlog says what is "

@@ -130,7 +130,8 @@ TEST(ExtremeModelsTest, SeveralNumbers) {
   }
 }
 
-// Tests that a model file's numbers that no machine has are refused with the key, what was found and what is allowed.
+// Tests that a model file's numbers that no machine has are refused with the key, what was found and what is
+// allowed.
 TEST(ExtremeModelsTest, Refusals) {
   const auto outcome = [](const std::string& name, double extreme) {
     std::string found;
@@ -154,8 +155,8 @@ TEST(ExtremeModelsTest, Refusals) {
   }
 }
 
-// Tests that a model that is too fast for the integrator ends after so many steps, and that the line names tick, state and the
-// number that is likely the cause.
+// Tests that a model that is too fast for the integrator ends after so many steps, and that the line names
+// tick, state and the number that is likely the cause.
 TEST(ExtremeModelsTest, TooFast) {
   model::ModelDescription model{.name = "fast", .parameters = testing::Table1(), .effects = {}};
   model.parameters.J_a = 1e-12;

@@ -1,5 +1,5 @@
-// One configuration, whose values are texts with units, drives the same rig in the same way whatever units the
-// rig's model is in.
+// One configuration, whose values are texts with units, drives the same rig in the same way whatever units
+// the rig's model is in.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -104,7 +104,8 @@ double Difference(const Motion& first, const UnitSystem& paper, const Motion& ot
   return worst;
 }
 
-// Every shipped model of a rotary actuator in the paper's units; a weight is added, which none of them moves but one.
+// Every shipped model of a rotary actuator in the paper's units; a weight is added, which none of them moves
+// but one.
 std::vector<model::ModelDescription> ShippedModels() {
   std::vector<model::ModelDescription> models;
   for (const auto& entry :
@@ -119,8 +120,8 @@ std::vector<model::ModelDescription> ShippedModels() {
   return models;
 }
 
-// Tests that the whole stack with every shipped model moves in the same way in all systems of units, also as a
-// linear rig whose piston has the actuator's displacement as its area.
+// Tests that the whole stack with every shipped model moves in the same way in all systems of units, also as
+// a linear rig whose piston has the actuator's displacement as its area.
 TEST(SameInAllUnits, EveryShippedModel) {
   const std::vector<model::ModelDescription> models = ShippedModels();
   EXPECT_GE(models.size(), 5u);
@@ -142,8 +143,8 @@ TEST(SameInAllUnits, EveryShippedModel) {
   }
 }
 
-// Relative to 1 or more; a margin may be infinite. Double poles near z = 1 keep half of a number's digits, and a margin
-// follows from where they go.
+// Relative to 1 or more; a margin may be infinite. Double poles near z = 1 keep half of a number's digits,
+// and a margin follows from where they go.
 void ExpectAlike(double found, double wanted, const std::string& where) {
   if (found == wanted) return;
   EXPECT_NEAR(found, wanted, 1e-4 * std::max(1.0, std::abs(wanted))) << where;
@@ -230,8 +231,8 @@ std::vector<Motion> LimbMotion(const std::filesystem::path& folder, const model:
   return motions;
 }
 
-// Joints of an arm are integrated to 1e-5 at best (CoupledArmOptions), and their steps depend on roundings. A unit that is taken for another
-// shows by far more.
+// Joints of an arm are integrated to 1e-5 at best (CoupledArmOptions), and their steps depend on roundings. A
+// unit that is taken for another shows by far more.
 constexpr double kLimbsAlike = 2e-3;
 
 // Tests the same of a limb, whose joints load each other by an arm, with every shipped model.

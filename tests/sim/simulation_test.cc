@@ -131,7 +131,8 @@ void Watch(bus::Bus& bus, const std::string& channel, std::vector<std::string>& 
   });
 }
 
-// Tests that every simulation has a session, the same for the same one, and that another seed, reference or model gives another.
+// Tests that every simulation has a session, the same for the same one, and that another seed, reference or
+// model gives another.
 TEST(SimulationTest, Sessions) {
   const settings::StackConfig config = Step();
   settings::StackConfig other_text = config, other_model = config;
@@ -203,7 +204,8 @@ TEST(SimulationTest, NeedsADuration) {
   EXPECT_THROW(Simulate(config, nullptr), InputError);
 }
 
-// Tests that each joint of a limb says, message by message and bit by bit, what it says alone, and that the limb describes itself.
+// Tests that each joint of a limb says, message by message and bit by bit, what it says alone, and that the
+// limb describes itself.
 TEST(SimulateLimbTest, EachJointAsAlone) {
   const settings::LimbConfig limb = testing::SmallLimb({"hip", "knee", "ankle"});
   Recording together;

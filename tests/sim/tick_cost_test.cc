@@ -30,7 +30,8 @@ int64_t AllocationsOf(const settings::StackConfig& config) {
   return bus::AllocationCount() - before;
 }
 
-// Tests that a simulated second takes no memory, its reports included: a run of four takes what one of two does.
+// Tests that a simulated second takes no memory, its reports included: a run of four takes what one of two
+// does.
 TEST(TickCostTest, TakesNoMemory) {
   AllocationsOf(Seconds(1));  // what is made once a process
   const int64_t two = AllocationsOf(Seconds(2));
@@ -59,8 +60,8 @@ class CountingClock : public bus::WallClock {
   }
 };
 
-// Tests that a tick in real time of all three applications in one process reads a clock thirteen times at most, what comes once a
-// second aside: a limb has tens of them.
+// Tests that a tick in real time of all three applications in one process reads a clock thirteen times at
+// most, what comes once a second aside: a limb has tens of them.
 TEST(TickCostTest, ReadsTheClockSeldom) {
   settings::StackConfig config = testing::SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;

@@ -18,8 +18,7 @@ bool SameLaw(const PressureLawSettings& a, const PressureLawSettings& b) {
 
 struct Expected {
   double voltage = 0;
-  double rounding =
-      0;  // of the terms of eq. (16) in single precision; a microcontroller may also keep more digits in between
+  double rounding = 0;  // of eq. (16) in single precision; a microcontroller may keep more digits in between
 };
 
 Expected SinglePrecisionLaw(const state_t& state, double pressure_ref, const PressureLawSettings& law) {
@@ -69,7 +68,7 @@ pressure_ctrl::DeviceLoop::Answer DeviceAnswers::Follow(const state_t& state, do
                 .voltage = command.voltage,
                 .pressure_ref = command.pressure_ref,
                 .saturated = command.saturated != 0};
-  // In a log that begins in the middle of a run, what was sent before is not there.
+  // A log that begins in the middle of a run lacks what was sent before.
   const bool whole = sent_.size() > static_cast<size_t>(delay_);
   if (!WasSent(static_cast<float>(command.pressure_ref))) {
     if (!whole) {
@@ -83,7 +82,7 @@ pressure_ctrl::DeviceLoop::Answer DeviceAnswers::Follow(const state_t& state, do
     return answer;
   }
   const Expected expected = SinglePrecisionLaw(state, command.pressure_ref, law);
-  // Beyond the limit, or the range of the device's output, which the log does not tell.
+  // Limited by the configured limit, or by the range of the device's output, which the log does not state.
   const bool beyond = command.saturated != 0 && std::fabs(expected.voltage) >= std::fabs(command.voltage) &&
                       expected.voltage * command.voltage >= 0;
   if (!beyond && !(std::fabs(expected.voltage - command.voltage) <= expected.rounding))

@@ -1,4 +1,5 @@
-// Whether a front end that ran eq. (16) itself (driver.mode = "loop_on_device") answered the states as the law does in single precision.
+// Checks whether a front end that ran eq. (16) itself (driver.mode = "loop_on_device") answered the states as
+// the law does in single precision.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,8 @@
 
 namespace hydro::hydro_log {
 
-// Takes the device's place in a replay. It gives the recorded answer where that is right, and what it should have been where not.
+// Takes the device's place in a replay. It returns the recorded answer where that is right, and otherwise the
+// answer that would have been right.
 class DeviceAnswers : public pressure_ctrl::DeviceLoop {
  public:
   // `recorded`, by tick, must outlive it.
@@ -21,7 +23,8 @@ class DeviceAnswers : public pressure_ctrl::DeviceLoop {
                 const pressure_ctrl::PressureLawSettings& law) override;
   void Release() override { sent_.clear(); }
 
-  // Answers that nobody can judge from a log: those made while a change of gains was on its way or passed.
+  // The number of answers that a log does not allow to judge: those made while a change of gains was on its
+  // way or taking effect.
   int64_t not_judged() const { return not_judged_; }
 
  private:
@@ -36,9 +39,9 @@ class DeviceAnswers : public pressure_ctrl::DeviceLoop {
   bool GainsHaveChanged() const;
 
   const std::map<int64_t, motor_command_t>& recorded_;
-  const int64_t delay_;  // ticks that what is sent may take to act
+  const int64_t delay_;  // ticks that a sent value may take to act
   const int64_t transfer_;
-  std::deque<Sent> sent_;  // the newest last, of as many ticks as matter
+  std::deque<Sent> sent_;  // newest last, over as many ticks as matter
   int64_t not_judged_ = 0;
 };
 

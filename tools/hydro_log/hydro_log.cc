@@ -114,7 +114,7 @@ class CompareVerb {
   runs::LimbLog Read(const std::string& file, const std::optional<std::string>& suffix) const {
     runs::StackChoice choice = choice_;
     if (suffix) choice.suffix = suffix;
-    // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
+    // Messages that cannot be read cannot be called "identical bit by bit", so they are refused here.
     runs::LimbLog log = runs::ReadLimbLog(file, choice);
     runs::RequireOneRun(log);
     // Two empty logs are not a run and its repetition.
@@ -155,13 +155,13 @@ class RepairVerb {
   }
 
  private:
-  // A log may be as it was written and yet be refused by the other verbs.
+  // A log may be exactly as it was written and still be refused by the other verbs.
   std::string WhyNotOneRun() const {
     std::optional<runs::LimbLog> log;
     try {
       log = runs::ReadLimbLog(out_.empty() ? log_ : out_, {}, runs::Undecodable::kLeftOut);
     } catch (const InputError&) {
-      return "";  // of no stack, or of several: nothing is said of their runs
+      return "";  // a log of no stack, or of several: nothing is said about their runs
     }
     try {
       runs::RequireOneRun(*log);

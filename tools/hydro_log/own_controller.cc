@@ -30,12 +30,12 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr auto kLook = 20ms;    // how often the child's end is looked for
-constexpr auto kAgain = 100ms;  // until what may be lost is sent again
+constexpr auto kLook = 20ms;    // interval between checks for the child's end
+constexpr auto kAgain = 100ms;  // after which messages that may be lost are sent again
 
 }  // namespace
 
-// A folder for what the controller reads, as long as this object lives.
+// A folder with the files that the controller reads. It exists as long as this object.
 class OwnController::Folder {
  public:
   Folder() : path_((fs::temp_directory_path() / "hydro-replay.XXXXXX").string()) {
@@ -105,7 +105,8 @@ void OwnController::WriteConfiguration(const settings::StackConfig& recorded,
                                        const run_description_t& description) {
   settings::TomlNode stack = settings::ParseToml(recorded.text, recorded.file);
   settings::ApplyOverrides({"bus.url=" + settings::TomlString(port_->Url()), "bus.channel_suffix=''",
-                            // It is fed what was heard, in the order of then, and may not wait for more.
+                            // The controller receives what was heard, in the order of that time, and may not
+                            // wait for more.
                             "time.mode='realtime'", "model.file='model.toml'"},
                            &stack);
   stack.Find("bus")->Erase("key_file");
@@ -119,7 +120,7 @@ bool OwnController::Ended() {
   siginfo_t info = {};
   if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != pid_)
     return false;
-  kill(-pid_, SIGKILL);  // what it started and left; until it is reaped the group is its own
+  kill(-pid_, SIGKILL);  // its own children; the group exists until the child is reaped
   int status = 0;
   waitpid(pid_, &status, 0);
   end_ = process::EndOf(status);
@@ -133,7 +134,7 @@ std::optional<std::string> OwnController::Await(const std::function<bool()>& don
   auto repeat = begin + kAgain, look = begin + kLook;
   while (!done()) {
     const auto now = clock_.Now();
-    if (now >= look) {  // not for each message: most answers come at once
+    if (now >= look) {  // not for each message, because most answers come at once
       look = now + kLook;
       if (process::StopSignal() != 0) return "stopped by a signal";
       if (Ended()) return DescribeEnd(name_, *end_) + " before it could " + what;

@@ -20,19 +20,22 @@
 
 namespace hydro::hydro_log {
 
-// The words of a command line, as a shell cuts them: quotes, ~ and $NAME. Throws InputError for what is no command.
+// Splits a command line into words as a shell does: quotes, ~ and $NAME. Throws InputError for a text that is
+// not a command.
 std::vector<std::string> CommandWords(const std::string& text);
 
 class OwnController {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
-  // Starts `command` (a path in it counts from here) in the place of `role`. It is told of a free port on this machine and of
-  // the recorded configuration in files (process/own_program.h); there it is in real time, as it is fed what was heard then, and has no key and no suffix of
-  // channels. What it prints goes to stderr. Throws InputError, process::StartError, bus::BusError.
+  // Starts `command` (a path in it is relative to this program's working folder) in the role `role`. The
+  // controller learns of a free port on this machine and of the recorded configuration through files
+  // (process/own_program.h). In these, the stack is in real time, because the controller is fed what was
+  // heard then, and has no key and no channel suffix. The controller's output goes to stderr. Throws
+  // InputError, process::StartError, bus::BusError.
   OwnController(const settings::StackConfig& recorded, const run_description_t& description,
                 const std::vector<std::string>& command, const std::string& role);
-  // Ends it, whatever its state.
+  // Ends the controller, whatever its state.
   ~OwnController();
   OwnController(const OwnController&) = delete;
   OwnController& operator=(const OwnController&) = delete;
@@ -40,15 +43,16 @@ class OwnController {
   bus::Bus& bus() { return *bus_; }
   const std::string& name() const { return name_; }
 
-  // Handles messages until `done`, and calls `again` whenever that takes long, since a message may be lost. Nothing when it came to
-  // that, else why not: it ended, this program shall end, or `limit` has passed, then "did not <what> within 5 s".
+  // Handles messages until `done` returns true. Whenever that takes long, calls `again`, because a message
+  // may be lost. Returns nothing on success. Otherwise returns the reason: the controller ended, this program
+  // must end, or `limit` has passed, which gives "did not <what> within 5 s".
   std::optional<std::string> Await(const std::function<bool()>& done, const std::function<void()>& again,
                                    Duration limit, const std::string& what);
 
-  // Waits until it is ready; why not otherwise.
+  // Waits until the controller is ready; returns the reason if it is not.
   std::optional<std::string> AwaitReady(Duration limit);
 
-  // Tells it that the run is over and waits for its end; what is wrong with that, if anything.
+  // Tells the controller that the run is over and waits for its end; returns what went wrong, if anything.
   std::optional<std::string> End(int64_t plant_session, Duration limit);
 
  private:
@@ -64,8 +68,8 @@ class OwnController {
   bus::WallClock clock_;
   pid_t pid_ = -1;
   std::optional<process::ProcessEnd> end_;
-  std::optional<process_status_t> status_;  // what it said last
-  std::string other_role_;                  // that it has announced itself under
+  std::optional<process_status_t> status_;  // its last message
+  std::string other_role_;                  // the role under which it announced itself, if that differs
 };
 
 }  // namespace hydro::hydro_log

@@ -18,12 +18,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStart = 20s;     // an interpreter may take that long to load what it needs
-constexpr int kUnanswered = 64;  // states that are sent without waiting for anything: a receiver's buffer
-constexpr auto kPause = 2ms;     // after that many
-const bus::Channels kPlain;      // its network is its own
+constexpr auto kStart = 20s;     // an interpreter may need that long to load its modules
+constexpr int kUnanswered = 64;  // states that are sent without waiting for an answer: a receiver's buffer
+constexpr auto kPause = 2ms;     // after that many states
+const bus::Channels kPlain;      // without a suffix, on a network of its own
 
-// One replay through a process. Command: what it answers with.
+// One replay through a process. Command is the type of its answers.
 template <class Command>
 class OwnReplay {
  public:
@@ -33,7 +33,7 @@ class OwnReplay {
   OwnReplay(RecordedRun& run, Commands recorded, const OwnReplayRequest& request)
       : run_(run), recorded_(std::move(recorded)), request_(request) {}
 
-  // `before`: sends what came before that state, and sends it again.
+  // `before` sends what came before that state, and is called again when the state is sent again.
   OwnReplayResult Run(const Before& before, std::optional<int64_t> gap) {
     OwnReplayResult result;
     const int64_t not_compared = CutAt(gap, recorded_);
@@ -112,7 +112,8 @@ OwnReplayResult ReplayPressure(const runs::RunLog& log, const OwnReplayRequest& 
   std::optional<int64_t> gap = run.FirstGap();
   const auto lost = FirstWithoutPressureCommand(recorded, pressure_commands);
   if (lost && (!gap || *lost < *gap)) gap = lost;
-  // A loop that does not say which pressure command it acts by: as in lockstep, the newest of an earlier tick.
+  // If the loop does not say which pressure command it used, it is assumed to have used the newest of an
+  // earlier tick, as in lockstep.
   const bool says = std::any_of(recorded.begin(), recorded.end(),
                                 [](const auto& entry) { return entry.second.pressure_command_tick > 0; });
   auto next = pressure_commands.begin();
@@ -120,7 +121,7 @@ OwnReplayResult ReplayPressure(const runs::RunLog& log, const OwnReplayRequest& 
   const auto before = [&](bus::Bus& bus, int64_t tick) {
     const auto command = recorded.find(tick);
     if (command == recorded.end()) return;
-    if (tick == last && next != pressure_commands.begin()) --next;  // it may have been lost
+    if (tick == last && next != pressure_commands.begin()) --next;  // lost perhaps, so it is sent again
     last = tick;
     const int64_t newest = says ? command->second.pressure_command_tick : tick - 1;
     for (; next != pressure_commands.end() && next->first <= newest; ++next) {

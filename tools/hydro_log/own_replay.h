@@ -1,5 +1,5 @@
-// hydro-log replay --controller COMMAND: feeds a recorded run to a controller of the user's own, a process of its own, and
-// compares its commands with the recorded ones.
+// hydro-log replay --controller COMMAND: feeds a recorded run to a controller of the user's own, which runs
+// as a process of its own, and compares its commands with the recorded ones.
 #pragma once
 
 #include <chrono>
@@ -14,25 +14,26 @@ namespace hydro::hydro_log {
 
 struct OwnReplayRequest {
   std::vector<std::string> command;  // a program and its arguments
-  std::string role;                  // whose commands are compared: pressure_ctrl or position_ctrl
-  double speed = 0;                  // recorded seconds per wall second; 0: as fast as it answers
+  std::string role;                  // role whose commands are compared: pressure_ctrl or position_ctrl
+  double speed = 0;                  // recorded seconds per wall second; 0: as fast as the controller answers
   std::chrono::steady_clock::duration limit = std::chrono::seconds(5);  // for each answer
 };
 
 struct OwnReplayResult {
   ReplayResult replay;
-  std::optional<std::string>
-      failure;  // it died, hung, or did not begin, and when; then `replay` holds nothing
+  std::optional<std::string> failure;  // it died, hung, or did not start, and when; `replay` is then empty
 };
 
-// In lockstep: the next state is sent when the state's answer is there, where the log has one. Both as Replay() does otherwise,
-// for our own. Throws InputError, process::StartError, bus::BusError.
+// Replays in lockstep: where the log has an answer to a state, the next state is sent only when the
+// controller's answer has arrived. The checks and the comparison are those of Replay(), which is for our own
+// controllers. Throws InputError, process::StartError, bus::BusError.
 OwnReplayResult ReplayOwn(const runs::RunLog& log, const OwnReplayRequest& request);
 
-// The program of the user's own that the run had for that role, by name; empty when it had ours.
+// The name of the user's own program that had this role in the run; empty when our program had it.
 std::string OwnProgramOf(const runs::RunLog& log, const std::string& role);
 
-// The role of the run's own program, from its configuration; empty when it had none, or two.
+// The role of the user's own program in the run, according to the configuration; empty when there was none,
+// or when there were two.
 std::string OwnRoleOf(const runs::RunLog& log);
 
 }  // namespace hydro::hydro_log

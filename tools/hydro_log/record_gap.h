@@ -1,4 +1,4 @@
-// Where a record lacks what a controller was given: from there on a replay proves nothing.
+// Finds where a record lacks what a controller was given. From there on, a replay proves nothing.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace hydro::hydro_log {
 
-// The first tick after the first state that has none, and that the plant did not skip.
+// The first tick after the first state that has no state and that the plant did not skip.
 std::optional<int64_t> FirstMissingState(const std::map<int64_t, state_t>& states);
 
-// The first tick whose motor command follows from a pressure command that is not there.
+// The first tick whose motor command follows from a pressure command that the log lacks.
 std::optional<int64_t> FirstWithoutPressureCommand(
     const std::map<int64_t, motor_command_t>& commands,
     const std::map<int64_t, pressure_command_t>& pressure_commands);
 
-// Takes the commands from tick `gap` on out of the comparison and returns how many those were.
+// Removes the commands from tick `gap` on from the comparison and returns their number.
 template <class Commands>
 int64_t CutAt(const std::optional<int64_t>& gap, Commands& commands) {
   if (!gap) return 0;

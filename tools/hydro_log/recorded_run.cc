@@ -15,7 +15,7 @@
 namespace hydro::hydro_log {
 namespace {
 
-constexpr double kLatestTime = 1e9;  // s; 64 bits of ns hold it
+constexpr double kLatestTime = 1e9;  // s; 64 bits of ns can hold it
 
 }  // namespace
 
@@ -46,7 +46,7 @@ RecordedRun::RecordedRun(const runs::RunLog& log, const std::string& role) {
   config_ = settings::ParseStackConfig(description_.config_text, log.file + " (its configuration)",
                                        description_.model_text, log.file + " (its model)");
   config_.time.mode =
-      settings::TimeMode::kRealtime;  // nothing waits: what is in force is handed over in time
+      settings::TimeMode::kRealtime;  // nothing waits, because what is in force is handed over in time
   states_ = ByTick(log.messages.Of<state_t>());
   if (states_.empty()) throw InputError(log.file + ": found no states to feed");
   runs::RequireEveryState(log, "a replay");
@@ -100,7 +100,8 @@ void RecordedRun::Feed(bus::Bus& bus, const bus::Channels& channels, double spee
   }
 }
 
-// What other processes said before the state was sent: the position loop holds its reference while the pressure loop has a fault.
+// Sends what other processes had sent before the state. This matters because the position loop holds its
+// reference while the pressure loop has a fault.
 template <class Message>
 void RecordedRun::Overtake(bus::Bus& bus, const bus::Channels& channels, int64_t utime, const Steps& steps,
                            const std::vector<Message>& messages, size_t* next) {
@@ -110,8 +111,9 @@ void RecordedRun::Overtake(bus::Bus& bus, const bus::Channels& channels, int64_t
   }
 }
 
-// A plan acts by the tick that it names, so it is handed over behind that one's state; without a tick, behind the last state that was sent
-// before it (by the clocks of both).
+// A plan acts from the tick that it names, so it is handed over after the state of that tick. A plan without
+// a tick is handed over after the last state that was sent before it (according to the clocks of both
+// senders).
 void RecordedRun::ReadPlans(const std::vector<arm_plan_t>& plans) {
   for (const arm_plan_t& plan : plans) {
     int64_t behind = plan.tick;

@@ -1,4 +1,4 @@
-// A recorded run as the inputs of a controller, in the order in which it acted by them.
+// A recorded run as the inputs of a controller, in the order in which the controller used them.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace hydro::hydro_log {
 
-// The first message of each tick: a later one of the same tick is a repetition or comes from a watchdog.
+// The first message of each tick. A later one of the same tick is a repetition or comes from a watchdog.
 template <class Message>
 std::map<int64_t, Message> ByTick(const std::vector<Message>& messages) {
   std::map<int64_t, Message> by_tick;
@@ -33,11 +33,12 @@ std::map<int64_t, Message> ByTick(const std::vector<Message>& messages) {
   return by_tick;
 }
 
-// The answers of the pressure loop; without those from the end of the run, and, where a log begins in the middle of a run, without
-// those whose pressure command was sent before. Throws InputError when there are none.
+// The answers of the pressure loop, without those from the end of the run. Where a log begins in the middle
+// of a run, answers whose pressure command was sent before are left out as well. Throws InputError when there
+// are none.
 std::map<int64_t, motor_command_t> RecordedMotorCommands(const runs::RunLog& log);
 
-// Without their sequence numbers, which depend on where a replay begins.
+// The messages without their sequence numbers, which depend on where a replay begins.
 template <class Message>
 std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
   std::vector<Message> messages;
@@ -51,26 +52,27 @@ std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
 
 class RecordedRun {
  public:
-  // `role`: of the process that is replayed. Throws InputError when the log has no description of its run or no states.
+  // `role` is the role of the process that is replayed. Throws InputError when the log has no description of
+  // its run or no states.
   RecordedRun(const runs::RunLog& log, const std::string& role);
 
-  const settings::StackConfig& config() const { return config_; }  // in real time: nothing waits
+  const settings::StackConfig& config() const { return config_; }  // in real time, so nothing waits
   const run_description_t& description() const { return description_; }
   int64_t first_tick() const { return states_.begin()->first; }
   std::optional<int64_t> FirstGap() const;
   int64_t states() const { return static_cast<int64_t>(states_.size()); }
 
-  // What a feed does around its messages.
+  // The actions of a feed between its messages.
   struct Steps {
     std::function<void(double elapsed_s)>
-        advance;  // plant time since the first state, before anything of it is sent
-    std::function<void(int64_t tick)> before;          // may send what came before that state
+        advance;  // plant time since the first state, before anything of the new state is sent
+    std::function<void(int64_t tick)> before;          // may send what came before the state of that tick
     std::function<void()> deliver;                     // after each message
     std::function<bool(const state_t& state)> answer;  // after each state; false ends the feed
   };
 
-  // Sends the states one by one, and before each what else the process acted by. speed: recorded seconds per wall second; 0: as fast
-  // as possible.
+  // Sends the states one by one, and before each state the other inputs that the process used. `speed` is in
+  // recorded seconds per wall second; 0: as fast as possible.
   void Feed(bus::Bus& bus, const bus::Channels& channels, double speed, const Steps& steps);
 
  private:
@@ -87,11 +89,12 @@ class RecordedRun {
   std::vector<active_faults_t> active_faults_;
   std::vector<process_status_t> statuses_;
   size_t next_fault_ = 0, next_active_ = 0, next_status_ = 0;
-  std::vector<std::pair<int64_t, arm_plan_t>> plans_;  // behind which tick
-  std::vector<tuned_settings_t> tunings_;  // acts_at: from when the replayed process acted by them
+  std::vector<std::pair<int64_t, arm_plan_t>> plans_;  // with the tick after which each is sent
+  std::vector<tuned_settings_t> tunings_;  // acts_at: the tick from which the replayed process used them
 };
 
-// In a log that begins in the middle of a run, the derivative of the first sample needs the sample before: takes its answer out.
+// The derivative of the first sample needs the sample before it, which is missing in a log that begins in the
+// middle of a run. So this removes the answer to the first sample.
 template <class Commands>
 void CutFirstSample(const RecordedRun& run, Commands& commands) {
   if (run.first_tick() <= 0) return;

@@ -17,7 +17,7 @@
 namespace hydro::hydro_log {
 namespace {
 
-// A recorded run that is fed to one of our applications in this process.
+// Feeds a recorded run to one of our applications in this process.
 class Replayer {
  public:
   Replayer(const runs::RunLog& log, double speed, const std::string& role)

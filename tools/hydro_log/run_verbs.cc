@@ -23,7 +23,7 @@ namespace hydro::hydro_log {
 
 namespace {
 
-// Called before anything is printed or written.
+// This is called before anything is printed or written.
 void CheckOutput(const std::string& file, const std::string& log) {
   CheckKeeps(file, {log});
   CheckCanBeWritten(file);
@@ -31,7 +31,7 @@ void CheckOutput(const std::string& file, const std::string& log) {
 
 constexpr double kLongest_s = 3600;
 
-// What a replay found, in a line or two; the exit code.
+// Prints the result of a replay in a line or two; returns the exit code.
 int Print(const std::string& name, const char* commands, const ReplayResult& result) {
   const std::string shown = Printable(name);
   if (result.difference) {
@@ -128,7 +128,7 @@ int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
   CheckDistinct({json_, page_});
-  // A limb's own loop keeps time for all its joints.
+  // A limb's own loop keeps the time for all its joints.
   const runs::LimbLog all = ReadLimbWithWarning(log_, choice_);
   runs::RequireOneRun(all);
   const runs::RunLog& log = all.limb;

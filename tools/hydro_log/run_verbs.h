@@ -12,10 +12,10 @@ namespace hydro::hydro_log {
 // For verbs that show or convert a recording. Messages that this stack cannot decode are left out, as the
 // processes of the run did; one line on stderr names them.
 runs::RunLog ReadWithWarning(const std::string& file, const runs::StackChoice& choice);
-// The same of all joints of a limb, where `choice` leaves open which is meant.
+// The same for all joints of a limb, where `choice` leaves open which joint is meant.
 runs::LimbLog ReadLimbWithWarning(const std::string& file, const runs::StackChoice& choice);
 
-// One line on stderr where the log is incomplete or repaired, or holds another stack too.
+// Prints one line on stderr where the log is incomplete or repaired, or holds another stack too.
 void WarnOf(const runs::RunLog& log);
 
 class SummaryVerb {
@@ -45,7 +45,7 @@ class ReplayVerb {
   int Run() const;
 
  private:
-  // `of`: what comes before each line; empty, or a joint's name.
+  // `of` is the prefix of each line; empty, or a joint's name.
   int RunOurs(const runs::RunLog& log, const std::string& of) const;
   int RunOwn(const runs::RunLog& log, const std::vector<std::string>& command) const;
 

@@ -1,4 +1,4 @@
-// hydro-plot RUN.csv DIR: pictures of a run.
+// hydro-plot RUN.csv DIR: draws pictures of a run.
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
-    std::error_code failed;  // WriteWholeFile says why
+    std::error_code failed;  // WriteWholeFile reports the reason
     std::filesystem::create_directories(folder, failed);
     hydro::WriteWholeFile(folder + "/arm.svg", arm, hydro::Existing::kKept);
     hydro::WriteWholeFile(folder + "/pressure.svg", pressure, hydro::Existing::kKept);

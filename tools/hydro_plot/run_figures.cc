@@ -23,8 +23,9 @@ const std::vector<double>& ColumnOf(const tables::Table& run, const std::string&
   return column->values;
 }
 
-// The unit of a quantity, with which hydro-log export ends its column's name: that of the run's model, or with --si another. `like`
-// are units of the same kind; without such a column the first.
+// The unit of a quantity, which hydro-log export puts at the end of its column's name: the unit in the run's
+// model, or another one with --si. `like` holds a unit of each kind that the quantity may have; without such
+// a column, the first of them is returned.
 std::string UnitOf(const tables::Table& run, const std::string& quantity,
                    const std::vector<std::string_view>& like) {
   for (const std::string_view first : like) {
@@ -40,10 +41,10 @@ std::string UnitOf(const tables::Table& run, const std::string& quantity,
 
 std::string PressureUnit(const tables::Table& run) { return UnitOf(run, "p1", {"psi"}); }
 
-// A length is the coordinate of a cylinder.
+// For a cylinder, the coordinate is a length.
 std::string ArmUnit(const tables::Table& run) { return UnitOf(run, "arm_angle", {"rad", "m"}); }
 
-// A picture over time needs two times, and each after the one before.
+// A picture over time needs at least two times, and each must be later than the one before.
 const std::vector<double>& TimesOf(const tables::Table& run) {
   const std::vector<double>& time = ColumnOf(run, "time_s");
   if (time.size() < 2) throw InputError(run.file + ": found one row, allowed two or more");

@@ -1,4 +1,4 @@
-// hydro-set [CONFIG] KEY=VALUE...: changes what is tuned while a stack runs.
+// hydro-set [CONFIG] KEY=VALUE...: changes values while a stack runs.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 
 using hydro::hydro_set::SetRequest;
 
-// What has an '=' is a value, the one without is CONFIG.
+// An argument with an '=' is a value, and the one without is CONFIG.
 void Sort(const std::vector<std::string>& arguments, SetRequest* request) {
   for (const std::string& argument : arguments) {
     if (argument.find('=') != std::string::npos) {

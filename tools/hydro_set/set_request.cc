@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPresence = 2500ms;  // a plant says once a second what is in force
+constexpr auto kPresence = 2500ms;  // once a second, a plant sends the values in force
 constexpr auto kTakeEffect = 2s;
 constexpr auto kTurn = 20ms;
 
@@ -63,7 +63,7 @@ class Setter {
     return true;
   }
 
-  // Before it waits for a stack. Throws InputError.
+  // Checks the keys before this waits for a stack. Throws InputError.
   void RequireTunable() const {
     for (const std::string& change : request_.changes) {
       const std::string key = Trimmed(change.substr(0, change.find('=')));
@@ -122,7 +122,7 @@ class Setter {
 
   void List() const {
     const auto values = tuning::ValuesInForce(*client_.run(), *client_.in_force(),
-                                      [](double value) { return fmt::format("{:g}", value); });
+                                              [](double value) { return fmt::format("{:g}", value); });
     const settings::StackConfig config = tuning::ConfigInForce(*client_.run(), *client_.in_force());
     constexpr const char* kRow = "{:<34} {:<22} {:<22} {:<41} {:<14} {}";
     Print(said_, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
@@ -137,8 +137,8 @@ class Setter {
   }
 
   void Save() const {
-    const std::string text =
-        tuning::SavedText(request_.config_file, request_.joint, request_.save, *client_.run(), *client_.in_force());
+    const std::string text = tuning::SavedText(request_.config_file, request_.joint, request_.save,
+                                               *client_.run(), *client_.in_force());
     WriteTextFile(request_.save, text, output_.out);
     if (request_.save == kStandardOutput) return;
     Print(said_,
@@ -172,7 +172,7 @@ class Setter {
   const std::string url_;
   const SetRequest& request_;
   const SetOutput& output_;
-  std::FILE* const said_;  // what was asked for, beside a file
+  std::FILE* const said_;  // receives what was asked for, never mixed with a saved file
   tuning::TuningClient client_;
 };
 

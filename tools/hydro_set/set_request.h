@@ -1,4 +1,4 @@
-// hydro-set: what is asked on the command line, done on a bus.
+// hydro-set: carries out the request on the command line, on a bus.
 #pragma once
 
 #include <cstdio>
@@ -14,7 +14,7 @@ namespace hydro::hydro_set {
 
 struct SetRequest {
   std::string config_file;           // of the stack; empty: the default bus
-  std::string joint;                 // of a limb's CONFIG; empty: it is a stack's
+  std::string joint;                 // from a limb's CONFIG; empty: CONFIG is a stack's
   std::vector<std::string> changes;  // "key=value"
   bool undo = false;
   bool list = false;
@@ -26,12 +26,12 @@ struct SetRequest {
 void CheckRequest(const SetRequest& request);
 
 struct SetOutput {
-  std::FILE* out;                     // what was asked for
-  std::FILE* err;                     // why not
-  std::function<bool()> interrupted;  // --watch goes on until then
+  std::FILE* out;                     // receives what was asked for
+  std::FILE* err;                     // receives the reasons of failures
+  std::function<bool()> interrupted;  // --watch continues until this returns true
 };
 
-// Returns the exit code: 0 done; 1 refused, or nobody is there. Throws InputError for a file that cannot be
+// Returns the exit code: 0 done; 1 refused, or no stack is there. Throws InputError for a file that cannot be
 // written.
 int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section,
            const SetRequest& request, const SetOutput& output);

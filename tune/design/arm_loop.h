@@ -11,7 +11,8 @@
 namespace hydro::design {
 
 // The actuator of eqs. (4), (13), (14), (15) at rest at mid-stroke, with the pump slipping and both sides
-// compressing, under the pressure law, eq. (16), without limits. Linear from dp_ref to every state.
+// compressing, under the pressure law, eq. (16), without limits. The loop is linear from dp_ref to every
+// state.
 class LinearArmLoop {
  public:
   // Throws ModelError, as Equations does.
@@ -31,7 +32,7 @@ class LinearArmLoop {
   Complex Output(size_t row, double frequency) const;
 
   size_t states_ = 0;
-  std::vector<double> A_, B_;  // by columns, with the pressure loop closed; the input is dp_ref
+  std::vector<double> A_, B_;  // by columns, with the pressure loop closed; input dp_ref
 };
 
 // Natural frequency and damping ratio of the pressure loop with the arm clamped at mid-stroke, from the exact

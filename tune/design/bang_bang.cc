@@ -5,8 +5,8 @@
 namespace hydro::design {
 namespace {
 
-// Speed v from rest under a constant torque and viscous friction: inertia v' = torque - viscous v. Braking is
-// the same backward in time, with a viscous torque that helps: viscous < 0.
+// The speed v from rest under a constant torque and viscous friction: inertia v' = torque - viscous v.
+// Braking is the same motion backward in time, with a viscous torque that helps: viscous < 0.
 struct Ramp {
   double inertia;
   double torque;

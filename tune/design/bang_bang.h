@@ -28,8 +28,8 @@ struct FastestMove {
 // Over `distance` > 0, rad.
 FastestMove FastestRestToRest(const RigidDrive& drive, double distance);
 
-// The shortest time, s, to come within +/- band (a fraction of the distance) of the target for good. The arm
-// may still be moving then, as fast as full braking can stop it within the band.
+// The shortest time, s, after which the arm stays within +/- band (a fraction of the distance) of the target.
+// The arm may still be moving then, as fast as full braking can stop it within the band.
 double FastestSettling(const RigidDrive& drive, double distance, double band);
 
 }  // namespace hydro::design

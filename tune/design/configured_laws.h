@@ -1,4 +1,4 @@
-// The settings of the two control laws as a configuration gives them.
+// The settings of the two control laws that follow from a configuration.
 #pragma once
 
 #include <optional>
@@ -10,17 +10,19 @@
 
 namespace hydro::design {
 
-// Eq. (16). Derives the gains when the configuration gives natural frequency and damping ratio instead; throws
-// InputError when they cannot be derived.
+// Settings of eq. (16). Derives the gains when the configuration gives natural frequency and damping ratio
+// instead. Throws InputError when they cannot be derived.
 pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
 
-// Eq. (17).
+// Settings of eq. (17).
 position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackConfig& config);
 
-// The braking curve before it; empty without position.braking_rad_s2. Its largest speed is 0.95 of limits.motor_speed.
+// The braking curve before eq. (17); empty without position.braking_rad_s2. Its largest speed is 0.95 of
+// limits.motor_speed.
 std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config);
 
-// The same from numbers: `braking` in rad/s^2, infinity for none; `motor_speed`: its limit, rad/s.
+// The same curve from numbers: `braking` in rad/s^2, infinity for none; `motor_speed` is the motor's limit,
+// rad/s.
 std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law,
                                                            double braking, double motor_speed,
                                                            const model::Parameters& parameters);

@@ -14,8 +14,8 @@
 namespace hydro::design {
 namespace {
 
-// An oscillation takes some ten steps of a microsecond or so: with these a tick of 1 ms takes about as long
-// as it lasts.
+// An oscillation takes about ten steps of about a microsecond. With this many oscillations, a tick of 1 ms
+// takes about as long as it lasts.
 constexpr double kMostInATick = 100;
 
 }  // namespace
@@ -37,7 +37,7 @@ std::string FastMotionRemark(const settings::StackConfig& config) {
   try {
     fastest = FastestMotion(config);
   } catch (const model::ModelError&) {
-    return "";  // said, with its time, by whoever simulates it
+    return "";  // the simulation itself reports this, with the time
   }
   const double in_a_tick = fastest / (2 * std::numbers::pi * config.plant.rate_hz);
   if (!(in_a_tick > kMostInATick)) return "";

@@ -1,5 +1,5 @@
-// How fast the fastest oscillation of a configuration's model is: what decides how long a tick takes to
-// simulate.
+// The speed of the fastest oscillation of a configuration's model. It determines how long the simulation of a
+// tick takes.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace hydro::design {
 
-// rad/s, of the fastest oscillation at the points where the configuration works; 0: nothing oscillates.
-// Throws model::ModelError.
+// rad/s, the fastest oscillation at the points where the configuration works; 0: nothing oscillates. Throws
+// model::ModelError.
 double FastestMotion(const settings::StackConfig& config);
 
-// One line for a person where a tick has so many oscillations that it takes far longer to simulate than it
-// lasts: a parameter may be mistyped, or in another unit. Empty: it has not.
+// One line for a person if a tick has so many oscillations that its simulation takes far longer than the
+// tick: a parameter may be mistyped, or in another unit. Otherwise empty.
 std::string FastMotionRemark(const settings::StackConfig& config);
 
 }  // namespace hydro::design

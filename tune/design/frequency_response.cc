@@ -37,7 +37,7 @@ std::vector<double> WithoutMean(const std::vector<double>& signal, size_t length
   return padded;
 }
 
-// The largest length up to `length` that transforms fast: factors 2, 3 and 5 only.
+// The largest length up to `length` with a fast transform: factors 2, 3 and 5 only.
 size_t FastLength(size_t length) {
   for (;; --length) {
     size_t rest = length;

@@ -26,8 +26,8 @@ struct WelchSettings {
 // constant, which cancels the first-order effect of what happens across segment ends), and H1 = S_xy / S_xx.
 // The gain may vary within the band around each point: a local polynomial is fitted to it by least squares,
 // and the coherence counts what that polynomial explains. Means are removed first. The signals should begin
-// and end at rest. Each point lies at the input's centre of power in its band; bands without input, or
-// narrower than the spacing of the spectrum's lines, give no point. Throws std::invalid_argument for signals
+// and end at rest. Each point lies at the input's centre of power in its band. A band without input, or
+// narrower than the spacing of the spectrum's lines, gives no point. Throws std::invalid_argument for signals
 // of unequal length or shorter than one segment.
 std::vector<ResponsePoint> EstimateFrequencyResponse(const std::vector<double>& input,
                                                      const std::vector<double>& output,
@@ -39,7 +39,7 @@ double Decibels(std::complex<double> gain);
 std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points);
 
 // The frequency above which the gain stays more than 3 dB (a factor of sqrt 2) below `passband_gain`,
-// interpolated linearly in dB over log frequency. NaN when the gain never was above that level or is not
+// interpolated linearly in dB over log frequency. NaN when the gain was never above that level or is not
 // below it at the end.
 double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gain);
 

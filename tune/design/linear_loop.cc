@@ -20,7 +20,7 @@ constexpr int kMotorSpeedOutput = 1;
 constexpr int kP1Output = 4;
 constexpr int kP2Output = 5;
 
-// States that something moves and on which something depends.
+// States that change and on which something depends.
 std::vector<int> StatesThatMatter(const Eigen::MatrixXd& A, const Eigen::VectorXd& B,
                                   const Eigen::MatrixXd& outputs) {
   std::vector<int> kept;
@@ -102,7 +102,7 @@ std::vector<Complex> LinearPressureLoop::ClosedPoles(const pressure_ctrl::Pressu
   const Eigen::MatrixXd A =
       Map(A_.data(), states_, states_) - gains.k_p * Column(B_.data(), states_) * (dp + gains.k_v * speed);
   const maths::Eigensystem motions = maths::Eigenvectors(A);
-  // How much of a motion's parts remains in their sum.
+  // How much of a motion's components remains in their sum.
   const auto shows = [](const RowMap& output, const Eigen::VectorXcd& motion) {
     const Eigen::VectorXcd parts = output.transpose().cast<Complex>().cwiseProduct(motion);
     return std::abs(parts.sum()) > 1e-6 * parts.cwiseAbs().sum() &&

@@ -17,13 +17,13 @@ struct LoopTiming {
 
 class LinearPressureLoop {
  public:
-  // `model` comes from Linearise. States that nothing moves (an open valve's pressure) and the motor's angle,
-  // on which nothing depends, are left out. Throws std::invalid_argument for an interval below 0, a delay
-  // other than 0 or 1, or a delay without an interval.
+  // `model` comes from Linearise. States that do not change (an open valve's pressure) are left out, and so
+  // is the motor's angle, on which nothing depends. Throws std::invalid_argument for an interval below 0, a
+  // delay other than 0 or 1, or a delay without an interval.
   LinearPressureLoop(const model::LinearModel& model, const LoopTiming& timing);
 
-  // Frequency responses at a frequency in Hz (above 0). For a sampled loop: from input samples to output
-  // samples.
+  // Frequency responses at a frequency in Hz (above 0). For a sampled loop, they relate input samples to
+  // output samples.
   std::complex<double> PressurePerVolt(double frequency_hz) const;  // dp/v
   std::complex<double> SpeedPerVolt(double frequency_hz) const;     // theta'/v
   std::complex<double> LoopGain(const pressure_ctrl::PressureGains& gains,
@@ -38,8 +38,8 @@ class LinearPressureLoop {
   // The largest real part of the closed loop's poles, 1/s; negative when the loop is stable.
   double Growth(const pressure_ctrl::PressureGains& gains) const;
 
-  // The poles that show in dp or in the motor's speed. The common motion of the two sides at mid-stroke, for
-  // instance, shows in neither.
+  // The poles that appear in dp or in the motor's speed. The common motion of the two sides at mid-stroke,
+  // for instance, appears in neither.
   std::vector<std::complex<double>> VisiblePoles(const pressure_ctrl::PressureGains& gains) const;
 
   // The visible oscillating pole nearest to instability (upper half plane); 0 when none oscillates.

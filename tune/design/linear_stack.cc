@@ -28,8 +28,8 @@ constexpr int64_t kMostSamples = 500;
 // Rows of LinearModel's outputs.
 enum Output : uint8_t { kSpeed = 1, kAngle = 2, kArmRate = 3, kFirst = 4, kSecond = 5 };
 
-// A delay in whole ticks and the rest, which is above 0 and at most a tick, so that what is late is always an earlier
-// tick's.
+// A delay as whole ticks and a remainder above 0 and up to one tick, so that a late value always belongs to
+// an earlier tick.
 struct Delay {
   int ticks = 0;
   double rest = 0;  // s
@@ -43,7 +43,7 @@ Delay SplitDelay(double seconds, double tick, const char* what) {
   return {static_cast<int>(ticks), seconds - ticks * tick};
 }
 
-// What the states and the held input become.
+// The transition of the states and the held input.
 struct Transition {
   MatrixXd states;
   Eigen::VectorXd input;
@@ -58,7 +58,7 @@ Transition TransitionOver(const MatrixXd& A, const MatrixXd& B, double time) {
   return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, 1)};
 }
 
-// The states that something moves and on which something depends.
+// The states that change and on which something depends.
 std::vector<Index> StatesThatMatter(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
   std::vector<Index> kept(static_cast<size_t>(A.rows()));
   std::iota(kept.begin(), kept.end(), 0);
@@ -87,15 +87,15 @@ MatrixXd Power(MatrixXd base, int64_t exponent) {
 
 }  // namespace
 
-// One tick is written as rows: what each state at its end is of the states at its start. The states are the actuator's,
-// then the voltages that acted in earlier ticks, the voltage and the pressure reference computed last, the
-// angle at the last sample, and late readings.
+// One tick is written as rows: each state at its end in terms of the states at its start. The states are
+// those of the actuator, followed by the voltages that acted in earlier ticks, the voltage and the pressure
+// reference computed last, the angle at the last sample, and late readings.
 struct LinearStack::Parts {
   MatrixXd C;
-  Transition before, after;  // with the voltage that acted before the amplifier's delay is over, and after it
+  Transition before, after;  // with the voltages that act before and after the end of the amplifier's delay
   Transition read_before,
-      read_after;            // the same up to the time within a tick of which late channels tell later
-  bool reads_after = false;  // that time is after the change of voltage
+      read_after;            // the same, up to the time within a tick that late channels read
+  bool reads_after = false;  // that time is after the change of the voltage
   int amplifier_ticks = -1;  // -1: no delay
   int late_ticks = -1;       // -1: no channel is late
   std::vector<Index> late;   // outputs
@@ -126,7 +126,7 @@ RowVectorXd LinearStack::Parts::Voltage(const MatrixXd& y, const RowVectorXd& re
   const double areas = pressure.sides.areas;
   const RowVectorXd load_pressure = (1 + areas) * y.row(kSecond) - (1 - areas) * y.row(kFirst);
   const RowVectorXd fed_back = -pressure.gains.k_p * (load_pressure + pressure.gains.k_v * speed);
-  // The reference comes through the same amplifier: a factor on the voltage is one on all of eq. (16).
+  // The reference passes through the same amplifier, so a factor on the voltage multiplies all of eq. (16).
   return share * (fed_back + (pressure.gains.k_p + pressure.reference_feedforward) * reference_row);
 }
 
@@ -156,7 +156,8 @@ MatrixXd LinearStack::Parts::Tick(bool pressure_samples, bool position_samples, 
   const auto channels = static_cast<Index>(late.size());
   for (Index i = 0; i < channels; ++i) y.row(late[i]) = now.row(readings() + late_ticks * channels + i);
 
-  // A reference acts on the sample of the pressure loop after the delay, as its voltage does on the motor.
+  // A reference acts on the first sample of the pressure loop after the delay, as the loop's voltage acts on
+  // the motor.
   const bool at_once = timing.command_delay == 0;
   RowVectorXd reference_row = RowVectorXd::Zero(size());
   if (position) {
@@ -248,14 +249,14 @@ double LinearStack::period() const { return static_cast<double>(parts_->period) 
 
 bool LinearStack::pressure_sampled_once() const { return parts_->period == parts_->timing.pressure_interval; }
 
-// A reference that the pressure loop does not sample before the next one does nothing.
+// A reference that is replaced before the pressure loop samples it has no effect.
 bool LinearStack::position_sampled_once() const {
   return parts_->period == parts_->timing.position_interval || pressure_sampled_once();
 }
 
-// The loop over one period, tick after tick, for intervals that do not divide each other.
+// The loop over one period, tick by tick, for intervals that are not multiples of each other.
 MatrixXd LinearStack::Parts::TickByTick(double voltage, double reference_share) const {
-  std::map<int64_t, MatrixXd> idle;  // so many ticks without a sample
+  std::map<int64_t, MatrixXd> idle;  // transition over this many ticks without a sample
   MatrixXd loop = MatrixXd::Identity(size(), size());
   for (int64_t tick = 0; tick < period;) {
     loop = Tick(tick % timing.pressure_interval == 0, tick % timing.position_interval == 0, voltage,
@@ -305,7 +306,7 @@ void FreezeArmAngle(int actuator_angle, model::LinearModel* model) {
   Eigen::Map<MatrixXd> A(model->A.data(), n, n);
   Eigen::Map<MatrixXd> C(model->C.data(), model->outputs, n);
   if (own != arm) {
-    // The actuator's angle is counted from the arm's from here on; a motion of both moves nothing.
+    // From here on the actuator's angle counts from the arm's, so a common motion of both changes nothing.
     A.row(own) -= A.row(arm);
   }
   A.col(arm).setZero();

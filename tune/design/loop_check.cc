@@ -56,7 +56,7 @@ void Add(const LoopMargins& margins, const std::string& name, std::optional<Chec
   all.worst = WorstOf(all.worst, margins);
 }
 
-// Where the samples of both loops follow a pattern, no single response describes the loop: only its poles do.
+// If the samples of both loops follow a pattern, no single response describes the loop; only its poles do.
 LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
   if (stack.position_sampled_once()) {
     const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
@@ -89,7 +89,7 @@ void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLaw
     checked.pressure =
         MarginsOf([&](double factor) { return alone.Poles(factor, 0); }, alone.period(), Drift::kIgnored);
     Add(checked.pressure, point.name, &check->pressure);
-    if (!closes_position || !moves_arm) continue;
+    if (!closes_position || !moves_arm || point.arm_sticks) continue;
     const LinearStack both(model, timing, pressure, &position);
     checked.position = PositionMargins(both, position);
     Add(*checked.position, point.name, &check->position);

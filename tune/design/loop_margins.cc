@@ -14,29 +14,33 @@ using PolesOf = std::function<std::vector<Complex>(double)>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-8;    // an integrator's pole may come out this far beyond the unit circle
-constexpr double kLeastAngle = 1e-6;  // rad a period: the lowest frequency
-constexpr double kSlow = 0.05;        // of the highest crossover: below it is drift
+constexpr double kLeastAngle = 1e-6;  // rad per period: the lowest frequency
+constexpr double kSlow = 0.05;        // of the highest crossover: a response below it is drift
 constexpr double kLeastGain = 1e-9;   // loop gains below this are rounding errors
+
+bool Drifts(const Complex& pole, double slow) {
+  return (pole.imag() == 0 && pole.real() > 0) || std::abs(std::log(pole)) < slow;
+}
 
 double Radius(const std::vector<Complex>& poles) {
   double radius = 0;
   for (const Complex& pole : poles) {
     const double size = std::abs(pole);
-    if (std::isnan(size)) return std::numeric_limits<double>::infinity();  // what is unknown is not stable
+    if (std::isnan(size)) return std::numeric_limits<double>::infinity();  // an unknown loop is not stable
     radius = std::max(radius, size);
   }
   return radius;
 }
 
-// What decides about stability.
+// The criterion for stability.
 class Stability {
  public:
-  Stability(const PolesOf& poles, Drift drift) : poles_(poles), drift_(drift) {}
+  // `slow`, rad a period: where drift is ignored, what swings and grows more slowly than that is drift, too.
+  Stability(const PolesOf& poles, Drift drift, double slow) : poles_(poles), drift_(drift), slow_(slow) {}
 
   bool Holds(std::vector<Complex> poles) const {
-    if (drift_ == Drift::kIgnored) {
-      std::erase_if(poles, [](const Complex& pole) { return pole.imag() == 0 && pole.real() > 0; });
-    }
+    if (drift_ == Drift::kIgnored)
+      std::erase_if(poles, [&](const Complex& pole) { return Drifts(pole, slow_); });
     return Radius(poles) < 1 + kRounding;
   }
   bool Holds(double factor) const { return Holds(poles_(factor)); }
@@ -44,9 +48,10 @@ class Stability {
  private:
   const PolesOf& poles_;
   Drift drift_;
+  double slow_;
 };
 
-// Takes out what is in both lists: poles that the loop does not move.
+// Removes poles that are in both lists, because the loop does not move them.
 void Cancel(std::vector<Complex>* a, std::vector<Complex>* b) {
   for (size_t i = a->size(); i-- > 0;) {
     const auto twin = std::find_if(b->begin(), b->end(),
@@ -72,7 +77,7 @@ class Sweep {
     return product - 1.0;
   }
 
-  // Where `value` of the response changes its sign, in rad a period.
+  // Where `value` of the response changes its sign, in rad per period.
   std::vector<double> Crossings(double (*value)(const Complex&)) const {
     std::vector<double> crossings;
     for (size_t i = 0; i + 1 < angles_.size(); ++i) {
@@ -89,7 +94,8 @@ class Sweep {
     return crossings;
   }
 
-  // rad a period: the highest at which the closed loop behind `filter` still has a gain of 1/sqrt(2).
+  // rad per period: the highest frequency at which the closed loop behind `filter` still has a gain of
+  // 1/sqrt(2).
   double Bandwidth(const Filter& filter) const {
     const auto passes = [&](double angle) {
       const Complex z = std::polar(1.0, angle);
@@ -115,7 +121,7 @@ class Sweep {
   }
 
  private:
-  // Evenly on a logarithmic scale, and closely around each resonance.
+  // Evenly on a logarithmic scale, and more closely around each resonance.
   void PlaceAngles() {
     constexpr int kSteps = 200;
     angles_.reserve(kSteps + 1 + 22 * closed_.size());
@@ -137,8 +143,8 @@ class Sweep {
   }
 
   std::vector<Complex> closed_, open_;
-  std::vector<double> angles_;  // rad a period
-  std::vector<Complex> loop_;   // the open loop's response there
+  std::vector<double> angles_;  // rad per period
+  std::vector<Complex> loop_;   // the open loop's response at these
 };
 
 struct Candidate {
@@ -146,7 +152,7 @@ struct Candidate {
   double angle = 0;
 };
 
-// The factors at which a pole may lie on the unit circle: where the response is real and negative.
+// The factors at which a pole may lie on the unit circle, where the response is real and negative.
 std::vector<Candidate> CriticalFactors(const Sweep& sweep) {
   std::vector<double> angles = sweep.Crossings([](const Complex& loop) { return loop.imag(); });
   angles.push_back(0);
@@ -164,7 +170,7 @@ std::vector<Candidate> CriticalFactors(const Sweep& sweep) {
   return candidates;
 }
 
-// A stable loop: the nearest factors beyond which it is not.
+// For a stable loop: the nearest factors beyond which it is unstable.
 void GainLimits(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
   const auto fails = [&](double factor) { return !stability.Holds(factor); };
@@ -181,7 +187,7 @@ void GainLimits(const Stability& stability, const std::vector<Candidate>& candid
   }
 }
 
-// An unstable loop: how much less gain is stable.
+// For an unstable loop: the lower gain that is stable.
 void StableGain(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
   margins->gain = 0;
@@ -193,11 +199,15 @@ void StableGain(const Stability& stability, const std::vector<Candidate>& candid
   }
 }
 
-void PhaseLimits(const Sweep& sweep, double period, Drift drift, LoopMargins* margins) {
-  const std::vector<double> crossovers =
-      sweep.Crossings([](const Complex& loop) { return std::abs(loop) - 1; });
+// Where the loop's gain is 1, in rad a period.
+std::vector<double> Crossovers(const Sweep& sweep) {
+  return sweep.Crossings([](const Complex& loop) { return std::abs(loop) - 1; });
+}
+
+void PhaseLimits(const Sweep& sweep, const std::vector<double>& crossovers, double slow, double period,
+                 LoopMargins* margins) {
   for (const double angle : crossovers) {
-    if (drift == Drift::kIgnored && angle < kSlow * crossovers.back()) continue;
+    if (angle < slow) continue;
     const double ahead = std::arg(-sweep.Loop(std::polar(1.0, angle)));  // of -180 degrees
     const double degrees = std::fabs(ahead) * 180 / kPi;
     if (degrees < margins->phase_deg) {
@@ -209,11 +219,11 @@ void PhaseLimits(const Sweep& sweep, double period, Drift drift, LoopMargins* ma
 }
 
 // Poles at 0 and on the positive real axis do not oscillate.
-double LeastDamping(const std::vector<Complex>& poles) {
+double LeastDamping(const std::vector<Complex>& poles, double slow) {
   double least = 1;
   for (const Complex& pole : poles) {
     const bool negative = pole.imag() == 0 && pole.real() < -1e-6;
-    if (!(pole.imag() > 1e-9 || negative) || std::abs(pole) < 1e-6) continue;
+    if (!(pole.imag() > 1e-9 || negative) || std::abs(pole) < 1e-6 || Drifts(pole, slow)) continue;
     const Complex s = std::log(pole);
     least = std::min(least, -s.real() / std::abs(s));
   }
@@ -223,24 +233,27 @@ double LeastDamping(const std::vector<Complex>& poles) {
 }  // namespace
 
 LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift, const Filter& filter) {
-  const Stability stability(poles, drift);
-  std::vector<Complex> closed = poles(1);
-  std::vector<Complex> open = poles(0);
+  const std::vector<Complex> all = poles(1);
+  std::vector<Complex> closed = all, open = poles(0);
   LoopMargins margins;
   margins.spectral_radius = Radius(closed);
-  margins.stable = stability.Holds(closed);
   if (!std::isfinite(margins.spectral_radius) || !std::isfinite(Radius(open))) {
     margins.stable = false;
     margins.gain = margins.phase_deg = margins.delay = margins.distance = margins.damping_ratio = 0;
     return margins;
   }
   Cancel(&closed, &open);
-  margins.damping_ratio = LeastDamping(closed);
+  const std::vector<Complex> moved = closed;
   const Sweep sweep(std::move(closed), std::move(open));
+  const std::vector<double> crossovers = Crossovers(sweep);
+  const double slow = drift == Drift::kIgnored && !crossovers.empty() ? kSlow * crossovers.back() : 0;
+  const Stability stability(poles, drift, slow);
+  margins.stable = stability.Holds(all);
+  margins.damping_ratio = LeastDamping(moved, slow);
   const std::vector<Candidate> candidates = CriticalFactors(sweep);
   if (margins.stable) {
     GainLimits(stability, candidates, period, &margins);
-    PhaseLimits(sweep, period, drift, &margins);
+    PhaseLimits(sweep, crossovers, slow, period, &margins);
     margins.distance = sweep.LeastDistance();
     if (filter) margins.bandwidth_hz = sweep.Bandwidth(filter) / (2 * kPi * period);
   } else {

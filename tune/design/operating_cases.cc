@@ -42,6 +42,7 @@ std::vector<double> ArmAngles(const settings::StackConfig& config) {
 struct Running {
   int direction = 1;
   bool high_pressure = false;
+  bool arm_sticks = false;  // by an effect's friction, and the motor goes on
 };
 
 OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Sides sides,
@@ -50,7 +51,7 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   model::ModelDescription description = section.description;
   const model::Parameters& p = description.parameters;
   if (sides != Sides::kBoth) {
-    // A side that its valve holds is held by the ideal one.
+    // The ideal valve holds a side that is held by its valve.
     std::erase_if(description.effects, [](const auto& effect) { return model::ReplacesValves({effect}); });
   }
   const bool free = section.shaft == model::Shaft::kFree;
@@ -75,11 +76,17 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
     mode.valve_2 = 1;
     state[model::kP2] = p.p_3;
   }
+  if (running.arm_sticks) {
+    state[model::kArmSpeed] = 0;
+  } else {
+    equations.SwitchEffects(state,
+                            &mode);  // no position loop moves an arm that sticks, and so any gain would do
+  }
   OperatingCase result;
   result.model = model::Linearise(equations, 0, 0, mode, state);
   result.scales = equations.scales();
   if (running.high_pressure && free) {
-    // What leaks there would make the pressures depend on the arm's angle as they never do in equilibrium.
+    // Leakage there would make the pressures depend on the arm's angle, which they never do in equilibrium.
     const auto column =
         static_cast<size_t>(equations.data().actuator_angle_state) * static_cast<size_t>(result.model.states);
     result.model.A[column + model::kP1] = result.model.A[column + model::kP2] = 0;
@@ -89,17 +96,36 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
                 description.units.UnitFor("rad", 1);
   if (running.high_pressure) result.name += ", at high pressure";
   if (running.direction < 0) result.name += ", motor backwards";
+  if (running.arm_sticks) result.name += ", arm sticks";
+  result.arm_sticks = running.arm_sticks;
   return result;
 }
 
+// Whether some effect has a switch that is another one while the arm moves.
+bool ArmMayStick(const settings::ModelSection& section) {
+  if (section.shaft != model::Shaft::kFree || section.description.effects.empty()) return false;
+  model::ActuatorOptions options;
+  options.bypass = section.bypass;
+  const model::Equations equations(section.description, options);
+  double state[model::kMaxStates] = {};
+  model::Mode rests;
+  equations.Start(section.description.parameters.p_3, state, &rests);
+  model::Mode moves = rests;
+  state[model::kArmSpeed] = kMotorSpeed * section.description.parameters.D / section.description.parameters.c;
+  equations.SwitchEffects(state, &moves);
+  return moves != rests;
+}
+
 // The paper's equations depend neither on the pressure nor on the direction.
-std::vector<Running> WaysToRun(const model::ModelDescription& model) {
+std::vector<Running> WaysToRun(const settings::ModelSection& section) {
+  const model::ModelDescription& model = section.description;
   std::vector<Running> ways = {{}};
   if (!model.effects.empty()) ways.push_back({.high_pressure = true});
   const bool directed = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
     return effect.id == "pump.friction_asymmetry" || effect.id.starts_with("closure.");
   });
   if (directed) ways.push_back({.direction = -1, .high_pressure = true});
+  if (ArmMayStick(section)) ways.push_back({.arm_sticks = true});
   return ways;
 }
 
@@ -121,7 +147,7 @@ double LargestArmAngle(const settings::StackConfig& config) {
 }
 
 std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config) {
-  const std::vector<Running> ways = WaysToRun(config.model.description);
+  const std::vector<Running> ways = WaysToRun(config.model);
   std::vector<OperatingCase> cases;
   cases.reserve(9 * ways.size());
   for (const double arm_angle : ArmAngles(config)) {

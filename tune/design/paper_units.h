@@ -1,6 +1,7 @@
-// Linear models and laws in the paper's units. Eigenvalues and exponentials of matrices lose digits where numbers of very
-// different size meet: with pressures in Pa a loop's spectral radius came out wrong by 1e-4, and a stable loop unstable.
-// In one system of units, whatever the rig's, all rigs are judged alike.
+// Linear models and laws in the paper's units. Eigenvalues and exponentials of matrices lose digits where
+// numbers of very different size meet: with pressures in Pa, a loop's spectral radius was wrong by 1e-4, and
+// a stable loop came out as unstable. In one system of units all rigs are judged alike, whatever units they
+// use.
 #pragma once
 
 #include <string>
@@ -15,16 +16,16 @@ namespace hydro::design {
 
 class PaperUnits {
  public:
-  // `own`: what models and laws are in. From the paper's own units nothing changes, to the last bit.
+  // `own` are the units of the models and laws. If they are the paper's, nothing changes, to the last bit.
   explicit PaperUnits(const UnitSystem& own);
 
-  // `scales`: Equations::scales() of the model. The states of effects become as large as pressures are.
+  // `scales` are the model's Equations::scales(). The states of effects are scaled to the size of pressures.
   model::LinearModel Model(model::LinearModel model, const std::vector<double>& scales) const;
   pressure_ctrl::PressureLawSettings Law(pressure_ctrl::PressureLawSettings law) const;
   position_ctrl::PositionLawSettings Law(position_ctrl::PositionLawSettings law) const;
 
  private:
-  // What a value is to be multiplied by; `unit` is the paper's, `arm` as in UnitSystem::UnitFor.
+  // The factor for a value. `unit` is the paper's unit, `arm` as in UnitSystem::UnitFor.
   double Factor(const std::string& unit, int arm) const;
 
   UnitSystem own_, paper_;

@@ -13,7 +13,7 @@
 namespace hydro::design {
 namespace {
 
-// Where `falling` crosses 0 between two frequencies, on a logarithmic scale.
+// The point between two frequencies where `falling` crosses 0, on a logarithmic scale.
 double Crossing(const std::function<double(double)>& falling, double low, double high) {
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(low * high);

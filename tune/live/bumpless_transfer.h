@@ -1,5 +1,5 @@
-// A change of gains without a jump of the command: at the change the law's output stays what it was, and what it differs by
-// from the new law's passes in a straight line to nothing. Pure.
+// Changes gains without a jump of the command. At the change the law's output keeps its value, and its
+// difference from the new law's output falls linearly to zero. Pure.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@ namespace hydro::tuning {
 
 class BumplessTransfer {
  public:
-  // `ticks`: in how many plant ticks the difference passes; 0: at once.
+  // `ticks` is the number of plant ticks in which the difference falls to zero; 0: at once.
   explicit BumplessTransfer(int64_t ticks) : ticks_(ticks) {}
 
-  // At `tick` the law in force gives `before`, and the new one `after`, for the same inputs.
+  // At `tick`, for the same inputs, the law in force gives `before` and the new law gives `after`.
   void Begin(double before, double after, int64_t tick) {
     offset_ = before - after;
     from_ = tick;
     passing_ = ticks_ > 0 && offset_ != 0;
   }
 
-  // To be added to the new law's output at `tick`.
+  // The amount to add to the new law's output at `tick`.
   double Offset(int64_t tick) {
     if (!passing_) return 0;
     const double share = static_cast<double>(tick - from_) / static_cast<double>(ticks_);
@@ -26,7 +26,7 @@ class BumplessTransfer {
     return passing_ ? (1 - share) * offset_ : 0;
   }
 
-  // The voltage is at zero: there is nothing to go on from.
+  // Forgets the difference when the voltage is at zero, because there is no output to continue from.
   void Forget() { passing_ = false; }
 
   bool passing() const { return passing_; }

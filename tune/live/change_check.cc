@@ -58,8 +58,8 @@ std::string LoosenedLimit(const settings::LimitsSection& before, const settings:
   return "";
 }
 
-// Whether an unstable loop becomes more stable and no other loop less: a stable one stays stable, an unstable one
-// grows no faster. Rounding is no improvement.
+// Whether an unstable loop becomes more stable and no other loop becomes less stable: a stable loop stays
+// stable, and an unstable loop grows no faster. Rounding does not count as improvement.
 bool MoreStable(const design::LoopCheck& next, const design::LoopCheck& now) {
   bool better = false;
   for (const auto loop : {&design::LoopCheck::pressure, &design::LoopCheck::position}) {
@@ -76,7 +76,7 @@ bool MoreStable(const design::LoopCheck& next, const design::LoopCheck& now) {
   return better || mended;
 }
 
-// Stable in the model, and perhaps not in a rig that differs from it by as little as rigs do.
+// Stable in the model, but perhaps not in a rig that differs from it by the usual amount.
 bool HardlyStable(const design::LoopCheck& check) {
   const auto hardly = [](const std::optional<design::CheckedLoop>& loop) {
     if (!loop || !loop->margins_known) return false;
@@ -91,14 +91,14 @@ bool GoesNoFarther(const settings::StackConfig& than, const settings::StackConfi
          SameLaws(ValuesOf(than), ValuesOf(next));
 }
 
-// Why the loops forbid the change; empty: they permit it. Fills in their margins as `text`.
+// Why the loops forbid the change; empty: they permit it. Writes their margins to `text`.
 std::string WhyTheLoopsForbid(const settings::StackConfig& configured, const settings::StackConfig& in_force,
                               const settings::StackConfig& next, bool undo, std::string* text) {
   if (GoesNoFarther(in_force, next)) return "";
   const design::LoopCheck check = design::CheckLoops(next);
   *text = design::Describe(check);
   if (check.unknown) {
-    // What the stack was started with, somebody has answered for.
+    // The values with which the stack was started are the responsibility of the person who started it.
     if (undo || GoesNoFarther(configured, next)) return "";
     return *text +
            "; allowed are values whose loops can be judged: change these in the configuration, and restart";
@@ -110,7 +110,7 @@ std::string WhyTheLoopsForbid(const settings::StackConfig& configured, const set
     *text += "; an UNSTABLE loop, as it was when these values were in force before";
     return "";
   }
-  // From loops that are unstable already, a change may lead towards stable ones.
+  // If loops are already unstable, a change may lead towards stable ones.
   const design::LoopCheck now = design::CheckLoops(in_force);
   if (!now.unknown && MoreStable(check, now)) {
     *text += "; still UNSTABLE, but less than what was in force";
@@ -158,7 +158,7 @@ std::string DifferenceOf(const settings::StackConfig& from, const settings::Stac
 
 namespace {
 
-// An undo that would loosen a limit does nothing: what to ask for instead.
+// What to ask for instead of an undo that would loosen a limit, and therefore does nothing.
 std::string HowToTakeBackTheRest(const settings::StackConfig& in_force, const settings::StackConfig& next) {
   std::string words;
   for (const std::string& line : TextLines(DifferenceOf(in_force, next))) {
@@ -174,7 +174,7 @@ std::string HowToTakeBackTheRest(const settings::StackConfig& in_force, const se
   return "; to take back the rest alone, set it: hydro-set CONFIG" + words;
 }
 
-// For people: an undo may take a key out again.
+// For people, because an undo may remove a key again.
 std::string KeysTakenOut(const settings::StackConfig& from, const settings::StackConfig& to) {
   const auto before = TunableEntries(from), after = TunableEntries(to);
   std::string lines;
@@ -212,7 +212,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   PreparedChange change;
   try {
     Write(ValuesOf(*next), &change.message);
-  } catch (const InputError& error) {  // gains that cannot be derived
+  } catch (const InputError& error) {  // the gains cannot be derived
     change.text = error.what();
     return change;
   }

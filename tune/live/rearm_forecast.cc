@@ -15,10 +15,10 @@ namespace {
 
 using settings::ReferenceSignal;
 
-constexpr int kSamples = 400;  // of the way back, and of the time after it
+constexpr int kSamples = 400;  // of the return, and of the time after it
 constexpr size_t kMostBreaks = 100'000;
 
-// What a reference refers to, in words and in the units of the model.
+// The quantity that a reference refers to, in words and in the model's units.
 struct Referred {
   const char* quantity;
   const char* words;
@@ -44,7 +44,7 @@ Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
   return {};
 }
 
-// Where a plan leads at a time (position_ctrl/plan_follower.cc: cubics between its points).
+// The angle that a plan prescribes at a time (position_ctrl/plan_follower.cc: cubics between its points).
 double PlannedAt(const arm_plan_t& plan, double time) {
   const auto behind = std::upper_bound(plan.time.begin(), plan.time.end(), time);
   if (behind == plan.time.begin()) return plan.arm_angle.front();
@@ -69,7 +69,7 @@ class Wanted {
     } else {
       initial_ = spec.initial;
       if (heard.plan && !heard.plan->time.empty()) plan_ = &*heard.plan;
-      // A plan that nothing follows is followed no further.
+      // If no newer plan arrives in time, the reference holds.
       if (plan_ != nullptr && plan_->tick >= 0 && heard.run->rate_hz > 0)
         holds_from_ = static_cast<double>(plan_->tick) / heard.run->rate_hz + spec.delay_s + spec.timeout_s;
     }
@@ -80,8 +80,8 @@ class Wanted {
     return plan_ == nullptr ? initial_ : PlannedAt(*plan_, std::min(time, holds_from_));
   }
 
-  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it says
-  // false. There the reference may jump.
+  // Calls take(time, value before, value after) for each break of the reference in (begin, end], until it
+  // returns false. The reference may jump at a break.
   template <class Take>
   void BreaksBetween(double begin, double end, Take take) const {
     if (!trajectory_) return;
@@ -93,7 +93,7 @@ class Wanted {
  private:
   double from_;  // s, when the reference begins
   std::unique_ptr<trajectory::Trajectory> trajectory_;
-  double initial_ = 0;  // of a planner's, before its first plan
+  double initial_ = 0;  // of a planner's reference, before its first plan
   const arm_plan_t* plan_ = nullptr;
   double holds_from_ = INFINITY;  // s
 };
@@ -109,7 +109,7 @@ bool JumpsBetween(const Wanted& wanted, double begin, double end) {
   return jumps;
 }
 
-// The way back: a straight line from where it is to where it is wanted
+// The return: a straight line from the current reference to the wanted one
 // (position_ctrl/law/reference_return.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
@@ -134,6 +134,34 @@ void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) 
     const double from = at(t0, static_cast<double>(i) / kSamples), to = at(t1, (i + 1.0) / kSamples);
     forecast->top_rate = std::max(forecast->top_rate, std::fabs(to - from) / step);
   }
+}
+
+// The lowest and the highest point of the way back, where they are beyond its ends by more than a hundredth
+// of it.
+void FindTurns(const Wanted& wanted, double now, RearmForecast* forecast) {
+  constexpr double kMaterial = 0.01;
+  ReferenceTurn lowest = {0, forecast->present}, highest = lowest;
+  const auto take = [&](double after, double wanted_then) {
+    const double value = forecast->present + after / forecast->return_s * (wanted_then - forecast->present);
+    if (value < lowest.at) lowest = {after, value};
+    if (value > highest.at) highest = {after, value};
+  };
+  for (int i = 0; i <= kSamples; ++i) {
+    const double after = forecast->return_s * i / kSamples;
+    take(after, wanted.At(now + after));
+  }
+  size_t breaks = 0;
+  wanted.BreaksBetween(now, now + forecast->return_s, [&](double t, double before, double after) {
+    take(t - now, before);
+    take(t - now, after);
+    return ++breaks < kMostBreaks;
+  });
+  const double least = kMaterial * (highest.at - lowest.at);
+  const auto [low, high] = std::minmax(forecast->present, forecast->target);
+  if (low - lowest.at > least) forecast->turns.push_back(lowest);
+  if (highest.at - high > least) forecast->turns.push_back(highest);
+  std::sort(forecast->turns.begin(), forecast->turns.end(),
+            [](const auto& a, const auto& b) { return a.after_s < b.after_s; });
 }
 
 // What the reference does after that.
@@ -168,6 +196,11 @@ std::string ReturnText(const RearmForecast& f) {
       fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit);
   if (f.return_s == 0) return text + " at once";
   text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
+  for (const ReferenceTurn& turn : f.turns) {
+    const bool beyond = (turn.at - f.target) * way > 0;
+    text += fmt::format(", by way of {} {} ({}) after {} s", ShortNumber(turn.at), f.unit,
+                        beyond ? "beyond that" : "the other direction", ShortNumber(turn.after_s));
+  }
   if (f.steps.empty()) return text;
   const ReferenceStep& first = f.steps.front();
   text += fmt::format(", and jumps by {}{} {} after {} s", first.by > 0 ? "+" : "", ShortNumber(first.by),
@@ -176,6 +209,20 @@ std::string ReturnText(const RearmForecast& f) {
   if (more == 0) return text;
   return text + fmt::format(" and {}{} more time{}", f.steps.size() < kMostSteps ? "" : "at least ", more,
                             more == 1 ? "" : "s");
+}
+
+// An arm that moves goes on for a while: said where that is not the way of its reference, or a material part
+// of it.
+std::string MovesText(const RearmForecast& f) {
+  constexpr double kMaterial = 0.1;
+  const double way = f.target - f.present;
+  const bool against = f.speed * (f.turns.empty() ? way : f.turns.front().at - f.present) <= 0;
+  const double least =
+      kMaterial * (f.return_s > 0 ? std::max(f.top_rate, std::fabs(way) / f.return_s) : std::fabs(way));
+  if (!std::isfinite(f.speed) || !against || std::fabs(f.speed) <= least) return "";
+  return fmt::format(
+      " and moves at {}{} {}/s, {}", f.speed > 0 ? "+" : "", ShortNumber(f.speed), f.unit,
+      way == 0 ? "in which it goes on at first" : "the other way, in which it goes on at first");
 }
 
 // What stands between the reference and the arm.
@@ -201,8 +248,8 @@ std::string TextOf(const RearmForecast& f, const Referred& referred, const setti
   const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
   const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
   std::string text =
-      fmt::format("{} is at {}; its reference comes back to {}{}: {}", referred.words, number(f.present),
-                  number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
+      fmt::format("{} is at {}{}; its reference comes back to {}{}: {}", referred.words, number(f.present),
+                  MovesText(f), number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
   const double spread = f.highest - f.lowest,
                least = 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest));
   if (spread > least) {
@@ -220,7 +267,7 @@ RearmForecast Unknown(const std::string& why) {
   return forecast;
 }
 
-// The name of a position loop of the user's own; empty: it is ours.
+// The name of a position loop that the user wrote; empty: it is the project's.
 std::string OwnPositionLoop(const settings::StackConfig& config) {
   for (const settings::ProcessSection& process : config.processes) {
     if (!process.command.empty() && process.role == "position_ctrl") return process.command.front();
@@ -239,7 +286,8 @@ settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_se
 
 RearmForecast ForecastRearm(const HeardOfStack& heard) {
   if (!heard.state) return Unknown("no state is heard");
-  if (heard.state->command_tick >= 0) {
+  const bool says_it_acts = heard.state->command_tick >= 0;
+  if (says_it_acts && !heard.holds) {
     RearmForecast forecast;
     forecast.held = false;
     forecast.text = "nothing holds the voltage at zero: re-arming changes nothing";
@@ -259,10 +307,19 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
     forecast.unit = referred.unit;
     forecast.present = referred.present;
     forecast.return_s = config.limits.return_s;
+    forecast.speed = forecast.quantity == "arm_angle" ? heard.state->arm_speed : NAN;
     const Wanted wanted(config, heard);
     FollowTheReturn(wanted, heard.state->time, &forecast);
+    if (forecast.return_s > 0) FindTurns(wanted, heard.state->time, &forecast);
     FollowTheReference(wanted, heard.state->time + forecast.return_s, &forecast);
     forecast.text = TextOf(forecast, referred, config);
+    if (says_it_acts) {
+      forecast.text += fmt::format(
+          "; but the device says that it acts by a command, with {} V, though a fault holds the voltage at "
+          "zero: find out why "
+          "first",
+          ShortNumber(heard.state->voltage));
+    }
     return forecast;
   } catch (const InputError& error) {
     return Unknown(error.what());

@@ -1,8 +1,8 @@
-// What the machine will do when it is re-armed, as far as that can be known before: where the reference comes
-// back to, how far that is from where the arm is, and how fast. While the voltage is held at zero the
-// published reference follows the arm, and so says nothing of it. Whether the arm comes as far as its reference
-// is up to load and limits, so nothing is promised of it. One function for everyone who re-arms, on a page or in
-// a terminal. Pure.
+// Forecasts what the machine will do when it is re-armed, as far as that can be known: where the reference
+// returns to, how far that is from the arm, and how fast it moves. While the voltage is held at zero, the
+// published reference follows the arm and does not show this. Load and limits decide whether the arm follows
+// its reference, so the forecast promises nothing about the arm. One function serves every page and terminal
+// from which the machine is re-armed. Pure.
 #pragma once
 
 #include <hydro/arm_plan_t.hpp>
@@ -19,13 +19,20 @@ namespace hydro::tuning {
 
 // A jump of the reference on its way back.
 struct ReferenceStep {
+  double after_s = 0;  // after the re-arm
+  // Smaller than the configured step: during the return, the reference follows the step only in part.
+  double by = 0;
+};
+
+// Where the reference turns round on its way back.
+struct ReferenceTurn {
   double after_s = 0;  // the re-arm
-  double by = 0;       // less than the step that is configured: on its way, the reference follows it in part
+  double at = 0;
 };
 
 struct RearmForecast {
   bool held = true;      // the voltage is held at zero: otherwise a re-arm changes nothing
-  bool known = false;    // otherwise only `text`, which says why not
+  bool known = false;    // otherwise there is only `text`, which says why not
   std::string quantity;  // what the reference refers to, "arm_angle", "pressure", "torque" or "voltage"
   std::string unit;      // of the numbers that follow
   double present = 0;    // where it is now
@@ -33,6 +40,11 @@ struct RearmForecast {
   double return_s = 0;   // in which plant time; 0: at once
   double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
   bool jumps = false;    // the reference jumps on that way
+  // Where that way leaves the range between its ends: it may begin in the other direction, or lead beyond its
+  // end.
+  std::vector<ReferenceTurn> turns;
+  double speed =
+      0;  // per second, at which the arm moves now; NaN: not measured, or no arm's angle is followed
   std::vector<ReferenceStep> steps;  // where it does, if return_s is not 0; the first kMostSteps of them
   // What the reference does in the kForecast_s after that.
   double lowest = 0;
@@ -45,18 +57,22 @@ struct RearmForecast {
 inline constexpr double kForecast_s = 10;
 inline constexpr size_t kMostSteps = 100;
 
-// What was heard of a stack, the newest of each.
+// The newest of each message that a stack has sent.
 struct HeardOfStack {
   std::optional<run_description_t> run;
   std::optional<tuned_settings_t> in_force;  // none: as configured
   std::optional<arm_plan_t> plan;            // of a planner
   std::optional<state_t> state;
+  // The plant has said that a fault of its own holds the voltage. A state says so too; but where a device
+  // does not do as it is told, the state says what the device does.
+  bool holds = false;
 };
 
-// If it is re-armed now.
+// The forecast for a re-arm now.
 RearmForecast ForecastRearm(const HeardOfStack& heard);
 
-// The configuration that a running stack acts by. Throws InputError when the description is not one of this
+// The configuration that a running stack uses. Throws InputError when the description is not one of this
+// version.
 // version.
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
 

@@ -15,7 +15,8 @@ std::string Beyond(const std::string& what, double found, double allowed, const 
          ShortNumber(allowed) + " " + unit + " (" + why + ")";
 }
 
-// Per s, of the kinds that swing smoothly; 0 for others, whose jumps nothing follows at once anyway.
+// Per s, for the kinds that oscillate smoothly; 0 for others, because nothing follows their jumps at once
+// anyway.
 double FastestSwing(const settings::TrajectorySpec& spec) {
   using Kind = settings::TrajectorySpec::Kind;
   const double radian = 2 * std::numbers::pi * std::fabs(spec.amplitude);
@@ -31,10 +32,10 @@ std::string WhatTheRigCannotFollow(const settings::StackConfig& config) {
   const UnitSystem& units = config.model.description.units;
   const auto reference = settings::MakeTrajectory(config.reference.trajectory);
   const double largest = std::max(std::fabs(reference->Min()), std::fabs(reference->Max()));
-  // What the motor holds against the pump at rest, or the limit of either side
+  // The pressure that the motor holds against the pump at rest, or the limit of either side.
   const double pressure = std::min(p.T_pmax / p.D, config.limits.pressure_psi);
   switch (config.reference.signal) {
-    case settings::ReferenceSignal::kArmAngle: {  // the angle itself is checked with the configuration
+    case settings::ReferenceSignal::kArmAngle: {  // the configuration's own checks cover the angle
       const double speed = config.limits.motor_speed_rad_s * p.D / p.c;
       const double fastest = FastestSwing(config.reference.trajectory);
       if (fastest > speed)

@@ -1,4 +1,4 @@
-// Whether the rig can follow a reference, by the model's numbers and the limits in force. Pure.
+// Checks whether the rig can follow a reference, using the model's numbers and the limits in force. Pure.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace hydro::tuning {
 
-// One line: what the reference asks for beyond the limits, the motor's torque or its speed, and what these allow;
-// empty: the rig can follow.
+// One line: how the reference exceeds the limits or the motor's torque or speed, and what these allow. Empty:
+// the rig can follow.
 std::string WhatTheRigCannotFollow(const settings::StackConfig& config);
 
 }  // namespace hydro::tuning

@@ -15,7 +15,8 @@
 namespace hydro::tuning {
 namespace {
 
-// Keys that one alternative drops for another have no place in the table alone: reference and pressure are compared whole.
+// Keys that exclude each other do not fit a table of single values, so reference and pressure are compared as
+// a whole.
 bool Concerned(const std::string& key) {
   return tuning::FindTunable(key) != nullptr || key.starts_with("reference.") || key.starts_with("pressure.");
 }
@@ -52,9 +53,9 @@ std::string SavedText(const std::string& file, const std::string& joint, const s
   }
   const std::string text = ReadTextFile(file);
   settings::TomlNode document = settings::ParseToml(text, file);
-  std::map<std::string, std::string> written;  // by present name, as the file has it
+  std::map<std::string, std::string> written;  // by present name, as written in the file
   for (const auto& [key, value] : settings::TomlEntries(document)) written[settings::PresentName(key)] = key;
-  // A text with a unit that says the same number stays.
+  // A text with a unit that gives the same number stays.
   settings::ReadQuantities(&document, config.model.description.units);
   const auto before = Entries(document), after = Entries(settings::ParseToml(config.text, file));
   std::vector<settings::TomlEntry> changed = settings::MovedPaths(settings::LoadStackConfig(file), output);

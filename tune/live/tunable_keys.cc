@@ -13,8 +13,9 @@ namespace {
 constexpr std::string_view kPressure = "pressure_ctrl", kPosition = "position_ctrl", kPlant = "plant";
 
 constexpr std::string_view kReach = "within the limits";
-constexpr std::string_view kTighter = "> 0, as in force or less";  // wider: while all is held at zero volts
-constexpr std::string_view kSimulated = ">= 0";                    // a simulated rig's alone
+// A limit may become wider only while the voltage is held at zero.
+constexpr std::string_view kTighter = "> 0, as in force or less";
+constexpr std::string_view kSimulated = ">= 0";  // for a simulated rig only
 
 constexpr std::array kKeys{
     TunableKey{"pressure.k_p", ">= 0", "gain on the pressure error, eq. (16)", kPressure},

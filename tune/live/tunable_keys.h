@@ -1,5 +1,5 @@
-// What may be changed while a stack runs: one table, from which hydro-set --list, the page, the checks and docs/tuning.md
-// derive.
+// What may be changed while a stack runs: one table, from which hydro-set --list, the page, the checks and
+// docs/tuning.md follow.
 #pragma once
 
 #include <span>
@@ -13,19 +13,20 @@ namespace hydro::tuning {
 struct TunableKey {
   std::string_view key;      // of the configuration, e.g. "position.c2"
   std::string_view range;    // for a person, what is allowed; "> 0" and ">= 0": any finite number there
-  std::string_view what;     // for a person, what it does
-  std::string_view acts_in;  // role of the process that acts by it: pressure_ctrl, position_ctrl, plant
+  std::string_view what;     // what it does, for a person
+  std::string_view acts_in;  // role of the process that uses it: pressure_ctrl, position_ctrl, plant
 };
 
 std::span<const TunableKey> TunableKeys();
 
-// The unit of its values in a stack: "Pa", "s, rad" of pairs; "" where the value is a word or a plain number.
+// The unit of the key's values in a stack: "Pa", "s, rad" for pairs; "" where the value is a word or a plain
+// number.
 std::string UnitOf(const TunableKey& row, const settings::StackConfig& config);
 
-// The row of `key`, also by its former name; null: it takes a restart.
+// The row of `key`, which may also be its former name; null: a change needs a restart.
 const TunableKey* FindTunable(std::string_view key);
 
-// Why `key` cannot be changed while the stack runs, and what is meant or allowed instead, as one line.
+// One line: why `key` cannot be changed while the stack runs, and which key is meant or allowed instead.
 std::string WhyNotTunable(const std::string& key);
 
 }  // namespace hydro::tuning

@@ -60,7 +60,7 @@ constexpr std::array kValues{
           [](TunedValues& v, double x) { v.noise.arm_speed_rad_s = x; }},
 };
 
-// Also by the name in older logs.
+// Also finds the name used in older logs.
 const Value* Find(const std::string& name) {
   const bool gain = name == "pressure.reference_feedforward_V_psi";
   const std::string present = gain ? "pressure.reference_feedforward" : settings::PresentName(name);

@@ -1,4 +1,5 @@
-// The numbers by which the loops act, as they travel in tuned_settings_t: gains as derived, so that no loop parses or derives.
+// The numbers that the loops use, as tuned_settings_t carries them: gains are already derived, so that no
+// loop parses or derives anything.
 #pragma once
 
 #include <hydro/tuned_settings_t.hpp>
@@ -21,15 +22,15 @@ struct TunedValues {
 // Throws InputError when gains cannot be derived.
 TunedValues ValuesOf(const settings::StackConfig& config);
 
-// Whether both loops' laws are the same, whatever the limits and the noise.
+// Whether both have the same laws, regardless of limits and noise.
 bool SameLaws(const TunedValues& a, const TunedValues& b);
 
 // Fills names and values.
 void Write(const TunedValues& values, tuned_settings_t* message);
 
-// Takes the values that the message names into `values`, and derives from them what follows: the position law's pressure limit,
-// with k_2 (in-lbf/psi). Returns what is wrong with it, as one line, and leaves
-// `values` alone then: an unknown name, a value that is not a number or out of its range, names without values.
+// Copies the values that the message names into `values`, and derives the position law's pressure limit from
+// them with k_2 (in-lbf/psi). If the message has a fault, it returns the fault as one line and does not
+// change `values`: an unknown name, a value that is not a number or out of its range, names without values.
 std::string Read(const tuned_settings_t& message, double k_2, TunedValues* values);
 
 }  // namespace hydro::tuning

@@ -24,7 +24,7 @@ TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Ch
       session_(bus::IdentityOn(bus, clock).session),
       source_(std::move(source)) {
   bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& state) {
-    if (plants_.size() < kMostPlants) plants_.insert(state.session);  // a flood of made-up ones is not kept
+    if (plants_.size() < kMostPlants) plants_.insert(state.session);  // limits a flood of made-up plants
     tick_ = state.tick;
   });
   bus.Subscribe<run_description_t>(channels.Of<run_description_t>(),

@@ -1,5 +1,5 @@
-// Asks a running stack for other values, and hears which are in force: what hydro-set and hydro-scope share. Reads no clock and opens no socket
-// of its own.
+// Requests new values from a running stack, and listens to which are in force. hydro-set and hydro-scope
+// share it. It reads no clock and opens no socket of its own.
 #pragma once
 
 #include <cstdint>
@@ -21,32 +21,34 @@ namespace hydro::tuning {
 
 class TuningClient {
  public:
-  // Subscribes. `source`: who asks, for the log, e.g. "hydro-set".
+  // Subscribes. `source` names the requesting program for the log, e.g. "hydro-set".
   TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, std::string source);
 
-  // The values in force, once the plant has said so; it does once a second.
+  // The values in force, once the plant has reported them, which it does once a second.
   const std::optional<tuned_settings_t>& in_force() const { return in_force_; }
-  // What the plant runs with.
+  // The description of the plant's run.
   const std::optional<run_description_t>& run() const { return run_; }
-  // The plants or drivers that are heard. Only one can be asked.
+  // The plants or drivers that are heard. A request works only if there is exactly one.
   const std::set<int64_t>& plants() const { return plants_; }
-  // Where each controller is, by role.
+  // The status of each controller, by role.
   const std::map<std::string, tuning_status_t>& controllers() const { return controllers_; }
 
-  // Whether a request has not been answered yet. One at a time.
+  // Whether a request is still unanswered. There can be one at a time.
   bool asking() const { return asked_.has_value(); }
 
-  // Asks. `changes`: a line "key = value" each. Only when in_force() is known and nothing is asked.
+  // Sends a request. `changes` has one line "key = value" for each change. Call it only when in_force() is
+  // known and no request is open.
   void Set(const std::string& changes) { Ask(tuning_request_t::SET, changes); }
   void Undo() { Ask(tuning_request_t::UNDO, ""); }
 
-  // The answer, once. A refusal of its own when the plant has not answered for three seconds.
+  // Returns the answer once. If the plant has not answered for three seconds, the client makes a refusal
+  // itself.
   std::optional<tuning_answer_t> TakeAnswer();
 
-  // Repeats what is asked until it is answered. Call it at least every 50 ms.
+  // Repeats the open request until it is answered. Call it at least every 50 ms.
   void Poll();
 
-  // Whether every controller that takes part acts by that version.
+  // Whether every participating controller acts by that version.
   bool ActBy(int64_t version) const;
 
  private:

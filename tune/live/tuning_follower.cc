@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kStatusPeriod = 1s;
-constexpr auto kLongestWait = 1500ms;  // the plant says once a second what is in force
+constexpr auto kLongestWait = 1500ms;  // the plant reports the values in force once a second
 
 }  // namespace
 
@@ -29,11 +29,11 @@ TuningFollower::TuningFollower(process::Participant& participant, const settings
 }
 
 void TuningFollower::OnSettings(const tuned_settings_t& settings) {
-  const int64_t run = participant_.run();  // 0: of no plant yet
+  const int64_t run = participant_.run();  // 0: no plant yet
   if ((run != 0 && settings.session != run) || participant_.Refuses(settings.session)) return;
   if (settings.session != plant_) {  // another run: it begins as configured, or as its plant says
     plant_ = settings.session;
-    next_status_ = {};  // it asks nobody who has not said so
+    next_status_ = {};  // the plant asks only those that have reported
     waiting_.reset();
     status_.refused = -1;
     if (in_force_ != 0) in_force_ = -1;  // that plant's numbers are not this one's
@@ -58,7 +58,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
       return;
     case tuned_settings_t::IN_FORCE:
       heard_ = true;
-      // Not heard when it was decided. One that is decided, and waits for its tick, stays.
+      // The version was not received when it was decided. One that is decided and waits for its tick stays.
       if (settings.version != in_force_ && !known) Keep(settings);
       if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) Date(settings);
       return;
@@ -67,7 +67,8 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
   }
 }
 
-// From when on what is prepared holds. Nothing else is taken from the message: its values have not been looked at.
+// Sets the tick from which the prepared settings hold. Nothing else is taken from the message, because its
+// values have not been checked.
 void TuningFollower::Date(const tuned_settings_t& settings) {
   waiting_->stage = settings.stage;
   waiting_->acts_at = settings.acts_at;
@@ -89,7 +90,7 @@ const tuned_settings_t* TuningFollower::TakeWaitingAt(int64_t tick) {
   waiting_.reset();
   in_force_ = taken_.version;
   status_.since = tick;
-  next_status_ = {};  // said soon, not in the middle of a cycle
+  next_status_ = {};  // reported soon, not in the middle of a cycle
   return &taken_;
 }
 

@@ -11,7 +11,7 @@
 namespace hydro::tune {
 namespace {
 
-// For a file that people read: digits that no rig could tell apart are left out.
+// For a file that people read: drops digits that no rig could distinguish.
 double Rounded(double value) { return ParseNumber(ShortNumber(value, 5)).value_or(value); }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr Goal kGoals[] = {{"bandwidth_hz", &Goals::bandwidth_hz, false},
                            {"settling_s", &Goals::settling_s, false},
                            {"step", &Goals::step, false}};
 
-// `step_rad` is the former name of `step`; only for an arm that turns is it true.
+// `step_rad` is the former name of `step`. It is correct only for an arm that turns.
 const Goal& Find(const std::string& text, std::string name, const std::string& unit) {
   if (name == "step_rad" && unit == "rad") name = "step";
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// hydro-tune CONFIG: gains for a model and goals.
+// hydro-tune CONFIG: finds gains for a model and goals.
 #include <unistd.h>
 
 #include <algorithm>

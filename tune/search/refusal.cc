@@ -19,18 +19,18 @@ std::string Torque(const settings::StackConfig& config, double value) {
   return Number(value) + " " + config.model.description.units.UnitFor("in-lbf");
 }
 
-// Of the arm's angle, or of a linear arm's position.
+// The arm's angle, or a linear arm's position, with its unit.
 std::string Arm(const settings::StackConfig& config, double value) {
   return Number(value) + " " + config.model.description.units.UnitFor("rad", 1);
 }
 
-// To three digits, whatever the unit.
+// Rounded down to three digits, whatever the unit.
 std::string RoundedDown(double value) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
   return Number(std::floor(value / digit) * digit);
 }
 
-// What bounds the fastest move.
+// The limit of the fastest move.
 std::string MotorLimit(const settings::StackConfig& config, const design::RigidDrive& drive, double step) {
   const model::Parameters& p = config.model.description.parameters;
   if (design::FastestRestToRest(drive, step).speed_limited) {

@@ -1,4 +1,4 @@
-// Goals that cannot be met, with the limit that stands in their way and what would be possible.
+// Explains goals that cannot be met: which limit prevents them, and what would be possible.
 #pragma once
 
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace hydro::tune {
 
-// Before any search: what follows from the motor, the arm's travel and the sampling interval alone. Empty when nothing speaks
-// against the goals.
+// Before any search: what the motor, the arm's travel and the sampling interval alone rule out. Empty when
+// nothing rules out the goals.
 std::string RefusalByTheMotor(const StepJudge& judge, const Goals& goals);
 
 // After the search: empty when the best gains meet the goals.
 std::string RefusalBySearch(const StepJudge& judge, const Goals& goals, const SearchResult& result);
 
-// rad: how far from its target friction may hold the arm under these gains.
+// rad: how far from its target friction may hold the arm with these gains.
 double FrictionError(const settings::StackConfig& config, const Gains& gains);
 
 }  // namespace hydro::tune

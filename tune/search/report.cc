@@ -127,7 +127,7 @@ std::vector<TradeOff> TradeOffs(const std::vector<Tried>& tried) {
       if (one.check.position->worst.gain < margin * (1 - 1e-3)) continue;
       if (best == nullptr || one.steps.score() < best->steps.score()) best = &one;
     }
-    // Only where a wider margin costs something.
+    // Only lists a wider margin that costs something.
     if (best != nullptr && !rows.empty() && rows.back().tried.steps.score() == best->steps.score())
       rows.pop_back();
     if (best != nullptr) rows.push_back({margin, *best});
@@ -137,7 +137,8 @@ std::vector<TradeOff> TradeOffs(const std::vector<Tried>& tried) {
 
 design::LoopCheck UncertainMargins(const StepJudge& judge, const Gains& gains) {
   settings::StackConfig config = With(judge.config(), gains);
-  // The gains are chosen, and the arm moves, as the model says, whatever is true.
+  // The gains and the arm's coordinate follow from the model as its file says, whatever the sample's values
+  // are.
   const pressure_ctrl::PressureLawSettings law = design::PressureLawSettingsFor(config);
   config.limits.arm_angle_rad = design::LargestArmAngle(config);
   design::LoopCheck all;

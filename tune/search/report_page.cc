@@ -94,7 +94,7 @@ page::Figure Picture(const TuningReport& report) {
   return figure;
 }
 
-// Line by line, because escaping takes line ends for blanks.
+// Line by line, because escaping turns line ends into blanks.
 std::string Preformatted(const std::string& text) {
   std::string escaped;
   std::istringstream lines(text);

@@ -16,6 +16,7 @@ namespace hydro::tune {
 namespace {
 
 constexpr int kSlopes = 14;
+constexpr int kDoublings = 10;
 constexpr std::array<double, 8> kGainShares = {1, 0.8, 0.63, 0.5, 0.4, 0.3, 0.22, 0.15};
 constexpr std::array<double, 7> kDecelerationShares = {0.7, 0.8, 0.88, 0.95, 1.02, 1.1, 1.17};
 
@@ -31,11 +32,12 @@ double Cost(const Goals& goals, const Tried& tried) {
   if (misses > 0) return 1e3 * misses + speed;
   const bool fast_enough = goals.bandwidth_hz || goals.settling_s;
   if (!fast_enough) return speed;
-  // What never settles is no proposal, whatever its margins are.
+  // Gains with which the arm never settles are no proposal, whatever their margins are.
   return 1 / tried.check.position->worst.gain + 0.01 * speed + (tried.steps.ratio >= kNeverSettled ? 1 : 0);
 }
 
-// The straight line of eq. (17) that brakes in time from a step, 1/s: full speed half-way, at the largest deceleration.
+// The straight line of eq. (17) that brakes in time from a step, 1/s: full speed half-way, with the largest
+// deceleration.
 double SlopeFor(const design::RigidDrive& drive, double step) {
   return 2 * std::sqrt(drive.torque / drive.inertia / step);
 }
@@ -63,7 +65,7 @@ class Searcher {
   }
 
  private:
-  // Slopes, then for each the gains up to the one that keeps the gain margin, then decelerations.
+  // Loops over slopes; for each over gains up to the one that keeps the gain margin; then over decelerations.
   std::vector<Gains> Grid() const {
     const double slowest = 0.4 * SlopeFor(drive_, judge_.steps().back());
     const double fastest = (braking_ ? 5 : 2) * SlopeFor(drive_, judge_.steps().front());
@@ -88,24 +90,36 @@ class Searcher {
     return grid;
   }
 
-  // c2 with the least gain margin at this c1/c2; 0 when no gain is stable.
+  // The c2 that has the least permitted gain margin at this c1/c2; 0 when no gain is stable.
   double LargestGain(double slope) const {
     const pressure_ctrl::SecondOrder loop = {pressure_.natural_frequency, pressure_.damping_ratio};
     Gains gains = pressure_;
-    // About what Figure 8's model would bear with the pump's inertia on the arm.
+    // About the largest gain that Figure 8's model tolerates with the pump's inertia on the arm.
     gains.c2 = 0.1 * loop.natural_frequency * drive_.inertia /
                judge_.config().model.description.parameters.k_2 * loop.damping_ratio;
     gains.c1 = slope * gains.c2;
-    for (int i = 0; i < 4;
-         ++i) {  // the margin is a factor on both, so that one step is exact where it is stable
-      const design::LoopCheck check = design::CheckLoops(With(judge_.config(), gains));
+    design::LoopCheck check = CheckOf(gains);
+    // A loop that is stable between two gains alone, because it has a drift to catch, may need more than
+    // that.
+    for (int i = 0; i < kDoublings && check.position && check.position->worst.gain == 0; ++i) {
+      gains.c2 *= 2;
+      gains.c1 *= 2;
+      check = CheckOf(gains);
+    }
+    // The margin is a factor on both, so that one step is exact where it is stable.
+    for (int i = 0; i < 4; ++i) {
       const double factor = check.position ? check.position->worst.gain / kLeastGainMargin : 0;
       if (!(factor > 0) || std::isinf(factor)) return 0;
       gains.c2 *= factor;
       gains.c1 *= factor;
       if (std::fabs(factor - 1) < 0.01) break;
+      check = CheckOf(gains);
     }
     return gains.c2;
+  }
+
+  design::LoopCheck CheckOf(const Gains& gains) const {
+    return design::CheckLoops(With(judge_.config(), gains));
   }
 
   void TryAll(const std::vector<Gains>& all, double from, double to) {
@@ -133,7 +147,8 @@ class Searcher {
         [&](const Tried& a, const Tried& b) { return Cost(goals_, a) < Cost(goals_, b); });
   }
 
-  // A pattern search from the best point of the grid: each of slope, gain and deceleration a little up and down.
+  // A pattern search from the best point of the grid: it varies each of slope, gain and deceleration slightly
+  // up and down.
   void Refine() {
     constexpr int kRounds = 14;
     double stride = 0.1;
@@ -170,7 +185,7 @@ class Searcher {
   SearchResult result_;
 };
 
-// Only the pressure loop, whatever the reference is.
+// Checks only the pressure loop, whatever the reference is.
 bool PressureKeepsMargins(settings::StackConfig config, const Gains& gains) {
   config = With(std::move(config), gains);
   config.reference.signal = settings::ReferenceSignal::kPressure;

@@ -10,7 +10,7 @@
 
 namespace hydro::tune {
 
-// What every proposal keeps, in every case that the loops are checked in.
+// The margins that every proposal keeps, in every case in which the loops are checked.
 inline constexpr double kLeastGainMargin = 2;
 inline constexpr double kLeastPhaseMargin = 30;  // degrees
 
@@ -23,28 +23,29 @@ struct Tried {
 
 struct SearchResult {
   Tried best;
-  std::vector<Tried> tried;  // all that keep the margins
-  bool found = false;        // some do
+  std::vector<Tried> tried;  // all gains that keep the margins
+  bool found = false;        // whether any gains do
 };
 
 // Progress from 0 to 1.
 using Progress = std::function<void(double)>;
 
-// Gains of the pressure loop alone: the configuration's where they keep the margins with both feed-forwards, else the fastest
-// slower ones that do. Throws std::runtime_error when there are none.
+// Gains of the pressure loop alone: those of the configuration if they keep the margins with both
+// feed-forwards, otherwise the fastest slower gains that do. Throws std::runtime_error when there are none.
 Gains ChoosePressureLoop(const settings::StackConfig& config);
 
-// Gains of the position loop around `pressure`: those that meet a goal of bandwidth or settling time with the widest margins; without
-// one the fastest; where no gains meet the goals, those that come nearest. `braking`: with a braking curve before eq. (17).
+// Gains of the position loop around `pressure`. With a goal of bandwidth or settling time, those that meet it
+// with the widest margins; without one, the fastest. If no gains meet the goals, those that come nearest.
+// `braking`: with a braking curve before eq. (17).
 SearchResult SearchGains(const StepJudge& judge, const Goals& goals, const Gains& pressure, bool braking,
                          int jobs, const Progress& progress);
 
-// The gains as they are, whatever their margins.
+// Tries these gains, whatever their margins.
 Tried TryGains(const StepJudge& judge, const Gains& gains);
 
 bool KeepsMargins(const design::LoopCheck& check);
 
-// By how much gains miss the goals, relatively; 0: they meet them all.
+// By how much gains miss the goals, relatively; 0: they meet all of them.
 double Misses(const Goals& goals, const Tried& tried);
 
 }  // namespace hydro::tune

@@ -16,12 +16,12 @@
 namespace hydro::tune {
 StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   const double interval = config.position.sample_interval_s;
-  // With a weight the arm first comes to rest where it hangs.
+  // With a weight, the arm first comes to rest where it hangs.
   const double rest = config.model.description.parameters.mgl != 0 ? 1.5 : 0.1;
   const double start = std::ceil(rest / interval) * interval;
   config.reference.signal = settings::ReferenceSignal::kArmAngle;
   config.reference.trajectory = {};
-  // Half a tick early, so that no rounding makes it a sample late.
+  // Half a tick early, so that rounding does not delay it by a sample.
   config.reference.trajectory.steps = {{start - 0.5 / config.plant.rate_hz, step.step}};
   config.model.arm_angle_rad = 0;
   config.last_tick = std::llround((start + kNeverSettled * step.shortest) * config.plant.rate_hz);
@@ -30,8 +30,8 @@ StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   const std::string states = bus::Channels(config.bus.channel_suffix).Of<state_t>();
   const sim::SimulationResult result = sim::Simulate(config, [&](const bus::RawMessage& message) {
     if (message.channel != states) return;
-    // Not state_t::decode: LCM's decoders write doubles through pointers to integers, so that inlined next to a new message
-    // they seem to the compiler to write nothing.
+    // Does not use state_t::decode: LCM's decoders write doubles through pointers to integers. Inlined next
+    // to a new message, they appear to the compiler to write nothing.
     const std::shared_ptr<void> decoded = bus::TypeOf<state_t>().decode(message.data, message.size);
     if (decoded == nullptr) throw std::logic_error("a state of our own does not decode");
     const state_t& state = *static_cast<const state_t*>(decoded.get());

@@ -6,8 +6,8 @@
 
 namespace hydro::tune {
 
-// `config` with a step of its reference from mid-stroke, after which `step.shortest` is counted; with its own noise. Throws
-// std::runtime_error, naming the step, when a fault ends the run.
+// Runs `config`, including its noise, with a step of its reference from mid-stroke, and measures it against
+// `step.shortest`. Throws std::runtime_error, naming the step, when a fault ends the run.
 StepResult SimulateStep(settings::StackConfig config, const StepCase& step);
 
 }  // namespace hydro::tune

@@ -19,26 +19,27 @@ namespace {
 
 constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
-constexpr double kUsedTravel = 0.9;  // of the arm's range, from which steps start towards the middle
+constexpr double kUsedTravel = 0.9;  // of the arm's range; steps start there, towards the middle
 constexpr int64_t kSampleSeed = 20261123;
 constexpr double kMostDeviations = 2;  // of a parameter in a sample
 
-// rad: 0.05 to 0.3 of the paper's actuator, whose sides are empty at 0.858 rad.
+// rad: 0.05 to 0.3 for the paper's actuator, whose sides are empty at 0.858 rad.
 constexpr double kStepShares[] = {0.05, 0.07, 0.1, 0.14, 0.2, 0.3};
 constexpr double kPaperTravel = 0.8578;
 
 std::vector<double> StepsFor(const settings::StackConfig& config, const Goals& goals) {
   if (goals.step) return {0.8 * *goals.step, *goals.step, 1.25 * *goals.step};
   const double travel = model::TravelOf(config.model.description).nearer();
-  // The same numbers on every actuator of about the paper's travel.
+  // Actuators with about the paper's travel use the same numbers.
   const double scale = std::fabs(travel / kPaperTravel - 1) < 0.5 ? 1 : travel / kPaperTravel;
   std::vector<double> steps;
   for (const double share : kStepShares) steps.push_back(share * scale);
   return steps;
 }
 
-// What may be true instead of the model. Not model::DrawnModel: these few are to be the same ones every time, none so rare
-// that it alone would decide, and docs/tuning_gains.md tells the gains found with them.
+// A sample of what may be true instead of the model. This is not model::DrawnModel, because these few samples
+// have to be the same every time, none may be so rare that it alone would decide, and docs/tuning_gains.md
+// states the gains found with them.
 model::ModelDescription SampleOf(model::ModelDescription model, int sample) {
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const double deviations = plant::StandardNormal(kSampleSeed, sample, static_cast<int>(i));
@@ -64,8 +65,8 @@ double LargestMotorSpeed(const settings::StackConfig& config) { return config.li
 
 }  // namespace
 
-// With the model as it is, the shortest time nearly counts as reached below kAim; what then counts is how little is lost where the
-// model is not quite true.
+// Below kAim, the shortest time with the model as its file says counts as nearly reached. What counts then is
+// how little is lost where the model is not quite true.
 double StepVerdict::score() const {
   return 0.5 * (ratio + uncertain_ratio) + kUrge * std::max(0.0, ratio - kAim);
 }
@@ -129,7 +130,8 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
     return {.ratio = kNeverSettled + kStopped};
   }
   const design::Response& response = run.response;
-  // With a weight the arm hangs below its reference; what it settles to is then its own end.
+  // With a weight the arm hangs below its reference, so the position at which it settles is its own end
+  // value.
   const double from = response.angle.front();
   double to = step.step;
   if (models_[step.model].parameters.mgl != 0) {

@@ -1,4 +1,5 @@
-// How fast gains are on the nonlinear model: over sizes of steps, over the arm's travel, and over what is not known of the model.
+// Judges how fast gains are on the nonlinear model: over sizes of steps, over the arm's travel, and over the
+// model's uncertainty.
 #pragma once
 
 #include <string>
@@ -11,14 +12,15 @@
 
 namespace hydro::tune {
 
-// A trial lasts this many times the shortest settling time; a ratio from here on means that the arm never settled.
+// A trial lasts this many times the shortest settling time. A ratio of this or more means that the arm never
+// settled.
 inline constexpr double kNeverSettled = 2.5;
-// Added where a limit would have ended the run, or the arm ran into its stop.
+// Added to the ratio where a limit would have ended the run, or where the arm ran into its stop.
 inline constexpr double kStopped = 10;
 
 // One step that is tried.
 struct StepCase {
-  size_t model = 0;     // 0: as its file says; else a sample of what may be true instead
+  size_t model = 0;     // 0: as its file says; otherwise a sample from its uncertainty
   double start = 0;     // rad
   double step = 0;      // rad, signed
   double shortest = 0;  // s: FastestSettling of this model
@@ -30,7 +32,7 @@ struct StepResult {
   bool settled = false;
   double settling = 0;           // s
   double overshoot_percent = 0;  // of the step
-  double error = 0;              // rad, in the end
+  double error = 0;              // rad, at the end
   double saturated = 0;          // s, with the motor at its torque limit
 };
 
@@ -45,26 +47,26 @@ struct StepVerdict {
 
 struct JudgeSettings {
   Goals goals = {};
-  int samples = 8;     // of the model
-  bool noise = false;  // sensors with the configuration's noise, or with a usual one where it has none
+  int samples = 8;     // drawn from the model's uncertainty
+  bool noise = false;  // with the configuration's sensor noise, or with a usual one if it has none
 };
 
 class StepJudge {
  public:
   StepJudge(settings::StackConfig config, const JudgeSettings& settings);
 
-  // rad, of the steps that are tried, from the shortest to the longest.
+  // rad, the steps that are tried, from the shortest to the longest.
   const std::vector<double>& steps() const { return steps_; }
-  // The one that a goal of settling time is about: that of the goal, or 0.1 rad of the paper's travel.
+  // The step to which a goal of settling time refers: that of the goal, or 0.1 rad of the paper's travel.
   double goal_step() const { return goal_step_; }
   const settings::StackConfig& config() const { return config_; }
   const std::vector<model::ModelDescription>& models() const { return models_; }
 
-  // Of gains for the model as its file says, tried on all cases.
+  // Judges gains for the model as its file says, on all cases.
   StepVerdict Judge(const Gains& gains) const;
-  // One case, and its motion (the angle from its start on), for tables and pictures.
+  // Tries one case and returns its motion (the angle from its start on), for tables and pictures.
   StepResult Try(const Gains& gains, const StepCase& step, StepRun* run = nullptr) const;
-  // The model as it is, from mid-stroke.
+  // The step from mid-stroke on the model as its file says.
   StepCase Nominal(double step) const;
 
  private:

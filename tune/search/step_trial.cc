@@ -10,11 +10,11 @@
 namespace hydro::tune {
 namespace {
 
-// The two loops between one reading of the sensors and the next voltage.
+// The two loops, from a reading of the sensors to the next voltage.
 class Loops {
  public:
   explicit Loops(const StepTrial& trial) : trial_(trial), position_(trial.position) {
-    // The law's history before the step: the arm at rest at its start.
+    // The history of the law before the step: the arm is at rest at its start.
     position_.Update(trial.start, trial.start, 1);
   }
 

@@ -1,5 +1,5 @@
 // A step of the arm's reference on the full nonlinear model, computed as the stack computes it in lockstep
-// but without messages: for searches that need thousands of runs.
+// but without messages, for searches that need thousands of runs.
 #pragma once
 
 #include <cstdint>
@@ -39,14 +39,14 @@ struct StepRun {
   design::Response response;    // the true angle less `start`, one point per tick, from the step on
   double highest_pressure = 0;  // psi, of either side
   double highest_speed = 0;     // rad/s, of the motor
-  double saturated = 0;         // s, with the motor at its torque limit or the voltage at the law's
+  double saturated = 0;         // s, with the motor at its torque limit or the voltage at the law's limit
 };
 
-// The arm's response to a reference that steps at a sample of the position loop. Up to rounding, it equals the
-// stack's for the same settings. Throws ModelError.
+// The arm's response to a reference that steps at a sample of the position loop. Up to rounding, it equals
+// the stack's for the same settings. Throws ModelError.
 StepRun RunStepTrial(const StepTrial& trial);
 
-// A trial of the stack that `config` describes; its caller adds step and duration.
+// A trial of the stack that `config` describes. The caller adds step and duration.
 StepTrial TrialOf(const settings::StackConfig& config);
 
 }  // namespace hydro::tune

@@ -59,14 +59,14 @@ settings::StackConfig Load(const TuneRequest& request) {
   return config;
 }
 
-// One search after the other on one scale.
+// Shows consecutive searches on one scale.
 class ProgressLine {
  public:
   ProgressLine(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
   void Show(double done, const char* what) {
     const int percent = static_cast<int>(100 * done);
     if (percent == shown_) return;
-    // A log gets a line a quarter.
+    // A log gets a line for each quarter.
     if (!terminal_ && percent / 25 != shown_ / 25)
       std::fprintf(out_, "hydro-tune: %d %%, %s\n", percent, what);
     shown_ = percent;
@@ -90,7 +90,8 @@ Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
   return proposal;
 }
 
-// Puts what --set changed into `changed` and `removed`: the text of the file knows nothing of it.
+// Adds the keys that --set changed to `changed` and `removed`, because the text of the file does not have
+// them.
 void AddOverrides(const settings::StackConfig& given, const std::vector<std::string>& overrides,
                   std::map<std::string, std::string>* changed, std::vector<std::string>* removed) {
   if (overrides.empty()) return;
@@ -108,8 +109,8 @@ void AddOverrides(const settings::StackConfig& given, const std::vector<std::str
   }
 }
 
-// The given text with what --set changed and the gains of `tuned`, for a file `output`. Of a limb, the stack
-// of this joint alone.
+// The given text with the changes by --set and the gains of `tuned`, for a file `output`. For a limb, the
+// text is the stack of this joint alone.
 std::string TunedText(const TuneRequest& request, const settings::StackConfig& given,
                       const settings::StackConfig& tuned) {
   const bool limb = settings::IsLimbFile(given.file);
@@ -129,7 +130,7 @@ std::string TunedText(const TuneRequest& request, const settings::StackConfig& g
   return settings::EditToml(before, given.file, written, removed);
 }
 
-// Before the search, with gains that all differ from the given ones.
+// Runs before the search, with gains that all differ from the given ones.
 void CheckCanBeChanged(const TuneRequest& request, const settings::StackConfig& config) {
   Gains other = GainsOf(config);
   other.as_configured = false;
@@ -144,7 +145,7 @@ void WriteReport(const TuningReport& report, const std::string& folder, bool si)
   WriteWholeFile(folder + "/tune.html", ReportPage(report, si), Existing::kKept);
 }
 
-// The gains as the stack's own programs run them: nothing that was left out of the search can differ.
+// Runs the gains with the stack's own programs, so that nothing left out of the search can make a difference.
 void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
   const settings::StackConfig tuned = With(judge.config(), proposal->tried.gains);
   for (size_t i = 0; i < judge.steps().size(); ++i) {
@@ -154,7 +155,7 @@ void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
   }
 }
 
-// What was written, and what to do next.
+// States what was written, and what to do next.
 std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& proposed) {
   std::vector<std::string> lines;
   if (proposed.steps.uncertain_ratio >= kNeverSettled) {

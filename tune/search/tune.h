@@ -1,4 +1,4 @@
-// hydro-tune: from a configuration and goals to gains, a report and a configuration with them.
+// hydro-tune: computes gains, a report and a configuration from a configuration and goals.
 #pragma once
 
 #include <cstdio>
@@ -11,11 +11,11 @@ namespace hydro::tune {
 struct TuneRequest {
   std::string config;                   // the file
   std::vector<std::string> overrides;   // "section.key=value", as with --set
-  std::string joint;                    // of a limb, which of its joints; empty: it is a stack's
+  std::string joint;                    // which joint of a limb; empty: the configuration is a stack's
   std::vector<std::string> goals;       // as ParseGoals reads them
   std::optional<std::string> interval;  // s, T; none: the configuration's
   std::string output;                   // the configuration with the gains; empty: none
-  std::string folder;                   // of the report; empty: none
+  std::string folder;                   // for the report; empty: none
   int samples = 8;
   int jobs = 2;
   bool fixed_gains = false;  // eq. (17) alone, without a braking curve
@@ -23,8 +23,8 @@ struct TuneRequest {
   bool si = false;
 };
 
-// Tables go to `out`, progress to `progress` (a bar on a terminal). Returns 0. Throws InputError for wrong input, and
-// std::runtime_error naming the limit for goals that cannot be met; then nothing is written.
+// Tables go to `out`, progress goes to `progress` (a bar on a terminal). Returns 0. Throws InputError for
+// wrong input, and std::runtime_error naming the limit for goals that cannot be met; then it writes nothing.
 int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal);
 
 }  // namespace hydro::tune

@@ -135,8 +135,8 @@ double SerialBoard::ReadBack() noexcept {
   return std::nan("");
 }
 
-// A command goes out once the one before it is answered, or lost. So a slow line cannot fill with old answers,
-// and each answer is as old as its command.
+// A command goes out once the one before it is answered, or lost. So a slow line cannot fill with old
+// answers, and each answer is as old as its command.
 void SerialBoard::Ask() {
   if (unanswered_ > 0 && clock_.Now() - asked_ < kPatience) return;
   unanswered_ = 0;

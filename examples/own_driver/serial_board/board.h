@@ -14,7 +14,8 @@ namespace serial_board {
 std::optional<unsigned> RateOf(int baud);
 std::string AllowedRates();
 
-// A port for raw bytes that is ours alone; -1 where it cannot be opened: errno says why, `todo` what is needed.
+// A port for raw bytes that is ours alone; -1 where it cannot be opened: errno says why, `todo` what is
+// needed.
 int OpenPort(const std::string& path, unsigned rate, std::string* todo);
 
 class SerialBoard : public hydro::plant::Device {

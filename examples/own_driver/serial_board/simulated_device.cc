@@ -1,5 +1,5 @@
-// simulated_device LINK MODEL.toml: a board on a pseudo terminal, which LINK names, that runs sketch.ino as it is, with
-// this project's model of the machine behind its pins.
+// simulated_device LINK MODEL.toml: a board on a pseudo terminal, which LINK names, that runs sketch.ino as
+// it is, with this project's model of the machine behind its pins.
 #include "plant/driver/simulated_device.h"
 
 #include <fcntl.h>
@@ -128,7 +128,8 @@ void Run(const char* link, const char* model) {
   hydro::plant::SimulatedDevice::SayReady();
   for (;;) {
     machine.Wait(pins.port, std::chrono::milliseconds(1));
-    // Between the machine's readings and those of the sketch nothing moves; the output of before acted until now.
+    // Between the machine's readings and those of the sketch nothing moves; the output of before acted until
+    // now.
     pins.measured = machine.Move(kVoltsPerOutput * (pins.output - 2048) / 204.8);
     loop();
     pins.measured = machine.Move(kVoltsPerOutput * (pins.output - 2048) / 204.8);

@@ -1,26 +1,28 @@
-/* ARM's MPS2 board with the image AN386: a Cortex-M4 with FPU at 25 MHz. Meant for qemu-system-arm: UART 0 is the link to the
- * computer, UART 1 carries the converters' values to and from a simulator (docs/front_end.md). */
+/* ARM's MPS2 board with the image AN386: a Cortex-M4 with FPU at 25 MHz. It is meant for qemu-system-arm:
+ * UART 0 is the link to the computer, UART 1 carries the converters' values to and from a simulator
+ * (docs/front_end.md). */
 #include "firmware/board.h"
 
 #include "firmware/boards/converter_link.h"
 
 #ifndef HYDRO_TICK_RATE_HZ
-#define HYDRO_TICK_RATE_HZ 100 /* what the emulator's UARTs carry, byte by byte */
+#define HYDRO_TICK_RATE_HZ 100 /* the byte rate of the emulator's UARTs allows no more */
 #endif
 
 enum { CLOCK_HZ = 25000000, RING_BYTES = 2048 }; /* a power of two */
 
-/* CMSDK's UART: one byte each way. */
+/* CMSDK's UART, with one byte in each direction. */
 struct uart {
   volatile uint32_t data;
-  volatile uint32_t state;      /* bit 0: the byte to send is there still, bit 1: a byte was received */
+  volatile uint32_t state;      /* bit 0: the byte to send is still there, bit 1: a byte was received */
   volatile uint32_t control;    /* bits 0, 1: send, receive; bits 2, 3: their interrupts */
   volatile uint32_t interrupts; /* bits 0, 1; writing a one clears */
-  volatile uint32_t divider;    /* of the clock, 16 or more */
+  volatile uint32_t divider;    /* divides the clock, 16 or more */
 };
 enum { SENDING = 1, RECEIVED = 2, ENABLE_ALL = 15, SENT_INTERRUPT = 1, RECEIVED_INTERRUPT = 2 };
 
-/* Bytes between an interrupt and the program: one writes `put`, the other `taken`, and both count on for ever. */
+/* Bytes between an interrupt and the program: one side advances `put`, the other `taken`, and both count
+ * on for ever. */
 struct ring {
   volatile uint32_t put;
   volatile uint32_t taken;
@@ -46,7 +48,7 @@ static void received(struct line* line) {
   line->uart->interrupts = RECEIVED_INTERRUPT;
   if ((line->uart->state & RECEIVED) == 0) return;
   const uint8_t byte = (uint8_t)line->uart->data;
-  if (line->in.put - line->in.taken == RING_BYTES) return; /* lost; the frame's checksum tells */
+  if (line->in.put - line->in.taken == RING_BYTES) return; /* lost; the frame's checksum reveals it */
   line->in.bytes[line->in.put % RING_BYTES] = byte;
   line->in.put = line->in.put + 1;
 }
@@ -65,7 +67,8 @@ void board_converters_received(void) { received(&machine); }
 void board_converters_sent(void) { send_next(&machine); }
 void board_tick(void) { ticks_due = ticks_due + 1; }
 
-/* All of a frame or nothing. The first byte starts the line, each interrupt sends the next. */
+/* Sends all of a frame or nothing. This function sends the first byte, and each interrupt sends the next
+ * one. */
 static void send(struct line* line, const uint8_t* bytes, size_t count) {
   if (RING_BYTES - (line->out.put - line->out.taken) < count) return;
   for (size_t i = 0; i < count; ++i) line->out.bytes[(line->out.put + i) % RING_BYTES] = bytes[i];
@@ -108,9 +111,9 @@ int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
 
 bool hydro_board_wait(struct hydro_readings* readings) {
   __asm volatile("cpsid i" ::: "memory");
-  readings->overrun =
-      false; /* an emulator that was late says nothing of the program; real hardware: ticks_due > 0 */
-  /* A pending interrupt ends the sleep although it is masked, so none is missed between the look and the sleep. */
+  readings->overrun = false; /* a late emulator is not the program's fault; real hardware: ticks_due > 0 */
+  /* A pending interrupt ends the sleep although it is masked, so none is missed between the check and the
+   * sleep. */
   while (ticks_due == 0) __asm volatile("wfi\n cpsie i\n isb\n cpsid i" ::: "memory");
   readings->elapsed_ticks = ticks_due;
   ticks_due = 0;

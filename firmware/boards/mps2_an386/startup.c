@@ -22,7 +22,7 @@ void* memset(void* to, int value, size_t count) {
   return to;
 }
 
-/* A program that has gone wrong begins anew: no settings, zero volts. */
+/* A program that has gone wrong restarts, with no settings and zero volts. */
 static void start_again(void) {
   *(volatile uint32_t*)0xE000ED0C = 0x05FA0004; /* SYSRESETREQ */
   for (;;) {

@@ -1,14 +1,17 @@
-/* A front end that is a process: for tests, and for users to try the protocol without hardware. Its converters are those of
- * a simulator behind a second link, or hold still. It is no real-time machine: a late wake-up counts as several ticks. */
+/* A front end that is a process: for tests, and for users to try the protocol without hardware. Its
+ * converters are those of a simulator behind a second link, or have constant values. It is no real-time
+ * machine: a late wake-up counts as several ticks. */
 #include "firmware/board.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "firmware/boards/converter_link.h"
 #include "firmware/boards/posix/link.h"
@@ -100,7 +103,18 @@ static int read_options(int argc, char** argv, const char** link, const char** c
   return 0;
 }
 
+/* Where descriptors 0 to 2 were closed, a link would get one of their numbers, and what is printed would be
+ * sent to the computer. Each is opened for the opposite of its use, so that using it still fails. */
+static bool open_standard_descriptors(void) {
+  for (int standard = 0; standard <= 2; ++standard) {
+    if (fcntl(standard, F_GETFD) >= 0) continue;
+    if (open("/dev/null", standard == 0 ? O_WRONLY : O_RDONLY) != standard) return false;
+  }
+  return true;
+}
+
 int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
+  if (!open_standard_descriptors()) return 1;
   const char *link = NULL, *converter_link = NULL;
   const int code = read_options(argc, argv, &link, &converter_link);
   if (code != 0) return code;
@@ -128,7 +142,7 @@ int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
   return 0;
 }
 
-/* Takes what the simulator has sent: the newest values count. */
+/* Takes the values that the simulator has sent; the newest ones count. */
 static void receive_converters(void) {
   uint8_t bytes[512];
   for (size_t chunk = 0; chunk < 8; ++chunk) {
@@ -140,7 +154,7 @@ static void receive_converters(void) {
   }
 }
 
-/* The simulator's values are the clock. */
+/* The simulator's values set the pace. */
 static bool wait_for_converters(void) {
   while (!ended && !converters.arrived) {
     struct pollfd wanted = {.fd = machine.fd >= 0 ? machine.fd : machine.listening, .events = POLLIN};
@@ -167,7 +181,7 @@ bool hydro_board_wait(struct hydro_readings* readings) {
   return !ended;
 }
 
-/* Without a simulator: inputs of 1 V, counters of 0, an output that holds what was written. */
+/* Without a simulator: inputs of 1 V, counters of 0, and an output that holds the written voltage. */
 static void hold_still(struct hydro_readings* readings) {
   readings->answered = readings->interlock_closed = true;
   readings->read_back_V = written_V;
@@ -199,7 +213,7 @@ void hydro_board_send(const uint8_t* bytes, size_t count, bool to_asker) {
   link_send(&computer, bytes, count, to_asker ? &computer.asker : &computer.peer);
 }
 
-void hydro_board_alive(void) {} /* the operating system ends a process that hangs when its user says so */
+void hydro_board_alive(void) {} /* the user of the operating system can end a process that hangs */
 
 bool hydro_board_was_reset(struct hydro_board_facts* facts) {
   if (!reset) return false;

@@ -12,6 +12,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+enum { MOST_EMPTY = 64 };
+
 static bool fails(const char* name, const char* url, const char* what) {
   fprintf(stderr, "hydro-front-end: %s: found %s: %s (%s)\n", name, url, what, strerror(errno));
   return false;
@@ -23,7 +25,8 @@ static bool open_pty(struct link* link, const char* name, const char* url) {
     return fails(name, url, "no pseudo terminal to be had");
   }
   const char* terminal = ptsname(link->fd);
-  /* The board keeps the terminal open itself: so the line stays there while nobody else has it, as a cable does. */
+  /* The board itself keeps the terminal open, so that the line persists while no other process has it
+   * open, as a cable does. */
   const int held = open(terminal, O_RDWR | O_NOCTTY | O_CLOEXEC);
   struct termios mode;
   if (held < 0 || tcgetattr(held, &mode) != 0)
@@ -34,7 +37,8 @@ static bool open_pty(struct link* link, const char* name, const char* url) {
     const char* path = url + 4;
     struct stat found;
     if (strlen(path) >= sizeof link->path) return fails(name, url, "the path is too long");
-    if (lstat(path, &found) == 0 && S_ISLNK(found.st_mode)) unlink(path); /* of a board that was killed */
+    /* A board that was killed has left its link. */
+    if (lstat(path, &found) == 0 && S_ISLNK(found.st_mode)) unlink(path);
     if (symlink(terminal, path) != 0) return fails(name, url, "the symbolic link cannot be made");
     strcpy(link->path, path);
     terminal = path;
@@ -52,7 +56,7 @@ static bool open_unix(struct link* link, const char* name, const char* url) {
   }
   strcpy(address.sun_path, path);
   struct stat found;
-  if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path); /* of a board that was killed */
+  if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path); /* left by a board that was killed */
   link->fd = -1;
   link->listening = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (link->listening < 0 || bind(link->listening, (struct sockaddr*)&address, sizeof address) != 0 ||
@@ -110,17 +114,23 @@ bool link_open(struct link* link, const char* name, const char* url) {
   return fails(name, url, "allowed are pty, pty:PATH, unix:PATH, udp:PORT and udp:ADDRESS:PORT");
 }
 
+/* Empty datagrams hide none that wait behind them, and no flood of them holds a tick. */
+static size_t receive_datagram(struct link* link, uint8_t* bytes, size_t capacity) {
+  for (size_t tries = 0; tries < MOST_EMPTY; ++tries) {
+    socklen_t size = sizeof link->asker;
+    const ssize_t count = recvfrom(link->fd, bytes, capacity, 0, (struct sockaddr*)&link->asker, &size);
+    if (count != 0) return count > 0 ? (size_t)count : 0;
+  }
+  return 0;
+}
+
 size_t link_receive(struct link* link, uint8_t* bytes, size_t capacity) {
   if (link->kind == LINK_NONE) return 0;
   if (link->kind == LINK_UNIX && link->fd < 0) {
     link->fd = accept4(link->listening, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (link->fd < 0) return 0;
   }
-  if (link->kind == LINK_UDP) {
-    socklen_t size = sizeof link->asker;
-    const ssize_t count = recvfrom(link->fd, bytes, capacity, 0, (struct sockaddr*)&link->asker, &size);
-    return count > 0 ? (size_t)count : 0;
-  }
+  if (link->kind == LINK_UDP) return receive_datagram(link, bytes, capacity);
   const ssize_t count = read(link->fd, bytes, capacity);
   const bool ended = count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
   if (link->kind == LINK_UNIX && ended) {
@@ -138,7 +148,7 @@ void link_send(struct link* link, const uint8_t* bytes, size_t count, const stru
   if (link->kind == LINK_UDP && to->sin_port != 0) {
     sent = sendto(link->fd, bytes, count, 0, (const struct sockaddr*)to, sizeof *to);
   }
-  (void)sent; /* what found no room is lost, as on any wire; the frame's number shows it */
+  (void)sent; /* bytes without room are lost, as on any wire; the frame's number shows it */
 }
 
 void link_close(struct link* link) {

@@ -1,12 +1,14 @@
-/* NOT TRIED: no STM32, Teensy or other microcontroller was ever connected. This is the shape of a board with real
- * converters, to be copied and filled in; it compiles, and that is all that is known of it.
+/* NOT TRIED: no STM32, Teensy or other microcontroller was ever connected. This is the outline of a board
+ * with real converters, to be copied and filled in. It compiles; nothing else is known of it.
  *
- * An STM32G4 or F4 made with CubeMX, say: an ADC whose sequence of conversions a timer starts, with DMA into adc_codes; a DAC
- * behind an amplifier that makes +/-10 V of its 0 to 3.3 V; two timers in encoder mode; a UART or USB with rings that
- * interrupts or DMA fill and empty; the independent watchdog. What HAL calls do is declared below as yours_...(): write those.
+ * It suits, for example, an STM32G4 or F4 made with CubeMX: an ADC whose sequence of conversions a timer
+ * starts, with DMA into adc_codes; a DAC behind an amplifier that makes +/-10 V of its 0 to 3.3 V; two
+ * timers in encoder mode; a UART or USB with rings that interrupts or DMA fill and empty; the independent
+ * watchdog. The calls to HAL are declared below as yours_...(): write those.
  *
- * Before the motor is connected: see the output at 0 V from power-up on, with a reset held, and with the processor halted in
- * the debugger. A DAC that floats or holds its last value then needs a pull-down, or an enable that the watchdog's pin gates. */
+ * Before you connect the motor, check that the output is at 0 V from power-up on, with a reset held, and
+ * with the processor halted in the debugger. A DAC that floats or holds its last value then needs a
+ * pull-down, or an enable that the watchdog's pin gates. */
 #include "firmware/board.h"
 
 enum {
@@ -19,11 +21,11 @@ static const float kAdcMinimum_V = -10.0f,
                    kAdcMaximum_V = 10.0f; /* at the terminals, in front of the dividers */
 static const float kDacMinimum_V = -10.0f, kDacMaximum_V = 10.0f;
 
-/* Yours. None may wait, but yours_wait_for_interrupt(). */
+/* Write these functions yourself. Only yours_wait_for_interrupt() may wait. */
 void yours_clocks_and_pins(void);
 void yours_dac_write(uint16_t code);
-bool yours_adc_finished(void); /* the sequence that this tick's timer started; with ADC_INPUTS codes in: */
-extern volatile uint16_t adc_codes[ADC_INPUTS]; /* by DMA */
+bool yours_adc_finished(void); /* the sequence that this tick started has ended, with ADC_INPUTS codes in: */
+extern volatile uint16_t adc_codes[ADC_INPUTS]; /* filled by DMA */
 bool yours_adc_failed(void);                    /* overrun or DMA error since the last call */
 uint16_t yours_adc_read_back(void);      /* an input wired to the output's terminal, scaled as the others */
 uint32_t yours_encoder(size_t timer);    /* the timer's count, 16 or 32 bits */
@@ -60,8 +62,8 @@ int hydro_board_start(int argc, char** argv, struct hydro_board_facts* facts) {
 
 bool hydro_board_wait(struct hydro_readings* readings) {
   uint32_t ticks = yours_ticks_since_last_call();
-  readings->overrun = ticks > 0; /* it was due before the last one was finished */
-  /* Not a loop to be bounded: a timer that has stopped leaves the independent watchdog to reset the processor. */
+  readings->overrun = ticks > 0; /* this tick was due before the last one was finished */
+  /* This loop needs no bound: if the timer has stopped, the independent watchdog resets the processor. */
   while (ticks == 0) {
     yours_wait_for_interrupt();
     ticks = yours_ticks_since_last_call();
@@ -71,7 +73,7 @@ bool hydro_board_wait(struct hydro_readings* readings) {
 }
 
 void hydro_board_read(struct hydro_readings* readings) {
-  /* The timer starts the conversions a little before the tick, so that they are there by now. */
+  /* The timer starts the conversions a little before the tick, so that they have ended by now. */
   readings->answered = yours_adc_finished() && !yours_adc_failed();
   for (size_t i = 0; i < ADC_INPUTS; ++i) readings->analog_V[i] = volts_of(adc_codes[i]);
   for (size_t i = 0; i < HYDRO_COUNTERS; ++i) readings->counter[i] = yours_encoder(i);
@@ -81,7 +83,7 @@ void hydro_board_read(struct hydro_readings* readings) {
 
 void hydro_board_write(float volts) {
   float share = (volts - kDacMinimum_V) / (kDacMaximum_V - kDacMinimum_V);
-  if (!(share >= 0.0f)) share = 0.0f; /* the device never asks for these, and never for NaN */
+  if (!(share >= 0.0f)) share = 0.0f; /* the device never requests such a voltage, and never NaN */
   if (share > 1.0f) share = 1.0f;
   yours_dac_write((uint16_t)(share * (float)(DAC_CODES - 1) + 0.5f));
 }

@@ -24,7 +24,7 @@ void Coverage::AddPairs(const std::vector<Injection>& injections) {
   constexpr double kTogether_s = 1;
   for (size_t i = 0; i < injections.size(); ++i) {
     for (size_t j = i + 1; j < injections.size(); ++j) {
-      const Injection &a = injections[i], &b = injections[j];  // by time
+      const Injection &a = injections[i], &b = injections[j];  // sorted by time
       if (b.at_s > a.at_s + a.duration_s + kTogether_s) continue;
       pairs.insert(std::minmax(a.kind, b.kind));
     }

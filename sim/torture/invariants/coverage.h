@@ -1,4 +1,4 @@
-// What the runs so far have reached: fault codes, rows of the safety table, kinds of injected faults and
+// What the runs have reached so far: fault codes, rows of the safety table, kinds of injected faults and
 // pairs of them.
 #pragma once
 
@@ -19,15 +19,15 @@ struct Coverage {
   double simulated_s = 0;
   int64_t ticks = 0;
   std::map<std::string, int64_t> codes;             // faults that began, by code
-  std::set<std::string> rows;                       // of process/safety, by id
+  std::set<std::string> rows;                       // rows of process/safety, by id
   std::map<FaultKind, int64_t> kinds;               // injections by kind
-  std::set<std::pair<FaultKind, FaultKind>> pairs;  // both active within a second of each other
+  std::set<std::pair<FaultKind, FaultKind>> pairs;  // pairs active within a second of each other
 
   void Add(const Coverage& other);
   void AddPairs(const std::vector<Injection>& injections);
-  // The rows that a run with these injections and `codes` has reached.
+  // Adds the rows that a run with these injections and `codes` has reached.
   void AddRows(const std::vector<Injection>& injections);
-  // What was not reached, a line each.
+  // Lists what was not reached, one line each.
   std::string Report() const;
 };
 

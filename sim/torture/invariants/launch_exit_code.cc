@@ -1,4 +1,4 @@
-// What the exit code of a launch must be, and what it leaves behind.
+// Checks the exit code of a launch, and what the launch leaves behind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace hydro::torture {
 namespace {
 
 constexpr TrueTime kControlLasts =
-    1'000'000'000;  // ns: after the last obeyed command the stack counts as one that works
+    1'000'000'000;  // ns after the last obeyed command during which the stack counts as working
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void LaunchInvariants::OnChildEnd(const SimulatedProcess& child) {
     launch_->failed = NameOf(child) + (child.killed() ? " was killed" : " has ended with an error");
   if (in_order && !launch_->cause && !launch_->early_end) launch_->early_end = *now_;
   if (child.role() == Role::kLogger && !config_.logger.required && !launch_->cause)
-    return;  // the run goes on
+    return;  // the run continues
   Cause("the end of " + NameOf(child));
 }
 
@@ -51,7 +51,7 @@ std::string LaunchInvariants::WhatMayHaveFailed() const {
   if (std::string failed = WhatFailed(); !failed.empty()) return failed;
   if (!launch_->may_fail.empty()) return launch_->may_fail;
   if (launch_->early_end) return "a process ended and no stop was heard";
-  // Where the motor obeys, all are there, whatever has been lost of what they said.
+  // When the motor obeys, all processes are there, no matter which of their messages were lost.
   if (observer_.last_obeyed() > std::max(launch_->started, *now_ - kControlLasts)) return "";
   const auto in_time = static_cast<TrueTime>(0.95e9 * config_.time.start_timeout_s);
   for (const SimulatedProcess* child : launch_->children) {

@@ -17,13 +17,13 @@ namespace hydro::torture {
 namespace {
 
 constexpr TrueTime kSecond = 1'000'000'000;
-// docs/launch.md, "Ending": how long a stop may take to arrive after a child's end, how long children may take to end by
-// themselves, and after SIGTERM; the logger after the others.
+// From docs/launch.md, "Ending": how long a stop may take to arrive after a child's end, how long children
+// may take to end by themselves, and after SIGTERM. The logger ends after the others.
 constexpr TrueTime kStopArrives = kSecond / 2;
 constexpr TrueTime kPatience = 3 * kSecond;
 constexpr TrueTime kGrace = 3 * kSecond;
 constexpr TrueTime kLoggerGrace = 10 * kSecond;
-// Its questions before the start, its last words, and what its clock may run slow.
+// Time for its questions before the start, its last messages, and the error of a slow clock.
 constexpr TrueTime kRest = kSecond;
 
 TrueTime GraceOf(const SimulatedProcess& child) {
@@ -103,7 +103,7 @@ std::optional<TrueTime> LaunchInvariants::due() const {
   const bool logs = std::any_of(launch_->children.begin(), launch_->children.end(),
                                 [](const auto* child) { return child->role() == Role::kLogger; });
   TrueTime due = *launch_->cause + kStopArrives + kPatience + kGrace + (logs ? kLoggerGrace : 0);
-  // Whoever does not end on SIGTERM is killed when his time is over.
+  // A process that does not end on SIGTERM is killed when its time is over.
   for (const auto& [child, told] : launch_->told) {
     if (!child->ended()) due = std::min(due, told + GraceOf(*child));
   }
@@ -143,14 +143,16 @@ void LaunchInvariants::OnStatus(const Packet& packet) {
   }
 }
 
-// A stop that is not for one of its children, or for one that it has not heard yet, is none.
+// A stop does not count if it is not for one of its children, or if it is for a child that the launcher has
+// not heard yet.
 void LaunchInvariants::OnStop(const Packet& packet, const SimulatedProcess& launcher) {
   stop_t stop;
   if (!Decode(packet, &stop) || packet.sender == launch_->launcher || launch_->stop_heard) return;
   const auto heard = [&](const SimulatedProcess* child) {
     return child->identity().session == stop.addressee && launch_->ready.contains(child->number());
   };
-  // What comes before a signal is taken, or while it waits for the stop that a child's end follows from, counts.
+  // A stop counts when it comes before a signal is handled, or while the launcher waits for the stop that
+  // explains a child's end.
   const bool open = launch_->confused || launch_->early_end || launcher.identity().stop_signal != 0;
   if (stop.exit_code != 0 && open) launch_->may_fail = "it has heard a stop with an error";
   if (stop.addressee != 0 &&

@@ -1,4 +1,5 @@
-// What must hold of a launch, whose logic is the launcher's own: computed from what its children did, and what it was sent.
+// The invariants of a launch, whose logic is the launcher's own. They are computed from what its children
+// did, and what it was sent.
 #pragma once
 
 #include <map>
@@ -14,7 +15,7 @@
 
 namespace hydro::torture {
 
-// Its role, as texts say it.
+// The name of a process's role in texts.
 std::string NameOf(const SimulatedProcess& process);
 
 class LaunchInvariants {
@@ -22,51 +23,51 @@ class LaunchInvariants {
   LaunchInvariants(const settings::StackConfig& config, Network& network, const TrueTime* now,
                    Observer& observer);
 
-  // A launcher begins; there is one at a time.
+  // A launcher begins. There is only one at a time.
   void OnBegin(const SimulatedProcess& launcher);
-  // It starts a child; it sends one a signal.
+  // The launcher starts a child, or sends one a signal.
   void OnStart(const SimulatedProcess& child);
   void OnSignal(const SimulatedProcess& child, int signal);
-  // It is sent SIGINT.
+  // The launcher is sent SIGINT.
   void OnInterrupt();
-  // It stands still until then.
+  // The launcher stands still until then.
   void OnFrozen(TrueTime until);
   void OnSent(const Packet& packet);
   void OnHandled(const Packet& packet, const SimulatedProcess& launcher);
-  // A process has ended: it, a child of it, or another.
+  // A process has ended: the launcher, a child of it, or another process.
   void OnEnd(const SimulatedProcess& process);
 
-  // The launcher that runs; -1: none. Its children, alive or not.
+  // The launcher that runs; -1: none. Below, its children, alive or not.
   int launcher() const { return launch_ ? launch_->launcher : -1; }
   std::vector<const SimulatedProcess*> children() const;
-  // When it must have ended; nothing: it has no reason to end.
+  // The time by which the launcher must have ended; none: it has no reason to end.
   std::optional<TrueTime> due() const;
   void ReportOverdue();
 
  private:
-  // Of a flood of made-up faults it keeps no more (launch/logic/run_summary.cc).
+  // The launcher keeps no more faults than this from a flood of forged ones (launch/logic/run_summary.cc).
   static constexpr size_t kMostFaults = 200;
 
   struct Launch {
     int launcher = -1;
-    TrueTime started = 0;  // its first child
+    TrueTime started = 0;  // start of its first child
     std::vector<const SimulatedProcess*> children;
-    std::optional<TrueTime> cause;  // since when it has a reason to end
+    std::optional<TrueTime> cause;  // when its reason to end arose
     std::string why;
     TrueTime frozen_until = 0;
-    TrueTime frozen = 0;  // for how long it has stood still since
+    TrueTime frozen = 0;  // how long it has stood still since then
     bool stop_heard = false;
     bool stop_sent = false;
-    bool others = false;    // it has heard of a process with one of its roles before it started any
+    bool others = false;    // it heard a process with one of its roles before it started any
     bool confused = false;  // a status that it heard was changed on the way
     int interrupts = 0;
     std::optional<TrueTime> second_interrupt;
-    std::map<const SimulatedProcess*, TrueTime> told;  // children, since when: SIGTERM
-    std::optional<TrueTime> early_end;  // a child has ended with 0, and it has heard of no stop since
-    std::string failed;                 // what makes its exit code 1; empty: nothing
-    std::string may_fail;               // what may do so
-    std::map<int, TrueTime> ready;      // by child, when it heard that first
-    std::map<std::pair<int64_t, std::string>, bool> faults;  // by sender and code, as it heard: active
+    std::map<const SimulatedProcess*, TrueTime> told;  // children that were sent SIGTERM, and when
+    std::optional<TrueTime> early_end;  // a child has ended with 0, and no stop has been heard since
+    std::string failed;                 // the reason why its exit code must be 1; empty: none
+    std::string may_fail;               // the reason why it may be 1
+    std::map<int, TrueTime> ready;      // by child, when the launcher first heard that it is ready
+    std::map<std::pair<int64_t, std::string>, bool> faults;  // by sender and code, as heard: whether active
   };
 
   bool Owns(const SimulatedProcess& process) const;

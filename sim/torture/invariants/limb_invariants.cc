@@ -13,7 +13,7 @@ namespace {
 
 const int64_t kNoticed = process::TicksWithin("other_joint");
 constexpr double kSilenceNoticed_s = 0.06;  // it may wake late by 20 ms (fault_kinds.cc: slow) each time
-constexpr double kClaimed_s = 2.4;          // a fault that nobody claims for 2.5 s is none
+constexpr double kClaimed_s = 2.4;          // a fault that no process claims for 2.5 s has ended
 
 template <class Message>
 int ChannelOf(Network& network, const settings::StackConfig& config) {
@@ -49,7 +49,8 @@ void LimbInvariants::OnHandled(const Packet& packet, const SimulatedProcess& pla
     heard.state.reset();
     heard.fault.clear();
   }
-  // What is lost or changed on the way may end a fault, or make one: only the newest word counts.
+  // A message that is lost or changed on the way may end a fault, or make one, so only the newest message
+  // counts.
   if (packet.channel == active_faults_) heard.fault.clear();
   if (packet.channel != fault_) return;
   heard.fault.clear();

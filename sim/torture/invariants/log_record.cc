@@ -17,7 +17,7 @@ uint64_t HashOf(std::string_view channel, const uint8_t* data, size_t size) {
   return hash(channel) * 0x9fb21c651e98df25u ^ hash({reinterpret_cast<const char*>(data), size});
 }
 
-// How many messages the log says are not in it, though its logger had received them.
+// The number of messages that the log says it lacks although its logger had received them.
 int64_t SaidToBeMissing(const log::LogVerdict& verdict) {
   int64_t missing = 0;
   for (const std::string& remark : verdict.remarks) {
@@ -52,7 +52,7 @@ std::string WrongWith(const LogRecord& record) {
   }
   // No checksum covers the end of a log that was cut off.
   if (record.lied && verdict.completeness == log::Completeness::kIncomplete) return "";
-  // Sorted, as in lockstep the logger restores an order.
+  // Sorted, because in lockstep the logger restores an order.
   std::vector<uint64_t> received = record.handled;
   std::sort(received.begin(), received.end());
   std::sort(written.begin(), written.end());

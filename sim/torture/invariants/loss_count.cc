@@ -12,7 +12,7 @@ void LossCount::Handle(const Packet& state) {
   if (!session_) {
     session_ = session;
   } else if (session != *session_ || sequence < newest_) {
-    countable_ = false;  // which plant it follows, and from when on, is its own decision
+    countable_ = false;  // the process decides which plant it follows, and from when on
     return;
   } else if (sequence > newest_) {
     lost_ += sequence - newest_ - 1;

@@ -1,4 +1,5 @@
-// How many states one process has really missed, counted from what reached it: its own count must say the same.
+// The number of states that one process has really missed, counted from what reached it. The process's own
+// count must be the same.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@ class LossCount {
   // A state was passed to the process.
   void Handle(const Packet& state);
 
-  // States missing before or between those that were handled; none where one was changed, made up or from a second plant, so that
-  // it depends on more than the network.
+  // States missing before or between those that were handled. None where a state was changed, forged or from
+  // a second plant, because the count then depends on more than the network.
   std::optional<int64_t> lost() const { return countable_ ? std::optional(lost_) : std::nullopt; }
 
  private:

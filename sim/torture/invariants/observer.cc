@@ -70,18 +70,18 @@ void Observer::OnStatistics(const Packet& packet, const SimulatedProcess& sender
                      report.lost_messages, *counted->second.lost()));
 }
 
-// Whether it is a stop that must end this process.
+// Whether the packet is a stop that must end this process.
 bool Observer::OnStop(const Packet& packet, const SimulatedProcess& process) {
   stop_t stop;
   if (!Decode(packet, &stop)) return false;
-  // Who has heard of no plant may obey any stop: there is no run that it could harm.
+  // A process that has heard no plant may obey any stop, because there is no run that the stop could harm.
   const bool in_a_run = process.role() == Role::kPlant || in_a_run_.contains(process.number());
   if (packet.origin == Origin::kForged && in_a_run) return false;
   stops_[process.number()].insert(stop.exit_code == 0 ? 0 : 1);
   return stop.addressee == 0 || stop.addressee == process.identity().session;
 }
 
-// What a log says happened is what happened.
+// A state must report the voltage that was really driven, so that a log tells what happened.
 void Observer::OnState(const Packet& packet, const SimulatedProcess& sender) {
   constexpr size_t kVoltage = 8 + offsetof(state_t, voltage);
   if (sender.role() != Role::kPlant || packet.bytes.size() < kVoltage + 8) return;
@@ -122,7 +122,7 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
     return;
   }
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
-  // Its plant seems to be misconfigured: it leaves.
+  // The process's plant seems to be misconfigured, so it leaves.
   if (packet.channel == configuration_ && packet.origin == Origin::kChanged)
     stops_[receiver.number()].insert(1);
   if (receiver.role() != Role::kPlant) return;
@@ -146,7 +146,7 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
   }
 }
 
-// Without a key nothing tells that bad readings were made good on the way.
+// Without a key, nothing reveals that bad readings were turned into good ones on the way.
 void Observer::OnChangedState(const Packet& packet) {
   constexpr size_t kTick = 8 + offsetof(state_t, tick);
   const auto sender = static_cast<size_t>(packet.sender);
@@ -170,7 +170,7 @@ void Observer::OnCommand(const Packet& packet, PlantRecord& plant) {
   command.voltage = std::bit_cast<double>(NumberAt(packet, kVoltage));
   command.handled = *now_;
   if (misconfigured_.contains(command.session)) {
-    // It is refused and counts for nothing; until that is known it may be obeyed.
+    // The command is refused and does not count. Until the misconfiguration is known, it may be obeyed.
     if (command.tick >= 0) plant.At(command.tick).answers[1] = command;
     return;
   }
@@ -209,7 +209,7 @@ void Observer::CheckLeft(const PlantRecord& plant) {
   }
 }
 
-// Whatever a planner, an operator or a bit on the way asks for.
+// Checks a pressure command, whatever a planner, an operator or a flipped bit asks for.
 void Observer::OnPressureCommand(const Packet& packet, const SimulatedProcess& sender) {
   pressure_command_t command;
   if (sender.role() != Role::kPosition || !Decode(packet, &command)) return;
@@ -220,9 +220,9 @@ void Observer::OnPressureCommand(const Packet& packet, const SimulatedProcess& s
                      command.pressure_ref, command.voltage, limit));
 }
 
-// While the motor is held the reference is where the arm is, and comes back from there.
+// While the motor is held, the reference is where the arm is, and it returns from there.
 void Observer::OnReference(const Packet& packet, const SimulatedProcess& sender) {
-  constexpr int64_t kUnnoticed = 100;  // ticks: states may be lost
+  constexpr int64_t kUnnoticed = 100;  // ticks, because states may be lost
   arm_reference_t reference;
   if (sender.role() != Role::kPosition || newest_plant_ == nullptr || !Decode(packet, &reference)) return;
   if (reference.value != reference_value_) reference_moved_ = *now_;
@@ -239,7 +239,7 @@ void Observer::OnReference(const Packet& packet, const SimulatedProcess& sender)
 }
 
 void Observer::OnEnd(const SimulatedProcess& process) {
-  // Of launches: LaunchInvariants.
+  // LaunchInvariants checks launches.
   const bool other = process.role() == Role::kOperator || process.role() == Role::kLauncher;
   if (process.killed() || (other && process.failure().empty())) return;
   const std::string_view name = TargetName(static_cast<int>(process.role()));
@@ -247,13 +247,13 @@ void Observer::OnEnd(const SimulatedProcess& process) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
     return;
   }
-  if (IsOfKnee(process.role())) return;  // of its messages only those matter that the others hear
+  if (IsOfKnee(process.role())) return;  // only those of its messages matter that the others hear
   if (process.role() == Role::kPlant) {
     CheckLeft(RecordOf(process));
-    // However the run was ended.
+    // This holds however the run was ended.
     if (RecordOf(process).zero_refused && process.exit_code() == 1) return;
   }
-  // One that finds itself misconfigured leaves alone.
+  // A process that finds itself misconfigured leaves alone.
   if (process.misconfigured() && process.exit_code() == 1) return;
   const auto stop = stops_.find(process.number());
   const bool signalled = process.identity().stop_signal != 0;

@@ -1,5 +1,5 @@
-// Watches a run from outside: fills the records of what really happened and holds them against the
-// invariants. It knows what was injected and what went over the wire, and asks no process what it thinks.
+// Watches a run from outside: records what really happened and checks it against the invariants. It knows
+// what was injected and what went over the wire, and asks no process for its view.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ namespace hydro::torture {
 
 // An invariant that does not hold.
 struct Violation {
-  std::string invariant;  // docs/developers/torture.md has each
+  std::string invariant;  // docs/developers/torture.md describes each
   std::string text;       // one line: what was found, what is allowed
   TrueTime at = 0;
 };
@@ -32,7 +32,7 @@ class Observer {
  public:
   Observer(const settings::StackConfig& config, Network& network, const TrueTime* now, Coverage& coverage);
 
-  // A process of that session runs with another configuration than the rest of the stack.
+  // The process with that session runs with another configuration than the rest of the stack.
   void AddMisconfigured(int64_t session) { misconfigured_.insert(session); }
   // Every message is sealed.
   void SetSealed() { sealed_ = true; }
@@ -50,9 +50,9 @@ class Observer {
     if (process.role() == Role::kPlant) RecordOf(process).Stop();
   }
   void OnHeartbeat(const SimulatedProcess& plant) { RecordOf(plant).heartbeat = plant.machine().Now(); }
-  // The board of a driver does not take the zero at its end.
+  // The board of a driver refuses the zero at the driver's end.
   void OnZeroRefused(const SimulatedProcess& driver) { RecordOf(driver).zero_refused = true; }
-  // Processes with another configuration than the plant's take part since now, or no longer.
+  // From now on, processes with another configuration than the plant's take part, or no longer do.
   void SetOtherConfiguration(bool present);
   // A process has ended.
   void OnEnd(const SimulatedProcess& process);
@@ -60,12 +60,12 @@ class Observer {
   void Report(const std::string& invariant, const std::string& text);
   const std::vector<Violation>& violations() const { return violations_; }
 
-  // When a plant last obeyed a command; -1: never.
+  // The last time at which a plant obeyed a command; -1: never.
   TrueTime last_obeyed() const { return last_obeyed_; }
   PlantRecord* newest_plant() { return newest_plant_; }
-  // When a reference was last another than the one before; -1: never.
+  // The last time at which a reference differed from the one before; -1: never.
   TrueTime reference_moved() const { return reference_moved_; }
-  // When the other joint of a limb was driven last; none: there is none.
+  // The last time at which the other joint of a limb was driven; none: there is no other joint.
   std::optional<TrueTime> sibling_driven() const {
     return limb_ ? std::optional(limb_->sibling_driven()) : std::nullopt;
   }
@@ -96,14 +96,14 @@ class Observer {
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
   TrueTime reference_moved_ = -1;
-  double reference_value_ = 0;                                  // of the newest
-  static constexpr TrueTime kChangedForgotten = 2'000'000'000;  // ns: the reference has come back
-  TrueTime changed_state_ = -kChangedForgotten;  // when a state with wrong bits was handled last
-  TrueTime other_configuration_ = -1;            // since when
+  double reference_value_ = 0;                                  // of the newest reference
+  static constexpr TrueTime kChangedForgotten = 2'000'000'000;  // ns after which the reference has returned
+  TrueTime changed_state_ = -kChangedForgotten;  // the last time at which a state with wrong bits was handled
+  TrueTime other_configuration_ = -1;            // the time since which it takes part
   std::optional<LimbInvariants> limb_;
-  std::map<int, LossCount> losses_;     // of position loops, by number of the process
+  std::map<int, LossCount> losses_;     // for position loops, by number of the process
   std::set<int> in_a_run_;              // processes that have heard of a plant
-  std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent
+  std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that each process heard or sent
 };
 
 }  // namespace hydro::torture

@@ -10,15 +10,15 @@
 namespace hydro::torture {
 namespace {
 
-// Ticks, of docs/safety.md.
+// Ticks, from docs/safety.md.
 const int64_t kDeadLoop = process::TicksWithin("pressure_loop_dies");
 const int64_t kStop = process::TicksWithin("stop");
 const int64_t kTwoSenders = process::TicksWithin("two_motor_command_senders");
 const int64_t kTwoPlants = process::TicksWithin("two_plants");
-// s: the plant looks for heartbeats each 10 ms, and may wake late by 20 ms (fault_kinds.cc: slow) each time.
+// s. The plant looks for heartbeats every 10 ms, and may wake late by 20 ms (fault_kinds.cc: slow) each time.
 constexpr double kHeartbeatNoticed_s = 0.06;
 constexpr TrueTime kOtherPlantAlive = 2'400'000'000;       // ns; a plant describes itself once a second
-constexpr TrueTime kConfigurationNoticed = 2'500'000'000;  // ns: a plant describes itself once a second
+constexpr TrueTime kConfigurationNoticed = 2'500'000'000;  // ns; a plant describes itself once a second
 
 }  // namespace
 
@@ -86,19 +86,20 @@ void PlantInvariants::CheckRange(int64_t tick, double voltage) {
                    fmt::format("tick {}: {} V, allowed are +/- {} V", tick, voltage, limit));
 }
 
-// Where a voltage comes from: a command that was received, genuine, fresh, and computed from sound readings.
+// Checks where a voltage comes from: it must come from a command that was received, genuine, fresh, and
+// computed from sound readings.
 void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   const int64_t delay = observer_.config_.plant.command_delay_ticks;
-  // A plant that wakes late adds the ticks that it slept through.
+  // A plant that wakes late may also use the ticks through which it slept.
   const int64_t slept = tick - std::max<int64_t>(plant_.tick, 0);
   const int64_t allowed =
       realtime() ? stale_ticks() + kDeadLoop + slept : observer_.config_.pressure_interval_ticks - 1;
-  // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
+  // Without a key, nothing tells a changed message, or one forged in a genuine sender's name, from others.
   const ReceivedCommand* const made_up = plant_.NewestFalse(voltage);
   if (made_up != nullptr && made_up->origin == Origin::kChanged) return;
   const auto command = plant_.Newest(voltage, 0, tick - delay);
   if (!command) {
-    // Nor can it tell who belongs to the stack while nobody else is heard.
+    // Nor can the plant tell who belongs to the stack while it hears no other process.
     const auto alive = static_cast<TrueTime>(observer_.config_.limits.stale_input_s * 1e9);
     if (made_up != nullptr && made_up->silence > alive) return;
     observer_.Report("no command is obeyed that is forged or of another run",
@@ -136,7 +137,7 @@ void PlantInvariants::CheckLatched(int64_t tick) {
   if (plant_.latched.empty()) return;
   const bool explicit_rearm = observer_.config_.limits.rearm == settings::Rearm::kExplicit;
   if (explicit_rearm && plant_.rearm_request >= plant_.latched_at) {
-    plant_.latched.clear();  // an operator has asked since
+    plant_.latched.clear();  // an operator has asked since then
     return;
   }
   observer_.Report("latched stays latched",
@@ -152,15 +153,15 @@ void PlantInvariants::CheckStopped(int64_t tick) {
 
 void PlantInvariants::CheckSupervised(int64_t tick) {
   const double silence_s = bus::ToSeconds(plant_.unsupervised);
-  // In lockstep, where a plant waits for its loops, nobody asks for a launcher.
+  // In lockstep a plant waits for its loops, and no launcher is needed.
   if (!realtime() || silence_s <= observer_.config_.limits.stale_supervisor_s + kHeartbeatNoticed_s) return;
   observer_.Report("zero volts without a launcher",
                    fmt::format("tick {}: not at zero, no heartbeat for {:.3f} s", tick, silence_s));
 }
 
-// Two sessions within the time in which one counts as alive.
+// Checks for two sessions within the time during which one counts as alive.
 void PlantInvariants::CheckSenders(int64_t tick, double voltage) {
-  // Less what a clock of the plant may run fast (fault_kinds.cc: drift).
+  // The time is reduced because the plant's clock may run fast (fault_kinds.cc: drift).
   const auto alive = static_cast<TrueTime>(0.96 * observer_.config_.limits.stale_input_s * 1e9);
   if (plant_.senders.size() < 2) return;
   std::erase_if(plant_.senders, [&](const auto& entry) { return *observer_.now_ - entry.second > alive; });

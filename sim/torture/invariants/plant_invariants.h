@@ -14,8 +14,8 @@ class PlantInvariants {
  public:
   PlantInvariants(Observer& observer, PlantRecord& plant) : observer_(observer), plant_(plant) {}
 
-  // The sensors have been read at `tick`, under the voltage of the previous tick and the faults published
-  // with it. `suspended_ns`: what the machine's clocks say.
+  // The sensors have been read at `tick`, under the voltage of the previous tick and with the faults that
+  // were published with it. `suspended_ns` is the suspended time according to the machine's clocks.
   void OnRead(int64_t tick, const model::Measurement& measured, int64_t suspended_ns);
   void OnDrive(int64_t tick, double voltage);
 

@@ -14,7 +14,7 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 }  // namespace
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
-  if (read_tick < 0 || command.tick < 0) return;  // it answers nothing
+  if (read_tick < 0 || command.tick < 0) return;  // it does not answer any state
   if (command.tick <= read_tick) Hear(command);   // one for a future tick is another fault
   if (command.origin != Origin::kProcess && command.origin != Origin::kRepeated) {
     false_.push_back(command);
@@ -24,7 +24,7 @@ void PlantRecord::Receive(const ReceivedCommand& command) {
   }
   if (command.tick <= read_tick - kRemembered) return;
   genuine = command.handled;
-  // A repetition may arrive before what it repeats.
+  // A repetition may arrive before the message that it repeats.
   Tick& entry = At(command.tick);
   ReceivedCommand& first = entry.answers[0];
   (first.tick < 0 || first.session == command.session ? first : entry.answers[1]) = command;

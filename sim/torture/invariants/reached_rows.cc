@@ -17,7 +17,7 @@ bool Hits(const Injection& injection, const NamedFault& named) {
 bool Injected(const process::SafetyRow& row, const std::vector<Injection>& injections) {
   for (const std::string_view word : process::WordsOf(row.injected)) {
     const std::optional<NamedFault> named = FaultNamed(word);
-    if (!named) continue;  // a test says so
+    if (!named) continue;  // a test reports this
     const auto hits = [&](const Injection& injection) { return Hits(injection, *named); };
     if (std::any_of(injections.begin(), injections.end(), hits)) return true;
   }

@@ -1,4 +1,4 @@
-// Which rows of the safety table (process/safety) a run has reached.
+// Finds the rows of the safety table (process/safety) that a run has reached.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,19 @@ namespace hydro::torture {
 // A word of SafetyRow::injected: "slow" or "slow:plant".
 struct NamedFault {
   FaultKind kind;
-  std::optional<int> target;  // whom it must hit; empty: anybody
+  std::optional<int> target;  // the role that it must hit; empty: any
 };
 
-// Nothing where there is no such kind, or none with that target.
+// Returns nothing where there is no such kind, or no such kind with that target.
 std::optional<NamedFault> FaultNamed(std::string_view word);
 
-// By id: rows with an injection that they name, and of whose codes, if they have any, one has occurred.
+// The ids of the rows that name one of the injections and, if they have codes, one of whose codes has
+// occurred.
 std::set<std::string> ReachedRows(const std::vector<Injection>& injections,
                                   const std::map<std::string, int64_t>& codes);
 
-// Lines: how many of the table's rows are in `reached`, and each that is not, with the reason that the table gives.
+// Lines that say how many of the table's rows are in `reached`, and list each row that is not, with the
+// reason that the table gives.
 std::string RowsReport(const std::set<std::string>& reached);
 
 }  // namespace hydro::torture

@@ -18,7 +18,7 @@ namespace hydro::torture {
 namespace {
 
 constexpr size_t kMostThatStillFits = 5000;  // bytes
-constexpr int kFirstDescriptor = 700;        // beyond those of other files, so that it is always the same
+constexpr int kFirstDescriptor = 700;        // above those of other files, so that it is always the same
 
 void LimitFiles(rlim_t bytes) {
   rlimit limit{};
@@ -36,9 +36,9 @@ Disk::~Disk() {
   if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
 }
 
-// Loggers put the path into messages: it must not tell one run of a schedule from another.
+// Loggers put the path into messages, so it must not differ between runs of the same schedule.
 void Disk::MakeFolder() {
-  // Memory, where there is any: a run writes up to 20 MB.
+  // Uses memory where available, because a run writes up to 20 MB.
   std::string pattern = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
   pattern += "/hydro-torture-XXXXXX";
   if (mkdtemp(pattern.data()) == nullptr)

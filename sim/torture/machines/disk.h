@@ -1,5 +1,5 @@
-// The disk on which a simulated logger records: a folder of real files, so that the logger's own code writes them, with
-// faults. It is removed at the end.
+// The disk on which a simulated logger records: a folder of real files with injected faults, so that the
+// logger's own code writes them. It is removed at the end.
 #pragma once
 
 #include <cstdint>
@@ -16,26 +16,28 @@ class Disk {
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  // The path for a new log. Throws std::runtime_error where no folder can be made.
+  // Returns the path for a new log. Throws std::runtime_error where no folder can be made.
   std::string NewLog();
 
-  // Nothing is written while it is slow.
+  // Nothing is written while the disk is slow.
   bool ready() const { return slow_ == 0; }
   void SetSlow(bool slow) { slow_ += slow ? 1 : -1; }
 
-  // While it is full, a write takes what still fits, and then fails: the kernel refuses it (RLIMIT_FSIZE).
+  // While the disk is full, a write takes what still fits and then fails, because the kernel refuses it
+  // (RLIMIT_FSIZE).
   void SetFull(bool full, Random& random);
   bool full() const { return full_ > 0; }
-  // Throws std::runtime_error when there is no room in the real folder: what a logger then does is no finding.
+  // Throws std::runtime_error when the real folder has no room, because the logger's behaviour is then not a
+  // finding.
   void CheckRoom() const;
 
-  // Flips a bit of the newest log; false where it has none.
+  // Flips a bit of the newest log; returns false where there is none.
   bool Lie(Random& random) const;
-  // Takes the newest log away from its name, which newest() then no longer is; false where there is none.
-  // What is open stays open.
+  // Removes the newest log's name, after which it is no longer newest(); returns false where there is none.
+  // An open file stays open.
   bool Delete();
-  // Cuts the newest log off between two sizes: of what its writer had handed over last, any part may be missing after a
-  // loss of power.
+  // Cuts the newest log off between two sizes. After a loss of power, any part of what its writer handed over
+  // last may be missing.
   void Tear(int64_t least, int64_t most, Random& random) const;
   int64_t size() const;  // bytes, of the newest log
   const std::string& newest() const { return newest_; }

@@ -22,8 +22,8 @@ Fiber::Fiber(std::function<void()> body)
                 return std::move(outside_);
               }) {}
 
-// The Itanium C++ ABI gives the layout of the state: the exceptions being handled, and how many are on their
-// way (section 2.2.2).
+// The Itanium C++ ABI gives the layout of the state: the exceptions being handled, and the number of uncaught
+// ones (section 2.2.2).
 void Fiber::Swap(ExceptionState* state) {
   auto* const current = reinterpret_cast<ExceptionState*>(abi::__cxa_get_globals());
   std::swap(*current, *state);

@@ -1,5 +1,5 @@
-// A function with a stack of its own that can stop in its middle and go on later: how several blocking loops
-// (PlantApp::Run(), process::RunApp()) take turns on one thread.
+// A function with a stack of its own that can stop in the middle and continue later. It lets several blocking
+// loops (PlantApp::Run(), process::RunApp()) take turns on one thread.
 #pragma once
 
 #include <boost/context/fiber.hpp>
@@ -11,7 +11,7 @@ class Fiber {
  public:
   // `body` runs from the first Resume() on. It must not let an exception out.
   explicit Fiber(std::function<void()> body);
-  // Unwinds the body if it has not returned; prefer to let it end.
+  // Unwinds the body if it has not returned. It is better to let the body end.
   ~Fiber() = default;
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;
@@ -25,7 +25,7 @@ class Fiber {
   bool done() const { return done_; }
 
  private:
-  // What the C++ runtime knows of the exceptions that a thread is handling: each fiber has its own.
+  // The C++ runtime's record of the exceptions that a thread is handling. Each fiber has its own.
   struct ExceptionState {
     void* caught = nullptr;
     unsigned int uncaught = 0;

@@ -17,7 +17,7 @@ TrueTime Machine::TrueTimeOf(TimePoint local) const {
       std::chrono::duration_cast<std::chrono::nanoseconds>(local.time_since_epoch()).count() - local_base_;
   if (drift_ == 0 || left <= 0) return true_base_ + left;
   const double rate = 1 + static_cast<double>(drift_) / kBillion;
-  // Right but for rounding.
+  // Right apart from rounding.
   auto time = static_cast<TrueTime>(static_cast<double>(left) / rate);
   while (time > 0 && Scaled(time - 1) >= left) --time;
   while (Scaled(time) < left) ++time;

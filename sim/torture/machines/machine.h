@@ -8,14 +8,14 @@
 
 namespace hydro::torture {
 
-// True time, ns since the start of the run: what the simulator counts in and no process ever sees.
+// True time in ns since the start of the run. The simulator counts in it, and no process ever sees it.
 using TrueTime = int64_t;
 
 // The clocks that all processes of one machine read.
 class Machine : public bus::Clock {
  public:
-  // `now` is the simulator's own and must outlive this. `monotonic_s`, `utc_s`: what the clocks show at true
-  // time 0.
+  // `now` belongs to the simulator and must outlive this object. `monotonic_s` and `utc_s` are the readings
+  // of the clocks at true time 0.
   Machine(std::string name, const TrueTime* now, double monotonic_s, double utc_s);
 
   const std::string& name() const { return name_; }
@@ -30,7 +30,7 @@ class Machine : public bus::Clock {
   void SetDrift(int64_t parts_per_billion);
   // Sets the wall clock forwards or backwards.
   void JumpUtc(int64_t ns) { utc_offset_ns_ += ns; }
-  // The machine has slept for `ns` until now: Now() does not count that time.
+  // The machine has slept for the last `ns`, and Now() does not count that time.
   void Slept(int64_t ns);
 
  private:
@@ -45,8 +45,8 @@ class Machine : public bus::Clock {
 
   std::string name_;
   const TrueTime* now_;
-  TrueTime true_base_ = 0;  // since when the clock runs at this rate
-  int64_t local_base_;      // what it showed then
+  TrueTime true_base_ = 0;  // the time since which the clock has run at this rate
+  int64_t local_base_;      // its reading at that time
   int64_t drift_ = 0;       // parts in 1e9
   int64_t utc_offset_ns_;
   int64_t suspended_ns_ = 0;

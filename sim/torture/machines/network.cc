@@ -7,8 +7,8 @@ namespace hydro::torture {
 namespace {
 
 constexpr int64_t kShortest_ns = 15'000;
-constexpr int64_t kUsual_ns = 60'000;  // added at random
-constexpr uint64_t kRare = 256;        // one packet in so many takes up to kLongest_ns longer
+constexpr int64_t kUsual_ns = 60'000;  // largest random addition
+constexpr uint64_t kRare = 256;        // one packet in this many takes up to kLongest_ns longer
 constexpr int64_t kLongest_ns = 400'000;
 
 bool Concerns(int which, int role) { return which == kEveryone || which == role; }
@@ -41,7 +41,7 @@ void Network::Send(const PacketPtr& packet, int role, const std::vector<Receiver
 
 void Network::SendOne(PacketPtr packet, int role, const Receiver& receiver, TrueTime arrival) {
   bool in_order = true;
-  TrueTime again = 0;  // when a repetition arrives
+  TrueTime again = 0;  // arrival of a repetition
   for (auto& [number, fault] : faults_) {
     if (!Concerns(fault.sender, role) || !Concerns(fault.receiver, receiver.role)) continue;
     if (fault.spares_itself && role == receiver.role) continue;

@@ -1,5 +1,5 @@
-// The simulated network between the processes: it delivers encoded messages late, and, where a fault says so,
-// never, twice, out of order or changed.
+// The simulated network between the processes. It delivers encoded messages late and, where a fault requires
+// it, never, twice, out of order or changed.
 #pragma once
 
 #include <array>
@@ -22,20 +22,20 @@ inline constexpr int kEveryone = -1;
 struct LinkFault {
   int sender = kEveryone;      // a role's number; kEveryone: all
   int receiver = kEveryone;    // the same
-  bool spares_itself = false;  // what a process sends to itself arrives
+  bool spares_itself = false;  // what a process sends to itself still arrives
   double loss = 0;
   double repeat = 0;
-  double change = 0;     // of a bit
-  double overtake = 0;   // to be held back, so that later ones come first
-  int64_t delay_ns = 0;  // added to every packet; for `repeat` and `overtake` the longest delay
+  double change = 0;     // of one bit
+  double overtake = 0;   // held back, so that later packets come first
+  int64_t delay_ns = 0;  // added to every packet; with `repeat` and `overtake`, the longest delay
   Random random{0};
 };
 
 class Network {
  public:
-  // An arrival that is due at a time: at one receiver, or at everyone.
+  // Schedules an arrival at a time, at one receiver or at everyone.
   using Schedule = std::function<void(TrueTime time, PacketPtr packet, int receiver)>;
-  // The processes that a packet may be for, with their roles: calls `visit(number, role)` for each.
+  // A process for which a packet may be, and its role.
   struct Receiver {
     int number = -1;
     int role = -1;
@@ -51,10 +51,10 @@ class Network {
   const std::string& ChannelName(int channel) const { return names_[static_cast<size_t>(channel)]; }
   int channels() const { return static_cast<int>(names_.size()); }
 
-  // Sends to all of `receivers`. `role`: of the sender, -1 for a forged packet.
+  // Sends to all of `receivers`. `role` is the sender's role, -1 for a forged packet.
   void Send(const PacketPtr& packet, int role, const std::vector<Receiver>& receivers);
 
-  // Begins a fault; the number is for EndFault().
+  // Begins a fault and returns its number for EndFault().
   int BeginFault(LinkFault fault);
   void EndFault(int number);
 
@@ -72,8 +72,8 @@ class Network {
   std::vector<std::string> names_;
   std::vector<std::pair<int, LinkFault>> faults_;  // active ones
   int next_fault_ = 0;
-  std::array<TrueTime, kMostProcesses> newest_{};  // by sender: when its last packet arrives at all
-  // While there are faults: the same by sender and receiver.
+  std::array<TrueTime, kMostProcesses> newest_{};  // by sender: arrival of its last packet anywhere
+  // While there are faults, the same by sender and receiver.
   std::array<std::array<TrueTime, kMostProcesses>, kMostProcesses> newest_of_{};
   int64_t lost_ = 0;
 };

@@ -7,9 +7,9 @@
 namespace hydro::torture {
 namespace {
 
-constexpr int kMostPerCall = 4096;           // as UdpmBus
+constexpr int kMostPerCall = 4096;           // as in UdpmBus
 constexpr size_t kReceiveBuffer = 2u << 20;  // bytes
-constexpr size_t kPacketOverhead = 256;      // what the kernel counts besides
+constexpr size_t kPacketOverhead = 256;      // bytes that the kernel counts in addition
 
 }  // namespace
 

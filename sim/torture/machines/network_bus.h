@@ -17,7 +17,7 @@
 
 namespace hydro::torture {
 
-// Thrown out of HandleUntil() of a process that has been killed: unwinds its fiber.
+// HandleUntil() throws this in a process that has been killed, which unwinds the process's fiber.
 class ProcessKilled {};
 
 // The network as a bus sees it.
@@ -28,7 +28,7 @@ class NetworkPort {
   virtual const std::string& ChannelName(int channel) const = 0;
   virtual PacketPtr NewPacket() = 0;
   virtual void Send(PacketPtr packet, int sender) = 0;
-  // A packet is passed to the handlers of process `receiver` now.
+  // A packet is now passed to the handlers of process `receiver`.
   virtual void Handled(const Packet& packet, int receiver) = 0;
 };
 
@@ -36,8 +36,7 @@ class NetworkPort {
 class Waiter {
  public:
   virtual ~Waiter() = default;
-  // Returns when a packet has arrived, at the deadline (false), or at a signal (false). Throws
-  // ProcessKilled.
+  // Returns true when a packet has arrived, false at the deadline or at a signal. Throws ProcessKilled.
   virtual bool WaitUntil(bus::Bus::TimePoint deadline) = 0;
 };
 
@@ -49,7 +48,7 @@ class NetworkBus : public bus::Bus {
     process_ = &process;
   }
 
-  // From now on it seals what it sends and refuses what is not genuine. Call it before anything is sent.
+  // From now on, seals what it sends and refuses what is not genuine. Call it before anything is sent.
   void UseKey(std::unique_ptr<bus::Authenticator> authenticator);
 
   void SubscribeAll(std::function<void(const bus::RawMessage&)> handler) override;
@@ -60,11 +59,11 @@ class NetworkBus : public bus::Bus {
     return !taps_.empty() || channel == introductions_ ||
            (static_cast<size_t>(channel) < typed_.size() && !typed_[static_cast<size_t>(channel)].empty());
   }
-  // Puts an arrived packet in the receive buffer; one that is full loses it, as the kernel's does.
+  // Puts an arrived packet into the receive buffer. A full buffer loses it, as the kernel's does.
   void Arrive(PacketPtr packet);
   bool has_waiting() const { return !inbox_.empty(); }
   int64_t overflowed() const { return overflowed_; }
-  // From now on nothing that it publishes leaves the process.
+  // From now on, nothing that it publishes leaves the process.
   void Disconnect() { connected_ = false; }
 
  protected:
@@ -77,14 +76,14 @@ class NetworkBus : public bus::Bus {
   class ChannelOutlet;
   struct Subscription {
     const bus::MessageType* type;
-    std::shared_ptr<void> message;  // decoded into, reused for each message
+    std::shared_ptr<void> message;  // messages are decoded into this, which is reused
     std::function<void(const void*)> call;
   };
 
   int Number(const std::string& channel);
   void SendTyped(int channel, const bus::MessageType& type, const void* message);
   void Deliver(const Packet& packet);
-  // How much of a packet handlers may see; nothing: it is refused, or not for them.
+  // How much of a packet handlers may see; none: it is refused, or not meant for them.
   std::optional<int> Authenticate(const Packet& packet);
   void Introduce(introduction_t introduction);
 
@@ -93,13 +92,13 @@ class NetworkBus : public bus::Bus {
   Waiter& waiter_;
   const bus::Clock& clock_;
   std::unique_ptr<bus::Authenticator> authenticator_;  // null: without a key
-  int introductions_ = -1;                             // number of their channel
+  int introductions_ = -1;                             // number of the introductions' channel
   bool introduced_ = false;
   bool connected_ = true;
   bool handling_ = false;
   std::unordered_map<std::string, int> numbers_;
   std::vector<std::deque<Subscription>>
-      typed_;  // by channel; a handler may subscribe: existing ones stay in place
+      typed_;  // by channel; existing ones stay in place, because a handler may subscribe
   std::deque<std::function<void(const bus::RawMessage&)>> taps_;
   std::deque<PacketPtr> inbox_;
   size_t inbox_bytes_ = 0;

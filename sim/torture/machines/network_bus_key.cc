@@ -1,5 +1,5 @@
-// How a NetworkBus handles authenticated messages: as UdpmBus does (bus/udpm/udpm_authentication.cc), but for what only a
-// recorder needs.
+// How a NetworkBus handles authenticated messages: as UdpmBus does (bus/udpm/udpm_authentication.cc), except
+// for what only a recorder needs.
 #include <utility>
 
 #include "bus/clock.h"

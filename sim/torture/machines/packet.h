@@ -14,13 +14,13 @@ namespace hydro::torture {
 
 class PacketPool;
 
-// Where a packet comes from: what only the simulator knows.
+// The true origin of a packet, which only the simulator knows.
 enum class Origin : uint8_t {
   kProcess,   // a process of the stack sent it, and it is unchanged
-  kRepeated,  // the same once more, by the network or somebody who has recorded it
-  kChanged,   // the network changed its bytes, or somebody made it up in the name of a process that lives
-  kForged,    // somebody else made it up
-  kInsider,   // the same, but he has the stack's key
+  kRepeated,  // the same message again, sent by the network or by someone who recorded it
+  kChanged,   // the network changed its bytes, or it was forged in the name of a live process
+  kForged,    // another sender forged it
+  kInsider,   // the same, but that sender has the stack's key
 };
 
 struct Packet {
@@ -34,7 +34,7 @@ struct Packet {
   int users = 0;
 };
 
-// Packets are reused with the memory of their bytes. Must outlive them.
+// Reuses packets together with the memory of their bytes. The pool must outlive its packets.
 class PacketPool {
  public:
   boost::intrusive_ptr<Packet> New() {
@@ -61,14 +61,14 @@ inline void intrusive_ptr_release(Packet* packet) {
 
 using PacketPtr = boost::intrusive_ptr<Packet>;
 
-// Decodes a packet; false when it is not of that type.
+// Decodes a packet; returns false when it is not of that type.
 template <class Message>
 bool Decode(const Packet& packet, Message* message) {
   return bus::TypeOf<Message>().decode_into(message, packet.bytes.data(),
                                             static_cast<int>(packet.bytes.size()));
 }
 
-// The eight bytes at a place (bus::PlacesOf), which the packet has.
+// The eight bytes at a place (bus::PlacesOf) that must lie within the packet.
 inline int64_t NumberAt(const Packet& packet, size_t place) {
   return static_cast<int64_t>(LoadBigEndian64(packet.bytes.data() + place));
 }

@@ -35,7 +35,7 @@ void SimulatedProcess::RunBody() {
     begun_ = true;
     exit_code_ = body_(bus_, machine_);
   } catch (const ProcessKilled&) {
-    exit_code_ = 128 + killed_by_;  // as a shell says it
+    exit_code_ = 128 + killed_by_;  // as a shell reports it
   } catch (const std::exception& error) {
     exit_code_ = 1;  // as settings::RunProgram() does
     failure_ = error.what();

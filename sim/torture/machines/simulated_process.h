@@ -19,7 +19,7 @@ namespace hydro::torture {
 
 inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
 
-// The processes of a stack; also the numbers by which faults name their targets.
+// The processes of a stack. Faults also name their targets by these numbers.
 enum class Role : int8_t {
   kPlant,
   kPressure,
@@ -27,7 +27,7 @@ enum class Role : int8_t {
   kLogger,
   kOperator,
   kLauncher,
-  // Of the other joint of a limb:
+  // Those of the other joint of a limb:
   kKneePlant,
   kKneePressure,
   kKneePosition,
@@ -36,7 +36,8 @@ enum class Role : int8_t {
 
 inline bool IsOfKnee(Role role) { return role >= Role::kKneePlant && role < Role::kCount; }
 
-// Whose machine a role runs on: the launcher starts the plant where it runs itself; the knee has one for its own.
+// The role whose machine a role runs on. The launcher starts the plant on its own machine; the knee's
+// processes share one machine.
 inline Role HomeOf(Role role) {
   if (IsOfKnee(role)) return Role::kKneePlant;
   return role == Role::kLauncher ? Role::kPlant : role;
@@ -57,37 +58,37 @@ class SimulatedProcess : public Waiter {
   const bus::HostedProcess& identity() const { return identity_; }
   NetworkBus& bus() { return bus_; }
 
-  // When it wants to run next.
+  // The time at which it wants to run next.
   TrueTime wake() const { return wake_; }
-  // Runs it until it waits again or ends.
+  // Runs the process until it waits again or ends.
   void Resume();
 
-  // A packet that it subscribes to has arrived.
+  // A packet has arrived to which the process subscribes.
   void Arrive(PacketPtr packet);
-  // It does not run before `until`, whatever happens.
+  // The process does not run before `until`, whatever happens.
   void FreezeUntil(TrueTime until);
-  // It runs so much later than it could, each time, from now on.
+  // From now on, it runs each time this much later than it could.
   void SetSlowness(int64_t ns);
   // Its machine's clock runs differently from now on.
   void ClockChanged();
-  // A signal that it cannot catch: it ends without another message.
+  // A signal that the process cannot catch: it ends without another message.
   void Kill(int signal = SIGKILL);
   // SIGTERM and the like.
   void Signal(int signal);
-  // A wait of it returns.
+  // Makes its current wait return.
   void Interrupt();
-  // The signal that it has been sent, once; 0: none.
+  // Returns the signal that it has been sent, once; 0: none.
   int TakeSignal() { return std::exchange(identity_.stop_signal, 0); }
-  // A heartbeat of its launcher; whether one has come since the last call.
+  // Beat() is a heartbeat of its launcher; TakeBeat() tells whether one has come since the last call.
   void Beat() { beat_ = true; }
   bool TakeBeat() { return std::exchange(beat_, false); }
 
   bool ended() const { return fiber_.done(); }
-  // It has run: until then it catches no signals.
+  // Whether it has run. Until then it does not catch signals.
   bool begun() const { return begun_; }
   TrueTime frozen_until() const { return frozen_until_; }
   bool killed() const { return killed_by_ != 0; }
-  int killed_by() const { return killed_by_; }  // the signal; 0: it was not
+  int killed_by() const { return killed_by_; }  // the signal; 0: it was not killed
   int exit_code() const { return exit_code_; }
   const std::string& failure() const { return failure_; }  // of an exception that left the application
   // Whether it runs with another configuration than the rest of the stack.
@@ -96,7 +97,7 @@ class SimulatedProcess : public Waiter {
 
   // Waiter:
   bool WaitUntil(bus::Bus::TimePoint deadline) override { return Await(deadline, true); }
-  // The same, but packets only gather.
+  // The same, but packets only accumulate.
   void SleepUntil(bus::Bus::TimePoint deadline) { Await(deadline, false); }
 
  private:
@@ -111,8 +112,8 @@ class SimulatedProcess : public Waiter {
   bus::HostedProcess identity_;
   NetworkBus bus_;
   Body body_;
-  TrueTime deadline_;                   // of its wait
-  bus::Bus::TimePoint local_deadline_;  // the same on its own clock
+  TrueTime deadline_;                   // of its current wait
+  bus::Bus::TimePoint local_deadline_;  // that deadline on its own clock
   TrueTime ready_ = kNever;
   TrueTime frozen_until_ = 0;
   int64_t slowness_ns_ = 0;
@@ -121,11 +122,11 @@ class SimulatedProcess : public Waiter {
   bool begun_ = false;
   bool beat_ = false;
   int killed_by_ = 0;
-  bool interrupted_ = false;  // by a signal that no wait has returned for yet
+  bool interrupted_ = false;  // by a signal for which no wait has returned yet
   int exit_code_ = -1;
   std::string failure_;
   TrueTime idle_since_ = -1;
-  int idle_turns_ = 0;  // waits at that time that were over at once
+  int idle_turns_ = 0;  // number of waits at that time that were over at once
   Fiber fiber_;
 };
 

@@ -1,4 +1,4 @@
-// A number that stands for everything that happened in a run: two runs with the same one were the same.
+// A number computed from everything that happened in a run. Two runs with the same number were the same.
 #pragma once
 
 #include <cstdint>

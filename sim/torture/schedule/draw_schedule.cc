@@ -1,4 +1,4 @@
-// A schedule from a seed.
+// Draws a schedule from a seed.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,13 +10,13 @@
 namespace hydro::torture {
 namespace {
 
-constexpr double kFirst_s = 0.3;  // the stack has started by then, mostly
+constexpr double kFirst_s = 0.3;  // by which the stack has usually started
 constexpr uint64_t kMostInjections = 12;
 
-// To whole parts: what a schedule says in text is exactly what was run.
+// Rounds to whole parts, so that the text of a schedule is exactly what was run.
 double Rounded(double value, double parts) { return std::round(value * parts) / parts; }
 
-// Short times are as likely as long ones: what goes wrong does so around limits of all sizes.
+// Makes short times as likely as long ones, because limits of all sizes can fail.
 double DrawLogarithmic(Random& random, double low, double high) {
   if (!(low > 0)) return random.Between(low, high);
   return std::exp(random.Between(std::log(low), std::log(high)));
@@ -36,7 +36,7 @@ void DrawNumbers(Random& random, double latest_s, Injection* injection) {
   injection->seed = random.Next() >> 32;
 }
 
-// While one of these faults lasts, or soon after.
+// A time while one of these faults lasts, or soon after.
 double BesideOneOf(Random& random, const std::vector<Injection>& injections, size_t first) {
   const Injection& other = injections[first + random.Index(injections.size() - first)];
   return Rounded(other.at_s + random.Unit() * (other.duration_s + 0.02), 1e6);
@@ -53,7 +53,7 @@ Injection Draw(Random& random, double latest_s, bool logger) {
   return injection;
 }
 
-// From a stream of its own: without a launcher a seed draws what it would if there were none.
+// Draws from a stream of its own, so that a seed without a launcher draws the same as if there were none.
 void DrawLauncher(uint64_t seed, Schedule* schedule) {
   Random random(seed, 4);
   schedule->launcher = random.Chance(1.0 / 3);
@@ -68,16 +68,16 @@ void DrawLauncher(uint64_t seed, Schedule* schedule) {
     injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
     if (injection.target == *TargetNamed("logger") && !schedule->logger) injection.target = 0;
     DrawNumbers(random, schedule->faults_until_s, &injection);
-    // While something else goes wrong, as often as not.
+    // Half of the time, while something else goes wrong.
     if (random.Chance(0.5)) {
-      const size_t first = schedule->injections.size() > own ? own : 0;  // of these, if there is one
+      const size_t first = schedule->injections.size() > own ? own : 0;  // among these, if there are any
       injection.at_s = BesideOneOf(random, schedule->injections, first);
     }
     schedule->injections.push_back(injection);
   }
 }
 
-// What befalls the other joint.
+// Draws the faults of the other joint.
 void DrawKnee(Random& random, Schedule* schedule) {
   std::vector<FaultKind> kinds;
   for (const FaultKindInfo& info : FaultKinds()) {
@@ -93,10 +93,10 @@ void DrawKnee(Random& random, Schedule* schedule) {
   }
 }
 
-// What a run has besides, and what befalls it there; also from a stream of its own.
+// Draws the additional parts of a run, and their faults. This also uses a stream of its own.
 void DrawMore(uint64_t seed, Schedule* schedule) {
   Random random(seed, 6);
-  schedule->driver = random.Chance(0.25) && !schedule->lockstep;  // a board waits for nobody
+  schedule->driver = random.Chance(0.25) && !schedule->lockstep;  // a board cannot wait
   schedule->planner = random.Chance(0.25);
   std::vector<FaultKind> kinds{FaultKind::kNonfiniteReference, FaultKind::kStrangeRequest,
                                FaultKind::kTornSet};
@@ -132,7 +132,7 @@ Schedule DrawSchedule(uint64_t seed) {
   const uint64_t count = 1 + random.Index(kMostInjections);
   for (uint64_t i = 0; i < count; ++i) {
     schedule.injections.push_back(Draw(random, schedule.faults_until_s, schedule.logger));
-    // What goes wrong together goes wrong differently.
+    // Faults that occur together have different effects.
     if (i > 0 && random.Chance(0.3)) {
       Injection& later = schedule.injections.back();
       const Injection& earlier = schedule.injections[i - 1];

@@ -9,7 +9,7 @@
 
 namespace hydro::torture {
 
-// The kinds of fault. fault_kinds.cc says of each what its numbers mean.
+// The kinds of fault. fault_kinds.cc describes what the numbers of each mean.
 enum class FaultKind : uint8_t {
   // The network.
   kLoss,
@@ -45,27 +45,27 @@ enum class FaultKind : uint8_t {
   kStop,
   kRearm,
   kSignal,
-  kSet,  // hydro-set
+  kSet,  // changes of values by hydro-set
   // Another stack on the same network.
   kForeignStop,
   kSecondPlant,
-  // Somebody who sends what no process of the stack would.
+  // A sender of messages that no process of the stack would send.
   kSecondSender,
-  kSecondReference,  // of pressure commands
-  kInsider,          // he has the key
+  kSecondReference,  // sends pressure commands
+  kInsider,          // a sender that has the key
   kReplay,
   kHugeSequence,
   kHugeTick,
   kNonfiniteCommand,
   kExcessiveCommand,
-  // The launcher, where one runs, and what only it ends.
+  // The launcher, where one runs, and faults that only it ends.
   kLongHang,
   kLauncherCrash,
   kInterrupt,
   // Commands and requests that no process of the stack would send.
   kNonfiniteReference,
-  kStrangeRequest,  // of other values
-  kTornSet,         // hydro-set, while a controller stands still
+  kStrangeRequest,  // for other values
+  kTornSet,         // hydro-set while a controller stands still
   // The planner, where one runs.
   kWrongPlan,
   kPlannerSilent,
@@ -77,9 +77,9 @@ enum class FaultKind : uint8_t {
   kCount
 };
 
-// Those from here on are for a launcher: a run without one has none of them.
+// The kinds from here on need a launcher, so a run without one has none of them.
 inline constexpr FaultKind kFirstOfLauncher = FaultKind::kLongHang;
-// Those from here on are drawn beside the others, from a stream of their own.
+// The kinds from here on are drawn in addition to the others, from a stream of their own.
 inline constexpr FaultKind kFirstOfMore = FaultKind::kNonfiniteReference;
 
 struct Injection {
@@ -87,28 +87,28 @@ struct Injection {
   FaultKind kind = FaultKind::kLoss;
   int target = -1;  // a role's number, or -1: all
   double duration_s = 0;
-  double amount = 0;  // what it means depends on the kind
-  uint64_t seed = 0;  // of what it draws itself
+  double amount = 0;  // its meaning depends on the kind
+  uint64_t seed = 0;  // of its own random numbers
 };
 
-// What a kind is and which numbers it takes.
+// Describes a kind and the numbers that it takes.
 struct FaultKindInfo {
   FaultKind kind;
-  std::string_view name;     // in schedules
-  std::string_view targets;  // roles that it may have, "plant pressure_ctrl"; "all" among them
+  std::string_view name;     // its name in schedules
+  std::string_view targets;  // roles that it may hit, as "plant pressure_ctrl"; "all" is one of them
   double shortest_s = 0;     // range of the duration
   double longest_s = 0;
   double least = 0;  // range of the amount
   double most = 0;
-  std::string_view amount;             // what the amount is; empty: none
-  std::string_view knee_targets = {};  // the same of the other joint, in runs of a limb
+  std::string_view amount;             // meaning of the amount; empty: there is none
+  std::string_view knee_targets = {};  // the same for the other joint, in runs of a limb
 };
 
 // One for each kind, in the order of FaultKind.
 std::span<const FaultKindInfo> FaultKinds();
 inline const FaultKindInfo& InfoOf(FaultKind kind) { return FaultKinds()[static_cast<size_t>(kind)]; }
 
-// Of this run's stack and of the knee.
+// The targets in this run's stack and in the knee.
 std::string TargetsOf(const FaultKindInfo& info);
 
 // "plant", "pressure_ctrl", ..., "all".

@@ -1,5 +1,5 @@
-// What happens to a stack in one run, and when: all that a run depends on, as text that people can read and
-// `hydro-torture --replay` runs.
+// What happens to a stack in one run, and when. It holds everything on which a run depends, as text that
+// people can read and `hydro-torture --replay` can run.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 namespace hydro::torture {
 
 struct Schedule {
-  uint64_t seed = 1;            // of latencies, clocks, sessions and start times
+  uint64_t seed = 1;            // seed of latencies, clocks, sessions and start times
   bool lockstep = false;        // time.mode
   bool key = false;             // messages are sealed
-  bool logger = false;          // a logger records; otherwise nobody does, and what befalls one is nothing
+  bool logger = false;          // a logger records; otherwise there is none, and its faults do nothing
   bool logger_required = true;  // logger.required
   bool launcher =
-      false;  // a launcher starts, watches and stops the others; otherwise each is started again by itself
+      false;  // a launcher starts, watches and stops the others; otherwise each is restarted by itself
   bool driver = false;   // the plant is a driver with a simulated board
-  bool planner = false;  // a planner says where the arm is to be: reference.kind
+  bool planner = false;  // a planner sets the arm's reference: reference.kind
   bool limb = false;     // the stack is a joint, the hip, of a limb whose knee has processes of its own
   bool explicit_rearm = false;        // limits.rearm
   double stale_input_s = 0.1;         // limits.stale_input_s
-  double faults_until_s = 12;         // all faults have ended by then
-  std::vector<Injection> injections;  // by time
+  double faults_until_s = 12;         // by which all faults have ended
+  std::vector<Injection> injections;  // sorted by time
 };
 
 // Draws a schedule.
 Schedule DrawSchedule(uint64_t seed);
 
-// One line each for the run and for every injection.
+// One line for the run and one for every injection.
 std::string ScheduleText(const Schedule& schedule);
 
 // Reads ScheduleText(); throws InputError that names `file` and the line.

@@ -48,7 +48,7 @@ class LineReader {
     if (!word.starts_with(std::string(key) + "=")) throw Error(word, std::string(key) + "=...");
     return word.substr(key.size() + 1);
   }
-  // Whether it is the second of the two.
+  // Whether the text is the second of the two choices.
   bool Choice(std::string_view key, std::string_view no, std::string_view yes) {
     const std::string value = Value(key);
     if (value != no && value != yes) throw Error(value, fmt::format("{}={} or {}", key, no, yes));
@@ -75,9 +75,9 @@ void CheckRanges(const LineReader& line, const FaultKindInfo& info, const Inject
   if (!(injection.duration_s >= 0 && injection.duration_s <= kLongest_s)) {
     throw line.Error(ShortestNumber(injection.duration_s), fmt::format("for=S from 0 to {}", kLongest_s));
   }
-  // A clock that stands still or runs backwards wakes nobody.
+  // A clock that stands still or runs backwards would wake nobody.
   const bool drift = injection.kind == FaultKind::kDrift;
-  const bool lag = info.amount.starts_with("s,");  // any, while it ends before the run does
+  const bool lag = info.amount.starts_with("s,");  // any lag is allowed that ends before the run does
   const double least = drift ? -0.5 : lag ? 0 : info.least;
   const double most = drift ? 0.5 : lag ? kLongestLag_s : info.most;
   if (info.amount.empty() || (injection.amount >= least - 1e-6 && injection.amount <= most + 1e-6)) return;
@@ -113,7 +113,7 @@ std::string_view LoggerText(const Schedule& schedule) {
   return schedule.logger_required ? " logger=yes" : " logger=optional";
 }
 
-// Who takes part besides the plant and the loops.
+// Reads the processes that take part besides the plant and the loops.
 void ReadRole(const LineReader& line, const std::string& word, Schedule* schedule) {
   if (word == "logger=yes" || word == "logger=optional") {
     schedule->logger = true;

@@ -77,7 +77,8 @@ TEST_F(AskedColumnsTest, NoNames) {
         << text;
 }
 
-// Tests RFC 4180's quotes: two of them are one, and separators and line feeds between them belong to the cell.
+// Tests RFC 4180's quotes: two of them are one, and separators and line feeds between them belong to the
+// cell.
 TEST_F(AskedColumnsTest, Quotes) {
   const AskedColumns asked{.names = {"t", "w, \"main\"", "two\nlines"}, .time = "t", .date = ""};
   const Table table = Read("t,\"w, \"\"main\"\"\",\"two\nlines\"\n0,1,2\n\"1\",\"3\",4\n", asked);

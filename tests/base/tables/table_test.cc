@@ -199,7 +199,8 @@ matvar_t* MeasuredStruct() {
                          {"note", Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, length, note, 0)}});
 }
 
-// Tests that vectors in structs are columns, in both versions of the format, and that what is no signal is left out with the reason.
+// Tests that vectors in structs are columns, in both versions of the format, and that what is no signal is
+// left out with the reason.
 TEST_F(TableTest, MatStructs) {
   Table expected;
   expected.columns = {{"data.t", {0, 1, 2}}, {"data.motor.w", {5, 6, 7}}};

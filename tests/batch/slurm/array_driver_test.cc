@@ -56,8 +56,8 @@ TEST_F(ArrayDriverTest, RunsAll) {
   EXPECT_THAT(said_, HasSubstr("12 jobs with 2 cases each"));
 }
 
-// Tests that an array holds no more jobs than Slurm allows, the controller no more than half of what it may have, and that a limit of jobs
-// at once holds over several arrays.
+// Tests that an array holds no more jobs than Slurm allows, the controller no more than half of what it may
+// have, and that a limit of jobs at once holds over several arrays.
 TEST_F(ArrayDriverTest, KeepsLimits) {
   cluster_.limits.array_jobs = 4;
   cluster_.limits.all_jobs = 16;
@@ -74,7 +74,8 @@ TEST_F(ArrayDriverTest, KeepsJobsAtOnce) {
   EXPECT_EQ(*std::ranges::max_element(cluster_.at_once_seen), 2);
 }
 
-// Tests that a driver killed before or after any of its calls to Slurm, and started again, loses no case and runs none twice.
+// Tests that a driver killed before or after any of its calls to Slurm, and started again, loses no case and
+// runs none twice.
 TEST_F(ArrayDriverTest, KilledAnywhere) {
   int kills = 0;
   for (bool killed = true; killed; ++kills) {
@@ -135,7 +136,8 @@ TEST_F(ArrayDriverTest, GoesOnWithProgress) {
   EXPECT_GT(cluster_.submitted, 3);
 }
 
-// Tests that Ctrl-C cancels the jobs and that a new driver runs what is missing; a closed terminal leaves them.
+// Tests that Ctrl-C cancels the jobs and that a new driver runs what is missing; a closed terminal leaves
+// them.
 TEST_F(ArrayDriverTest, StopsAndGoesOn) {
   each_tick_ = [this] { wish_ = ticks_ >= 3 ? StopWish::kCancel : StopWish::kNone; };
   EXPECT_EQ(Drive(), DriveEnd::kCancelled);
@@ -182,7 +184,8 @@ TEST_F(ArrayDriverTest, Detaches) {
   ExpectEachCaseRanOnce();
 }
 
-// Tests that a refused array leaves nothing in the folder, and that a controller that does not answer is waited for.
+// Tests that a refused array leaves nothing in the folder, and that a controller that does not answer is
+// waited for.
 TEST_F(ArrayDriverTest, RefusedAndSilent) {
   cluster_.refusal = "sbatch: no such partition";
   EXPECT_THROW(Drive(), ClusterError);

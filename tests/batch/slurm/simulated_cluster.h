@@ -1,5 +1,5 @@
-// A cluster that runs jobs as the test's time passes: each tick starts some and ends those that were running. Its driver can be killed
-// before or after any call.
+// A cluster that runs jobs as the test's time passes: each tick starts some and ends those that were running.
+// Its driver can be killed before or after any call.
 #pragma once
 
 #include <algorithm>
@@ -88,7 +88,8 @@ class SimulatedCluster : public Cluster {
     }
   }
 
-  // As a controller that is killed soon after it has released an array: it does not know which jobs have begun.
+  // As a controller that is killed soon after it has released an array: it does not know which jobs have
+  // begun.
   void ForgetReleases() {
     for (auto& [id, array] : arrays_) {
       array.held = true;

@@ -36,7 +36,8 @@ TEST(SlurmAnswersTest, Limits) {
   EXPECT_EQ(ParseLimits("").array_jobs, 1001);
 }
 
-// Tests that what sbatch refuses comes with the option that helps, and that nothing is made up for other words.
+// Tests that what sbatch refuses comes with the option that helps, and that nothing is made up for other
+// words.
 TEST(SlurmAnswersTest, WaysOut) {
   EXPECT_THAT(
       WayOut("sbatch: error: QOSMaxSubmitJobPerUserLimit\nsbatch: error: Batch job submission failed: Job "
@@ -62,7 +63,8 @@ TEST(SlurmAnswersTest, Submitted) {
   EXPECT_EQ(ParseSubmitted("0\n"), std::nullopt);
 }
 
-// Tests that the jobs of each array are counted, and that the reason is not the limit that was asked for while there is another.
+// Tests that the jobs of each array are counted, and that the reason is not the limit that was asked for
+// while there is another.
 TEST(SlurmAnswersTest, Queue) {
   const auto arrays = ParseQueue(
       "12|PENDING|JobArrayTaskLimit|hydro-a\n12|PENDING|Priority|hydro-a\n12|RUNNING|None|hydro-a\n"
@@ -105,7 +107,8 @@ TEST(GroupingTest, StartsCostLittle) {
   EXPECT_EQ(ChooseGrouping({.missing = 5, .case_s = 0, .start_s = 3.1}).cases, 5);
 }
 
-// Tests that jobs end together where it is known how many run at once, and that a job of many processors has more cases.
+// Tests that jobs end together where it is known how many run at once, and that a job of many processors has
+// more cases.
 TEST(GroupingTest, FillsProcessors) {
   EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1, .at_once = 4}).jobs, 8);
   EXPECT_EQ(ChooseGrouping({.missing = 240, .case_s = 1, .start_s = 1.1, .at_once = 100}).jobs, 10);
@@ -122,7 +125,8 @@ TEST(SlurmAnswersTest, Processors) {
   EXPECT_EQ(ParseProcessors(text, "other"), 0);
 }
 
-// Tests that jobs take at most half of their time limit, though not less than a case, and that a wish is obeyed.
+// Tests that jobs take at most half of their time limit, though not less than a case, and that a wish is
+// obeyed.
 TEST(GroupingTest, LimitsAndWishes) {
   EXPECT_EQ(ChooseGrouping({.missing = 1000, .case_s = 1, .start_s = 3.1, .limit_s = 60}).cases, 30);
   EXPECT_EQ(ChooseGrouping({.missing = 101, .case_s = 1, .start_s = 3.1, .limit_s = 140}).jobs, 2);

@@ -39,7 +39,8 @@ tuned_settings_t Settings() {
   return settings;
 }
 
-// Tests that every message of the stack has a definition with all that its type encodes: an empty message reads to its end.
+// Tests that every message of the stack has a definition with all that its type encodes: an empty message
+// reads to its end.
 TEST(DefinitionsTest, AllMessages) {
   EXPECT_EQ(Definitions().size(), bus::kMessageCount);
   EXPECT_EQ(DefinitionTexts().size(), bus::kMessageCount);
@@ -87,7 +88,8 @@ TEST(DefinitionsTest, Values) {
   EXPECT_THAT(std::get<std::vector<double>>(values[12]), ElementsAre(0.25, -1e300));
 }
 
-// Tests that a seal after the message is passed over, and that any other bytes, every cut and another type's message are refused.
+// Tests that a seal after the message is passed over, and that any other bytes, every cut and another type's
+// message are refused.
 TEST(DefinitionsTest, WrongBytes) {
   std::vector<Value> values;
   const std::vector<uint8_t> bytes = Encoded(Settings());

@@ -26,7 +26,8 @@ TEST(RosMessageTest, Schema) {
             "off\n");
 }
 
-// Tests CDR byte by byte: a header, each value at a multiple of its size from there, texts and lists with their lengths.
+// Tests CDR byte by byte: a header, each value at a multiple of its size from there, texts and lists with
+// their lengths.
 TEST(RosMessageTest, Cdr) {
   const std::vector<Field> fields = {{"on", FieldType::kBoolean},  {"n", FieldType::kInt16},
                                      {"text", FieldType::kString}, {"x", FieldType::kDouble},

@@ -69,7 +69,8 @@ double NormOf(const Eigen::VectorXd& series, const std::vector<uint8_t>& mask) {
   return std::sqrt(square);
 }
 
-// Tests that the true model leaves little of what a model with a wrong inertia and leakage leaves, where no valve is open.
+// Tests that the true model leaves little of what a model with a wrong inertia and leakage leaves, where no
+// valve is open.
 TEST(BalanceSeries, TruthLeavesLittle) {
   model::ModelDescription wrong = PlainMachine();
   wrong.parameters.J *= 1.5;
@@ -120,7 +121,8 @@ TEST(BalanceSeries, DragIsItsEquation) {
   }
 }
 
-// Tests that derivatives are what small changes do, and that there are none of what changes the motor's torque.
+// Tests that derivatives are what small changes do, and that there are none of what changes the motor's
+// torque.
 TEST(BalanceSeries, DerivativesAreSmallChanges) {
   for (const auto& [name, member] :
        {std::pair{"J", &model::Parameters::J}, std::pair{"b", &model::Parameters::b},
@@ -142,14 +144,16 @@ TEST(BalanceSeries, DerivativesAreSmallChanges) {
           .empty());
 }
 
-// Tests that a lag of the amplifier remembers the command alone, and that drag, which remembers nothing, does not.
+// Tests that a lag of the amplifier remembers the command alone, and that drag, which remembers nothing, does
+// not.
 TEST(BalanceSeries, WhatRemembersTheCommand) {
   EXPECT_TRUE(DependsOnCommandAlone(With({"amp.lag", {{"tau", 4e-3}}, {}}), Pressed(), PressedBase()));
   EXPECT_FALSE(
       DependsOnCommandAlone(With({"pump.quadratic_drag", {{"k", 1e-4}}, {}}), Pressed(), PressedBase()));
 }
 
-// Tests that a wrong scale of the transducers reads a part of the pressures too much, and that nothing else errs.
+// Tests that a wrong scale of the transducers reads a part of the pressures too much, and that nothing else
+// errs.
 TEST(BalanceSeries, ErrorsOfSensors) {
   const diagnose::SignalErrors none = ErrorsOf(PlainMachine(), Pressed());
   for (const std::vector<double>& of : none.of) EXPECT_TRUE(of.empty());

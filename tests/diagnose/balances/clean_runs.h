@@ -22,11 +22,13 @@ struct CleanRun {
   double duration = 2;                       // s
 };
 
-// Table 1 with a quarter of its friction: where friction turns within the smoothing of signals, no balance is better than that.
+// Table 1 with a quarter of its friction: where friction turns within the smoothing of signals, no balance is
+// better than that.
 model::ModelDescription PlainMachine(std::vector<model::EffectDescription> effects = {});
 
 // A clamped run at pressures far above the charge, one that is held by the valves half the time, a free arm,
-// the bypass, and the bypass at speeds at which friction turns. Levels of the command are well below or well above what saturates the motor.
+// the bypass, and the bypass at speeds at which friction turns. Levels of the command are well below or well
+// above what saturates the motor.
 std::vector<CleanRun> RichRuns();
 
 // Simulated at 2 kHz, with sensors that are all but perfect. Throws ModelError as Actuator does.

@@ -21,7 +21,8 @@ struct CleanScan {
   int Column(const std::string& name) const;
 };
 
-// Columns for `given` of these variants, and of the base parameters in `allowed`; of waves at `periods` where there are any.
+// Columns for `given` of these variants, and of the base parameters in `allowed`; of waves at `periods` where
+// there are any.
 CleanScan ScanClean(const model::ModelDescription& given, const std::vector<diagnose::RunData>& runs,
                     const std::vector<diagnose::EffectVariant>& variants,
                     const std::vector<size_t>& allowed = {}, const std::vector<int>& periods = {});

@@ -1,5 +1,6 @@
-// Tests that each column says what the thing it stands for does to each balance: machines with one thing more are simulated
-// exactly, and what their balances leave for the plain model must be minus the column times the true amount.
+// Tests that each column says what the thing it stands for does to each balance: machines with one thing more
+// are simulated exactly, and what their balances leave for the plain model must be minus the column times the
+// true amount.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,8 @@ namespace {
 using diagnose::BalanceKind;
 using diagnose::EffectVariant;
 
-// Of the amount's unit, 15 % of the balance: what is not linear is met by one of the smaller ones, what is small by the largest.
+// Of the amount's unit, 15 % of the balance: what is not linear is met by one of the smaller ones, what is
+// small by the largest.
 constexpr double kAmounts[] = {1, 0.3, 0.1, 0.03};
 
 // What these runs cannot show.

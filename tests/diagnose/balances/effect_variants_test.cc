@@ -59,7 +59,8 @@ TEST(EffectVariants, AmountsAreLinear) {
   EXPECT_THAT(Of("sensor.pressure_gain")[0].amounts, ElementsAre("gain"));
 }
 
-// Tests that the excess of friction is an amount at each speed, and that speeds differ by a factor of 2 at most.
+// Tests that the excess of friction is an amount at each speed, and that speeds differ by a factor of 2 at
+// most.
 TEST(EffectVariants, ShapesAreOnADenseGrid) {
   const std::vector<EffectVariant> variants = Of("pump.stribeck");
   const std::vector<double> speeds = GridOf(variants, "speed");
@@ -110,7 +111,8 @@ TEST(EffectVariants, WavesAreOneVariant) {
   }
 }
 
-// Tests that each channel is one variant, linear in the time that it is late, and that lags of sensors are as well.
+// Tests that each channel is one variant, linear in the time that it is late, and that lags of sensors are as
+// well.
 TEST(EffectVariants, ChannelsAreOneVariantEach) {
   for (const char* signal : {"p1", "motor_speed"}) {
     const std::vector<EffectVariant> variants = Of("sensor.skew", signal);
@@ -131,8 +133,8 @@ TEST(EffectVariants, OnlyOfEffects) {
   EXPECT_THAT(diagnose::VariantsOf({{"", {}, "b"}, {"pump.unheard_of", {}, ""}}, SizesHere()), IsEmpty());
 }
 
-// Tests that variants of all effects of the catalogue have all numbers that a model needs, within their bounds, under names of their
-// own.
+// Tests that variants of all effects of the catalogue have all numbers that a model needs, within their
+// bounds, under names of their own.
 TEST(EffectVariants, AllAreModels) {
   std::set<std::string> sets;
   size_t count = 0;

@@ -15,15 +15,16 @@ namespace {
 
 // A sign that is wrong makes -1.
 constexpr double kCorrelation = 0.98;
-// Where the balance is linear in the amount the rest is smoothing, of a tenth at most; a friction that turns, or sticks, within the
-// smoothing takes some per cent of the column.
+// Where the balance is linear in the amount the rest is smoothing, of a tenth at most; a friction that turns,
+// or sticks, within the smoothing takes some per cent of the column.
 constexpr double kRatio = 0.06;
 
 struct Tolerance {
   double correlation = kCorrelation, ratio = kRatio;
 };
 Tolerance ToleranceOf(const std::string& effect, const Comparison& where) {
-  // Leakage and friction change exponentially with time, by a half in these runs where they show in the torque.
+  // Leakage and friction change exponentially with time, by a half in these runs where they show in the
+  // torque.
   if (effect == "fluid.warming") return {.ratio = 0.45};
   // When exactly a valve opens and closes is lost in the smoothing, and its oil counts from then on.
   if (effect == "accumulator.stiffness") return {.ratio = 0.1};

@@ -11,12 +11,12 @@
 
 namespace hydro::testing {
 
-// A balance is judged where the thing makes so many times what smoothing leaves of the plain machine: friction that turns within
-// the smoothing, mostly.
+// A balance is judged where the thing makes so many times what smoothing leaves of the plain machine:
+// friction that turns within the smoothing, mostly.
 inline constexpr double kAboveSmoothing = 10;
 
-// What smoothing leaves of the balances of the plain machine, the most in any run; at least a ten-thousandth of their main terms, and of
-// levels a hundredth of p_3.
+// What smoothing leaves of the balances of the plain machine, the most in any run; at least a ten-thousandth
+// of their main terms, and of levels a hundredth of p_3.
 double Smoothing(diagnose::BalanceKind balance);
 
 // Where things were judged, and where columns met what was simulated for some amount.
@@ -32,7 +32,8 @@ struct Judged {
 
 // The rich runs of this machine, as they are for the plain one.
 std::vector<diagnose::RunData> RunsOf(const model::ModelDescription& truth);
-// All variants of all effects with each name that they can take, and the plain runs' columns for the units of their amounts.
+// All variants of all effects with each name that they can take, and the plain runs' columns for the units of
+// their amounts.
 const CleanScan& PlainScan();
 // The plain machine with the effect, these of its parameters elsewhere.
 model::ModelDescription With(const diagnose::EffectVariant& variant,

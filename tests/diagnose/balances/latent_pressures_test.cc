@@ -1,4 +1,5 @@
-// Tests of pressures that were not measured: they are marched in clamped runs, and what changes the flows then changes the torque.
+// Tests of pressures that were not measured: they are marched in clamped runs, and what changes the flows
+// then changes the torque.
 #include "diagnose/balances/latent_pressures.h"
 
 #include <gtest/gtest.h>
@@ -62,8 +63,8 @@ void ExpectNear(const RunMotion& marched, const RunMotion& measured, double mode
   EXPECT_LT(std::sqrt(square / static_cast<double>(marched.size())), 0.02 * range);
 }
 
-// Tests that the right model marches to the pressures that were there: both of a run that its valves hold at the charge, and one
-// where the other was measured.
+// Tests that the right model marches to the pressures that were there: both of a run that its valves hold at
+// the charge, and one where the other was measured.
 TEST(LatentPressures, AreThoseThatWereThere) {
   const RunMotion held = MotionOf("held", {true, true}), pressed = MotionOf("pressed", {true, true});
   EXPECT_FALSE(MayMarch(held));
@@ -116,7 +117,8 @@ diagnose::Rows RowsWith(const model::ModelDescription& given) {
   return diagnose::ScanRuns(given, diagnose::PointersTo(runs), SomeOptions()).MakeRows({});
 }
 
-// Tests that what wrong values change of the torque balance is what their columns say, those of the flows through the pressures.
+// Tests that what wrong values change of the torque balance is what their columns say, those of the flows
+// through the pressures.
 TEST(LatentPressures, ColumnsSayWhatWrongValuesChange) {
   const std::map<std::string, double> wrong = {{"J", 0.01}, {"beta", 0.01}};
   model::ModelDescription given = PlainMachine();

@@ -13,7 +13,8 @@ namespace {
 
 using diagnose::EffectVariant;
 
-// Tests columns that every hypothesis has: a command that is recorded late, channels that are late, by seconds, and zeros of transducers, by psi.
+// Tests columns that every hypothesis has: a command that is recorded late, channels that are late, by
+// seconds, and zeros of transducers, by psi.
 TEST(Columns, OfRecordersMeetTheSimulation) {
   struct Case {
     std::vector<std::string> columns;

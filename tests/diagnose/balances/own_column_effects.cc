@@ -1,5 +1,6 @@
-// Effects of a user's own, written as text: one that changes the motor's torque in proportion, one that changes flows and the arm in
-// proportion, and one with a state. The tests of columns go through the catalogue, and so through these.
+// Effects of a user's own, written as text: one that changes the motor's torque in proportion, one that
+// changes flows and the arm in proportion, and one with a state. The tests of columns go through the
+// catalogue, and so through these.
 #include <memory>
 
 #include "model/effects/formulas.h"

@@ -1,4 +1,5 @@
-// Tests of measured runs on the balances' grid: derivatives, gaps, noise, and which of two signals of one quantity is believed.
+// Tests of measured runs on the balances' grid: derivatives, gaps, noise, and which of two signals of one
+// quantity is believed.
 #include "diagnose/balances/run_motion.h"
 
 #include <gmock/gmock.h>
@@ -63,7 +64,8 @@ TEST(RunMotion, DerivativeIsExactOnCubics) {
   for (const double one : slope) EXPECT_NEAR(one, -7, 1e-9);
 }
 
-// Tests that smoothing keeps constants, and lines away from the ends, and that it takes a Gaussian's part of a wave.
+// Tests that smoothing keeps constants, and lines away from the ends, and that it takes a Gaussian's part of
+// a wave.
 TEST(RunMotion, SmoothingIsAGaussian) {
   constexpr double kSigma = 2, kFrequency = 0.4;  // samples, rad a sample
   std::vector<double> line, wave;
@@ -127,7 +129,8 @@ TEST(RunMotion, SpeedInAnotherUnitIsNotBelieved) {
   EXPECT_LT(most, 1.0);  // of some hundred rad/s
 }
 
-// Tests that of a speed that is recorded late, the angle is believed, and the time named as long as it is short.
+// Tests that of a speed that is recorded late, the angle is believed, and the time named as long as it is
+// short.
 TEST(RunMotion, LateSpeedIsNotBelieved) {
   const auto late = [](size_t samples) {
     return MotionWith([&](runs::MeasuredRun* run) { Delay(samples, &run->motor_speed.values); });

@@ -1,4 +1,5 @@
-// Tests of rows as the scan makes them: the same bits on any number of jobs, and what is left out where signals are missing.
+// Tests of rows as the scan makes them: the same bits on any number of jobs, and what is left out where
+// signals are missing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -142,7 +143,8 @@ TEST(ScanRuns, SpeedMayComeFromTheAngle) {
   EXPECT_EQ(Find(speed, BalanceKind::kTorque)->y.size(), Find(angle, BalanceKind::kTorque)->y.size());
 }
 
-// Tests that a free arm whose angle nobody measured leaves the torque alone, of what the pressures still tell.
+// Tests that a free arm whose angle nobody measured leaves the torque alone, of what the pressures still
+// tell.
 TEST(ScanRuns, WithoutTheArmsAngleAFreeRunHasNoFlows) {
   const diagnose::Rows rows = RowsOf("free", [](runs::MeasuredRun* run) { run->arm_angle = {}; });
   EXPECT_EQ(BalancesOf(rows), std::vector{BalanceKind::kTorque});
@@ -159,7 +161,8 @@ TEST(ScanRuns, WithoutSpeedAndAngleOnlyTheArmIsLeft) {
   EXPECT_EQ(BalancesOf(rows), std::vector{BalanceKind::kArm});
 }
 
-// Tests that an arm may be held where an effect leaves no room for it: the effect is not judged there, and the rest is.
+// Tests that an arm may be held where an effect leaves no room for it: the effect is not judged there, and
+// the rest is.
 TEST(ScanRuns, AnArmHeldFarOut) {
   model::ModelDescription given = PlainMachine();
   diagnose::ScanOptions options = OptionsWith(1);

@@ -97,7 +97,8 @@ TEST(Masks, CoverThePumpAtRest) {
   EXPECT_GT(moving, 1000);
 }
 
-// Tests that levels are heard only where a valve passes oil: there the side is at p_3 and would lose pressure with the valve closed.
+// Tests that levels are heard only where a valve passes oil: there the side is at p_3 and would lose pressure
+// with the valve closed.
 TEST(Masks, LevelsNeedAValveThatPassesOil) {
   const model::ModelDescription given = PlainMachine();
   const CleanScan scan = ScanClean(given, Prepared(MeasureAll(given), given.parameters), {});

@@ -33,8 +33,8 @@ TEST(ChangeSet, WithAndHas) {
   EXPECT_FALSE(HasChange({}, "amp.lag"));
 }
 
-// Tests that nothing is missing at even odds, that variants share the odds of their change, and that a curve is less probable than an
-// effect.
+// Tests that nothing is missing at even odds, that variants share the odds of their change, and that a curve
+// is less probable than an effect.
 TEST(ChangeOdds, VariantsShareTheirOdds) {
   const ChangeOdds odds(
       {"amp.lag|1", "amp.lag|2", "amp.lag|3", "amp.bias", "closure.pump_torque(motor_speed)"});

@@ -75,8 +75,8 @@ TEST(ChecklistTest, Currents) {
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*currents of 4 to 20 mA"));
 }
 
-// Tests that pressures which a sidecar states in bar, and whose numbers are between 4 and 20 as those of currents are, are pressures: they
-// fit the model's charge.
+// Tests that pressures which a sidecar states in bar, and whose numbers are between 4 and 20 as those of
+// currents are, are pressures: they fit the model's charge.
 TEST(ChecklistTest, PressuresInBarAreNoCurrents) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   const double low = std::min(*std::min_element(run.p1.values.begin(), run.p1.values.end()),
@@ -107,7 +107,8 @@ TEST(ChecklistTest, TurnedSigns) {
   EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
 }
 
-// Tests that of pressures that are exchanged nothing good is said, however the shaft is held, and of others that they rise.
+// Tests that of pressures that are exchanged nothing good is said, however the shaft is held, and of others
+// that they rise.
 TEST(ChecklistTest, ExchangedPressures) {
   for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
     runs::MeasuredRun run = PlainSwing(shaft);
@@ -141,7 +142,8 @@ TEST(ChecklistTest, UnitsShaftAndTime) {
   EXPECT_THAT(LineOf(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
 }
 
-// Tests that pressures in any other unit than the sidecar says have it named by the charge alone: of both, and of one.
+// Tests that pressures in any other unit than the sidecar says have it named by the charge alone: of both,
+// and of one.
 TEST(ChecklistTest, UnitsOfPressures) {
   const double psi = 6894.757;  // Pa
   struct {

@@ -30,7 +30,8 @@ const Scanned& WithDrag() {
   return scanned;
 }
 
-// Tests that a curve is tried where its variable was seen: the bypass shows the torque against the speed alone, a free arm also its own.
+// Tests that a curve is tried where its variable was seen: the bypass shows the torque against the speed
+// alone, a free arm also its own.
 TEST(ClosureElements, ThoseThatTheRunsCanShow) {
   const Scanned clamped(ClampedPair(Table1With(), 0.5, 1), {});
   const std::vector<std::string> sets = SetsOf(ClosureElements(clamped.runs.setup(), clamped.runs.motions()));
@@ -74,8 +75,8 @@ double TorqueLeft(const model::ModelDescription& model, const Scanned& scanned, 
   return square / count;
 }
 
-// Tests that a machine with an unknown drag leaves less of the torque balance with the estimated curve, and the values beside it, than
-// without. The rest is smoothing, where friction turns: the truth leaves as much.
+// Tests that a machine with an unknown drag leaves less of the torque balance with the estimated curve, and
+// the values beside it, than without. The rest is smoothing, where friction turns: the truth leaves as much.
 TEST(EstimatedClosure, LeavesLess) {
   const model::ModelDescription given = PlainMachine(),
                                 truth = PlainMachine({{"pump.quadratic_drag", {{"k", 3e-4}}, {}}});

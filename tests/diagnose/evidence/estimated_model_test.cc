@@ -36,7 +36,8 @@ bool Moves(const EstimatedModel& estimated, const std::string& base) {
          estimated.base.end();
 }
 
-// Tests that another drag and leakage are estimated without a change, and that runs of a clamped arm say nothing of the arm.
+// Tests that another drag and leakage are estimated without a change, and that runs of a clamped arm say
+// nothing of the arm.
 TEST(EstimatedModel, ValuesOfTheMachine) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b *= 1.3;
@@ -86,8 +87,9 @@ TEST(EstimatedModel, Amount) {
   EXPECT_THAT(estimated.changes, ::testing::ElementsAre(diagnose::Change{"pump.quadratic_drag", {}, ""}));
 }
 
-// Tests that an effect as a whole is moved along its shape, from its grid towards a truth between two points. The move is coarse: it
-// goes by how large the effect is at all frequencies, and the balances show the low ones; simulation refines it.
+// Tests that an effect as a whole is moved along its shape, from its grid towards a truth between two points.
+// The move is coarse: it goes by how large the effect is at all frequencies, and the balances show the low
+// ones; simulation refines it.
 TEST(EstimatedModel, ShapeBetweenTwo) {
   constexpr double kTau = 4.7e-3;
   const Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", kTau}}, {}}}), kSeconds, 6),

@@ -97,7 +97,8 @@ TEST_F(RecordingCheckTest, Units) {
   EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
 }
 
-// Tests that a speed that is not the rate of its angle is named with its unit or its sign, and that a sensor 20 % too large is none.
+// Tests that a speed that is not the rate of its angle is named with its unit or its sign, and that a sensor
+// 20 % too large is none.
 TEST_F(RecordingCheckTest, Rates) {
   const auto remarks = [](runs::MeasuredSignal runs::MeasuredRun::*signal, double factor) {
     std::vector<runs::MeasuredRun> runs = {testing::Swing(model::Shaft::kFree)};
@@ -137,9 +138,9 @@ TEST_F(RecordingCheckTest, SeveralAtOnce) {
   EXPECT_THAT(exchanged[0], HasSubstr("p1 and p2 are exchanged and p1 and p2 are in bar"));
 }
 
-// Tests that what explains the runs equally well is offered beside it: with the shaft clamped at mid-stroke a wrong sign
-// of the command with exchanged pressures looks like a motor that turns the other way. The weight of an arm that moves
-// freely decides.
+// Tests that what explains the runs equally well is offered beside it: with the shaft clamped at mid-stroke a
+// wrong sign of the command with exchanged pressures looks like a motor that turns the other way. The weight
+// of an arm that moves freely decides.
 TEST_F(RecordingCheckTest, Ties) {
   std::vector<runs::MeasuredRun> runs = *recorded_;
   testing::NoisyRig rig;
@@ -177,7 +178,8 @@ TEST_F(RecordingCheckTest, ArmWithoutItsWeight) {
   EXPECT_THAT(remarks[0], HasSubstr("motor_speed is in rpm"));
 }
 
-// Tests that a factor that is no unit's is said as that, once for all runs, and no line is made up for the sidecar.
+// Tests that a factor that is no unit's is said as that, once for all runs, and no line is made up for the
+// sidecar.
 TEST_F(RecordingCheckTest, UnknownFactor) {
   const auto remarks = Remarks([](runs::MeasuredRun& run) {
     Multiply(&run.p1.values, 3.1);

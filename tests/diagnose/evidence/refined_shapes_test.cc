@@ -43,7 +43,8 @@ TEST(RefinedShapes, OfAWhole) {
   EXPECT_NEAR(ShapeOf(&scanned, scanned.Best("amp.lag"), "tau"), kTau, 0.05 * kTau);
 }
 
-// Tests that variants stand at their grid points again afterwards, and that nothing is made where no effect has a shape.
+// Tests that variants stand at their grid points again afterwards, and that nothing is made where no effect
+// has a shape.
 TEST(RefinedShapes, AreTakenBack) {
   Scanned scanned(ClampedPair(Table1With({{"amp.lag", {{"tau", 4.7e-3}}, {}}}), kShapeSeconds, 6),
                   {"amp.lag", "pump.quadratic_drag"});

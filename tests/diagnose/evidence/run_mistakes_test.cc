@@ -40,7 +40,8 @@ RecordingMistake Named(const Recording& run, const std::string& what) {
   return {};
 }
 
-// Tests that the balances close with the numbers as they are, with no other ones as well, and small numbers gain nothing.
+// Tests that the balances close with the numbers as they are, with no other ones as well, and small numbers
+// gain nothing.
 TEST(RecordingBalances, CloseWithTheRightNumbers) {
   for (const model::Shaft shaft : {model::Shaft::kClamped, model::Shaft::kFree}) {
     const Recording run = Recorded(shaft);
@@ -107,7 +108,8 @@ void StoreUnsigned(double bits, double scale, runs::MeasuredSignal* signal) {
   signal->source.scale = scale;
 }
 
-// Tests that signed numbers that were read as unsigned are found, of any size and signal, and that a recorder's whole range is none.
+// Tests that signed numbers that were read as unsigned are found, of any size and signal, and that a
+// recorder's whole range is none.
 TEST(RunMistakes, SignedNumbersReadAsUnsigned) {
   const Recording run = Recorded(model::Shaft::kClamped);
   for (const auto& [bits, scale] : {std::pair{8, 0.05}, std::pair{12, 0.0025}, std::pair{16, 0.01}}) {

@@ -41,7 +41,8 @@ TEST(WavePeriods, NoneWithoutSuchEffects) {
   EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::IsEmpty());
 }
 
-// Tests that a shaft that turns by a third of a turn shows two periods of what repeats six times a turn, and none of five.
+// Tests that a shaft that turns by a third of a turn shows two periods of what repeats six times a turn, and
+// none of five.
 TEST(WavePeriods, SeenToRepeat) {
   std::vector<diagnose::RunMotion> runs(2);
   EXPECT_GT(diagnose::FewestPeriods(runs), diagnose::kMostPeriods);

@@ -31,7 +31,8 @@ Hypothesis WithFilm() {
   return hypothesis;
 }
 
-// Tests that a closure has its knots, values, units and what it resembles, and a band where its values are free.
+// Tests that a closure has its knots, values, units and what it resembles, and a band where its values are
+// free.
 TEST(FoundClosures, KnotsValuesAndBand) {
   Hypothesis hypothesis = WithFilm();
   std::vector<Closure> closures = FoundClosures(hypothesis, {});

@@ -56,8 +56,8 @@ TEST(Hypothesis, FreeNumbers) {
   EXPECT_EQ(hypothesis.Held().model.parameters.b, 0.02);
 }
 
-// Tests that a whole number of periods, which is counted and not fitted, is not free and stays when the free numbers are set, and that
-// one that is no whole number is fitted.
+// Tests that a whole number of periods, which is counted and not fitted, is not free and stays when the free
+// numbers are set, and that one that is no whole number is fitted.
 TEST(Hypothesis, WholePeriodsStay) {
   for (const double periods : {9.0, 9.5}) {
     const model::EffectDescription ripple = {
@@ -106,8 +106,8 @@ TEST(Hypothesis, ChangesThereAndBack) {
   EXPECT_TRUE(diagnose::Without(back, drag, Table1With()).model.effects.empty());
 }
 
-// Tests that what an accumulator has taken in before a run is unknown where the model has one that remembers it, held to what
-// oil can give up, and that no other model has this unknown.
+// Tests that what an accumulator has taken in before a run is unknown where the model has one that remembers
+// it, held to what oil can give up, and that no other model has this unknown.
 TEST(StartUnknowns, WhatAnAccumulatorHasTakenIn) {
   const diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, 0, 1);
   const model::Unknown returned = {model::Unknown::Kind::kStart, model::kReturned};
@@ -161,7 +161,8 @@ TEST(Residuals, NoiseAndDerivatives) {
   }
 }
 
-// Tests that a resonance is not looked for beyond what the samples can show, and that a model's own frequency has no such limit.
+// Tests that a resonance is not looked for beyond what the samples can show, and that a model's own frequency
+// has no such limit.
 TEST(Hypothesis, FrequenciesBelowHalfTheSamplingRate) {
   const model::ModelDescription wave =
       Table1With({{"line.wave", {{"frequency", 300}, {"volume_fraction", 0.1}, {"damping", 0.1}}, {}}});
@@ -177,7 +178,8 @@ TEST(Hypothesis, FrequenciesBelowHalfTheSamplingRate) {
   EXPECT_EQ(highest(), 500);
 }
 
-// Tests that a fit stays within twice what is given and estimated, both ways where a value cannot be nothing, and upwards where it can.
+// Tests that a fit stays within twice what is given and estimated, both ways where a value cannot be nothing,
+// and upwards where it can.
 TEST(Hypothesis, ReachesTwiceAsFarAsGivenAndEstimated) {
   Hypothesis hypothesis;
   hypothesis.model = {"Table 1", testing::Table1(), {}};

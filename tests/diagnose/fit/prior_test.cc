@@ -30,7 +30,8 @@ TEST(KnownBefore, WeighsByUncertainty) {
   EXPECT_DOUBLE_EQ(prior.weight[1], 2 / std::pow(0.1 * Table1().T_s, 2));
 }
 
-// Tests that values lose odds by standard deviations, on both sides, slowly where they are many; and what was given as 0 none.
+// Tests that values lose odds by standard deviations, on both sides, slowly where they are many; and what was
+// given as 0 none.
 TEST(OddsLostBy, CountsDeviations) {
   const model::ModelDescription given = Table1With();
   EXPECT_EQ(diagnose::OddsLostBy(given.parameters, given), 0);
@@ -52,7 +53,8 @@ TEST(OddsLostBy, CountsDeviations) {
   EXPECT_EQ(diagnose::OddsLostBy(values, given), 0);
 }
 
-// Tests that only its order of magnitude is known of a value that is given as 0, and nothing without knowledge.
+// Tests that only its order of magnitude is known of a value that is given as 0, and nothing without
+// knowledge.
 TEST(KnownBefore, LittleOfZero) {
   diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"f"});
   EXPECT_EQ(diagnose::KnownBefore(hypothesis).weight, std::vector<double>{0});

@@ -31,7 +31,8 @@ RunData RunFrom(const model::ModelDescription& truth, double turn, bool angle_me
                     [](double t) { return t < 0.5 ? 4.0 : -5.0; });
 }
 
-// Tests that a shaft's angle is found wherever it starts, with a sensor of it and without, of torque and of displacement.
+// Tests that a shaft's angle is found wherever it starts, with a sensor of it and without, of torque and of
+// displacement.
 TEST(Turn, IsFoundFromAnywhere) {
   for (const model::ModelDescription& truth : {Cogging(), Ripple()}) {
     for (const double turn : {0.3, 0.55, 0.8}) {
@@ -49,8 +50,9 @@ TEST(Turn, IsFoundFromAnywhere) {
   }
 }
 
-// Tests when the angle is unknown: never without an effect that repeats; in the run from which phases count, where the effect has
-// none; and that the number that stands for it is the sensor's offset, or the start itself without a sensor.
+// Tests when the angle is unknown: never without an effect that repeats; in the run from which phases count,
+// where the effect has none; and that the number that stands for it is the sensor's offset, or the start
+// itself without a sensor.
 TEST(Turn, IsUnknownWhereNothingShowsIt) {
   RunData run = RunFrom(Cogging(), 0, true);
   EXPECT_EQ(UnknownTurn(testing::Table1With(), run), std::nullopt);

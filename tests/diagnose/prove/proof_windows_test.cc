@@ -58,7 +58,8 @@ double Highest(const RunData& run, model::Channel channel) {
   return maths::RangeOf(run.Find(channel)->values).high;
 }
 
-// Tests that windows of runs that are held out by name judge, each as of its run, and that those of fitted runs are fitted.
+// Tests that windows of runs that are held out by name judge, each as of its run, and that those of fitted
+// runs are fitted.
 TEST(ProofWindows, OfHeldOutRuns) {
   const std::vector<RunData> runs = RunsOf(4);
   const diagnose::ProofContext context = ContextOf(runs, 1);
@@ -81,7 +82,8 @@ TEST(ProofWindows, OfHeldOutRuns) {
   }
 }
 
-// Tests that of runs that are held out in turn, no window that judges is compared where one that is fitted is.
+// Tests that of runs that are held out in turn, no window that judges is compared where one that is fitted
+// is.
 TEST(ProofWindows, InTurnTheyDoNotOverlap) {
   const std::vector<RunData> runs = RunsOf(4);
   const ProofWindows windows = ProofWindowsOf(ContextOf(runs, 3));
@@ -95,7 +97,8 @@ TEST(ProofWindows, InTurnTheyDoNotOverlap) {
     EXPECT_EQ(windows.near.windows[w]->name, runs.at(windows.near.runs[w]).name);
 }
 
-// Tests that the work is bounded however long the runs are, and that the window with the highest pressure is among those that judge.
+// Tests that the work is bounded however long the runs are, and that the window with the highest pressure is
+// among those that judge.
 TEST(ProofWindows, BoundedWithTheExtremes) {
   const std::vector<RunData> runs = RunsOf(12);
   const ProofWindows windows = ProofWindowsOf(ContextOf(runs, 1));
@@ -117,7 +120,8 @@ TEST(ProofWindows, BoundedWithTheExtremes) {
   }
 }
 
-// Tests that windows of short runs are shorter, and that there are no far ones of runs that are shorter than these.
+// Tests that windows of short runs are shorter, and that there are no far ones of runs that are shorter than
+// these.
 TEST(ProofWindows, OfShortRuns) {
   const std::vector<RunData> runs = RunsOf(1);
   const ProofWindows windows = ProofWindowsOf(ContextOf(runs, 2));

@@ -88,8 +88,8 @@ double ValueOf(const model::ModelDescription& model, const std::string& effect, 
   return std::nan("");
 }
 
-// Tests that what is missing is among the first three sets after that of nothing, and first of them by score, with about its amounts;
-// each held-out run has a model of its own, which has the effect too.
+// Tests that what is missing is among the first three sets after that of nothing, and first of them by score,
+// with about its amounts; each held-out run has a model of its own, which has the effect too.
 TEST(Propose, WhatIsMissing) {
   const std::vector<diagnose::RunData> runs =
       RunsOf(Table1With({{"pump.stribeck", {{"static_excess", 1.0}, {"speed", 8}}, {}}}), 31);
@@ -137,7 +137,8 @@ TEST(Propose, Periods) {
   EXPECT_NEAR(ValueOf(proposed.proposals[place].model, "motor.cogging", "amplitude"), 3, 0.5);
 }
 
-// Tests that nothing is proposed first where nothing is missing, that it is the likeliest, and that weights are shares.
+// Tests that nothing is proposed first where nothing is missing, that it is the likeliest, and that weights
+// are shares.
 TEST(Propose, NothingMissing) {
   const std::vector<diagnose::RunData> runs = RunsOf(Table1With(), 33);
   const Proposed proposed = Propose(ContextOf(runs, SomeEffects()), Allowed());
@@ -176,8 +177,9 @@ TEST(Propose, NoOilWithoutPressures) {
     EXPECT_EQ(std::count(proposed.shown.begin(), proposed.shown.end(), model::BasePlace(base)), 0) << base;
 }
 
-// Tests that friction that grows with the pressures is, where these stand still, another value of T_s: a remark says so, and it is
-// not proposed. Where a sensor's noise makes a difference, it is less probable than the value.
+// Tests that friction that grows with the pressures is, where these stand still, another value of T_s: a
+// remark says so, and it is not proposed. Where a sensor's noise makes a difference, it is less probable than
+// the value.
 TEST(Propose, DoubleOfAValue) {
   const std::vector<diagnose::RunData> runs =
       BypassOf(Table1With({{"pump.pressure_friction", {{"f", 2e-3}}, {}}}), 35);
@@ -221,8 +223,8 @@ TEST(Propose, NoBalanceNoProposal) {
   EXPECT_THAT(proposed.unjudged[0].effects, Contains("pump.stribeck"));
 }
 
-// Tests that of clamped runs without pressures torques are proposed, and of the oil only that there is something: its effects cannot
-// be judged, those of the sensors that are not there are no question.
+// Tests that of clamped runs without pressures torques are proposed, and of the oil only that there is
+// something: its effects cannot be judged, those of the sensors that are not there are no question.
 TEST(Propose, TheOilIsOneClassWithoutPressures) {
   const std::vector<diagnose::RunData> runs = WithoutPressures(
       RunsOf(Table1With({{"pump.stribeck", {{"static_excess", 1.0}, {"speed", 8}}, {}}}), 31));
@@ -244,7 +246,8 @@ TEST(Propose, AllCanBeJudgedOfWholeRecordings) {
   EXPECT_THAT(Propose(ContextOf(runs, SomeEffects()), Allowed()).unjudged, IsEmpty());
 }
 
-// Tests that friction that differs by run is proposed with each run's own value, where the balances say nothing else first.
+// Tests that friction that differs by run is proposed with each run's own value, where the balances say
+// nothing else first.
 TEST(Propose, ValuesOfRuns) {
   std::vector<diagnose::RunData> runs;
   const double frictions[] = {1, 1.25, 0.75};

@@ -84,8 +84,8 @@ double ValueOf(const Proof& proved, const std::string& effect, const std::string
   return std::nan("");
 }
 
-// Tests that a true effect that is proposed with a wrong amount is chosen, with the amount mended, before an effect that is not
-// there, and that the verdict names it alone.
+// Tests that a true effect that is proposed with a wrong amount is chosen, with the amount mended, before an
+// effect that is not there, and that the verdict names it alone.
 TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
   Record(Table1With({Drag(2e-4)}));
   const Proof proved =
@@ -102,7 +102,8 @@ TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
   EXPECT_GE(d.effects[0].parameters[0].high, 2e-4);
 }
 
-// Tests that an effect that is not there is left out though it is proposed beside one that is, and no set without it was proposed.
+// Tests that an effect that is not there is left out though it is proposed beside one that is, and no set
+// without it was proposed.
 TEST_F(ProveTest, FurtherEffectIsVetoed) {
   Record(Table1With({Drag(2e-4)}));
   const Proof proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
@@ -181,7 +182,8 @@ TEST_F(ProveTest, BlindEffectIsRaced) {
   EXPECT_NEAR(ValueOf(proved, "valve.relief", "set"), 700, 20);
 }
 
-// Tests that a model that cannot follow a run at all does not end the diagnosis: windows judge the values that can.
+// Tests that a model that cannot follow a run at all does not end the diagnosis: windows judge the values
+// that can.
 TEST_F(ProveTest, GivenModelThatCannotBeSimulated) {
   Record(Table1With());
   const Proposal values = Proposed({}, {});

@@ -62,7 +62,8 @@ TEST(GapFall, OneWindowThatDivergesDoesNotRule) {
   EXPECT_NEAR(FallOf(Windows(5), after).logarithm, (19 * std::log(5.0 / 4.0) - std::log(4.0)) / 20, 1e-3);
 }
 
-// Tests that values that are far from what is known have to be worth it, against an effect and against themselves.
+// Tests that values that are far from what is known have to be worth it, against an effect and against
+// themselves.
 TEST(EffectIsKept, ValuesInItsPlaceHaveAPrice) {
   ProvedSet values = SetOf({}, Windows(4.9));
   const ProvedSet with = SetOf({"amp.lag"}, Windows(5));
@@ -111,7 +112,8 @@ TEST(EffectIsKept, TakesItsPrice) {
   EXPECT_FALSE(IsEffectKept(SetOf({"amp.lag"}, scattered), without, kPrice));
 }
 
-// Tests what the price is worth: a twentieth of the gap at even odds, nothing at nine to one, and no more than the balances may be sure of.
+// Tests what the price is worth: a twentieth of the gap at even odds, nothing at nine to one, and no more
+// than the balances may be sure of.
 TEST(EffectIsKept, OddsArePaidWithTheGap) {
   EXPECT_NEAR(diagnose::PriceOf(0.5), 0.05, 1e-12);
   EXPECT_NEAR(diagnose::PriceOf(0.9), 0, 1e-12);
@@ -138,7 +140,8 @@ TEST(PredictsBetter, NearAndFar) {
   EXPECT_FALSE(PredictsBetter(SetOf({}, Windows(4), 11), set));
 }
 
-// Tests that the set that leads is not the one with the smallest gap, where its further effect takes too little.
+// Tests that the set that leads is not the one with the smallest gap, where its further effect takes too
+// little.
 TEST(LeadingSet, EachEffectTakesItsPart) {
   std::vector<ProvedSet> sets = {SetOf({}, Windows(50)), SetOf({"amp.lag"}, Windows(5)),
                                  SetOf({"amp.lag", "amp.bias"}, Windows(4.8)),

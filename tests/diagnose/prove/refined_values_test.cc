@@ -51,7 +51,8 @@ class RefinedTest : public ::testing::Test {
   diagnose::ProofWindows windows_;
 };
 
-// Tests that wrong values are mended, and that windows of a run that they were not fitted to are predicted better.
+// Tests that wrong values are mended, and that windows of a run that they were not fitted to are predicted
+// better.
 TEST_F(RefinedTest, WrongValuesAreMended) {
   const ProvedSet wrong = SetOf(With(1.4, 0.8), {"b", "beta", "T_s"});
   const ProvedSet refined = Refined(wrong);
@@ -82,7 +83,8 @@ TEST_F(RefinedTest, NothingToRefine) {
   EXPECT_EQ(wrong.hypothesis.model.parameters.b, With(1.4).parameters.b);
 }
 
-// Tests that the noise that counts is the sensors' where the model is true, more where it is not, and never less.
+// Tests that the noise that counts is the sensors' where the model is true, more where it is not, and never
+// less.
 TEST_F(RefinedTest, DiscrepancyIsCountedAsNoise) {
   const std::vector<RunData> plain = WithDiscrepancy(windows_.fitted, Table1With(), 1),
                              raised = WithDiscrepancy(windows_.fitted, With(3), 2);
@@ -102,7 +104,8 @@ TEST_F(RefinedTest, DiscrepancyIsCountedAsNoise) {
   EXPECT_TRUE(WithDiscrepancy(windows_.fitted, impossible, 1).empty());
 }
 
-// Tests that base values are held near what is known of them, unless the set itself says that they are others.
+// Tests that base values are held near what is known of them, unless the set itself says that they are
+// others.
 TEST_F(RefinedTest, KnownOfValues) {
   diagnose::Hypothesis hypothesis = WithFree(With(1), {"b", "beta"});
   EXPECT_NE(KnownOfValues(context_, context_.runs, hypothesis, 100), nullptr);

@@ -41,8 +41,8 @@ TEST(WindowGap, TypicalIsAGeometricMean) {
   EXPECT_NEAR(gap.Typical(), 6, 1e-12);
 }
 
-// Tests that the true model leaves no more than the noise of every window, and another one more. A slow angle's steps are less than
-// their noise says.
+// Tests that the true model leaves no more than the noise of every window, and another one more. A slow
+// angle's steps are less than their noise says.
 TEST(WindowGap, TruthLeavesTheNoise) {
   ASSERT_GE(Windows().size(), 8u);
   std::vector<WindowGap> of_truth, of_heavy;

@@ -28,7 +28,8 @@ void Scale(double factor, runs::MeasuredSignal* signal) {
   for (double& value : signal->values) value *= factor;
 }
 
-// Tests that a recording that is right says nothing against itself, coarse and with a sensor 20 % too large too.
+// Tests that a recording that is right says nothing against itself, coarse and with a sensor 20 % too large
+// too.
 TEST(Contradictions, None) {
   for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
     for (const bool bypass : {false, true}) EXPECT_THAT(Found(Swing(shaft, bypass)), IsEmpty());
@@ -81,7 +82,8 @@ TEST(TwinPressures, OpenBypass) {
   EXPECT_THAT(Found(run), ElementsAre(HasSubstr("this in byp.toml mends it: bypass = true")));
 }
 
-// Tests that pressures that differ, and those of a motor that does not turn, say nothing; and that one column for both is named.
+// Tests that pressures that differ, and those of a motor that does not turn, say nothing; and that one column
+// for both is named.
 TEST(TwinPressures, OthersAndOneColumn) {
   runs::MeasuredRun run = Recorded(false, 3);
   EXPECT_THAT(Found(run), IsEmpty());

@@ -64,7 +64,8 @@ std::vector<std::string> LinesOf(runs::MeasuredRun* run) {
   return lines;
 }
 
-// Tests that of equal rows only the first is a sample, in whatever ratio the rates are, and that the noise is that of the samples.
+// Tests that of equal rows only the first is a sample, in whatever ratio the rates are, and that the noise is
+// that of the samples.
 TEST(HeldSamples, OnlyTheFirstCounts) {
   for (const double apart : {2.0, 2.5, 3.0, 10.0 / 3, 4.0, 7.2, 10.0}) {
     SCOPED_TRACE(apart);
@@ -82,7 +83,8 @@ TEST(HeldSamples, OnlyTheFirstCounts) {
   }
 }
 
-// Tests samples that arrive up to a row late, and a converter whose samples equal the one before now and then.
+// Tests samples that arrive up to a row late, and a converter whose samples equal the one before now and
+// then.
 TEST(HeldSamples, LateAndEqualSamples) {
   runs::MeasuredRun run = Recorded(Held(6, Motion, 0.9));
   EXPECT_EQ(LinesOf(&run).size(), 1u);
@@ -92,8 +94,8 @@ TEST(HeldSamples, LateAndEqualSamples) {
   EXPECT_EQ(LinesOf(&run).size(), 1u);
 }
 
-// Tests that honest repeats stay: an encoder that turns slowly and steadily, a converter at rest, a value that rests, and a signal of
-// its own in each row.
+// Tests that honest repeats stay: an encoder that turns slowly and steadily, a converter at rest, a value
+// that rests, and a signal of its own in each row.
 TEST(HeldSamples, HonestRepeatsStay) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, 0.3);

@@ -29,8 +29,8 @@ RunData RunWith(const std::string& name, std::vector<SignalData> signals) {
   return run;
 }
 
-// Tests that runs which one sidecar states wrongly share a remark: how many times more each column shows, and the
-// lines that mend it.
+// Tests that runs which one sidecar states wrongly share a remark: how many times more each column shows, and
+// the lines that mend it.
 TEST(NoiseRemarks, SayHowManyTimesAndWhatMendsIt) {
   const RunData a =
       RunWith("a", {Signal(model::Channel::kMotorSpeed, 0.3, 0.9), Signal(model::Channel::kP1, 1.5, 4.4)});
@@ -44,7 +44,8 @@ TEST(NoiseRemarks, SayHowManyTimesAndWhatMendsIt) {
           "the sidecar, under [noise], mends it: motor_speed = 0.9; p1 = 4.5"));
 }
 
-// Tests that runs of which other signals are wrong, or that show less than is stated, have remarks of their own.
+// Tests that runs of which other signals are wrong, or that show less than is stated, have remarks of their
+// own.
 TEST(NoiseRemarks, OtherSignalsAndOtherWays) {
   const RunData both =
       RunWith("both", {Signal(model::Channel::kP1, 1.5, 4.5), Signal(model::Channel::kP2, 1.5, 0.5)});

@@ -66,7 +66,8 @@ TEST(RecordingDamage, Zeros) {
   EXPECT_EQ(Missing(runs[0].p1.values), 20u);
 }
 
-// Tests that a few equal values far from all others, as a recorder writes for "nothing", become missing whatever their number.
+// Tests that a few equal values far from all others, as a recorder writes for "nothing", become missing
+// whatever their number.
 TEST(RecordingDamage, Sentinels) {
   for (const size_t length : {2, 3, 5, 7}) {
     std::vector<runs::MeasuredRun> runs = {Bench()};

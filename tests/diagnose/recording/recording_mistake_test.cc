@@ -32,7 +32,8 @@ RecordingMistake Mistake(const std::string& what) {
   return found == all.end() ? RecordingMistake() : *found;
 }
 
-// Tests that only mistakes in what is measured are possible, and exchanged pressures not with the bypass open.
+// Tests that only mistakes in what is measured are possible, and exchanged pressures not with the bypass
+// open.
 TEST(RecordingMistake, OfWhatIsMeasured) {
   for (const RecordingMistake& mistake : PossibleMistakes(Bench())) {
     EXPECT_EQ(mistake.what.find("motor"), std::string::npos) << mistake.what;
@@ -50,8 +51,8 @@ std::vector<std::string> Offered(const runs::MeasuredRun& run) {
   return what;
 }
 
-// Tests that nothing is offered which makes a run of some ms of one of some s, or readings that no machine has; unless what the sidecar says
-// is as impossible.
+// Tests that nothing is offered which makes a run of some ms of one of some s, or readings that no machine
+// has; unless what the sidecar says is as impossible.
 TEST(RecordingMistake, NothingImpossibleIsOffered) {
   using ::testing::Contains;
   using ::testing::Not;
@@ -91,7 +92,8 @@ TEST(RecordingMistake, Correct) {
   EXPECT_THAT(run.time, ElementsAre(0, 0.001, 0.002));
 }
 
-// Tests the lines that mend a sidecar: a unit where nothing else is said of the column, else scale and offset.
+// Tests the lines that mend a sidecar: a unit where nothing else is said of the column, else scale and
+// offset.
 TEST(RecordingMistake, SidecarLines) {
   const runs::MeasuredRun run = Bench();
   EXPECT_EQ(SidecarLines({Mistake("time is in ms")}, run), "time = { column = \"t\", unit = \"ms\" }");
@@ -104,7 +106,8 @@ TEST(RecordingMistake, SidecarLines) {
             "p1 = { column = \"P2\", scale = 2, offset = 3 }; p2 = { column = \"P1\" }");
 }
 
-// Tests that the columns of a log without a sidecar are named as its export has them, with the unit of the model.
+// Tests that the columns of a log without a sidecar are named as its export has them, with the unit of the
+// model.
 TEST(RecordingMistake, ColumnsOfALog) {
   runs::MeasuredRun run = Bench();
   run.p1.source.column = run.p2.source.column = "";
@@ -115,7 +118,8 @@ TEST(RecordingMistake, ColumnsOfALog) {
               ::testing::StartsWith("p1 = { column = \"p2_Pa\""));
 }
 
-// Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign, too.
+// Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign,
+// too.
 TEST(RecordingMistake, StatedUnit) {
   runs::MeasuredRun run = Bench();
   run.p1.source.scale = run.p2.source.scale = 14.5037738;

@@ -60,7 +60,8 @@ runs::MeasuredRun Free(const model::ModelDescription& model = Table1Model()) {
   return rig.Record("run", model::Shaft::kFree, -0.2, 3, false, swing).measured;
 }
 
-// Tests that a wrong bypass is named with the line that mends it, whichever signals were recorded, and a right one is not.
+// Tests that a wrong bypass is named with the line that mends it, whichever signals were recorded, and a
+// right one is not.
 TEST(StatedBypass, Clamped) {
   for (const bool open : {false, true}) {
     const runs::MeasuredRun run = Clamped(open);
@@ -74,7 +75,8 @@ TEST(StatedBypass, Clamped) {
   }
 }
 
-// Tests that an arm which follows the motor contradicts an open bypass, and one that stays where it is a closed one.
+// Tests that an arm which follows the motor contradicts an open bypass, and one that stays where it is a
+// closed one.
 TEST(StatedBypass, FreeArm) {
   const runs::MeasuredRun closed = Free();
   for (const Columns& columns : kLayouts) {
@@ -91,8 +93,8 @@ TEST(StatedBypass, FreeArm) {
   }
 }
 
-// Tests the spring itself: of the oil's stiffness where it is closed, none where it is open; an arm that follows through the same volumes;
-// and nothing where the run is too short.
+// Tests the spring itself: of the oil's stiffness where it is closed, none where it is open; an arm that
+// follows through the same volumes; and nothing where the run is too short.
 TEST(OilSpring, Stiffness) {
   const model::Parameters model = Table1Model().parameters;
   const auto spring = FitOilSpring(model, With(kLayouts[3], Clamped(false)));
@@ -136,7 +138,8 @@ TEST(StatedBypass, FlexibleArm) {
   EXPECT_THAT(Said(With(kLayouts[3], Free(bends)), false), IsEmpty());
 }
 
-// Tests that a bare motor, whose model has oil only because it must, is told to say so, and one that stands still is not.
+// Tests that a bare motor, whose model has oil only because it must, is told to say so, and one that stands
+// still is not.
 TEST(StatedBypass, BareMotor) {
   model::ModelDescription bare = Table1Model();
   bare.parameters.D = 1e-6;

@@ -24,7 +24,8 @@ RunData Simulated(const model::ModelDescription& model) {
                     [](double t) { return std::fmod(t, 0.5) < 0.25 ? 2 : -1.5; });
 }
 
-// Tests that windows cover a run without gaps, warm-ups aside, and keep its clock, noise and integrated angle.
+// Tests that windows cover a run without gaps, warm-ups aside, and keep its clock, noise and integrated
+// angle.
 TEST(Windows, CoverTheRun) {
   const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
   const RunData run = Simulated(model);
@@ -46,7 +47,8 @@ TEST(Windows, CoverTheRun) {
   EXPECT_GT(std::abs(windows.back().start[model::kMotorAngle]), 1);
 }
 
-// Tests that a model predicts its own windows to the noise, and that one with friction twice as large does not.
+// Tests that a model predicts its own windows to the noise, and that one with friction twice as large does
+// not.
 TEST(Windows, TellAWrongModel) {
   const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
   model::ModelDescription wrong = model;
@@ -64,7 +66,8 @@ TEST(Windows, TellAWrongModel) {
   }
 }
 
-// Tests that a line's wave that is under way where a window begins is no gap: it rings for longer than any warm-up.
+// Tests that a line's wave that is under way where a window begins is no gap: it rings for longer than any
+// warm-up.
 TEST(Windows, WavesAreUnderWay) {
   const model::ModelDescription model = {
       "Table 1",
@@ -85,8 +88,8 @@ TEST(Windows, WavesAreUnderWay) {
   EXPECT_FALSE(windows[0].begins_within);
 }
 
-// Tests that what drifts over a run drifts on in its windows, whatever the recorder's clock said when the run began:
-// one rate holds for all of them, of a sensor and of the oil.
+// Tests that what drifts over a run drifts on in its windows, whatever the recorder's clock said when the run
+// began: one rate holds for all of them, of a sensor and of the oil.
 TEST(Windows, GoOnWithTheTimeOfTheRun) {
   model::ModelDescription model = {"Table 1", testing::Table1(), {}};
   model.effects = {{"sensor.pressure_drift", {{"p1", 30}, {"p2", -20}}, {}},

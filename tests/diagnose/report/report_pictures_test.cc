@@ -77,8 +77,8 @@ TEST(CurveFigure, IsAsHighAsItsCurves) {
   EXPECT_GT(panel.curves[2].y_high[2], 9);
 }
 
-// Tests that a term's picture has the curve of the effect and the points that are lacking without it, over its
-// own variable.
+// Tests that a term's picture has the curve of the effect and the points that are lacking without it, over
+// its own variable.
 TEST(TermFigure, HasTheCurveAndThePoints) {
   const diagnose::Diagnosis diagnosis = ExampleDiagnosis(60);
   ASSERT_EQ(diagnosis.terms.size(), 1u);
@@ -161,7 +161,8 @@ TEST(RunFigure, NoneWithoutCurves) {
   EXPECT_FALSE(diagnose::RunFigure(ExampleDiagnosis(kSamples), run, false).has_value());
 }
 
-// Tests that what ran away does not make the picture of a run flat, and that residuals keep room for three times the noise.
+// Tests that what ran away does not make the picture of a run flat, and that residuals keep room for three
+// times the noise.
 TEST(RunFigure, LimitsItsRanges) {
   diagnose::Diagnosis diagnosis = ExampleDiagnosis(kSamples);
   diagnosis.curves[0].curves[1].before.assign(kSamples, 1e9);
@@ -172,7 +173,8 @@ TEST(RunFigure, LimitsItsRanges) {
   EXPECT_GE(figure->panels[5].y.max, 3 * 1.62);
 }
 
-// Tests that a stretch shows the measurement, and the model with the effect and without it, in the shown unit.
+// Tests that a stretch shows the measurement, and the model with the effect and without it, in the shown
+// unit.
 TEST(StretchFigure, ShowsTheModelWithAndWithout) {
   const diagnose::Diagnosis diagnosis = ExampleDiagnosis(60);
   ASSERT_EQ(diagnosis.stretches.size(), 1u);

@@ -1,4 +1,5 @@
-// Tests that curves of many blocks are binned: narrow bins where there is much, honest errors, no bin over a step.
+// Tests that curves of many blocks are binned: narrow bins where there is much, honest errors, no bin over a
+// step.
 #include "diagnose/say/binned_curve.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +23,8 @@ std::vector<CurvePoint> Friction() {
   return points;
 }
 
-// Tests that means lie on the curve to within their errors, that errors are those of the scatter, and that none lies between the
-// two sides of the step.
+// Tests that means lie on the curve to within their errors, that errors are those of the scatter, and that
+// none lies between the two sides of the step.
 TEST(Binned, MeansAndErrors) {
   const BinnedCurve curve = Binned(Friction());
   ASSERT_GE(curve.at.size(), 20u);

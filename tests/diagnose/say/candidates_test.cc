@@ -25,7 +25,8 @@ Candidate Named(const std::vector<Candidate>& all, const std::string& id) {
   return {};
 }
 
-// Tests that every candidate is there once, with the weight of the balances, the proof's gap and its reason; the taken one first.
+// Tests that every candidate is there once, with the weight of the balances, the proof's gap and its reason;
+// the taken one first.
 TEST(Candidates, TakenFirstOthersWithAReason) {
   diagnose::ProofContext context;
   context.given = Table1With();
@@ -92,7 +93,8 @@ TEST(ChoicesWithoutEach, WhatOneRunAloneChose) {
   EXPECT_FALSE(choices[0].same);
 }
 
-// Tests that another effect wins where the others see it better by what an effect has to take, and not where it is hardly better.
+// Tests that another effect wins where the others see it better by what an effect has to take, and not where
+// it is hardly better.
 TEST(ChoicesWithoutEach, AnotherThatIsMateriallyBetter) {
   EXPECT_THAT(Chosen(ChoicesWithoutEach(ProofOf(
                   {ByRun({100, 100, 100}, {}), ByRun({64, 4, 4}, {kDelay}), ByRun({4, 16, 16}, {kLag})}))),

@@ -124,7 +124,8 @@ TEST(DescribeGaps, BySignal) {
   }
 }
 
-// Tests that the gaps of windows are there for the horizons that the runs are long enough for, and closed with what was found.
+// Tests that the gaps of windows are there for the horizons that the runs are long enough for, and closed
+// with what was found.
 TEST(HorizonGaps, AsLongAsTheRuns) {
   SmallProof& small = OfADrag();
   const std::vector<diagnose::HorizonGap> horizons = HorizonGaps(small.context, small.proof);
@@ -165,8 +166,9 @@ TEST(RunCurves, OneARun) {
   }
 }
 
-// Tests that the stretch is a 25th of the fitted run or 60 samples, with the model near the measurement with the
-// effect and away from it without, in the signal that shows the effect; an effect that the model does not have shows nowhere.
+// Tests that the stretch is a 25th of the fitted run or 60 samples, with the model near the measurement with
+// the effect and away from it without, in the signal that shows the effect; an effect that the model does not
+// have shows nowhere.
 TEST(StretchOf, ShowsWhereTheEffectMatters) {
   SmallProof& small = OfADrag();
   const diagnose::WholeRuns whole = OverWholeRuns(small.context, small.proof);

@@ -50,7 +50,8 @@ TEST(DescribeFound, WeightsOfTheBalances) {
   EXPECT_EQ(diagnose::WeightOf(skew, {{{"sensor.skew(p1)"}, 0.4}, {{"sensor.skew(p2)"}, 0.6}}), 0.4);
 }
 
-// Tests shares: of what was proved without the effect, as a part of the gap that the model's own values leave.
+// Tests shares: of what was proved without the effect, as a part of the gap that the model's own values
+// leave.
 TEST(DescribeFound, SharesOfTheTypicalGap) {
   const Proof both =
       ProofOf({Leaving(1000, Freed({})), Leaving(101, Freed({"b"})), Leaving(81, Freed({}, {kRelief})),
@@ -63,8 +64,8 @@ TEST(DescribeFound, SharesOfTheTypicalGap) {
   EXPECT_TRUE(std::isnan(Described(nothing).effects[0].share)) << "there is no gap to take";
 }
 
-// Tests that a likely explanation that predicts as well within the scatter of windows is a tie, and that one that predicts worse, one
-// that is not likely, and a part of what was found are none.
+// Tests that a likely explanation that predicts as well within the scatter of windows is a tie, and that one
+// that predicts worse, one that is not likely, and a part of what was found are none.
 TEST(DescribeFound, TiesThatTheProofDoesNotTellApart) {
   const ProvedSet delay = Leaving(1.05, Freed({}, {kDelay}), 1 / 1.2), drag = Leaving(9, Freed({}, {kDrag}));
   const Proof proof = OfALag({delay, drag});
@@ -76,7 +77,8 @@ TEST(DescribeFound, TiesThatTheProofDoesNotTellApart) {
       << "where balances say nothing";
 }
 
-// Tests that what balances cannot see may stand in an effect's place whatever they say, that other values may, and that a curve may not.
+// Tests that what balances cannot see may stand in an effect's place whatever they say, that other values
+// may, and that a curve may not.
 TEST(DescribeFound, TiesWithTheUnseenAndWithValues) {
   const ProvedSet relief = Leaving(1, Freed({}, {kRelief}), 1 / 1.2);
   const ProvedSet curve = Leaving(1, Freed({}, {{"closure.pump_torque", {}, ""}}), 1 / 1.2);
@@ -88,8 +90,8 @@ TEST(DescribeFound, TiesWithTheUnseenAndWithValues) {
               ElementsAre("valve.relief", "parameter b"));
 }
 
-// Tests each kind of claim: effects in order, whatever values are fitted beside them; few values by name; more
-// as "parameters"; none; and sets as the balances name them.
+// Tests each kind of claim: effects in order, whatever values are fitted beside them; few values by name;
+// more as "parameters"; none; and sets as the balances name them.
 TEST(ClaimOf, EachKind) {
   using diagnose::ClaimOf;
   EXPECT_EQ(ClaimOf(Freed({})), "as given");
@@ -106,7 +108,8 @@ TEST(ClaimOf, EachKind) {
   EXPECT_EQ(diagnose::ClaimOfSet({"run.T_s"}), "run.T_s");
 }
 
-// Tests that a value that moves by more than a factor of two is called implausible, down as well as up, and nothing of what was 0.
+// Tests that a value that moves by more than a factor of two is called implausible, down as well as up, and
+// nothing of what was 0.
 TEST(DescribeFound, ImplausibleValues) {
   const auto moved = [](const std::string& name, double factor, double to = 0) {
     diagnose::Hypothesis hypothesis = Freed({name});
@@ -120,8 +123,8 @@ TEST(DescribeFound, ImplausibleValues) {
   EXPECT_FALSE(moved("mgl", 1, 25).implausible);
 }
 
-// Tests that a limit which no run reaches, fitted or held out, has no value of its own: it stays as given, and a remark says that nothing
-// shows it. One that a run reaches is a value like any other.
+// Tests that a limit which no run reaches, fitted or held out, has no value of its own: it stays as given,
+// and a remark says that nothing shows it. One that a run reaches is a value like any other.
 TEST(DescribeFound, WhatNoRunReachesStaysAsGiven) {
   diagnose::Hypothesis hypothesis = Freed({"T_pmax", "b"});
   hypothesis.model.parameters.T_pmax *= 1.05;

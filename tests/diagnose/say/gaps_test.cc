@@ -18,7 +18,8 @@ std::vector<WindowGap> Windows(const std::vector<bool>& tested) {
   return gaps;
 }
 
-// Tests that models are compared on windows that all follow, and that one which follows fewer than half keeps no other from its own.
+// Tests that models are compared on windows that all follow, and that one which follows fewer than half keeps
+// no other from its own.
 TEST(KeepCommon, OnlyWhatAllFollow) {
   GapsByModel gaps;
   gaps[kAsItWas] = Windows({true, false, false, false});

@@ -38,7 +38,8 @@ struct Judged {
   }
 };
 
-// Tests that windows that are left at the noise name the effect whatever whole runs add up to, and that more is a part.
+// Tests that windows that are left at the noise name the effect whatever whole runs add up to, and that more
+// is a part.
 TEST(VerdictOn, WindowsDecide) {
   EXPECT_EQ(Judged({12, 6, 1.2}, {30, 12, 2}).Of(), Verdict::kNamed);
   EXPECT_EQ(Judged({12, 6, 1.9}, {30, 12, 2}).Of(), Verdict::kPartly);
@@ -62,8 +63,8 @@ TEST(VerdictOn, WhatCannotBeFollowedRejectsNothing) {
   EXPECT_TRUE(diagnose::IsWorse({2, 1, 3}));
 }
 
-// Tests that a gap that is left beside an effect of which the balances say nothing is unexplained, unless they cannot see it or say
-// what it is tied with.
+// Tests that a gap that is left beside an effect of which the balances say nothing is unexplained, unless
+// they cannot see it or say what it is tied with.
 TEST(VerdictOn, AGapBesideASingleWitness) {
   Judged one({12, 6, 3}, {30, 12, 9});
   one.d.explanations = {{{"amp.lag"}, 0.05}, {{"amp.delay"}, 0.95}};
@@ -87,8 +88,8 @@ TEST(VerdictOn, AGapBesideASingleWitness) {
   EXPECT_EQ(one.Of(), Verdict::kNamed) << "no gap is left";
 }
 
-// Tests that a lag of a sample or two that simulation alone speaks for is not named where it closes the gap, and that a longer one is, and
-// one of which balances speak.
+// Tests that a lag of a sample or two that simulation alone speaks for is not named where it closes the gap,
+// and that a longer one is, and one of which balances speak.
 TEST(VerdictOn, WhatARecorderDoesToo) {
   Judged one({12, 6, 1.2}, {30, 12, 2});
   one.d.effects[0].parameters = {{"tau", 1.1 * kSample, 0, 0, "s"}};
@@ -101,8 +102,8 @@ TEST(VerdictOn, WhatARecorderDoesToo) {
   EXPECT_EQ(one.Of(), Verdict::kNamed);
 }
 
-// Tests values alone: parameters at the noise, a part above it, and nothing missing where the model as given is at the noise too and
-// none of them is surely another.
+// Tests values alone: parameters at the noise, a part above it, and nothing missing where the model as given
+// is at the noise too and none of them is surely another.
 TEST(VerdictOn, ValuesAlone) {
   Judged one({12, 1.2, 1.2}, {30, 2, 2});
   one.FindNoEffect({"b", "T_s", "J", "beta"});
@@ -125,7 +126,8 @@ TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
 
-// Tests that a curve is a part of the gap and no cause: beside an effect a part is found, alone nothing is explained.
+// Tests that a curve is a part of the gap and no cause: beside an effect a part is found, alone nothing is
+// explained.
 TEST(VerdictOn, AClosureIsAPart) {
   Judged one({12, 6, 1.1}, {30, 12, 1.5});
   one.d.closures.emplace_back().id = "closure.pump_torque";
@@ -146,8 +148,8 @@ TEST(GapToCompare, OfTheNearestHorizon) {
   EXPECT_EQ(GapToCompare(one.d, one.proof).gap.after, 10);
 }
 
-// Tests that an open verdict states a gap that is open: over longer predictions, over whole runs, of the fitted runs; and says where a curve
-// has closed it.
+// Tests that an open verdict states a gap that is open: over longer predictions, over whole runs, of the
+// fitted runs; and says where a curve has closed it.
 TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
   Judged one({1.05, 1.0, 0.9}, {30, 12, 9});
   one.d.verdict = Verdict::kUnexplained;

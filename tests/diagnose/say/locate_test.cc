@@ -229,7 +229,8 @@ TEST(Locate, NoBalance) {
   EXPECT_THAT(found.location, IsEmpty());
 }
 
-// Tests that the signal that is predicted worst is named with the stretch where it is, of the run where it is.
+// Tests that the signal that is predicted worst is named with the stretch where it is, of the run where it
+// is.
 TEST(WorstSignal, IsNamedWithItsStretch) {
   const std::vector<SignalGap> signals = {{model::Channel::kMotorSpeed, 0.3, {.before = 3, .after = 0.3}, {}},
                                           {model::Channel::kP2, 1.5, {.before = 3, .after = 3}, {}}};

@@ -46,7 +46,8 @@ inline diagnose::ProvedSet Leaving(double gap, diagnose::Hypothesis hypothesis, 
   return Leaving(std::vector<double>(12, gap), std::move(hypothesis), by);
 }
 
-// Windows judged: four of each of three runs. The first set is the model as given, the second has other values, the last is best.
+// Windows judged: four of each of three runs. The first set is the model as given, the second has other
+// values, the last is best.
 inline diagnose::Proof ProofOf(std::vector<diagnose::ProvedSet> sets) {
   diagnose::Proof proof;
   proof.sets = std::move(sets);

@@ -1,4 +1,5 @@
-// Tests that the balances show the curves of the machine (its friction, its leakage, its load) and the terms of effects.
+// Tests that the balances show the curves of the machine (its friction, its leakage, its load) and the terms
+// of effects.
 #include "diagnose/say/measured_curves.h"
 
 #include <gmock/gmock.h>
@@ -38,7 +39,8 @@ void ExpectWhole(const MeasuredCurve& curve) {
   }
 }
 
-// Tests that friction over speed is measured as it is: the found model's curve lies in the band, the given one's does not.
+// Tests that friction over speed is measured as it is: the found model's curve lies in the band, the given
+// one's does not.
 TEST(MeasuredCurves, FrictionOverSpeed) {
   model::ModelDescription given = Table1With();
   given.parameters.T_s = 3;
@@ -63,7 +65,8 @@ TEST(MeasuredCurves, FrictionOverSpeed) {
   }
 }
 
-// Tests that leakage from side 2 to side 1 grows with p2 - p1 as the rig's does, and that the given model's is its own.
+// Tests that leakage from side 2 to side 1 grows with p2 - p1 as the rig's does, and that the given model's
+// is its own.
 TEST(MeasuredCurves, LeakageOverPressure) {
   model::ModelDescription truth = Table1With();
   truth.parameters.c_I = 4e-5;
@@ -81,7 +84,8 @@ TEST(MeasuredCurves, LeakageOverPressure) {
   }
 }
 
-// Tests that the arm's load over its angle is measured in free runs, and that there is none where the arm is held.
+// Tests that the arm's load over its angle is measured in free runs, and that there is none where the arm is
+// held.
 TEST(MeasuredCurves, LoadOverAngle) {
   model::ModelDescription truth = Table1With(), given = Table1With();
   truth.parameters.mgl = 150;

@@ -122,7 +122,8 @@ LackingRun Forward(double size) {
   return run;
 }
 
-// Tests that masked stretches count for nothing: blocks that are mostly masked are left out, and of others only the rest counts.
+// Tests that masked stretches count for nothing: blocks that are mostly masked are left out, and of others
+// only the rest counts.
 TEST(Blocks, RespectMasks) {
   LackingRun run = Forward(3);
   const auto b = static_cast<size_t>(BalanceKind::kTorque);
@@ -173,7 +174,8 @@ TEST(Variables, HaveTheModelsUnits) {
   EXPECT_EQ(units({"mm", "N", true}).at("motor_speed"), "rad/s");
 }
 
-// Tests what is offered: waves of a turn only on request, none for the arm; limits of the voltage with their places.
+// Tests what is offered: waves of a turn only on request, none for the arm; limits of the voltage with their
+// places.
 TEST(Variables, WhatIsOffered) {
   const std::vector<LackingRun> runs = {Forward(3)};
   EXPECT_EQ(MotionVariables(runs, BalanceKind::kFlow1, {}, true).size(),
@@ -193,7 +195,8 @@ TEST(Variables, WhatIsOffered) {
   EXPECT_TRUE(LateVariables(runs, BalanceKind::kArm, {}).empty());
 }
 
-// Tests that what is lacking is seen over what it depends on, and that nothing is seen in noise or where there is no balance.
+// Tests that what is lacking is seen over what it depends on, and that nothing is seen in noise or where
+// there is no balance.
 TEST(Seen, WhatIsLacking) {
   const Seen seen = LookAt({Forward(3), Forward(3)}, BalanceKind::kTorque, {});
   EXPECT_GT(seen.energy, 1000);

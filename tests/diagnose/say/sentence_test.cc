@@ -100,8 +100,9 @@ TEST(Sentence, AGapOverWindows) {
               HasSubstr("(held-out gap over 0.4 s 11 to 1.2 noise units)"));
 }
 
-// Tests that the words agree with the figure beside them, for every verdict, what was found and gap: no share of noise, nothing taken that
-// does not fall, no gap left beside one that a curve has closed, and no number that is none.
+// Tests that the words agree with the figure beside them, for every verdict, what was found and gap: no share
+// of noise, nothing taken that does not fall, no gap left beside one that a curve has closed, and no number
+// that is none.
 TEST(Sentence, WordsAgreeWithTheFigures) {
   const double gaps[] = {0.6, 0.95, 1.0, 1.2, 3, 400, std::numeric_limits<double>::infinity(), std::nan("")};
   size_t said = 0;
@@ -135,7 +136,8 @@ TEST(Sentence, WordsAgreeWithTheFigures) {
   EXPECT_EQ(said, 6u * 8 * 8 * 8);
 }
 
-// Tests that a gap over whole runs or of the fitted ones is said to be that where windows are what is compared.
+// Tests that a gap over whole runs or of the fitted ones is said to be that where windows are what is
+// compared.
 TEST(Sentence, AGapElsewhere) {
   diagnose::Diagnosis d = With(Verdict::kUnexplained);
   d.effects.clear();

@@ -40,8 +40,8 @@ double SumOf(const Diagnosis& d) {
   return sum;
 }
 
-// Tests that where both witnesses agree the weight stays near one, and that where they do not none is surer than even and both are in the
-// set of nine in ten.
+// Tests that where both witnesses agree the weight stays near one, and that where they do not none is surer
+// than even and both are in the set of nine in ten.
 TEST(HearBothWitnesses, AgreementAndDisagreement) {
   const Diagnosis agree = Heard(OfALag(), {{{"amp.lag"}, 0.98}, {{}, 0.02}});
   EXPECT_GT(WeightIn(agree, {"amp.lag"}), 0.8);
@@ -54,7 +54,8 @@ TEST(HearBothWitnesses, AgreementAndDisagreement) {
   EXPECT_DOUBLE_EQ(apart.effects.at(0).weight, WeightIn(apart, {"amp.lag"}));
 }
 
-// Tests that what predicts nearly as well keeps a part of the proof's weight, and what predicts far worse none.
+// Tests that what predicts nearly as well keeps a part of the proof's weight, and what predicts far worse
+// none.
 TEST(HearBothWitnesses, PartsOfWhatPredictsNearlyAsWell) {
   const Diagnosis d = Heard(OfALag(), {{{"amp.lag"}, 1}});
   EXPECT_GT(WeightIn(d, {"amp.delay"}), 0.05);
@@ -73,8 +74,8 @@ TEST(HearBothWitnesses, CurvesAndValuesByOneName) {
   EXPECT_NEAR(WeightIn(d, {"value.c_I"}), 0.15, 1e-6);
 }
 
-// Tests that the balances' weights stay where nothing can be simulated, and where pressures were not recorded, of which simulation says
-// nothing.
+// Tests that the balances' weights stay where nothing can be simulated, and where pressures were not
+// recorded, of which simulation says nothing.
 TEST(HearBothWitnesses, OneWitnessAlone) {
   Proof silent = OfALag();
   for (diagnose::WindowGap& gap : silent.sets.back().near) gap.tested = false;

@@ -7,8 +7,8 @@
 namespace hydro::testing {
 namespace {
 
-// Tests that a bias adds to the torque whatever the command is: the bypassed pump ends at T_p + bias = T_s + b w, also
-// where the amplifier's limit holds T_p.
+// Tests that a bias adds to the torque whatever the command is: the bypassed pump ends at T_p + bias = T_s +
+// b w, also where the amplifier's limit holds T_p.
 TEST(Bias, AddsToTheTorque) {
   model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
@@ -20,7 +20,8 @@ TEST(Bias, AddsToTheTorque) {
   }
 }
 
-// Tests that a bias alone moves a pump whose friction it exceeds, and leaves one at rest whose friction it does not.
+// Tests that a bias alone moves a pump whose friction it exceeds, and leaves one at rest whose friction it
+// does not.
 TEST(Bias, HasToOvercomeFriction) {
   model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;

@@ -1,4 +1,5 @@
-// Loads, gears and drives of a bare motor: each against a closed form, or against the textbook's equations integrated here.
+// Loads, gears and drives of a bare motor: each against a closed form, or against the textbook's equations
+// integrated here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,7 +102,8 @@ TEST(GearLoadFriction, GrowsWithWhatTheGearPassesOn) {
   }
 }
 
-// Tests that a gear whose load side rubs as much as it carries cannot be driven by its load, as a worm gear's.
+// Tests that a gear whose load side rubs as much as it carries cannot be driven by its load, as a worm
+// gear's.
 TEST(GearLoadFriction, LocksAWormGear) {
   for (const double load : {0.5, 1.2}) {
     Rig rig = RigOf(BareMotor({{"gear.load_friction", Numbers{{"load", load}}, {}},
@@ -129,8 +131,8 @@ TEST(GearFrictionRipple, FollowsTheAngle) {
   }
 }
 
-// Tests that a motor on a voltage runs up to v/k_e with the time constant J/(k_1 k_e), and with the inductance that a second-order
-// equation gives.
+// Tests that a motor on a voltage runs up to v/k_e with the time constant J/(k_1 k_e), and with the
+// inductance that a second-order equation gives.
 TEST(MotorBackEmf, RunsUpAsTheTextbookSays) {
   const double k_e = 0.02, voltage = 2, rate = 4 * k_e / 0.03;
   Rig rig = RigOf(BareMotor({{"motor.back_emf", Numbers{{"k_e", k_e}, {"tau", 0}}, {}}}));
@@ -148,7 +150,8 @@ TEST(MotorBackEmf, RunsUpAsTheTextbookSays) {
   EXPECT_NEAR(slow.Measure().motor_speed, wound.angle, 1e-4);
 }
 
-// Tests that the amplifier's limit holds the torque where the winding would give more, and lets go where it gives less.
+// Tests that the amplifier's limit holds the torque where the winding would give more, and lets go where it
+// gives less.
 TEST(MotorBackEmf, KeepsTheLimit) {
   Rig rig = RigOf(BareMotor({{"motor.back_emf", Numbers{{"k_e", 0.1}, {"tau", 0}}, {}}}));
   const double voltage = 15;  // 60 in-lbf at rest, 40 allowed: until (60 - 40)/4/0.1 = 50 rad/s
@@ -160,7 +163,8 @@ TEST(MotorBackEmf, KeepsTheLimit) {
   EXPECT_NEAR(rig.Measure().motor_speed, 150 - 100 * std::exp(-4 * 0.1 / 0.03 * 0.05), 1e-4);
 }
 
-// Tests that commands within the dead band do nothing, and what is beyond it acts, also behind a delay and before a lag.
+// Tests that commands within the dead band do nothing, and what is beyond it acts, also behind a delay and
+// before a lag.
 TEST(AmpInputDeadBand, TakesTheMiddleAway) {
   const model::EffectDescription band = {"amp.input_dead_band", Numbers{{"width", 0.5}}, {}};
   const model::Equations equations(BareMotor({band}), Bypassed());
@@ -178,7 +182,8 @@ TEST(AmpInputDeadBand, TakesTheMiddleAway) {
   EXPECT_NEAR(TermsOf(late, 2).torque, 6 * (1 - std::exp(-1)), 1e-6);
 }
 
-// Tests that the acting voltage moves in straight lines: up to a command, and back from halfway where the command turns.
+// Tests that the acting voltage moves in straight lines: up to a command, and back from halfway where the
+// command turns.
 TEST(AmpInputRateLimit, MovesInStraightLines) {
   Rig rig = RigOf(BareMotor({{"amp.input_rate_limit", Numbers{{"rate", 100}}, {}}}));
   const auto torque_at = [&](double voltage, double time) {
@@ -209,8 +214,8 @@ TEST(MotorCurrentLimit, FallsAboveItsCorner) {
   EXPECT_EQ(TermsOf(rig, -10).torque, -40);
 }
 
-// Tests play: the motor runs free through the gap, pushes the load behind it, and keeps the energy of both; against the equations of
-// two masses and a spring with a dead zone, integrated here in small steps.
+// Tests play: the motor runs free through the gap, pushes the load behind it, and keeps the energy of both;
+// against the equations of two masses and a spring with a dead zone, integrated here in small steps.
 TEST(GearBacklash, PassesNothingWithinTheGap) {
   const double gap = 0.2, stiffness = 300, inertia = 0.02;
   Rig rig =

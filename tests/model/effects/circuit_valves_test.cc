@@ -1,5 +1,5 @@
-// Pilot-operated check valves, a flushing shuttle and a gas accumulator: against closed forms; and the trouble that circuits for
-// cylinders with a rod on one side are known for.
+// Pilot-operated check valves, a flushing shuttle and a gas accumulator: against closed forms; and the
+// trouble that circuits for cylinders with a rod on one side are known for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,8 @@ void ExpectFlow(double p1, double p2, int position, double flow) {
   EXPECT_NEAR(x.valve_flow_1, flow, 1e-12) << p1 << " " << p2;
 }
 
-// Tests the check valve's own opening below p_3, and that the other side's pressure opens it against the side's own.
+// Tests the check valve's own opening below p_3, and that the other side's pressure opens it against the
+// side's own.
 TEST(ValvePilot, OpensByBothPressures) {
   ExpectFlow(95, 100, 0, 0);                          // below p_3 by less than the cracking pressure
   ExpectFlow(70, 100, 1, 0.01 * 0.5 * (70 - 100.0));  // (30 - 10)/40 open: oil comes in
@@ -86,9 +87,9 @@ TEST(AccumulatorGas, KeepsItsLaw) {
   }
 }
 
-// A cylinder of areas 1 to 0.65 with pilot-operated check valves, whose pump turns at a steady speed under a proportional speed loop,
-// while a constant force loads it. Of the last second of four: the largest swing of side 2's pressure, and how often a valve opened
-// or closed.
+// A cylinder of areas 1 to 0.65 with pilot-operated check valves, whose pump turns at a steady speed under a
+// proportional speed loop, while a constant force loads it. Of the last second of four: the largest swing of
+// side 2's pressure, and how often a valve opened or closed.
 struct Swing {
   double pressure = 0;
   int openings = 0;
@@ -126,9 +127,10 @@ Swing SwingUnder(double force, double speed) {
   return swing;
 }
 
-// Tests the oscillation between modes that such circuits are known for: a cylinder that is drawn in near the load at which both sides
-// are at about the charge pressure does not settle, because neither valve can stay open: the pressures swing and the valves change
-// for as long as the pump turns. With a clear load of either sign, and on the way out, all settle.
+// Tests the oscillation between modes that such circuits are known for: a cylinder that is drawn in near the
+// load at which both sides are at about the charge pressure does not settle, because neither valve can stay
+// open: the pressures swing and the valves change for as long as the pump turns. With a clear load of either
+// sign, and on the way out, all settle.
 TEST(ValvePilot, OscillatesBetweenItsModesNearZeroLoad) {
   for (const double force : {150.0, 300.0}) {
     const Swing swing = SwingUnder(force, -60);

@@ -33,8 +33,8 @@ double At(const std::vector<double>& knots, const std::vector<double>& values, d
   return y;
 }
 
-// Tests that a curve goes through its values, is a straight line where they are on one and beyond its ends, and has no
-// jump in its slope anywhere, also where knots are unevenly spaced.
+// Tests that a curve goes through its values, is a straight line where they are on one and beyond its ends,
+// and has no jump in its slope anywhere, also where knots are unevenly spaced.
 TEST(Knots, MakeASmoothCurve) {
   const std::vector<double> knots = {-4, -0.5, -0.1, 0.1, 2, 7}, values = {1, -2, -2, 2, 2, 5};
   std::vector<double> line;
@@ -53,7 +53,8 @@ TEST(Knots, MakeASmoothCurve) {
   EXPECT_NEAR(At(knots, values, -5), 1 + 3 / 3.5, 1e-12);
 }
 
-// Tests that the central slope is that between the neighbours: between 0.1 and 2 the curve of values 2, 2 leaves 2 with it.
+// Tests that the central slope is that between the neighbours: between 0.1 and 2 the curve of values 2, 2
+// leaves 2 with it.
 TEST(Knots, SlopesAreThoseBetweenTheNeighbours) {
   const std::vector<double> knots = {-0.1, 0.1, 2, 7}, values = {-2, 2, 2, 5};
   constexpr double kStep = 1e-6;
@@ -61,7 +62,8 @@ TEST(Knots, SlopesAreThoseBetweenTheNeighbours) {
   EXPECT_NEAR((At(knots, values, 2 + kStep) - 2) / kStep, 3 / 6.9, 1e-3);
 }
 
-// Tests that a torque on the pump acts like the friction that it copies: drag that is a straight line of speed is b.
+// Tests that a torque on the pump acts like the friction that it copies: drag that is a straight line of
+// speed is b.
 TEST(Closure, ATorqueOnThePump) {
   model::ModelDescription thick = Table1Model();
   thick.parameters.b += 0.02;
@@ -92,7 +94,8 @@ TEST(Closure, FlowsIntoTheSides) {
   }
 }
 
-// Tests that friction of the arm holds against a torque of a closure too: a spring moves an arm that friction does not hold.
+// Tests that friction of the arm holds against a torque of a closure too: a spring moves an arm that friction
+// does not hold.
 TEST(Closure, ATorqueOnTheArm) {
   model::ActuatorOptions options = Held(model::Shaft::kFree);
   options.arm_angle = 0.2;
@@ -137,7 +140,8 @@ TEST(Closure, ASurface) {
   }
 }
 
-// Tests the derivatives of a response by the values of a curve and a surface, and by the start, against differences.
+// Tests the derivatives of a response by the values of a curve and a surface, and by the start, against
+// differences.
 TEST(Closure, DerivativesEqualDifferenceQuotients) {
   const model::ModelDescription model = Table1Model(
       {Curve("pump_torque", "motor_speed", {-8, -1, 1, 4, 12}, {0.5, 0.2, -0.3, -0.1, -0.6}), Surface()});

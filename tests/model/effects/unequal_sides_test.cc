@@ -1,4 +1,5 @@
-// Cylinders with the rod on one side, and pumps for them: against the textbook's equations of the same circuit, integrated here.
+// Cylinders with the rod on one side, and pumps for them: against the textbook's equations of the same
+// circuit, integrated here.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +20,8 @@ model::EffectDescription Difference(const std::string& id, double difference) {
   return {id, {{"difference", difference}}, {}};
 }
 
-// The machine of the equations below in this project's words. c and k_2 are one area, so that power is conserved.
+// The machine of the equations below in this project's words. c and k_2 are one area, so that power is
+// conserved.
 model::ModelDescription Cylinder(double pump_difference = 0) {
   model::ModelDescription model =
       Table1Model({Difference("actuator.unequal_areas", (kBore - kRing) / (kBore + kRing)),
@@ -32,8 +34,9 @@ model::ModelDescription Cylinder(double pump_difference = 0) {
   return model;
 }
 
-// A pump that slips in one direction, a cylinder of two areas, and ideal one-way valves from a charge line: states angle, speed,
-// p1, p2, position, velocity. Merritt, Hydraulic Control Systems, chapter 6, for a pump in the place of the valve.
+// A pump that slips in one direction, a cylinder of two areas, and ideal one-way valves from a charge line:
+// states angle, speed, p1, p2, position, velocity. Merritt, Hydraulic Control Systems, chapter 6, for a pump
+// in the place of the valve.
 using State = std::array<double, 6>;
 
 struct Textbook {
@@ -56,7 +59,8 @@ struct Textbook {
             x[5],   (kBore * x[3] - kRing * x[2] - p.mgl * std::cos(x[4])) / p.J_a};
   }
 
-  // Classical Runge-Kutta; a chamber below the charge pressure is put there, as a valve without resistance does.
+  // Classical Runge-Kutta; a chamber below the charge pressure is put there, as a valve without resistance
+  // does.
   void Step(State* x, double h) const {
     const auto moved = [&](const State& rate, double by) {
       State y = *x;
@@ -69,7 +73,8 @@ struct Textbook {
   }
 };
 
-// The quadrants: the load pulls or pushes (mgl), the pump turns forward or backward, always past its friction.
+// The quadrants: the load pulls or pushes (mgl), the pump turns forward or backward, always past its
+// friction.
 void ExpectTextbook(double pump_difference, double mgl, double voltage) {
   model::ModelDescription model = Cylinder(pump_difference);
   model.parameters.mgl = mgl;
@@ -92,8 +97,8 @@ void ExpectTextbook(double pump_difference, double mgl, double voltage) {
   EXPECT_GT(std::abs(x[4]), 3e-4) << "the cylinder must move";
 }
 
-// Tests all four quadrants against the textbook's equations: with equal ports, whose surplus of oil the one-way valves and the
-// leakage must carry, and with ports in the ratio of the areas.
+// Tests all four quadrants against the textbook's equations: with equal ports, whose surplus of oil the
+// one-way valves and the leakage must carry, and with ports in the ratio of the areas.
 TEST(UnequalSides, FollowTheTextbookInFourQuadrants) {
   for (const double pump : {0.0, (kBore - kRing) / (kBore + kRing)}) {
     for (const double mgl : {-200.0, 200.0}) {
@@ -127,8 +132,8 @@ TEST(UnequalSides, ConservePower) {
   }
 }
 
-// Tests that a pump whose ports are in the ratio of the areas needs no oil from the valves: both pressures stay above p_3 while it
-// drives a sealed cylinder without a load, and the arm moves by D/c of the pump.
+// Tests that a pump whose ports are in the ratio of the areas needs no oil from the valves: both pressures
+// stay above p_3 while it drives a sealed cylinder without a load, and the arm moves by D/c of the pump.
 TEST(UnequalSides, MatchedPortsLeaveNothingOver) {
   model::ModelDescription model = Cylinder((kBore - kRing) / (kBore + kRing));
   model.parameters.c_E = model.parameters.c_I = model.parameters.mgl = 0;
@@ -148,8 +153,8 @@ TEST(UnequalSides, MatchedPortsLeaveNothingOver) {
   EXPECT_GT(std::abs(m.arm_angle), 2 * stretched);
 }
 
-// Tests that a clamped arm feels the pressures by the areas, and moves off where equal pressures leave a force: the rod's area
-// times the pressure.
+// Tests that a clamped arm feels the pressures by the areas, and moves off where equal pressures leave a
+// force: the rod's area times the pressure.
 TEST(UnequalSides, EqualPressuresPushTheRodOut) {
   model::ModelDescription model = Cylinder();
   model.parameters.mgl = 0;
@@ -161,7 +166,8 @@ TEST(UnequalSides, EqualPressuresPushTheRodOut) {
   EXPECT_NEAR(rate[model::kArmSpeed], 250 * (kBore - kRing) / model.parameters.J_a, 1e-9);
 }
 
-// Tests that the stroke ends where the smaller chamber has no volume, and that the error says between which angles it does.
+// Tests that the stroke ends where the smaller chamber has no volume, and that the error says between which
+// angles it does.
 TEST(UnequalSides, EndTheStrokeUnevenly) {
   const model::ModelDescription model = Cylinder();
   const model::Travel travel = model::TravelOf(model);

@@ -216,7 +216,8 @@ TEST(FrontEndRigTest, ATripIsAFaultFirst) {
   EXPECT_EQ(bench.device.state, HYDRO_TRIPPED);
 }
 
-// Tests that a device which says that it drives, by its own law or by a command that was never sent, while it is told zero, is a fault.
+// Tests that a device which says that it drives, by its own law or by a command that was never sent, while it
+// is told zero, is a fault.
 TEST(FrontEndRigTest, OutputByNoCommand) {
   for (const uint8_t source : {HYDRO_SOURCE_LAW, HYDRO_SOURCE_VOLTAGE}) {
     DeviceBench bench;
@@ -232,6 +233,39 @@ TEST(FrontEndRigTest, OutputByNoCommand) {
     bench.Ticks(2, 0);
     EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 10 V; it was told 0 V"));
   }
+}
+
+// Tests that a device which says that it is armed though nobody has asked it to arm is at fault, with zero
+// volts too, and is asked to disarm; and that one which was asked and told zero volts is not.
+TEST(FrontEndRigTest, ArmedUnasked) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  const auto hold = [&](int count) {
+    for (int i = 0; i < count; ++i) bench.Tick(0, /*obeys=*/false);
+  };
+  hold(20);
+  ASSERT_TRUE(bench.rig->faults().empty());
+  bench.lie = [](hydro_sample& sample) { sample.state = HYDRO_ARMED; };
+  hold(3);
+  EXPECT_THAT(bench.Fault("device_fault"), HasSubstr("armed with 0 V and was not asked to arm"));
+  bench.lie = nullptr;
+  hold(3);
+  EXPECT_TRUE(bench.rig->faults().empty());
+
+  // It really is, and does as it is told then.
+  bench.device.state = HYDRO_ARMED;
+  bench.device.obeyed = {};
+  hold(2);
+  EXPECT_NE(bench.Fault("device_fault"), "");
+  hold(60);  // a request each 50 ms
+  EXPECT_NE(bench.device.state, HYDRO_ARMED);
+  hold(20);
+
+  bench.Ticks(50, 3);
+  ASSERT_EQ(bench.volts, -1.5F);
+  hold(500);
+  EXPECT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+  EXPECT_EQ(bench.device.state, HYDRO_ARMED) << "held at zero, ready to go on";
 }
 
 // Tests that the driver compares too: a device that says that it puts out something else than it was told,

@@ -227,11 +227,27 @@ TEST(LinkTest, Udp) {
   for (int i = 0; i < 100; ++i) send_to_driver(device, Bytes(107, 5));
   size_t all = 0;
   Bytes chunk(4096);
-  while (const size_t got = link->Read(chunk)) {
-    EXPECT_EQ(got % 107, 0U);
-    all += got;
-  }
+  while (const size_t count = link->Read(chunk)) all += count;
   EXPECT_EQ(all, 100U * 107);
+
+  // None is cut where a read ends, nor one that is longer than a read.
+  Bytes sent, got;
+  for (const size_t size : {size_t{40}, size_t{41}, size_t{1}, size_t{200}, size_t{63}}) {
+    send_to_driver(device, Numbered(size));
+    const Bytes one = Numbered(size);
+    sent.insert(sent.end(), one.begin(), one.end());
+  }
+  for (int tries = 0; tries < 10000 && got.size() < sent.size(); ++tries) {
+    const size_t count = link->Read(some);
+    got.insert(got.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  EXPECT_EQ(got, sent);
+
+  // A flood of empty ones holds no read, and hides nothing.
+  for (int i = 0; i < 150; ++i) send_to_driver(device, {});
+  send_to_driver(device, {4});
+  EXPECT_EQ(link->Read(some), 0U) << "no more than a bounded number in one read";
+  EXPECT_EQ(ReadSome(*link, 1), Bytes{4});
   close(device);
   close(stranger);
   for (int i = 0; i < 5; ++i) {

@@ -1,7 +1,11 @@
 // The pressure loop on the device: what the rig passes on, and what comes back.
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/plant/front_end/device_bench.h"
 
@@ -127,6 +131,71 @@ TEST_F(LoopOnDeviceTest, ReferenceLimit) {
   for (int i = 0; i < 3; ++i) Follow(100, Law(0.02));
   EXPECT_EQ(bench.volts, 0);
   EXPECT_GT(limit, 90);
+}
+
+// Tests that a device whose voltage is not that of eq. (16) for its own readings is at fault in the very
+// sample, with an arm that stands still (all readings are constant here) as with one that moves: by its gain,
+// its sign, a reference or a change of gains of its own invention.
+TEST_F(LoopOnDeviceTest, ALawThatLies) {
+  using Lie = std::function<void(hydro_sample&)>;
+  const std::vector<std::pair<Lie, std::string>> lies = {
+      {[](hydro_sample& s) { s.voltage = 1.02F * s.voltage; }, "puts out 1.224 V; eq. (16) gives 1.2 V"},
+      {[](hydro_sample& s) { s.voltage = -s.voltage; }, "puts out -1.2 V; eq. (16) gives 1.2 V"},
+      {[](hydro_sample& s) { s.voltage = 0; }, "puts out 0 V; eq. (16) gives 1.2 V"},
+      {[](hydro_sample& s) { s.voltage = NAN; }, "eq. (16) gives 1.2 V"},
+      {[](hydro_sample& s) { s.voltage = 1.5F, s.saturated = 1; }, "puts out 1.5 V; eq. (16) gives 1.2 V"},
+      {[](hydro_sample& s) { s.value[HYDRO_P2] += 10; }, "puts out 1.2 V; eq. (16) gives 1 V"},
+      {[](hydro_sample& s) { s.pressure_ref = 110, s.voltage = 1.42F; },
+       "a reference of 110; it was told 100"},
+      {[](hydro_sample& s) { s.transfer = 3, s.voltage += 3; },
+       "adds 3 V to eq. (16) for a change of its gains"}};
+  for (const bool moves : {false, true}) {
+    bench.before_tick = [&](uint64_t tick) {
+      if (moves) bench.readings.counter[0] = static_cast<uint32_t>(tick / 50);
+    };
+    for (const auto& [lie, words] : lies) {
+      bench.lie = nullptr;
+      for (int i = 0; i < 150; ++i) Follow(100, Law(0.02));
+      ASSERT_TRUE(bench.rig->faults().empty()) << words << ": " << bench.rig->faults().front().text;
+      bench.lie = lie;
+      for (int i = 0; i < 2; ++i) Follow(100, Law(0.02));
+      EXPECT_NE(bench.Fault("output_differs"), "") << words;
+      if (!moves) {
+        EXPECT_THAT(bench.Fault("output_differs"), ::testing::HasSubstr(words));
+      }
+      EXPECT_EQ(bench.volts, 0) << "it was told zero";
+    }
+  }
+}
+
+// Tests that a device that goes on by its law where it is told zero volts is at fault, and that what it puts
+// out is then no motor command's.
+TEST_F(LoopOnDeviceTest, ALawThatDoesNotEnd) {
+  for (int i = 0; i < 20; ++i) Follow(100, Law(0.02));
+  const hydro_sample last = bench.device.sample;
+  ASSERT_EQ(last.source, HYDRO_SOURCE_LAW);
+  bench.lie = [&](hydro_sample& s) {
+    s.state = HYDRO_ARMED;
+    s.source = HYDRO_SOURCE_LAW;
+    s.command_sequence = last.command_sequence;
+    s.pressure_ref = last.pressure_ref;
+    s.voltage = last.voltage;
+  };
+  bench.rig->Release();
+  bench.Ticks(150, 0);
+  EXPECT_THAT(bench.Fault("output_differs"), ::testing::HasSubstr("puts out 1.2 V; it was told 0 V"));
+  EXPECT_EQ(bench.rig->acting_command_tick(), -1);
+}
+
+// Tests that what a change of gains adds is no lie while it passes.
+TEST_F(LoopOnDeviceTest, AChangeOfGainsIsNoLie) {
+  for (int i = 0; i < 20; ++i) Follow(100, Law(0.02));
+  for (int change = 0; change < 4; ++change) {
+    for (int i = 0; i < 40; ++i) {
+      Follow(100 + i, Law(change % 2 == 0 ? 0.04 : 0.02));
+      ASSERT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    }
+  }
 }
 
 }  // namespace

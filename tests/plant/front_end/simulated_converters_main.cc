@@ -157,8 +157,8 @@ void Run(const hydro::settings::FrontEndUrl& url, Machine& machine) {
       std::fflush(stdout);
     }
     if (!outputs.empty()) next_greeting = now + 500ms;
-    if (now >=
-        next_greeting) {  // the device does not know where the machine is, or an emulator sleeps until a byte comes
+    if (now >= next_greeting) {  // the device does not know where the machine is, or an emulator sleeps until
+                                 // a byte comes
       next_greeting = now + (heard ? 500ms : 50ms);
       talk.Send(machine.Now());
     }

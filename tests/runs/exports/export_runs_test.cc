@@ -56,7 +56,8 @@ runs::RunMessages Part(int first, int last, int64_t session) {
   return run;
 }
 
-// Tests that without channels the run's table is exported, and with them their messages; each row has the plant time of its tick.
+// Tests that without channels the run's table is exported, and with them their messages; each row has the
+// plant time of its tick.
 TEST_F(ExportRunsTest, TableAndChannels) {
   const std::string file = Write("run.lcmlog", log::SampleRun(7));
   const auto table = Read({file}, {});
@@ -125,7 +126,8 @@ TEST_F(ExportRunsTest, SeveralLogs) {
   EXPECT_EQ(runs[2].name, "run_2");
 }
 
-// Tests that a log of two plants has no table, which --all-channels says, and that their messages keep their own times.
+// Tests that a log of two plants has no table, which --all-channels says, and that their messages keep their
+// own times.
 TEST_F(ExportRunsTest, SeveralSessions) {
   runs::RunMessages run = Part(0, 4, 7);
   const runs::RunMessages next = Part(0, 3, 8);
@@ -143,7 +145,8 @@ TEST_F(ExportRunsTest, SeveralSessions) {
   EXPECT_EQ(SheetOf(runs[0], "HYDRO_STATE").rows(), 9u);
 }
 
-// Tests that a log without this stack's messages, a damaged one and wrong choices are errors that say what is allowed.
+// Tests that a log without this stack's messages, a damaged one and wrong choices are errors that say what is
+// allowed.
 TEST_F(ExportRunsTest, WrongInput) {
   const std::string file = Write("run.lcmlog", log::SampleRun(7));
   const auto error = [&](const Selection& selection) {

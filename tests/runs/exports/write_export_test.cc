@@ -54,8 +54,8 @@ ExportedRun EveryKind(size_t rows) {
 
 class WriteExportTest : public log::LogTest {};
 
-// Tests that every format takes every kind of column, of one run and of several, with rows and without, and that the same runs give the
-// same bytes.
+// Tests that every format takes every kind of column, of one run and of several, with rows and without, and
+// that the same runs give the same bytes.
 TEST_F(WriteExportTest, EveryKindOfColumn) {
   for (const Format format : {Format::kMat, Format::kMat73, Format::kHdf5, Format::kMcap}) {
     for (const size_t rows : {0u, 2u}) {
@@ -72,8 +72,8 @@ TEST_F(WriteExportTest, EveryKindOfColumn) {
   }
 }
 
-// Tests that a MAT file that does not fit is an error wherever it is cut, and leaves nothing: matio does not report its last buffer, and a
-// channel's struct is most of the file.
+// Tests that a MAT file that does not fit is an error wherever it is cut, and leaves nothing: matio does not
+// report its last buffer, and a channel's struct is most of the file.
 TEST_F(WriteExportTest, NoRoomForAMatFile) {
   const std::vector<ExportedRun> runs = {EveryKind(2)};
   WriteExport(runs, Format::kMat, "test", Path("whole"));
@@ -113,7 +113,8 @@ TEST_F(WriteExportTest, MatIsRead) {
   }
 }
 
-// Tests CSV: empty cells for what is missing, quotes, lists as words, units in a channel's names; and that it holds one table.
+// Tests CSV: empty cells for what is missing, quotes, lists as words, units in a channel's names; and that it
+// holds one table.
 TEST_F(WriteExportTest, Csv) {
   ExportedRun run = EveryKind(2);
   EXPECT_THAT(log::InputErrorOf([&] { WriteExport({run}, Format::kCsv, "test", Path("x")); }),

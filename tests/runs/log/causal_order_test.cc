@@ -91,8 +91,8 @@ class SameTickTest : public CausalOrderTest {
   }
 };
 
-// Tests that a motor command waits for the pressure command of its tick, which it follows from, and the next state for
-// it.
+// Tests that a motor command waits for the pressure command of its tick, which it follows from, and the next
+// state for it.
 TEST_F(SameTickTest, MotorCommandWaitsForThePressureCommand) {
   Take(Kind::kState, 0);
   Take(Kind::kMotorCommand, 0);

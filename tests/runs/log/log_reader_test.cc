@@ -27,8 +27,8 @@ TEST_F(LogReaderTest, EmptyFile) {
   EXPECT_TRUE(ReadEvents(Path("log")).empty());
 }
 
-// Tests that a log without checksums cut at any byte of any event gives the events before it, then an error that names the
-// place.
+// Tests that a log without checksums cut at any byte of any event gives the events before it, then an error
+// that names the place.
 TEST_F(LogReaderTest, TruncatedAtEveryByte) {
   WritePlain(Path("log"), kEvents);
   const std::string bytes = ReadBytes(Path("log"));

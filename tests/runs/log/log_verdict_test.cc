@@ -122,8 +122,8 @@ TEST_F(LogVerdictTest, AppendedTo) {
   EXPECT_THAT(verdict.where, HasSubstr("event 1000: found an event after the mark of the end"));
 }
 
-// Tests that removed messages are named with the times between which they are missing, in one block and across
-// several.
+// Tests that removed messages are named with the times between which they are missing, in one block and
+// across several.
 TEST_F(LogVerdictTest, RemovedMessages) {
   std::string bytes = Sample();
   const size_t first = 70;

@@ -157,7 +157,8 @@ TEST_F(RepairTest, WholeLog) {
   EXPECT_FALSE(result.mended());
 }
 
-// Tests that a log of which no message can be kept is not mended into one that looks like a run of nothing, in place neither.
+// Tests that a log of which no message can be kept is not mended into one that looks like a run of nothing,
+// in place neither.
 TEST_F(RepairTest, NothingToKeep) {
   WriteRun(Path("log"), SampleRun(20));
   const std::string bytes = ReadBytes(Path("log"));
@@ -186,7 +187,8 @@ TEST_F(RepairTest, NoEventAtAll) {
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
 }
 
-// Tests that repair in place keeps the damaged log beside the new one under a name that it tells, and any older one.
+// Tests that repair in place keeps the damaged log beside the new one under a name that it tells, and any
+// older one.
 TEST_F(RepairTest, InPlace) {
   std::vector<EventContents> events;
   std::vector<size_t> begins;

@@ -32,7 +32,8 @@ int RunToEnd(Limb& limb) {
   return limb.End({});
 }
 
-// Tests that the joints of a limb with an arm are those of the model's coupled arm under the voltages that the limb drove, to the bit.
+// Tests that the joints of a limb with an arm are those of the model's coupled arm under the voltages that
+// the limb drove, to the bit.
 TEST(JointedArmTest, IsTheModelsCoupledArm) {
   const settings::LimbConfig config = TwoLinks();
   Limb limb(config, {});

@@ -64,8 +64,8 @@ class LimbAppTest : public ::testing::Test {
   std::function<void(const std::string& suffix, const state_t& state)> on_state_;
 };
 
-// Tests that each joint's states are on its own channels at the chosen rate, its end with zero volts, and the limb's status on
-// its own.
+// Tests that each joint's states are on its own channels at the chosen rate, its end with zero volts, and the
+// limb's status on its own.
 TEST_F(LimbAppTest, WhatOthersSee) {
   EXPECT_EQ(Run(), 0);
   EXPECT_EQ(states_.count(""), 0U);
@@ -81,7 +81,8 @@ TEST_F(LimbAppTest, WhatOthersSee) {
   EXPECT_EQ(states_of_[""].back(), process_status_t::DONE);
 }
 
-// Tests that the limb describes itself again when the loggers that it waits for are there: a short run has no later description.
+// Tests that the limb describes itself again when the loggers that it waits for are there: a short run has no
+// later description.
 TEST_F(LimbAppTest, DescribesItselfToTheLogger) {
   int descriptions = 0;
   bool logger = false;
@@ -117,8 +118,8 @@ TEST_P(LimbStopTest, EndsAllJoints) {
 }
 INSTANTIATE_TEST_SUITE_P(Suffixes, LimbStopTest, ::testing::Values("", "_knee"));
 
-// Tests that a fault in a joint that another process runs holds these at zero volts while it lasts, and that it is told on their
-// channels.
+// Tests that a fault in a joint that another process runs holds these at zero volts while it lasts, and that
+// it is told on their channels.
 TEST_F(LimbAppTest, FaultOfAJointElsewhere) {
   on_state_ = [&](const std::string& suffix, const state_t& state) {
     if (suffix != "_hip" || (state.tick / 10 != 3 && state.tick / 10 != 6)) return;
@@ -144,8 +145,8 @@ TEST_F(LimbAppTest, FaultOfAJointElsewhere) {
   EXPECT_NE(states_["_hip"].back().voltage, 0);
 }
 
-// Tests that a joint of another process that is no longer heard holds all joints at zero volts until it is heard again: one says
-// which it is, the other follows that one.
+// Tests that a joint of another process that is no longer heard holds all joints at zero volts until it is
+// heard again: one says which it is, the other follows that one.
 TEST_F(LimbAppTest, SilenceOfAJointElsewhere) {
   config_.joints.push_back(config_.joints.back());
   config_.joints.back().name = "ankle";
@@ -176,8 +177,8 @@ TEST_F(LimbAppTest, SilenceOfAJointElsewhere) {
   }
 }
 
-// Tests that a flood from outside, of states and commands in a joint's channels and of processes that do not exist, changes nothing of
-// what the joints do.
+// Tests that a flood from outside, of states and commands in a joint's channels and of processes that do not
+// exist, changes nothing of what the joints do.
 TEST_F(LimbAppTest, AFloodFromOutside) {
   constexpr int64_t kForeign = 1'000'000'000;  // the sessions from here on
   const auto without = [&](const std::string& suffix) {

@@ -89,8 +89,8 @@ TEST_F(LimbTest, SomeJoints) {
   EXPECT_EQ(limb.joints()[1]->name(), "ankle");
 }
 
-// Tests that a fault of one joint holds the others at zero volts from the very tick at which it is seen, whichever of them
-// is first, and that they say why.
+// Tests that a fault of one joint holds the others at zero volts from the very tick at which it is seen,
+// whichever of them is first, and that they say why.
 TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
   for (const size_t which : {size_t{0}, size_t{1}, size_t{2}}) {
     Make(WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, which));
@@ -109,7 +109,8 @@ TEST_F(LimbTest, FaultOfOneHoldsTheOthers) {
   }
 }
 
-// Tests that they go on by themselves once the joint that had the fault has been re-armed, although none of them is asked.
+// Tests that they go on by themselves once the joint that had the fault has been re-armed, although none of
+// them is asked.
 TEST_F(LimbTest, OneRearmLetsAllGoOn) {
   settings::LimbConfig config =
       WithALowLimit(settings::OnJointFault::kAllToZero, settings::Rearm::kExplicit, 1);
@@ -152,6 +153,15 @@ TEST_F(LimbTest, TwoFaultsAreRearmedOneAfterTheOther) {
     });
   }
   on_tick_ = [&](int64_t tick) {
+    if (tick == 600 || tick == 620) {  // the second joint's own, while the first one's holds it
+      fault_t fault{};
+      fault.session = 55;
+      fault.source = "pressure_ctrl";
+      fault.code = "nonfinite_state";
+      fault.active = tick == 600;
+      Joint& joint = *limb_->joints()[1];
+      joint.bus().Publish(bus::Channels("_" + joint.name()).Of<fault_t>(), fault);
+    }
     if (tick != 800 && tick != 801) return;
     Joint& joint = *limb_->joints()[static_cast<size_t>(tick - 800)];
     rearm_t request;

@@ -57,7 +57,8 @@ class TelemetryTest : public ::testing::Test {
   std::vector<std::string> channels_;
 };
 
-// Tests that one state of each interval goes out, counted anew, and that its other fields are those that were published.
+// Tests that one state of each interval goes out, counted anew, and that its other fields are those that were
+// published.
 TEST_F(TelemetryTest, OneStateAnInterval) {
   for (int64_t tick = 0; tick <= 35; ++tick) SayState(tick);
   telemetry_.SendAll();

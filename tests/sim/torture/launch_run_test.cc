@@ -42,7 +42,8 @@ int Count(const std::string& text, const std::string& part) {
   return count;
 }
 
-// Tests that the launcher asks who is there, starts three processes, finds them ready, and ends with 0 after a stop.
+// Tests that the launcher asks who is there, starts three processes, finds them ready, and ends with 0 after
+// a stop.
 TEST(LaunchRunTest, InOrder) {
   const std::string lines = LinesOf({});
   EXPECT_THAT(lines, HasSubstr("asks who is there"));
@@ -95,7 +96,8 @@ TEST(LaunchRunTest, Interrupted) {
   EXPECT_THAT(twice, HasSubstr("2.600000 position_ctrl 3: is sent signal 9"));
 }
 
-// Tests that a process that has not begun when it is told to end dies of the signal, as one that catches none yet.
+// Tests that a process that has not begun when it is told to end dies of the signal, as one that catches none
+// yet.
 TEST(LaunchRunTest, InterruptedAtTheStart) {
   const std::string lines = LinesOf({{0.35, FaultKind::kInterrupt, kLauncher, 0.5, 1, 1}});
   EXPECT_THAT(lines, HasSubstr("says: stopped by SIGINT"));

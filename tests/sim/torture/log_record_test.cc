@@ -59,7 +59,8 @@ TEST_F(LogRecordTest, AMessageThatNeverCame) {
   EXPECT_THAT(WrongWith(record_), HasSubstr("has not received"));
 }
 
-// Tests that a log that was cut or changed has to say so, and one to which nothing has happened has to be complete.
+// Tests that a log that was cut or changed has to say so, and one to which nothing has happened has to be
+// complete.
 TEST_F(LogRecordTest, Damage) {
   for (int k = 0; k < 100; ++k) Handle(k);
   Write(-1);

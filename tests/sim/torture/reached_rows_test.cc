@@ -34,8 +34,8 @@ TEST(ReachedRowsTest, FaultsByName) {
   EXPECT_FALSE(FaultNamed(""));
 }
 
-// Tests that every kind of fault that a row names can be injected, and that no kind is missing from the table: it says of
-// each what happens.
+// Tests that every kind of fault that a row names can be injected, and that no kind is missing from the
+// table: it says of each what happens.
 TEST(ReachedRowsTest, TableHasEveryKind) {
   std::set<FaultKind> named;
   for (const process::SafetyRow& row : process::SafetyTable()) {
@@ -48,8 +48,8 @@ TEST(ReachedRowsTest, TableHasEveryKind) {
   for (const FaultKindInfo& info : FaultKinds()) EXPECT_TRUE(named.contains(info.kind)) << info.name;
 }
 
-// Tests that a row is reached by one of its faults together with one of its codes: by neither alone, and by a fault that hits
-// another process not at all.
+// Tests that a row is reached by one of its faults together with one of its codes: by neither alone, and by a
+// fault that hits another process not at all.
 TEST(ReachedRowsTest, NeedsFaultAndCode) {
   const std::map<std::string, int64_t> code{{"stale_motor_command", 1}};
   const int plant = 0, pressure_ctrl = 1;

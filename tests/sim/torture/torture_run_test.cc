@@ -116,7 +116,8 @@ TEST(TortureRunTest, FaultsOfTheLoggerAreNoticed) {
   }
 }
 
-// The first fault of that name in the schedule of a seed, alone and for as long as it may last; nothing if there is none.
+// The first fault of that name in the schedule of a seed, alone and for as long as it may last; nothing if
+// there is none.
 std::optional<Schedule> Alone(uint64_t seed, const NamedFault& named) {
   Schedule schedule = DrawSchedule(seed);
   for (Injection injection : schedule.injections) {
@@ -139,8 +140,9 @@ bool Latched(const RunOutcome& outcome) {
   return false;
 }
 
-// Tests that each fault by which a row of the safety table is said to be reached does so by itself, and that all codes of
-// the row occur; and that what zeroes the voltage and needs a re-arm in explicit mode is latched by the plant there.
+// Tests that each fault by which a row of the safety table is said to be reached does so by itself, and that
+// all codes of the row occur; and that what zeroes the voltage and needs a re-arm in explicit mode is latched
+// by the plant there.
 TEST(TortureRunTest, RowsAreReachedAsTheTableSays) {
   std::set<std::string, std::less<>> seen;  // codes
   for (const process::SafetyRow& row : process::SafetyTable()) {

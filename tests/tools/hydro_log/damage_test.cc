@@ -73,8 +73,8 @@ class DamageTest : public log::LogTest {
     return begins;
   }
 
-  // Asserts that nothing reads a log of these bytes as another than the whole one without saying so. `flipped`:
-  // bytes may be wrong where no checksum covers them yet.
+  // Asserts that nothing reads a log of these bytes as another than the whole one without saying so.
+  // `flipped`: bytes may be wrong where no checksum covers them yet.
   void ExpectHonest(const std::string& bytes, bool flipped);
   // Repairs it and asserts that every way of reading works on the result.
   void ExpectRepairable(const std::string& bytes);
@@ -234,8 +234,8 @@ TEST_F(DamageTest, MeasuredRunHasACaution) {
   EXPECT_THAT(runs::ReadMeasuredRun(Path("cut")).caution, HasSubstr("cut: incomplete: no mark of the end"));
 }
 
-// Tests that after a repair every way of reading works, and that nothing wrong was kept where a checksum could
-// tell.
+// Tests that after a repair every way of reading works, and that nothing wrong was kept where a checksum
+// could tell.
 TEST_F(DamageTest, Repaired) {
   for (int k = 0; k < 150; ++k) {
     std::string bytes = bytes_;

@@ -89,7 +89,8 @@ TEST(DeviceAnswersTest, RightOnes) {
   EXPECT_EQ(judged.not_judged, 0);
 }
 
-// Tests that a voltage which is wrong beyond the rounding of single precision is found, and one within it is not.
+// Tests that a voltage which is wrong beyond the rounding of single precision is found, and one within it is
+// not.
 TEST(DeviceAnswersTest, WrongVoltage) {
   auto recorded = RecordedRun();
   recorded[200].voltage += 1e-4;

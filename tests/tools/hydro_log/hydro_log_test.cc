@@ -78,8 +78,8 @@ TEST_F(HydroLogTest, ExportAndImport) {
   }
 }
 
-// Tests that a table in SI units is one in the base units of one system, for arms that turn and that move along a line
-// and models in any units, and that it survives the way through a log and back.
+// Tests that a table in SI units is one in the base units of one system, for arms that turn and that move
+// along a line and models in any units, and that it survives the way through a log and back.
 TEST_F(HydroLogTest, ExportInSiAndImport) {
   int run = 0;  // names of their own: a process replaces nothing that it has read
   for (const auto& [length, force] :
@@ -128,8 +128,9 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
-// Tests that repair says of logs that were joined how to take them apart, intact or not, with checksums or without, and that its commands give back
-// what was joined; and of two runs in one recording that they are two.
+// Tests that repair says of logs that were joined how to take them apart, intact or not, with checksums or
+// without, and that its commands give back what was joined; and of two runs in one recording that they are
+// two.
 TEST_F(HydroLogTest, RepairOfJoinedLogs) {
   log::WriteRun(Path("a.lcmlog"), log::SampleRun(9));
   log::WriteRun(Path("b.lcmlog"), log::SampleRun(20));

@@ -76,8 +76,8 @@ TEST_P(ReplayTest, OrderOfArrivalDoesNotMatter) {
   EXPECT_EQ(Replay(log, GetParam(), 0).difference, std::nullopt);
 }
 
-// Tests that where the record lacks a state the comparison ends and says so: from there on other answers prove
-// nothing. Ticks that the plant skipped are no such gap.
+// Tests that where the record lacks a state the comparison ends and says so: from there on other answers
+// prove nothing. Ticks that the plant skipped are no such gap.
 TEST_P(ReplayTest, EndsAtAMissingState) {
   runs::RunLog log = Recorded();
   std::vector<state_t>& states = log.messages.Of<state_t>();

@@ -46,8 +46,8 @@ double Radius(const std::vector<Complex>& poles) {
 
 const pressure_ctrl::PressureLawSettings kPassOn = {.gains = {}, .reference_feedforward = 1};
 
-// Tests the position loop against the design model's own sampled loop, whose equations are written down separately, also
-// when the pressure loop takes over the same reference many times a sample.
+// Tests the position loop against the design model's own sampled loop, whose equations are written down
+// separately, also when the pressure loop takes over the same reference many times a sample.
 TEST(LinearStack, AgreesWithTheSampledDesignModel) {
   const DesignModel design = Figure8Model(ShippedModel("table1").parameters);
   for (const double interval : {0.001, 0.002, 0.005}) {
@@ -64,8 +64,8 @@ TEST(LinearStack, AgreesWithTheSampledDesignModel) {
   }
 }
 
-// Tests patterns of samples that do not divide each other against the tick by tick product of one that does: sampling the
-// pressure loop more often changes nothing where it only passes the reference on.
+// Tests patterns of samples that do not divide each other against the tick by tick product of one that does:
+// sampling the pressure loop more often changes nothing where it only passes the reference on.
 TEST(LinearStack, HandlesIntervalsThatDoNotDivideEachOther) {
   const DesignModel design = Figure8Model(ShippedModel("table1").parameters);
   const position_ctrl::PositionLawSettings law = {.c1 = 3000, .c2 = 100, .sample_interval = 0.006};
@@ -151,8 +151,8 @@ TEST(LinearStack, TendsToTheContinuousArmLoop) {
   EXPECT_LT(before, 0.002);
 }
 
-// Tests that a late amplifier and a late sensor cost the phase that their delay is, whole ticks or not: the delay margin
-// falls by as much.
+// Tests that a late amplifier and a late sensor cost the phase that their delay is, whole ticks or not: the
+// delay margin falls by as much.
 TEST(LinearStack, LateAmplifierAndSensorsTakeTheirDelayFromTheMargin) {
   const OperatingCase point = OperatingCases(Clamped()).front();
   const pressure_ctrl::PressureLawSettings law = {

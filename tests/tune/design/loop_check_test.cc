@@ -42,6 +42,23 @@ TEST(LoopCheck, OfTheShippedStack) {
   EXPECT_NEAR(check.cases[4].position->gain, check.cases[8].position->gain, 1e-6);
 }
 
+// Tests that an arm whose seals may stick is judged as it slips: one that sticks bears any gain.
+TEST(LoopCheck, OfAnArmThatSlips) {
+  model::ModelDescription model = ShippedModel("table1");
+  model.effects.push_back({"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 0}}, {}});
+  const LoopCheck without = CheckLoops(Retuned({})), check = CheckLoops(Retuned({}, model));
+  ASSERT_TRUE(check.position);
+  EXPECT_EQ(check.cases.size(), 27U) << "low and high pressures, and an arm that sticks";
+  for (const CheckedCase& one : check.cases) {
+    const bool sticks = one.name.ends_with(", arm sticks");
+    EXPECT_NE(sticks, one.position.has_value()) << one.name;
+    EXPECT_TRUE(one.pressure.stable) << one.name;
+  }
+  EXPECT_NEAR(check.position->worst.gain, without.position->worst.gain, 0.01 * without.position->worst.gain);
+  const LoopCheck fast = CheckLoops(Retuned({"position.c1=60000", "position.c2=5400"}, model));
+  EXPECT_THAT(Describe(fast), HasSubstr("position loop: UNSTABLE"));
+}
+
 TEST(LoopCheck, NamesTheLoopThatIsUnstable) {
   const LoopCheck position = CheckLoops(Retuned({"position.c1=60000", "position.c2=5400"}));
   EXPECT_FALSE(position.stable());
@@ -79,8 +96,8 @@ TEST(LoopCheck, JudgesTheLoopsThatAreClosed) {
   EXPECT_TRUE(std::isinf(none.position->worst.gain));
 }
 
-// Tests every effect's example: whatever a model has, there is a verdict. (That delays cost margin is tested in
-// linear_stack_test.)
+// Tests every effect's example: whatever a model has, there is a verdict. (That delays cost margin is tested
+// in linear_stack_test.)
 TEST(LoopCheck, TakesEffectsIntoAccount) {
   model::ModelDescription model = ShippedModel("table1");
   model.effects = {{"amp.delay", {{"delay", 0.004}}, {}}};
@@ -133,8 +150,9 @@ Swing SwingOf(const tables::Table& run, const std::string& column, double early,
   return {half_range(early), half_range(late)};
 }
 
-// Tests the critical factor of the position loop, at mid-stroke with both sides compressing, on the stack in simulation:
-// with 3 % less gain a small oscillation decays, with 3 % more it grows as fast as the spectral radius says.
+// Tests the critical factor of the position loop, at mid-stroke with both sides compressing, on the stack in
+// simulation: with 3 % less gain a small oscillation decays, with 3 % more it grows as fast as the spectral
+// radius says.
 TEST(LoopCheck, CriticalPositionGainIsWhereTheStackBeginsToOscillate) {
   const std::vector<std::string> base = {"model.initial_pressure=1500", "limits.pressure=inf",
                                          "reference.steps=[[0.1, 1e-5]]", "time.duration_s=2.1"};

@@ -12,7 +12,8 @@ using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kPeriod = 0.01;
 
-// An integrator behind a delay of one sample: x(k+1) = x(k) - gain x(k-1). Its poles solve z^2 - z + gain = 0.
+// An integrator behind a delay of one sample: x(k+1) = x(k) - gain x(k-1). Its poles solve z^2 - z + gain =
+// 0.
 std::vector<Complex> DelayedIntegrator(double gain) {
   const Complex root = std::sqrt(Complex(0.25 - gain));
   return {0.5 + root, 0.5 - root};
@@ -108,6 +109,22 @@ TEST(LoopMargins, DriftMayBeIgnored) {
   const LoopMargins m = MarginsOf(poles, kPeriod, Drift::kIgnored);
   EXPECT_TRUE(m.stable);
   EXPECT_NEAR(m.gain, 4, 0.1);
+  // A swing that grows within hundreds of the loop's own times is one too; a faster one, or a faster growth,
+  // is not.
+  const auto swinging = [](double radius, double angle) {
+    return [=](double factor) {
+      std::vector<Complex> all = DelayedIntegrator(factor * 0.25);
+      for (const double sign : {-1, 1}) all.push_back(std::polar(1 + factor * (radius - 1), sign * angle));
+      return all;
+    };
+  };
+  const LoopMargins swings = MarginsOf(swinging(1.001, 0.005), kPeriod, Drift::kIgnored);
+  EXPECT_TRUE(swings.stable);
+  EXPECT_NEAR(swings.gain, 4, 0.1);
+  EXPECT_GT(swings.damping_ratio, 0);
+  EXPECT_FALSE(MarginsOf(swinging(1.001, 0.005), kPeriod).stable);
+  EXPECT_FALSE(MarginsOf(swinging(1.001, 0.1), kPeriod, Drift::kIgnored).stable);
+  EXPECT_FALSE(MarginsOf(swinging(1.1, 0.005), kPeriod, Drift::kIgnored).stable);
   const auto oscillating = [](double factor) { return DelayedIntegrator(factor * 2); };
   EXPECT_FALSE(MarginsOf(oscillating, kPeriod, Drift::kIgnored).stable);
 }

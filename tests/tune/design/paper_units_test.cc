@@ -30,8 +30,8 @@ void ExpectAlike(const std::vector<double>& found, const std::vector<double>& wa
   for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-9 * std::abs(wanted[i])) << i;
 }
 
-// Tests that the model of a rig in any units becomes that of the same rig in the paper's, with an effect's states
-// too, and that the paper's own stays as it is, bit by bit.
+// Tests that the model of a rig in any units becomes that of the same rig in the paper's, with an effect's
+// states too, and that the paper's own stays as it is, bit by bit.
 TEST(PaperUnits, ModelsAreThePapers) {
   for (const bool linear : {false, true}) {
     model::ModelDescription rig = hydro::testing::Table1Model({hydro::testing::Wave(500, 0.1, 0.05)});

@@ -154,7 +154,8 @@ TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
   EXPECT_NE(Prepared({"limits.pressure=2500"}, {.held = true}).config, nullptr);
 }
 
-// Tests that a reference which takes the arm where the loops are not stable is refused like gains that are not stable there.
+// Tests that a reference which takes the arm where the loops are not stable is refused like gains that are
+// not stable there.
 TEST(PrepareChange, LoopsAreJudgedWhereTheReferenceGoes) {
   const PreparedChange far = Prepared({"reference.steps=[[0.6, 0.8]]"});
   EXPECT_EQ(far.config, nullptr);
@@ -163,8 +164,8 @@ TEST(PrepareChange, LoopsAreJudgedWhereTheReferenceGoes) {
   EXPECT_NE(Prepared({"reference.steps=[[0.6, 0.3]]"}).config, nullptr);
 }
 
-// Tests that from an unstable loop a change may only lead towards stable ones, and says so; that no change which
-// makes it worse, or as bad, is taken; and that an undo, which somebody asks for, always goes back.
+// Tests that from an unstable loop a change may only lead towards stable ones, and says so; that no change
+// which makes it worse, or as bad, is taken; and that an undo, which somebody asks for, always goes back.
 TEST(PrepareChange, FromAnUnstableLoop) {
   const auto with = [](const std::vector<std::string>& changes) {
     return settings::Changed(Parsed(kFast), changes);
@@ -257,7 +258,8 @@ std::string ConfigFor(const TunableKey& row) {
   return settings::Changed(Parsed(kFast), kind).text;
 }
 
-// Tests that every row of the table is a key of the configuration: with a value that no key allows, it is the value that is refused.
+// Tests that every row of the table is a key of the configuration: with a value that no key allows, it is the
+// value that is refused.
 TEST(TunableKeys, AreKeysOfTheConfiguration) {
   for (const TunableKey& row : TunableKeys()) {
     const std::string key(row.key);
@@ -273,7 +275,8 @@ settings::StackConfig InSi(const std::string& config) {
   return Parsed(config, settings::FormatModel(testing::InUnits(model, kSiUnits)));
 }
 
-// Tests that units are those of the running stack's model and of its reference's signal, and come from no other list.
+// Tests that units are those of the running stack's model and of its reference's signal, and come from no
+// other list.
 TEST(TunableKeys, UnitsAreThoseOfTheModel) {
   const settings::StackConfig si = InSi(kFast);
   settings::StackConfig pressure = si;

@@ -1,4 +1,5 @@
-// The whole path of a change, from the request to the loops, with the real plant and controllers on a simulated clock.
+// The whole path of a change, from the request to the loops, with the real plant and controllers on a
+// simulated clock.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -149,7 +150,8 @@ TEST_F(LiveTuningTest, TakesEffectOnOneTickInBothLoops) {
   EXPECT_THAT(answer->text, HasSubstr("position.c2 = 500"));
   EXPECT_THAT(answer->text, HasSubstr("gain margin"));
 
-  // The laws computed here from the states must give the commands, with the old gains before and the new ones from then on.
+  // The laws computed here from the states must give the commands, with the old gains before and the new ones
+  // from then on.
   const settings::StackConfig before = settings::Parsed(config_);
   const settings::StackConfig after =
       settings::Changed(before, {"position.c2=500", "pressure.natural_frequency_rad_s=130"});
@@ -201,12 +203,13 @@ TEST_F(LiveTuningTest, WhatWouldBeUnstableSwings) {
     return most - least;
   };
   EXPECT_LT(swing(refused / 2), 1e-3);
-  // The edge is that of the worst case, one side that compresses and the arm at its end, which the text names. At
-  // mid-stroke, with friction, it takes some three times that.
+  // The edge is that of the worst case, one side that compresses and the arm at its end, which the text
+  // names. At mid-stroke, with friction, it takes some three times that.
   EXPECT_GT(swing(refused * 4), 1e-2);
 }
 
-// Tests that the commands do not jump at a change of gains, though the arm is far from its reference and moves.
+// Tests that the commands do not jump at a change of gains, though the arm is far from its reference and
+// moves.
 TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
   at_[650] = [&] { Ask(1, "position.c1=5000\nposition.c2=250\npressure.natural_frequency_rad_s=120"); };
   ASSERT_EQ(Run(0.5), 0);
@@ -249,8 +252,8 @@ TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
                                        .voltage);
 }
 
-// Tests that the pressure command does not jump either where another reference comes and the error is differentiated: the reference before
-// was moving.
+// Tests that the pressure command does not jump either where another reference comes and the error is
+// differentiated: the reference before was moving.
 TEST_F(LiveTuningTest, AnotherReferenceDoesNotJump) {
   config_ = settings::Replaced(config_, "[position]", "[position]\nderivative = \"error\"");
   at_[1500] = [&] { Ask(1, "reference.kind=sine\nreference.amplitude=0.05\nreference.frequency_hz=2"); };
@@ -271,7 +274,8 @@ TEST_F(LiveTuningTest, AnotherReferenceDoesNotJump) {
   EXPECT_GT(ValuesOf(settings::Parsed(config_)).position.c2 * std::fabs(speed), 3 * largest);
 }
 
-// Tests that of a decision nothing but its time is taken: its values and its reference are those that were prepared.
+// Tests that of a decision nothing but its time is taken: its values and its reference are those that were
+// prepared.
 TEST_F(LiveTuningTest, ADecisionThatDiffersFromItsProposalChangesNothingElse) {
   tuned_settings_t forged;
   at_[1000] = [&] {
@@ -292,7 +296,8 @@ TEST_F(LiveTuningTest, ADecisionThatDiffersFromItsProposalChangesNothingElse) {
   EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
 }
 
-// Tests that a torque limit that is tightened below what is just asked for trips nothing: the command on its way is from before.
+// Tests that a torque limit that is tightened below what is just asked for trips nothing: the command on its
+// way is from before.
 TEST_F(LiveTuningTest, ATighterTorqueLimitTripsNothing) {
   std::vector<fault_t> faults;
   listen_ = [&] { bus_->Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& f) { faults.push_back(f); }); };
@@ -347,8 +352,8 @@ TEST_F(LiveTuningTest, UndoAndRepeats) {
   EXPECT_EQ(changes, expected);
 }
 
-// Tests that a stack that began with an unstable loop, and whose loop was mended, goes back to it by an undo and by
-// nothing else.
+// Tests that a stack that began with an unstable loop, and whose loop was mended, goes back to it by an undo
+// and by nothing else.
 TEST_F(LiveTuningTest, UndoOfAMendedLoop) {
   config_ = settings::Replaced(config_, "c2 = ", "c2 = 5000 # ");
   at_[500] = [&] { Ask(1, "position.c2=400"); };
@@ -364,7 +369,8 @@ TEST_F(LiveTuningTest, UndoOfAMendedLoop) {
 }
 
 // Tests that a new reference is reached from where the old one was, and counts its time from its beginning.
-// Tests that a request for what is in force already is answered, makes no version, and leaves the undo what it was.
+// Tests that a request for what is in force already is answered, makes no version, and leaves the undo what
+// it was.
 TEST_F(LiveTuningTest, WhatIsInForceMakesNoVersion) {
   at_[500] = [&] { Ask(1, "position.c2=500"); };
   at_[1000] = [&] { Ask(2, "position.c2=500"); };
@@ -397,8 +403,8 @@ TEST_F(LiveTuningTest, AReferenceBeginsAtItsTick) {
   EXPECT_EQ(AtTick(references_, at + 1000).value, 0.05);
 }
 
-// Tests that a change that one controller cannot act by changes nothing in the others, and that a controller that has been heard
-// once and then says nothing ends a request too.
+// Tests that a change that one controller cannot act by changes nothing in the others, and that a controller
+// that has been heard once and then says nothing ends a request too.
 TEST_F(LiveTuningTest, AControllerThatCannotEndsTheRequest) {
   // A third controller, played here: it takes part, and refuses whatever is proposed.
   listen_ = [&] {

@@ -136,6 +136,14 @@ class RearmForecastTest : public ::testing::Test {
     EXPECT_NEAR(lowest, forecast_.lowest, slack);
     EXPECT_NEAR(highest, forecast_.highest, slack);
     EXPECT_NEAR(ReferenceAfter(forecast_.return_s + kForecast_s), forecast_.last, slack);
+    for (const ReferenceTurn& turn : forecast_.turns) {
+      double least = INFINITY;
+      for (const auto& [tick, value] : references_) {
+        const double after = static_cast<double>(tick - kRearms) / kRate;
+        if (after > 0 && after <= forecast_.return_s) least = std::min(least, std::fabs(value - turn.at));
+      }
+      EXPECT_LT(least, 0.006 * forecast_.top_rate + slack);
+    }
     for (const ReferenceStep& step : forecast_.steps)
       EXPECT_NEAR(ReferenceAfter(step.after_s + 0.006) - ReferenceAfter(step.after_s - 0.006), step.by,
                   0.012 * forecast_.top_rate + slack);
@@ -195,8 +203,8 @@ TEST_F(RearmForecastTest, APulseAfterwards) {
   EXPECT_THAT(forecast_.text, HasSubstr("in the 10 s after that it is between 0.2 rad and 0.4 rad;"));
 }
 
-// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast promises
-// the reference alone, which comes true, and names the limit.
+// Tests a torque limit that binds: the arm's load holds it far from where its reference goes. The forecast
+// promises the reference alone, which comes true, and names the limit.
 TEST_F(RearmForecastTest, ALimitThatBinds) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.arm_torque=1"});
   ExpectTrue();
@@ -207,7 +215,8 @@ TEST_F(RearmForecastTest, ALimitThatBinds) {
               HasSubstr("; the arm follows as far as its load and limits.arm_torque 1 in-lbf let it"));
 }
 
-// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast says.
+// Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast
+// says.
 TEST_F(RearmForecastTest, ALimitThatStopsAgain) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0.02", "limits.motor_speed=20"});
   ASSERT_TRUE(forecast_.known);
@@ -236,7 +245,8 @@ TEST_F(RearmForecastTest, AJumpOnTheWay) {
   EXPECT_NEAR(forecast_.steps[0].after_s, 0.3, 1e-3);
   EXPECT_NEAR(forecast_.steps[0].by, -0.6 * 0.4, 1e-3)
       << "six tenths of the way from the arm to the reference";
-  EXPECT_THAT(forecast_.text, HasSubstr(" rad/s, and jumps by -0.24 rad after 0.3 s"));
+  EXPECT_THAT(forecast_.text,
+              HasSubstr(" rad (the other direction) after 0.3 s, and jumps by -0.24 rad after 0.3 s"));
 }
 
 // Tests steps at the very ends of the way back, and several on it.
@@ -246,6 +256,55 @@ TEST_F(RearmForecastTest, JumpsOnTheWay) {
   EXPECT_EQ(forecast_.steps.size(), 3u);
   EXPECT_THAT(forecast_.text, HasSubstr(" after 0.1 s and 2 more times"));
   EXPECT_EQ(forecast_.target, -0.1);
+}
+
+// Tests a way back that leads the other way before it leads where it ends, and one that leads beyond that:
+// the net move alone would tell neither.
+TEST_F(RearmForecastTest, TheOtherWayFirst) {
+  Run({"reference.steps=[[0.2, 0.3], [1.21, -0.3], [1.6, 0.3]]"});
+  ExpectTrue();
+  ASSERT_EQ(forecast_.turns.size(), 1u);
+  EXPECT_NEAR(forecast_.turns[0].after_s, 0.4, 2e-3);
+  EXPECT_NEAR(forecast_.turns[0].at, forecast_.present + 0.8 * (-0.3 - forecast_.present), 2e-3);
+  EXPECT_LT(ArmAfter(0.4), ArmAfter(0) - 0.05) << "the arm goes that way, too";
+  EXPECT_THAT(forecast_.text, HasSubstr("the reference moves by +"));
+  EXPECT_THAT(forecast_.text, HasSubstr(", by way of -"));
+  EXPECT_THAT(forecast_.text, HasSubstr(" rad (the other direction) after 0.4 s"));
+}
+
+TEST_F(RearmForecastTest, BeyondItsEnd) {
+  Run({"reference.steps=[[0.2, 0.3], [1.6, 0.1]]"});
+  ExpectTrue();
+  ASSERT_EQ(forecast_.turns.size(), 1u);
+  EXPECT_GT(forecast_.turns[0].at, std::max(forecast_.present, forecast_.target));
+}
+
+// Tests an arm that moves when it is asked: the direction in which it goes on is told where it is not that of
+// the reference.
+TEST(RearmForecast, AnArmThatMoves) {
+  const settings::StackConfig config =
+      settings::LoadStackConfig(HYDRO_TEST_CONFIG, {"reference.steps=[[0.1, 0.3]]"});
+  HeardOfStack heard;
+  heard.state.emplace();
+  heard.state->command_tick = -1;
+  heard.state->time = 2;
+  heard.run.emplace();
+  heard.run->rate_hz = kRate;
+  heard.run->config_text = config.text;
+  heard.run->model_text = config.model.text;
+  for (const double speed : {-0.5, 0.5, -0.01, 0.0, double{NAN}}) {
+    heard.state->arm_speed = speed;
+    const RearmForecast forecast = ForecastRearm(heard);
+    EXPECT_NEAR(forecast.target, 0.3, 1e-9);
+    if (speed == -0.5) {
+      EXPECT_THAT(
+          forecast.text,
+          StartsWith(
+              "the arm is at 0 rad and moves at -0.5 rad/s, the other way, in which it goes on at first; "));
+    } else {
+      EXPECT_THAT(forecast.text, StartsWith("the arm is at 0 rad; "));
+    }
+  }
 }
 
 // Tests that nothing is called slow that is not.

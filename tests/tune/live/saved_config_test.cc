@@ -27,8 +27,8 @@ class SavedConfigTest : public settings::FolderTest {
   }
 };
 
-// Tests that a value under its former name is replaced by the present one, and that texts with a unit stay where
-// their value is still in force.
+// Tests that a value under its former name is replaced by the present one, and that texts with a unit stay
+// where their value is still in force.
 TEST_F(SavedConfigTest, NamesAndTextsOfTheFile) {
   const std::string text = std::string(settings::kConfigText) +
                            "[limits]\npressure_psi = 2000  # the seals\narm_angle_rad = 0.5\n"

@@ -23,7 +23,8 @@ TEST(Goals, AreRead) {
   EXPECT_FALSE(ParseGoals({"step=0.2"}).any()) << "a step is what goals are about, not one of them";
 }
 
-// Tests that a step is in the unit of the arm, or brought to it, and its former name is read where it is true.
+// Tests that a step is in the unit of the arm, or brought to it, and its former name is read where it is
+// true.
 TEST(Goals, AStepHasAUnit) {
   EXPECT_DOUBLE_EQ(*ParseGoals({"step=5 deg"}).step, 5 * kDegree);
   EXPECT_DOUBLE_EQ(*ParseGoals({"step=30 mm"}, "m").step, 0.03);

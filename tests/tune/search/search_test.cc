@@ -10,7 +10,8 @@ namespace {
 
 const auto kSilent = [](double) {};
 
-// Tests that a search keeps its margins, does not depend on the number of threads, and betters what it starts from.
+// Tests that a search keeps its margins, does not depend on the number of threads, and betters what it starts
+// from.
 TEST(SearchGains, IsTheSameOnAnyNumberOfThreads) {
   const Goals goals = {.step = 0.1};
   const StepJudge judge(Retuned(), {.goals = goals, .samples = 0});

@@ -11,7 +11,8 @@
 namespace hydro::tune {
 namespace {
 
-// Tests a trial against the stack itself, with noise and a D/A converter: to the last digits that rounding leaves.
+// Tests a trial against the stack itself, with noise and a D/A converter: to the last digits that rounding
+// leaves.
 TEST(StepJudge, TriesAStepAsTheStackRunsIt) {
   const StepJudge judge(Retuned({"position.dac_bits=12"}), {.noise = false});
   for (const double step : {0.05, 0.3}) {

@@ -39,8 +39,8 @@ class TuneProgram : public settings::FolderTest {
   }
 };
 
-// Tests the whole program: it writes a configuration that keeps the given one's text but for the gains, loads, runs, and
-// settles its step in the time that the table says.
+// Tests the whole program: it writes a configuration that keeps the given one's text but for the gains,
+// loads, runs, and settles its step in the time that the table says.
 TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
   const std::string tuned = (folder_ / "deep" / "tuned.toml").string();
   std::filesystem::create_directories(folder_ / "deep");
@@ -106,7 +106,8 @@ TEST_F(TuneProgram, SetsKeys) {
   EXPECT_THAT(wrong.err, HasSubstr("limits.retrun_s"));
 }
 
-// Tests that - is the standard output, that all else then goes to the standard error, and that the advice names a file.
+// Tests that - is the standard output, that all else then goes to the standard error, and that the advice
+// names a file.
 TEST_F(TuneProgram, WritesToTheStandardOutput) {
   const Outcome outcome = Run("cd " HYDRO_CONFIG " && " HYDRO_TUNE,
                               kRetuned + " --fixed-gains --goal step_rad=0.1 --samples 0 -o -");
