@@ -16,7 +16,7 @@ const std::string& VerdictName(Verdict verdict);
 // none of its comments.
 std::string ReportHtml(const Diagnosis& diagnosis, bool si, const std::string& model_toml = "");
 
-// docs/gap_finder.md describes the keys. `next_config` names the file of the next experiment, "" when there
+// docs/gap_report.md describes the keys. `next_config` names the file of the next experiment, "" when there
 // is none. Non-finite values become null.
 std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_config, double elapsed_s);
 

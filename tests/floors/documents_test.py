@@ -64,6 +64,20 @@ def missing_anchors(page, text):
     return found
 
 
+def inline_markers(text):
+    """(line number, line) of each marker of the installed pages that does not stand alone: packaging/pages takes out what is between
+    <!-- sources --> and <!-- /sources -->, and keeps what <!-- installed ... --> has, as whole lines with blank ones around them."""
+    lines, found = ["", *text.splitlines(), ""], []
+    for number, line in enumerate(lines):
+        begins, ends = line == "<!-- sources -->" or line == "<!-- installed", line in ("<!-- /sources -->", "-->")
+        marker = re.search(r"<!-- (/?sources|installed)\b", line) or line == "-->"
+        before_ok = ends or lines[number - 1] in ("", "<!-- /sources -->")
+        after_ok = begins or lines[min(number + 1, len(lines) - 1)] in ("", "<!-- installed")
+        if marker and not ((begins or ends) and before_ok and after_ok):
+            found.append((number, line))
+    return found
+
+
 class DocumentsTest(unittest.TestCase):
     def test_rooms_are_current(self):
         """Tests that README.md and docs/developers/architecture.md show the rooms of cmake/rooms.txt."""
@@ -91,6 +105,12 @@ class DocumentsTest(unittest.TestCase):
         found = [f"{page}:{number}: {link} does not exist"
                  for page in PAGES for number, link in missing_anchors(ROOT / page, (ROOT / page).read_text())]
         self.assertEqual(found, [], "\n".join(found))
+
+    def test_markers_stand_alone(self):
+        """Tests that what an installation's pages leave out or add are whole paragraphs, list items or blocks, never parts of a sentence."""
+        found = [f"{page}:{number}: {line}" for page in PAGES for number, line in inline_markers((ROOT / page).read_text())]
+        self.assertEqual(found, [], "a marker needs a line of its own, and a blank line outside it:\n" + "\n".join(found))
+        self.assertIn("\n<!-- sources -->\n", (ROOT / "README.md").read_text())
 
     def test_index(self):
         """Tests that docs/README.md lists each page of docs/ once, with a line that says what it is for, and README.md leads there."""
@@ -137,6 +157,11 @@ class DocumentsTest(unittest.TestCase):
             self.assertEqual(sorted(rooms.outdated(root)), ["README.md", "docs/developers/architecture.md"])
             (root / "README.md").write_text("no markers\n")
             self.assertRaisesRegex(ValueError, "README.md: found no <!-- rooms -->", rooms.outdated, root)
+            whole = "a\n\n<!-- sources -->\nb\n<!-- /sources -->\n<!-- installed\nc\n-->\n\nd\n"
+            self.assertEqual(inline_markers(whole), [])
+            self.assertEqual(inline_markers("a<!-- sources -->, b<!-- /sources -->.\n"), [(1, "a<!-- sources -->, b<!-- /sources -->.")])
+            self.assertEqual(inline_markers("a\n<!-- sources -->\nb\n<!-- /sources -->c\n"), [(2, "<!-- sources -->"), (4, "<!-- /sources -->c")])
+            self.assertEqual(inline_markers("<!-- installed a -->\n"), [(1, "<!-- installed a -->")])
             text = "`base/text.h`\n`base/old.h` and `other/x.h`\n`base/{text,gone}.h` `./base/*.h`"
             page = root / "docs/a.md"
             page.write_text("# A `b` (c): d\n```\n# no heading\n```\n[x](#a-b-c-d) [x](#no-heading)\n[x](a.md#gone) [x](https://y#z)\n")

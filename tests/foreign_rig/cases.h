@@ -21,8 +21,8 @@ struct Case {
 };
 // Each with a seed of its own, to which --seed-offset adds. Offsets below 20000 are for development: rigs
 // that may be looked at, learned from and drawn again. Multiples of 1000 from there on are sealed: each for
-// one score of everything at one commit, and then never again (docs/gap_finder.md names those that were
-// used).
+// one score of everything at one commit, and then never again (docs/developers/gap_finder_method.md
+// names those that were used).
 std::vector<Case> AllCases();
 
 // A mistake in the sidecar or the recording, and words of which a remark must have one of each group.

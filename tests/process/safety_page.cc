@@ -82,12 +82,21 @@ const char* NameOf(Cleared cleared) {
 
 std::string SafetyMarkdown() {
   std::string text =
-      "| fault | detected by | within | output | cleared | tests | in `hydro-torture` |\n"
-      "|---|---|---|---|---|---|---|\n";
+      "| fault | detected by | within | output | cleared |\n"
+      "|---|---|---|---|---|\n";
   for (const SafetyRow& row : SafetyTable()) {
     text += "| " + std::string(row.fault) + " | " + Detected(row) + " | " + std::string(row.within.text) +
-            " | " + std::string(row.output_text) + " | " + std::string(row.cleared_text) + " | " +
-            Tests(row) + " | " + Injected(row) + " |\n";
+            " | " + std::string(row.output_text) + " | " + std::string(row.cleared_text) + " |\n";
+  }
+  return text;
+}
+
+std::string SafetyTestsMarkdown() {
+  std::string text =
+      "| fault | tests | in `hydro-torture` |\n"
+      "|---|---|---|\n";
+  for (const SafetyRow& row : SafetyTable()) {
+    text += "| " + std::string(row.fault) + " | " + Tests(row) + " | " + Injected(row) + " |\n";
   }
   return text;
 }
@@ -111,13 +120,13 @@ std::string SafetyJson() {
          "\n";
 }
 
-std::string WithSafetyTable(const std::string& page, const std::string& file) {
+std::string WithTable(const std::string& page, const std::string& file, const std::string& table) {
   const size_t begin = page.find(kBegin), end = page.find(kEnd);
   if (begin == page.npos || end == page.npos || end < begin) {
     throw InputError(file + ": found no marks of the table, needed are the lines\n" + std::string(kBegin) +
                      std::string(kEnd));
   }
-  return page.substr(0, begin) + std::string(kBegin) + SafetyMarkdown() + page.substr(end);
+  return page.substr(0, begin) + std::string(kBegin) + table + page.substr(end);
 }
 
 }  // namespace hydro::process

@@ -19,6 +19,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // What a row's codes do together: the strongest.
 SafeOutput OutputOf(const SafetyRow& row) {
@@ -111,20 +112,38 @@ TEST(SafetyTableTest, ExplicitAsksForARearm) {
   }
 }
 
-// Tests that the page keeps what is around the table, and that a page without marks is refused.
+// Tests that a page keeps what is around its table, and that a page without marks is refused.
 TEST(SafetyPageTest, WritesBetweenItsMarks) {
   const std::string begin = "<!-- safety_page --write writes this -->\n", end = "<!-- safety_page ends -->\n";
-  const std::string page = WithSafetyTable("before\n" + begin + "old\n" + end + "after\n", "p.md");
-  EXPECT_TRUE(page.starts_with("before\n" + begin + "| fault |")) << page.substr(0, 100);
-  EXPECT_TRUE(page.ends_with("|\n" + end + "after\n"));
-  EXPECT_EQ(page.find("old\n"), page.npos);
-  EXPECT_THAT(page,
-              HasSubstr("| disk full | logger: exit code 1, the log ends with a whole event; plant, with the "
-                        "logger's reason (`logger_gone`, a warning) | at once | control goes on |"));
-  EXPECT_THAT(page, HasSubstr("`fault_loops` `FaultLoopsTest.test_disk_full`; `tests/plant` "
-                              "`PlantFaultsTest.LoggerFailed` | `disk_full` |"));
-  EXPECT_THAT(page, HasSubstr("| not reached: the simulated network takes every message |"));
-  EXPECT_THROW(WithSafetyTable("before\n" + end + begin, "p.md"), InputError);
+  EXPECT_EQ(WithTable("before\n" + begin + "old\n" + end + "after\n", "p.md", "| new |\n"),
+            "before\n" + begin + "| new |\n" + end + "after\n");
+  EXPECT_THROW(WithTable("before\n" + end + begin, "p.md", ""), InputError);
+  EXPECT_THROW(WithTable("before\n" + begin, "p.md", ""), InputError);
+}
+
+// Tests that users read what happens, without the names of tests.
+TEST(SafetyPageTest, WhatHappens) {
+  const std::string table = SafetyMarkdown();
+  EXPECT_TRUE(table.starts_with("| fault | detected by | within | output | cleared |\n"))
+      << table.substr(0, 100);
+  EXPECT_THAT(
+      table,
+      HasSubstr("\n| disk full | logger: exit code 1, the log ends with a whole event; plant, with the "
+                "logger's reason (`logger_gone`, a warning) | at once | control goes on | by itself, when a "
+                "new logger is heard |\n"));
+  EXPECT_THAT(table, Not(HasSubstr("Test.")));
+}
+
+// Tests that developers read which tests show a fault, or why hydro-torture does not reach it: a line for each row.
+TEST(SafetyPageTest, WhichTestsShowIt) {
+  const std::string table = SafetyTestsMarkdown();
+  EXPECT_TRUE(table.starts_with("| fault | tests | in `hydro-torture` |\n")) << table.substr(0, 100);
+  EXPECT_THAT(table, HasSubstr("\n| disk full | `fault_loops` `FaultLoopsTest.test_disk_full`; `tests/plant` "
+                               "`PlantFaultsTest.LoggerFailed` | `disk_full` |\n"));
+  EXPECT_THAT(table, HasSubstr("| not reached: the simulated network takes every message |\n"));
+  for (const std::string& lines : {table, SafetyMarkdown()}) {
+    EXPECT_EQ(static_cast<size_t>(std::count(lines.begin(), lines.end(), '\n')), SafetyTable().size() + 2);
+  }
 }
 
 }  // namespace
