@@ -1,4 +1,5 @@
-// The tables of docs/safety.md and docs/developers/safety_tests.md, written from process/safety/safety_table.h.
+// The tables of docs/safety.md and docs/developers/safety_tests.md, written from
+// process/safety/safety_table.h.
 #pragma once
 
 #include <string>

@@ -134,7 +134,8 @@ TEST(SafetyPageTest, WhatHappens) {
   EXPECT_THAT(table, Not(HasSubstr("Test.")));
 }
 
-// Tests that developers read which tests show a fault, or why hydro-torture does not reach it: a line for each row.
+// Tests that developers read which tests show a fault, or why hydro-torture does not reach it: a line for
+// each row.
 TEST(SafetyPageTest, WhichTestsShowIt) {
   const std::string table = SafetyTestsMarkdown();
   EXPECT_TRUE(table.starts_with("| fault | tests | in `hydro-torture` |\n")) << table.substr(0, 100);
