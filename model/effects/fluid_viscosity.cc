@@ -26,7 +26,7 @@ class Viscosity : public EffectOf<Viscosity> {
   }
 };
 
-[[maybe_unused]] const bool kAdded = AddToCatalogue(
+[[maybe_unused]] const bool kFluidViscosityAdded = AddToCatalogue(
     {.info = {.id = "fluid.viscosity",
               .summary = "viscous friction and leakage follow the oil's temperature",
               .equation = "viscous friction and leakage follow the oil's temperature theta: b exp(-rate "

@@ -182,7 +182,9 @@ NameMeaning FormulaCompiler::MeaningOf(const std::string& given, size_t column, 
   } else if (hook != Hook::kFixedVolume) {
     if (const auto place = FieldPlace(name)) return FieldMeaning(name, *place, column, hook);
     if (const auto place = PlaceIn(text_.switches, name)) return meaning(Source::kSwitch, *place, true);
-    if (const auto place = PlaceOf(FactNames(), name)) return meaning(Source::kFact, *place, true);
+    if (const auto place = PlaceOf(FactNames(), name)) {
+      return meaning(Source::kFact, *place, static_cast<Fact>(*place) != Fact::kTemperature);
+    }
   }
   if (!ReadsSensors(hook)) {
     if (const auto place = BasePlaceOf(name)) return meaning(Source::kBase, *place, true);

@@ -64,8 +64,8 @@ const std::vector<std::string>& ReadingNames() {
 }
 
 const std::vector<std::string>& FactNames() {
-  static const std::vector<std::string> names = {"direction", "arm_free", "bypass", "valve_1_open",
-                                                 "valve_2_open"};
+  static const std::vector<std::string> names = {"direction",    "arm_free",     "bypass",
+                                                 "valve_1_open", "valve_2_open", "temperature"};
   return names;
 }
 

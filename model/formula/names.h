@@ -101,8 +101,9 @@ T& ReadingOf(MeasurementOf<T>& measured, size_t place) {
   return measured.*kMembers[place];
 }
 
-// Numbers that only the mode or the run determines: they have no derivative and are constant between events.
-enum class Fact { kDirection, kArmFree, kBypass, kValve1Open, kValve2Open };
+// Numbers that only the mode or the run determines: they have no derivative and, except the temperature, are
+// constant between events.
+enum class Fact { kDirection, kArmFree, kBypass, kValve1Open, kValve2Open, kTemperature };
 const std::vector<std::string>& FactNames();
 
 // Available only at the start: the waves under way in the lines, and what the accumulator has already taken

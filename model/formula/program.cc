@@ -49,6 +49,8 @@ T FactOf(const Terms<T>& x, Fact fact) {
       return T(x.mode->valve_1 != 0 ? 1.0 : 0.0);
     case Fact::kValve2Open:
       return T((x.bypass ? x.mode->valve_1 : x.mode->valve_2) != 0 ? 1.0 : 0.0);
+    case Fact::kTemperature:
+      return T(x.around.temperature);
   }
   return T(0.0);
 }

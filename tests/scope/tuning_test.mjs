@@ -77,10 +77,13 @@ test('a step from the page moves the arm', async () => {
 test('a sharp step from the page', async () => {
   await page.locator('#section-reference [data-name=kind]').selectOption('sharp');
   await page.locator('[data-key="reference.to"]').fill('-0.05');
+  const before = await page.locator('#section-reference .result').textContent(); // the answer to the step before
   await page.getByRole('button', { name: 'Command it' }).click();
-  const accepted = page.locator('#section-reference .result').getByText(/^Accepted.* From tick \d+/);
-  await accepted.waitFor();
-  const begins = Number((await accepted.textContent()).match(/From tick (\d+)/)[1]) / 1000;
+  const accepted = await page.waitForFunction((old) => {
+    const text = document.querySelector('#section-reference .result').textContent;
+    return text !== old && /Accepted.* From tick \d+/.test(text) ? text : null;
+  }, before);
+  const begins = Number((await accepted.jsonValue()).match(/From tick (\d+)/)[1]) / 1000;
   await until(page, () => {
     const { bins } = hydroScope.display.frame();
     return Math.abs(bins.max.arm_ref[bins.t.length - 3] + 0.05) < 1e-6;

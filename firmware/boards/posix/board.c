@@ -71,15 +71,20 @@ static int refuse(const char* option, const char* found, const char* allowed) {
   return 2;
 }
 
+// Prints what was asked for. Returns the exit code.
+static int say(const char* text) {
+  if (fputs(text, stdout) >= 0 && fflush(stdout) == 0) return 0;
+  fprintf(stderr, "hydro-front-end: the standard output cannot be written: %s\n", strerror(errno));
+  return 1;
+}
+
 static int read_options(int argc, char** argv, const char** link, const char** converter_link) {
   for (int i = 1; i < argc; ++i) {
     const char* value = i + 1 < argc ? argv[i + 1] : NULL;
     if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-      fputs(kHelp, stdout);
-      exit(0);
+      exit(say(kHelp));
     } else if (strcmp(argv[i], "--version") == 0) {
-      puts("hydro-front-end " HYDRO_VERSION);
-      exit(0);
+      exit(say("hydro-front-end " HYDRO_VERSION "\n"));
     } else if (strcmp(argv[i], "--converters") == 0) {
       if (!value) return refuse("--converters", "nothing", "a link");
       *converter_link = argv[++i];
