@@ -35,6 +35,19 @@ uint32_t RandomSession() {
 
 double SecondsOf(double ticks, double ticks_per_s) { return ticks / ticks_per_s; }
 
+// Whether the reading of an analog input is one that its settings allow; other kinds have no ends. A little
+// beyond an end is the rounding of single precision.
+bool MayRead(const hydro_sensor_settings& sensor, float value) {
+  if (sensor.kind != HYDRO_SENSOR_ANALOG || !std::isfinite(value)) return true;
+  const double ends[] = {static_cast<double>(sensor.scale) * sensor.minimum_V + sensor.offset,
+                         static_cast<double>(sensor.scale) * sensor.maximum_V + sensor.offset};
+  const auto [low, high] = std::minmax(ends[0], ends[1]);
+  const auto room = [&](double end) {
+    return std::isfinite(end) ? 1e-5 * (std::fabs(end) + std::fabs(sensor.scale)) : 0;
+  };
+  return !(value < low - room(low)) && !(value > high + room(high));
+}
+
 }  // namespace
 
 FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& clock)
@@ -233,6 +246,12 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
       Add(code, fmt::format("the front end's reading of {} is not credible: an end of its range, or outside "
                             "of what driver.{} allows",
                             SensorName(i), SensorName(i)));
+    } else if (expected && !MayRead(connection_.settings().sensors[i], sample.value[i])) {
+      Add(code,
+          fmt::format("the front end gives {:.6g} for {} and reports no fault of it; driver.{} allows no "
+                      "such reading",
+                      sample.value[i], SensorName(i), SensorName(i)));
+      read_.value[i] = std::numeric_limits<float>::quiet_NaN();
     } else if (expected && !std::isfinite(sample.value[i])) {
       Add(code, fmt::format("the front end gives {} for {} and reports no fault of it; allowed is a number",
                             sample.value[i], SensorName(i)));
@@ -290,7 +309,23 @@ void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
   }
   if (!driving_since_ || sample.state != HYDRO_ARMED) return;
   const auto age = static_cast<double>(tick_ - std::max(sample.host_tick, *driving_since_));
-  if (age <= allowed * ticks_per_s_ + 1) return;
+  if (sample.source != HYDRO_SOURCE_ZERO && sample.host_tick > tick_) {
+    Add("output_differs",
+        fmt::format("the front end says that it acts by a command for tick {}; the newest is for tick {}",
+                    sample.host_tick, tick_));
+    return;
+  }
+  if (age <= allowed * ticks_per_s_ + 1) {
+    // Its own word on the tick of a command is not all: the command's number tells when it was sent.
+    if (output_.ActsByAnOldCommand(sample)) {
+      Add("device_silent",
+          fmt::format(
+              "the front end acts by a command that was sent more than {:.0f} ms ago, allowed are {:.0f} ms "
+              "(limits.stale_input_s)",
+              1e3 * allowed, 1e3 * allowed));
+    }
+    return;
+  }
   Add("device_silent",
       fmt::format(
           "the front end obeys commands of {:.0f} ms ago, allowed are {:.0f} ms (limits.stale_input_s)",
@@ -382,13 +417,18 @@ OutputLeft FrontEndRig::Zero() noexcept {
       const bool up = Poll();
       const hydro_sample& sample = connection_.sample();
       if (up && connection_.sampled_at() >= asked) {
-        left.voltage = std::isfinite(sample.read_back) ? sample.read_back : sample.voltage;
-        left.accepted = sample.state != HYDRO_ARMED && std::fabs(left.voltage) <= output_.tolerance();
+        // Of what it reads back and what it reports, the one that is farther from zero.
+        const bool reads_back = !std::isnan(sample.read_back);
+        const double held = reads_back && std::fabs(sample.read_back) >= std::fabs(sample.voltage)
+                                ? sample.read_back
+                                : sample.voltage;
+        left.accepted = sample.state != HYDRO_ARMED && std::fabs(held) <= output_.tolerance();
+        left.voltage = reads_back || !left.accepted ? held : NAN;
         // The sample in which a device first obeys contains a read-back from just before: only a later sample
         // shows the voltage that was left.
         const int64_t samples = connection_.counts().samples;
         if (!obeyed && sample.state != HYDRO_ARMED) obeyed = samples;
-        if (left.accepted && samples > *obeyed && std::fabs(left.voltage) <= kNearZero) return left;
+        if (left.accepted && samples > *obeyed && std::fabs(held) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);

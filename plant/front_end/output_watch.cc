@@ -92,6 +92,11 @@ bool OutputWatch::ActsByLaw(const hydro_sample& sample) const {
   return told != nullptr && told->by_law.has_value();
 }
 
+bool OutputWatch::ActsByAnOldCommand(const hydro_sample& sample) const {
+  const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
+  return armed && sample.voltage != 0 && Find(sample) == nullptr && !told_.empty() && IsOld(sample);
+}
+
 void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
                        bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
   const size_t before = faults->size();
@@ -111,6 +116,12 @@ bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
   if (law && !own_loop_) return false;
   return std::any_of(told_.begin(), told_.end(),
                      [&](const Told& told) { return law ? told.by_law.has_value() : told.voltage != 0; });
+}
+
+// Whether the command that a sample names may have been sent before those that are kept: as the rig's check
+// of its age sees too. A device cannot act by one that comes later, or that is missing among those kept.
+bool OutputWatch::IsOld(const hydro_sample& sample) const {
+  return static_cast<int32_t>(sample.command_sequence - told_.front().sequence) < 0;
 }
 
 // Holds for an arm that stands still as for one that moves: the sample has all that the law was computed
@@ -148,7 +159,7 @@ void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
   const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
-  if (armed && found == nullptr && MayPutOut(sample)) return;
+  if (armed && found == nullptr && MayPutOut(sample) && IsOld(sample)) return;
   const double told = found != nullptr ? found->voltage : 0;
   if (voltage == told || IsLess(sample, told)) return;
   faults->push_back(
@@ -180,7 +191,8 @@ void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, 
 }
 
 bool OutputWatch::Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now) {
-  if (!std::isfinite(read_back) || std::fabs(read_back - nearest) <= tolerance_) {
+  // NaN alone says that the board cannot read its output.
+  if (std::isnan(read_back) || std::fabs(read_back - nearest) <= tolerance_) {
     differing_ = 0;
     differs_since_.reset();
     return false;

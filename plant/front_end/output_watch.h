@@ -43,6 +43,8 @@ class OutputWatch {
   // The tick of the motor command from which the voltage of a sample came, if a command told it; -1: it came
   // from none.
   int64_t CommandTick(const hydro_sample& sample) const;
+  // Whether the sample names a command that was sent before all that are kept, and puts out a voltage.
+  bool ActsByAnOldCommand(const hydro_sample& sample) const;
   // Whether the sample's voltage comes from eq. (16) by a command of late.
   bool ActsByLaw(const hydro_sample& sample) const;
 
@@ -74,6 +76,7 @@ class OutputWatch {
 
   // Whether the device may put out a voltage that no recent command of the driver told it.
   bool MayPutOut(const hydro_sample& sample) const;
+  bool IsOld(const hydro_sample& sample) const;
 
   const bool own_loop_;  // on the device
   const bus::Clock::Duration patience_, transfer_;

@@ -257,13 +257,14 @@ TEST(PumpFrictionTest, Errors) {
 // Tests that times in another unit than is said, which would make days of holds, are refused at once with the
 // unit that is meant.
 TEST(FrictionRunFile, TimesInAnotherUnit) {
-  const std::string stem = testing::TempDir() + "/friction_times";
   const runs::MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
-  std::ofstream(stem + ".toml")
-      << "shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"v\"\nmotor_speed = \"w\"\n";
-  ExperimentOptions options;
-  options.measured_run = stem + ".csv";
   for (const auto& [unit, factor] : {std::pair("ns", 1e9), {"us", 1e6}, {"ms", 1e3}}) {
+    const std::string stem =
+        testing::TempDir() + "/" + unit + "_friction_times";  // no file that was read is replaced
+    std::ofstream(stem + ".toml")
+        << "shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"v\"\nmotor_speed = \"w\"\n";
+    ExperimentOptions options;
+    options.measured_run = stem + ".csv";
     tables::Table table;
     table.columns = {{"t", run.time}, {"v", run.voltage.values}, {"w", run.motor_speed.values}};
     for (double& time : table.columns[0].values) time *= factor;
@@ -279,9 +280,9 @@ TEST(FrictionRunFile, TimesInAnotherUnit) {
                   HasSubstr(std::string("(is the column in ") + unit + "? unit = \"" + unit + "\")")));
       }
     }
+    std::filesystem::remove(stem + ".csv");
+    std::filesystem::remove(stem + ".toml");
   }
-  std::filesystem::remove(stem + ".csv");
-  std::filesystem::remove(stem + ".toml");
 }
 
 // Tests that a file with its sidecar is analysed like a run of the simulated rig, using the angle where there

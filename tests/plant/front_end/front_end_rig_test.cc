@@ -235,6 +235,50 @@ TEST(FrontEndRigTest, OutputByNoCommand) {
   }
 }
 
+// Tests that no voltage is believed to come from a command that was never sent: by its number, or by the tick
+// that the device says it is for; and that a false tick does not make an old command young.
+TEST(FrontEndRigTest, CommandsThatWereNeverSent) {
+  struct Lie {
+    int64_t sequence, host_tick;  // added to what is true
+    const char* code;
+    const char* text;
+  };
+  for (const Lie& lie : {Lie{100000, 0, "output_differs", "says that it puts out 9 V; it was told 0 V"},
+                         Lie{0, 10000, "output_differs", "acts by a command for tick"},
+                         Lie{-4000, 0, "device_silent", "acts by a command that was sent more than"}}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    ASSERT_TRUE(bench.rig->faults().empty());
+    bench.lie = [&](hydro_sample& sample) {
+      sample.command_sequence += static_cast<uint32_t>(lie.sequence);
+      sample.host_tick += lie.host_tick;
+      if (lie.sequence != 0) sample.voltage = 9;
+    };
+    bench.Ticks(3, 3);
+    EXPECT_THAT(bench.Fault(lie.code), HasSubstr(lie.text)) << lie.sequence;
+    EXPECT_EQ(bench.volts, 0);
+  }
+}
+
+// Tests that a pressure which no credible reading can give is a fault of its sensor although the device
+// reports none.
+TEST(FrontEndRigTest, ReadingsThatItsSettingsDoNotAllow) {
+  std::string driver = kFrontEndText;
+  const std::string p2 = "[driver.p2]\n";
+  driver.insert(driver.find(p2) + p2.size(), "minimum_V = -0.1\nmaximum_V = 4.6\n");
+  for (const float pressure : {-1e30F, -60.0F, 2310.0F}) {
+    DeviceBench bench(driver);
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(20, 3);
+    ASSERT_TRUE(bench.rig->faults().empty());
+    bench.lie = [&](hydro_sample& sample) { sample.value[HYDRO_P2] = pressure; };
+    bench.Ticks(2, 3);
+    EXPECT_THAT(bench.Fault("sensor_p2"), HasSubstr("driver.p2 allows no such reading"));
+    EXPECT_EQ(bench.volts, 0);
+  }
+}
+
 // Tests that a device which says that it is armed though nobody has asked it to arm is at fault, with zero
 // volts too, and is asked to disarm; and that one which was asked and told zero volts is not.
 TEST(FrontEndRigTest, ArmedUnasked) {
@@ -305,6 +349,10 @@ TEST(FrontEndRigTest, OutputDiffers) {
   bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = NAN; };
   bench.Ticks(5, 3);
   EXPECT_TRUE(bench.rig->faults().empty()) << "a board that cannot read back";
+  bench.before_tick = nullptr;
+  bench.lie = [](hydro_sample& sample) { sample.read_back = INFINITY; };
+  bench.Ticks(5, 3);
+  EXPECT_NE(bench.Fault("output_differs"), "") << "that is no number, and not the word for none";
 }
 
 // Tests that a signal that is no number is the fault of its sensor although the device reports none, that a
@@ -400,7 +448,15 @@ TEST(FrontEndRigTest, Zero) {
   EXPECT_EQ(bench.volts, 0);
   const OutputLeft left = bench.rig->Zero();
   EXPECT_TRUE(left.accepted);
-  EXPECT_EQ(left.voltage, 0);
+  EXPECT_TRUE(std::isnan(left.voltage)) << "this board reads nothing back";
+  bench.readings.read_back_V = 0;
+  bench.RunDevice();
+  EXPECT_EQ(bench.rig->Zero().voltage, 0);
+  bench.lie = [](hydro_sample& sample) { sample.voltage = 5; };
+  bench.RunDevice();
+  EXPECT_FALSE(bench.rig->Zero().accepted) << "its output holds zero, and it says that it puts out 5 V";
+  EXPECT_EQ(bench.rig->Zero().voltage, 5);
+  bench.lie = nullptr;
   bench.readings.read_back_V = 2;
   bench.RunDevice();
   EXPECT_FALSE(bench.rig->Zero().accepted) << "it says so, but its output does not hold it";
