@@ -140,6 +140,7 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
     return {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   }
   read_ = connection_.sample();
+  has_read_back_ |= !std::isnan(read_.read_back);
   FindSensorFaults(read_);
   FindDeviceFaults(read_);
   FindUnaskedArming(read_);
@@ -428,7 +429,9 @@ OutputLeft FrontEndRig::Zero() noexcept {
         // shows the voltage that was left.
         const int64_t samples = connection_.counts().samples;
         if (!obeyed && sample.state != HYDRO_ARMED) obeyed = samples;
-        if (left.accepted && samples > *obeyed && std::fabs(held) <= kNearZero) return left;
+        // A board that has read its output back does so again.
+        const bool known = reads_back || !has_read_back_;
+        if (left.accepted && known && samples > *obeyed && std::fabs(held) <= kNearZero) return left;
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);

@@ -147,6 +147,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<bus::Clock::TimePoint> asked_to_arm_at_;  // of late; while it is armed, when that was
   std::optional<uint32_t> trips_;                         // of the device, at the last reading
   int64_t resets_ = 0;                                    // at the last reading
+  bool has_read_back_ = false;                            // a sample has said what the output holds
   DeviceCount motor_count_, arm_count_;
 };
 
