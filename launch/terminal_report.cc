@@ -76,9 +76,12 @@ void TerminalReport::End(int exit_code) {
     output_.Json(
         JsonText(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", written ? log_file_ : ""}}));
   } else if (written) {
+    // A reader of a limb's log has to be told which joint.
+    const std::vector<std::string>& joints = config_.bus.joint_suffixes;
+    const std::string suffix = joints.empty() ? "" : " --suffix " + joints.front();
     Print(HasState(log_file_)
               ? "next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_
-              : "next: hydro-log info " + log_file_ + ": the run ended before its first state");
+              : "next: hydro-log info " + log_file_ + suffix + ": the run ended before its first state");
   } else if (logs_here_) {
     Print("nothing was recorded: the run ended before " + log_file_ + " was begun");
   }

@@ -24,8 +24,9 @@ std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string
   if (skipped < kVeryFewSkipped || !(share >= kFewSkipped)) return "";
   return fmt::format(
       "{} of {} ticks ({:.0f} %) were skipped, because this machine woke the process too late: what was "
-      "recorded is not the loop at its rate. `hydro-launch doctor {}` names what to change; a lower "
-      "plant.rate_hz asks less, and --time lockstep skips nothing",
+      "recorded is not the loop at its rate. `hydro-launch doctor {}` examines its settings; other programs "
+      "may keep it busy; a lower plant.rate_hz asks less; with a simulated plant, --time lockstep skips "
+      "nothing",
       skipped, ticks, 100 * share, config);
 }
 

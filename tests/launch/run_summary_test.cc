@@ -99,9 +99,10 @@ TEST(RunSummaryTest, SkippedTicks) {
   report.role = "driver";
   report.session = 2;
   summary.Add(report);
-  EXPECT_THAT(summary.SkippedTicksAdvice("rig.toml"),
-              AllOf(HasSubstr("driver: 1417 of 3000 ticks (47 %) were skipped"),
-                    HasSubstr("hydro-launch doctor rig.toml")));
+  EXPECT_THAT(
+      summary.SkippedTicksAdvice("rig.toml"),
+      AllOf(HasSubstr("driver: 1417 of 3000 ticks (47 %) were skipped"),
+            HasSubstr("hydro-launch doctor rig.toml"), HasSubstr("with a simulated plant, --time lockstep")));
   RunSummary good;
   report.missed_deadlines = 9;
   good.Add(report);
