@@ -181,6 +181,9 @@ std::optional<std::string> RatioOfSpeeds(const model::ModelDescription& model,
              ": two unequal areas, leakage or a valve?";
     }
   }
+  // An interval wider than what a ruler errs by is no measurement of a bore: pressures that follow the speed
+  // have taken a part of it.
+  if (half > kOff * std::abs(ratio)) return std::nullopt;
   const double factor = ratio / given;
   if (std::abs(factor - 1) <= kOff + kSurely * half / std::abs(given)) return std::nullopt;
   return "motor and arm speed give c/D = " + WithInterval(ratio, half) + ", the model " +
