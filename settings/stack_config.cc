@@ -70,6 +70,16 @@ std::string ModelFileOf(const TomlNode& root, const std::string& file) {
   return path;
 }
 
+// The units of the model that another one replaces. None where that model cannot be read, because nothing
+// requires it.
+std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
+  try {
+    return UnitsOfModelIn(root, file);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 // Lists units for people: "in, lbf, psi", and for a linear arm also the arm's unit.
 std::string Named(const UnitSystem& units) {
   return std::string(units.length) + ", " + std::string(units.force) + ", " + units.UnitFor("psi") +
@@ -107,16 +117,6 @@ TomlNode ReadConfigDocument(const std::string& file) {
 UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
   const std::string path = ModelFileOf(root, file);
   return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
-}
-
-// The units of the model that another one replaces. None where that model cannot be read, because nothing
-// requires it.
-static std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
-  try {
-    return UnitsOfModelIn(root, file);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
 }
 
 // The numbers of the configuration keep the units of the model that it names itself.

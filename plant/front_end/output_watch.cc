@@ -17,6 +17,11 @@ void Forget(Entries* entries, bus::Clock::TimePoint before) {
   while (entries->size() > 1 && (*entries)[1].at < before) entries->pop_front();
 }
 
+// Whether the sample's voltage comes from a command, as the device says.
+bool Acts(const hydro_sample& sample) {
+  return sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
+}
+
 // Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
 // and never the other sign.
 bool IsLess(const hydro_sample& sample, double told) {
@@ -74,7 +79,7 @@ void OutputWatch::Keep(const Told& told) {
 
 // Of a voltage that was told, and of one by eq. (16), only a command of the same kind is the reason.
 const OutputWatch::Told* OutputWatch::Find(const hydro_sample& sample) const {
-  if (sample.state != HYDRO_ARMED || sample.source == HYDRO_SOURCE_ZERO) return nullptr;
+  if (!Acts(sample)) return nullptr;
   const bool law = sample.source == HYDRO_SOURCE_LAW;
   const auto found = std::find_if(told_.rbegin(), told_.rend(), [&](const Told& told) {
     return told.sequence == sample.command_sequence && told.by_law.has_value() == law;
@@ -93,8 +98,7 @@ bool OutputWatch::ActsByLaw(const hydro_sample& sample) const {
 }
 
 bool OutputWatch::ActsByAnOldCommand(const hydro_sample& sample) const {
-  const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
-  return armed && sample.voltage != 0 && Find(sample) == nullptr && !told_.empty() && IsOld(sample);
+  return Acts(sample) && sample.voltage != 0 && Find(sample) == nullptr && !told_.empty() && IsOld(sample);
 }
 
 void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
@@ -158,8 +162,7 @@ void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const
 void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
-  const bool armed = sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
-  if (armed && found == nullptr && MayPutOut(sample) && IsOld(sample)) return;
+  if (Acts(sample) && found == nullptr && MayPutOut(sample) && IsOld(sample)) return;
   const double told = found != nullptr ? found->voltage : 0;
   if (voltage == told || IsLess(sample, told)) return;
   faults->push_back(
