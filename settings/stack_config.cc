@@ -65,7 +65,7 @@ std::string ModelNameIn(const TomlNode& root) {
 std::string ModelFileOf(const TomlNode& root, const std::string& file) {
   const std::string name = ModelNameIn(root);
   if (name.empty()) return "";
-  const std::string path = PathBeside(file, name);
+  std::string path = PathBeside(file, name);
   RequireModelFile(root, name, path);
   return path;
 }
