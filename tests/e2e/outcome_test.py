@@ -100,16 +100,19 @@ class OutcomeTest(unittest.TestCase):
         outputs = {"skips": (skip + passed + listed, 0), "passes": (passed, 0),
                    "fails": (skip + passed + listed + "[  FAILED  ] 1 test, listed below:\n[  FAILED  ] A.C\n", 1),
                    "leaks": (skip + passed + listed + "==7==ERROR: LeakSanitizer: detected memory leaks\n", 23)}
-        known = next(properties["SKIP_REGULAR_EXPRESSION"] for command, properties in tests_of(BUILD) if is_program(command))
+        known = {properties.get("SKIP_REGULAR_EXPRESSION", "") for command, properties in tests_of(BUILD) if is_program(command)}
+        together = [expression for expression in known if "PASSED" in expression]
+        if not together:
+            self.skipTest("this build runs each test in a process of its own (HYDRO_UNITY is off)")
         lines = ""
         for name, (text, code) in outputs.items():
             (self.folder / f"{name}.py").write_text(f"import sys\nsys.stdout.write({text!r})\nsys.exit({code})\n")
             lines += f'add_test({name} "{sys.executable}" "{self.folder}/{name}.py")\n' \
-                     f"set_tests_properties({name} PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION [==[{known}]==])\n"
+                     f"set_tests_properties({name} PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION [==[{together[0]}]==])\n"
         (self.folder / "CTestTestfile.cmake").write_text(lines)
         run = subprocess.run([str(RUN_TESTS), str(self.folder), "unit"], capture_output=True, text=True, check=False)
         for name, result in {"skips": "Skipped", "passes": "Passed", "fails": "Failed", "leaks": "Failed"}.items():
-            self.assertRegex(run.stdout, rf" {name} \.*[* ]+{result}", known)
+            self.assertRegex(run.stdout, rf" {name} \.*[* ]+{result}")
         self.assertRegex(run.stdout, r"(?m)^skipped: skips: A\.B: no board here$")
         self.assertNotEqual(run.returncode, 0)
 
@@ -140,7 +143,7 @@ class OutcomeTest(unittest.TestCase):
                 for script in scripts:
                     self.assertNotIn("skip", script.read_text(), command)
         self.assertEqual(python, len(list(HERE.glob("*_test.py"))))
-        self.assertGreater(programs, 50)
+        self.assertGreater(programs, 10)
 
 
 if __name__ == "__main__":
