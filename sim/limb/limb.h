@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <hydro/run_description_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,9 +22,6 @@ struct LimbOptions {
   std::function<bool()> heartbeat = {};  // as in PlantApp
   int64_t session = 0;                   // of all joints, on simulated clocks
 };
-
-// The description that a log needs of the limb as a whole. Its sender adds its own identity and the time.
-run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program);
 
 class Limb {
  public:
