@@ -174,6 +174,8 @@ void PlantApp::AdvanceTo(int64_t tick) {
   SetTick(tick);
 }
 
+bus::Clock::TimePoint PlantApp::PublishState(bus::Clock::TimePoint now) { return Publish(0, now); }
+
 bus::Clock::TimePoint PlantApp::Wake(const WakeUp& wake_up) {
   const int64_t skipped = wake_up.elapsed - 1;
   participant_.statistics().set_missed_deadlines(wake_up.skipped);

@@ -80,7 +80,7 @@ class PlantApp {
   // Lockstep: reads the rig at a later tick, to which a simulated rig advances under the voltage that it
   // holds; then publishes the state, as Start() does.
   void AdvanceTo(int64_t tick);
-  bus::Clock::TimePoint PublishState(bus::Clock::TimePoint now) { return Publish(0, now); }
+  bus::Clock::TimePoint PublishState(bus::Clock::TimePoint now);
   // Real time: both at once, for the ticks that have elapsed.
   bus::Clock::TimePoint Wake(const WakeUp& wake_up);
   // Polls everything that is due now.
