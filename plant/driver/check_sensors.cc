@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "plant/driver/device_rig.h"
+#include "plant/driver/device_watch.h"
 #include "process/stop_signal.h"
 
 namespace hydro::plant {

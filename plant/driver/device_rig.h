@@ -2,54 +2,25 @@
 // volts on every way out.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bus/clock.h"
 #include "plant/driver/device.h"
 #include "plant/driver/device_sensors.h"
+#include "plant/driver/device_watch.h"
 #include "plant/driver/zero_guardian.h"
 #include "plant/rig.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
 
-// Watches whether a device still answers, and whether its output is the one that was put out.
-class DeviceWatch {
- public:
-  // `patience` is how old a device's newest reading may become, and how long its output may take to follow
-  // (limits.stale_input_s).
-  DeviceWatch(const DeviceDescription& description, bus::Clock::Duration patience, bus::Clock::TimePoint now);
-
-  bus::Clock::Duration patience() const { return patience_; }
-
-  // Records that `output` was put out.
-  void OnDriven(double output, bus::Clock::TimePoint now);
-
-  // Adds the faults that it finds: "device_silent" while no reading is newer than the patience,
-  // "device_fault" while the device reports one, "output_differs" while the output that the device reads back
-  // is none of those put out within the patience. Returns whether the device is silent.
-  bool Look(const DeviceReadings& readings, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
-
- private:
-  void LookAtOutput(const Reading& output, bus::Clock::TimePoint now, std::vector<RigFault>* faults);
-
-  std::string name_;
-  DeviceOutput output_;
-  bus::Clock::Duration patience_;
-  bus::Clock::TimePoint heard_;
-  std::deque<std::pair<bus::Clock::TimePoint, double>>
-      driven_;  // the outputs within the patience, and the one before
-};
-
 class DeviceRig : public Rig {
  public:
   // Checks that the device has what [driver] names and writes zero volts. From then on the output goes to
-  // zero on every way out of the process (zero_guardian.h). Throws InputError when the device
-  // lacks what the configuration names, RigError when it does not accept the zero.
+  // zero on every way out of the process (zero_guardian.h). Throws InputError when the device lacks what the
+  // configuration names, RigError when it does not accept the zero.
   DeviceRig(const settings::StackConfig& config, const bus::Clock& clock, std::unique_ptr<Device> device);
   // Writes zero volts, then closes the device.
   ~DeviceRig() override;
