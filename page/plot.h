@@ -8,6 +8,8 @@
 // static_excess stay unchanged.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -39,8 +41,10 @@ struct Curve {
 };
 
 // y over x without bounds.
-Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
-           Stroke stroke = Stroke::kLine);
+inline Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y,
+                  int colour, Stroke stroke = Stroke::kLine) {
+  return {.label = label, .x = x, .y = y, .stroke = stroke, .colour = colour};
+}
 
 // A value on an axis and its text.
 struct Tick {
@@ -107,6 +111,29 @@ struct Figure {
   size_t columns = 1;
   double width = 860;       // pixels
   double panel_height = 0;  // height of a panel's frame, pixels; 0: chosen by the number of panels
+};
+
+// A range that grows to hold values.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  bool empty() const { return !(low <= high); }
+  // Ignores values that are not finite.
+  void Include(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void Include(const std::vector<double>& values) {
+    for (const double value : values) Include(value);
+  }
+  // The range widened by an eighteenth on each side, and never empty.
+  Range WithMargin() const {
+    if (empty()) return {-1, 1};
+    const double margin = high > low ? (high - low) / 18 : std::max(1e-6, std::abs(low) / 10);
+    return {low - margin, high + margin};
+  }
 };
 
 }  // namespace hydro::page

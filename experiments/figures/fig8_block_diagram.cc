@@ -3,7 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "experiments/figures/drawings.h"
-#include "page/drawing_template.h"
+#include "page/svg.h"
 
 namespace hydro::experiments {
 
