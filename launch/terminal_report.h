@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/file_identity.h"
+#include "base/read_files.h"
 #include "launch/labelled_output.h"
 #include "launch/logic/launch_report.h"
 #include "launch/logic/plan.h"

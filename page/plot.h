@@ -27,9 +27,9 @@ enum class Stroke { kLine, kDashed, kDotted, kSteps, kBars, kPoints, kLinePoints
 enum class Weight { kNormal, kFaint, kStrong, kBackdrop };
 
 struct Curve {
-  std::string label;      // in the key; empty: none
-  std::vector<double> x;  // of equal length; a NaN in y breaks the line
-  std::vector<double> y;
+  std::string label = {};      // in the key; empty: none
+  std::vector<double> x = {};  // of equal length; a NaN in y breaks the line
+  std::vector<double> y = {};
   Stroke stroke = Stroke::kLine;
   // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's
   // index in its panel.
@@ -53,7 +53,7 @@ struct Tick {
 };
 
 struct Axis {
-  std::string label;         // quantity and unit: "pressure difference, psi"
+  std::string label = {};    // quantity and unit: "pressure difference, psi"
   bool logarithmic = false;  // values of 0 and below are not drawn
   double min = kAutomatic;
   double max = kAutomatic;
@@ -86,12 +86,12 @@ struct Band {
 };
 
 struct Panel {
-  std::string title;
-  Axis x;
-  Axis y;
-  std::vector<Curve> curves;
-  std::vector<Note> notes;
-  std::vector<Rule> rules;
+  std::string title = {};
+  Axis x = {};
+  Axis y = {};
+  std::vector<Curve> curves = {};
+  std::vector<Note> notes = {};
+  std::vector<Rule> rules = {};
   // One unit is equally long on both axes (for a plane of poles): one of the two ranges is widened, even if
   // it was given.
   bool equal_scales = false;
@@ -103,8 +103,8 @@ struct Panel {
 // Panels stand below each other, or side by side in rows. A panel's key extends over panels beside it that
 // have none.
 struct Figure {
-  std::string caption;  // what is shown, under which conditions; stands below the picture
-  std::vector<Panel> panels;
+  std::string caption = {};  // what is shown, under which conditions; stands below the picture
+  std::vector<Panel> panels = {};
   // A whole <svg> element that replaces the panels. Its first tag has a viewBox="0 0 WIDTH HEIGHT". It must
   // keep its ids unique.
   std::string drawing = {};
