@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
 #include "launch/logic/operator_request.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/file_identity.h"
+#include "base/read_files.h"
 #include "launch/labelled_output.h"
 #include "launch/logic/children.h"
 #include "launch/logic/stack_launch.h"

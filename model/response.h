@@ -11,8 +11,8 @@
 
 #include "model/actuator.h"
 #include "model/terms/description.h"
-#include "model/terms/surroundings.h"
-#include "model/unknown.h"
+#include "model/terms/measurement.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::model {
 

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "base/unit_spelling.h"
+#include "base/unit_system.h"
 #include "base/units.h"
 #include "base/word_list.h"
 #include "runs/counters.h"

@@ -5,8 +5,8 @@
 #include <cctype>
 #include <limits>
 
-#include "base/did_you_mean.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "settings/overrides.h"
 #include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"

@@ -8,7 +8,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "process/stop_signal.h"
 #include "runs/log/log_writer.h"

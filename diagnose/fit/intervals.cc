@@ -5,7 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
-#include "base/maths/solve.h"
+#include "base/maths/matrix_functions.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/recording/sample_interval.h"

@@ -17,7 +17,6 @@
 #include <set>
 
 #include "bus/channels.h"
-#include "bus/udpm/multicast_self_test.h"
 #include "bus/udpm/open_udpm_bus.h"
 
 namespace hydro::launch {

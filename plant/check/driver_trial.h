@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bus/udpm/reserved_port.h"
+#include "bus/udpm/udpm_url.h"
 #include "plant/check/checked_device.h"
 #include "plant/check/checked_stack.h"
 #include "plant/check/driver_cases.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 #include "plant/front_end/front_end_rig.h"
 #include "plant/front_end/refusals.h"
 #include "process/stop_signal.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/text_file.h"
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 #include "plant/front_end/front_end_settings.h"
 #include "plant/front_end/refusals.h"
 #include "process/stop_signal.h"

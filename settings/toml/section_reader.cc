@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 
 namespace hydro::settings {
 namespace {

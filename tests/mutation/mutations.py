@@ -521,7 +521,7 @@ MUTATIONS = [
     ),
     # Derivatives by parameters, past an event whose time depends on them.
     *_rows(
-        "model/integrate/event_shift.h",
+        "model/integrate/event_search.h",
         ("derivatives.event", "Jet later = -at.margin[which] / slope;", "Jet later = at.margin[which] / slope;"),
     ),
     *_rows(

@@ -6,7 +6,7 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/compare.h"

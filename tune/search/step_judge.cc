@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "model/sides.h"
-#include "model/terms/drawn_model.h"
+#include "model/terms/description.h"
 #include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
 #include "plant/simulated_rig.h"
