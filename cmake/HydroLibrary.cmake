@@ -20,8 +20,8 @@ endif()
 add_compile_options(-pthread)
 
 # Under the sanitizers, files that only compute are optimised a little and compiled without the check of every
-# access's alignment. They read no raw bytes, and that check takes much of the compile time. Optimising them
-# more than doubles their compile time, and pays only where the tests of these folders themselves are run.
+# access's alignment. They read no raw bytes, and that check takes much of the compile time. Optimising triples
+# their compile time, and pays only where the tests of these folders themselves are run (./check --full).
 option(HYDRO_OPTIMISE_COMPUTES "Under the sanitizers, optimise files that only compute" ON)
 set(HYDRO_COMPUTES_OPTIONS "")
 if(HYDRO_SANITIZE)
