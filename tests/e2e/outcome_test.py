@@ -26,6 +26,20 @@ TESTS = {
 }
 
 
+def tests_of(build):
+    """(command, properties) of each test of a build folder."""
+    listing = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True)
+    for test in json.loads(listing.stdout)["tests"]:
+        properties = {p["name"]: p["value"] for p in test.get("properties", [])}
+        yield test.get("command", []), {name: "".join(value) if isinstance(value, list) else str(value)
+                                        for name, value in properties.items()}
+
+
+def is_program(command):
+    """Whether a test runs a GoogleTest program."""
+    return any(word.endswith("_test") for word in command)
+
+
 class OutcomeTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="hydro-outcome-")
@@ -77,39 +91,59 @@ class OutcomeTest(unittest.TestCase):
         self.assertNotEqual(bad.returncode, 0, bad.stdout)
         self.assertRegex(bad.stdout, r"skips_and_fails \.*\*\*\*Failed")
 
+    # Tests that a GoogleTest program whose tests share a process is "Skipped" when some of them skipped and the
+    # others passed, with each one's reason, and that a skip hides neither a failure nor what follows the tests.
+    @unittest.skipUnless(BUILD, "needs HYDRO_BUILD, a build folder: ctest sets it")
+    def test_programs(self):
+        skip = "[ RUN      ] A.B\na_test.cc:7: Skipped\nno board here\n\n[  SKIPPED ] A.B (0 ms)\n"
+        passed, listed = "[  PASSED  ] 1 test.\n", "[  SKIPPED ] 1 test, listed below:\n[  SKIPPED ] A.B\n"
+        outputs = {"skips": (skip + passed + listed, 0), "passes": (passed, 0),
+                   "fails": (skip + passed + listed + "[  FAILED  ] 1 test, listed below:\n[  FAILED  ] A.C\n", 1),
+                   "leaks": (skip + passed + listed + "==7==ERROR: LeakSanitizer: detected memory leaks\n", 23)}
+        known = {properties.get("SKIP_REGULAR_EXPRESSION", "") for command, properties in tests_of(BUILD) if is_program(command)}
+        together = [expression for expression in known if "PASSED" in expression]
+        if not together:
+            self.skipTest("this build runs each test in a process of its own (HYDRO_UNITY is off)")
+        lines = ""
+        for name, (text, code) in outputs.items():
+            (self.folder / f"{name}.py").write_text(f"import sys\nsys.stdout.write({text!r})\nsys.exit({code})\n")
+            lines += f'add_test({name} "{sys.executable}" "{self.folder}/{name}.py")\n' \
+                     f"set_tests_properties({name} PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION [==[{together[0]}]==])\n"
+        (self.folder / "CTestTestfile.cmake").write_text(lines)
+        run = subprocess.run([str(RUN_TESTS), str(self.folder), "unit"], capture_output=True, text=True, check=False)
+        for name, result in {"skips": "Skipped", "passes": "Passed", "fails": "Failed", "leaks": "Failed"}.items():
+            self.assertRegex(run.stdout, rf" {name} \.*[* ]+{result}")
+        self.assertRegex(run.stdout, r"(?m)^skipped: skips: A\.B: no board here$")
+        self.assertNotEqual(run.returncode, 0)
+
     # Tests that every end-to-end test ends with outcome.main().
     def test_all_end_so(self):
         for path in sorted(HERE.glob("*_test.py")):
             if path != pathlib.Path(__file__).resolve():
                 self.assertTrue(path.read_text().endswith('if __name__ == "__main__":\n    outcome.main()\n'), path.name)
 
-    # Tests that ctest knows the exit code of each of them, and also GoogleTest's message about skips for each
-    # test that it runs alone. With several tests in one process ctest would only see that none failed, so
-    # there a skip is a failure.
+    # Tests that ctest knows the exit code of each of them, and GoogleTest's message about skips for each of its
+    # programs. In a program that runs whole experiments a skip is a failure.
     @unittest.skipUnless(BUILD, "needs HYDRO_BUILD, a build folder: ctest sets it")
     def test_ctest_knows(self):
-        listing = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], capture_output=True, text=True, check=True)
-        python, alone, together = 0, 0, 0
-        for test in json.loads(listing.stdout)["tests"]:
-            properties = {p["name"]: str(p["value"]) for p in test.get("properties", [])}
-            command = test.get("command", [])
-            if any(word.startswith(f"{HERE}/") and word.endswith("_test.py") for word in command):
-                self.assertEqual(properties.get("SKIP_RETURN_CODE"), str(outcome.SKIPPED), test["name"])
+        python, programs = 0, 0
+        for command, properties in tests_of(BUILD):
+            scripts = [pathlib.Path(word) for word in command if word.endswith(".py")]
+            if any(path.parent == HERE and path.name.endswith("_test.py") for path in scripts):
+                self.assertEqual(properties.get("SKIP_RETURN_CODE"), str(outcome.SKIPPED), command)
                 python += 1
-            elif any(word.startswith("--gtest_filter=") and "*" not in word for word in command):
-                self.assertIn("SKIPPED", properties.get("SKIP_REGULAR_EXPRESSION", ""), test["name"])
-                alone += 1
-            elif "SKIPPED" in properties.get("FAIL_REGULAR_EXPRESSION", ""):
-                together += 1
+            elif is_program(command):
+                self.assertIn("SKIPPED", properties.get("SKIP_REGULAR_EXPRESSION", properties.get("FAIL_REGULAR_EXPRESSION", "")), command)
+                programs += 1
             elif properties.get("SKIP_RETURN_CODE") == str(outcome.SKIPPED):  # tests of other folders that end like these
-                for script in (word for word in command if word.endswith(".py")):
-                    text = pathlib.Path(script).read_text()
-                    self.assertTrue("outcome.main()" in text or "skip" not in text, test["name"])
+                for script in scripts:
+                    text = script.read_text()
+                    self.assertTrue("outcome.main()" in text or "skip" not in text, command)
             else:  # what is run otherwise never skips
-                for script in (word for word in command if word.endswith(".py")):
-                    self.assertNotIn("skip", pathlib.Path(script).read_text(), test["name"])
+                for script in scripts:
+                    self.assertNotIn("skip", script.read_text(), command)
         self.assertEqual(python, len(list(HERE.glob("*_test.py"))))
-        self.assertGreater(together, 0)
+        self.assertGreater(programs, 10)
 
 
 if __name__ == "__main__":

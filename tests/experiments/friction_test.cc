@@ -10,7 +10,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/pump_friction.h"
-#include "plant/sensor_noise.h"
+#include "plant/simulated_rig.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {

@@ -110,7 +110,7 @@ bool JumpsBetween(const Wanted& wanted, double begin, double end) {
 }
 
 // The return: a straight line from the current reference to the wanted one
-// (position_ctrl/law/reference_return.h).
+// (position_ctrl/law/position_law.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
   forecast->target = wanted.At(end);

@@ -8,7 +8,7 @@
 #include "model/terms/description.h"
 #include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
-#include "plant/sensor_noise.h"
+#include "plant/simulated_rig.h"
 #include "runs/step_response.h"
 #include "tune/design/bang_bang.h"
 #include "tune/design/configured_laws.h"

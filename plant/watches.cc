@@ -1,4 +1,4 @@
-#include "plant/logger_watch.h"
+#include "plant/watches.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,8 +9,9 @@
 namespace hydro::plant {
 namespace {
 
-constexpr char kCode[] = "logger_gone";
+constexpr char kLoggerGone[] = "logger_gone";
 constexpr size_t kMostLoggers = 64;  // entries; more would only come from a flood of made-up loggers
+constexpr auto kHeartbeatCheck = std::chrono::milliseconds(10);
 
 }  // namespace
 
@@ -43,7 +44,7 @@ void LoggerWatch::Heard(int64_t session) {
     return;
   }
   Logger& logger = known->second;
-  if (!logger.again && participant_.any_fault()) participant_.Clear(kCode);
+  if (!logger.again && participant_.any_fault()) participant_.Clear(kLoggerGone);
   logger = {.heard = now, .again = true};
 }
 
@@ -51,7 +52,7 @@ void LoggerWatch::Gone(int64_t session, const std::string& text, double silence)
   loggers_.erase(session);
   // The end of a run is announced before its logger leaves, so its leaving is no fault then.
   if (participant_.stop()) return;
-  participant_.Raise(kCode, fmt::format("{} no longer records: {}", participant_.NameOf(session), text),
+  participant_.Raise(kLoggerGone, fmt::format("{} no longer records: {}", participant_.NameOf(session), text),
                      silence, bus::ToSeconds(limit_), false);
 }
 
@@ -73,6 +74,28 @@ void LoggerWatch::Poll(bus::Clock::TimePoint now) {
          silence);
     return;  // the map has changed; the next call sees the rest
   }
+}
+
+LoggerWindow::LoggerWindow(bus::Bus& bus, const std::vector<bus::Channels>& channels) {
+  for (const bus::Channels& each : channels) {
+    bus.Subscribe<log_progress_t>(each.Of<log_progress_t>(), [this](const log_progress_t& progress) {
+      const auto known = progress_.find(progress.session);
+      if (known != progress_.end()) known->second = progress.tick;
+    });
+  }
+}
+
+void LauncherWatch::CheckDue(int64_t tick, bus::Clock::TimePoint now) {
+  next_check_ = now + kHeartbeatCheck;
+  if (heartbeat_()) newest_ = now;
+  const double silence = newest_ ? bus::ToSeconds(now - *newest_) : 0;
+  safety_.Set(VoltageGuard::Cause::kSupervisorGone, silence > allowed_, [&] {
+    return OutputSafety::Finding{fmt::format("tick {}: hydro-launch, which started this process, has not "
+                                             "been heard for {:.2f} s, allowed are {} s "
+                                             "(limits.stale_supervisor_s); is it stopped (Ctrl-Z)?",
+                                             tick, silence, allowed_),
+                                 silence, allowed_};
+  });
 }
 
 }  // namespace hydro::plant

@@ -1,5 +1,4 @@
-// What really happened to one plant process, as the simulator saw it: the commands that reached it, what its
-// sensors read, the voltages that it put out. The invariants (invariants.h) are computed from this.
+// What really happened to one process, as the simulator saw it. The invariants are computed from this.
 #pragma once
 
 #include <array>
@@ -8,6 +7,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sim/torture/machines/machine.h"
 #include "sim/torture/machines/packet.h"
@@ -25,6 +26,7 @@ struct ReceivedCommand {
   Origin origin = Origin::kProcess;
 };
 
+// Of a plant: the commands that reached it, what its sensors read, the voltages that it put out.
 class PlantRecord {
  public:
   static constexpr int64_t kRemembered = 2048;  // ticks
@@ -90,5 +92,39 @@ class PlantRecord {
   std::array<Tick, kRemembered> ticks_{};
   std::deque<ReceivedCommand> false_;
 };
+
+// The number of states that one process has really missed, counted from what reached it. The process's own
+// count must be the same.
+class LossCount {
+ public:
+  // A state was passed to the process.
+  void Handle(const Packet& state);
+
+  // States missing before or between those that were handled. None where a state was changed, forged or from
+  // a second plant, because the count then depends on more than the network.
+  std::optional<int64_t> lost() const { return countable_ ? std::optional(lost_) : std::nullopt; }
+
+ private:
+  std::optional<int64_t> session_;
+  int64_t newest_ = 0;
+  int64_t lost_ = 0;
+  bool countable_ = true;
+};
+
+// Compares what really reached one logger process with the log that it left. A log must say what happened, or
+// say that something is missing.
+struct LogRecord {
+  std::string file;
+  std::vector<uint64_t> handled;  // hashes of the messages, in order
+  bool killed = false;            // the logger could not end its log
+  bool was_full = false;          // the disk refused a write
+  bool lied = false;              // the disk changed what was written
+  bool deleted = false;           // the file was deleted while it was being written
+
+  void Handle(std::string_view channel, const uint8_t* data, size_t size);
+};
+
+// Returns what is wrong with the log; empty when nothing is. Reads the whole log.
+std::string WrongWith(const LogRecord& record);
 
 }  // namespace hydro::torture
