@@ -184,6 +184,7 @@ std::optional<double> MeanWait_s(std::vector<JobSpan> jobs) {
   // processor begins after the end of another job. For the mean it does not matter which one.
   std::ranges::sort(jobs, {}, &JobSpan::began);
   std::vector<double> ends;
+  ends.reserve(jobs.size());
   for (const JobSpan& job : jobs) ends.push_back(job.ended);
   std::ranges::sort(ends);
   size_t used = 0;

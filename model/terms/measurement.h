@@ -1,6 +1,9 @@
 // What is told of an actuator at one instant: what its sensors read, what surrounds it, where its power goes.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace hydro::model {
 
 // What the sensors would read without noise, in the model's units. T is double, or a scalar with derivatives.
@@ -15,6 +18,18 @@ struct MeasurementOf {
 };
 using Measurement = MeasurementOf<double>;
 
+// The sensors, in the order of Measurement.
+enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };
+inline constexpr size_t kChannels = 6;
+using ChannelSet = std::array<bool, kChannels>;
+
+template <class T>
+const T& ChannelOf(const MeasurementOf<T>& measured, size_t channel) {
+  const T* const all[kChannels] = {&measured.motor_angle, &measured.motor_speed, &measured.arm_angle,
+                                   &measured.arm_speed,   &measured.p1,          &measured.p2};
+  return *all[channel];
+}
+
 // Outside influences on an actuator that may be measured beside it.
 struct Surroundings {
   // In the direction of alpha, in-lbf, or a force for a linear arm: what pushes the arm in addition to its
@@ -26,7 +41,7 @@ struct Surroundings {
 };
 
 // The power balance of eqs. (4), (13), (14), (15) at one instant: where the power goes.
-
+//
 // in-lbf/s in the paper's units. in + shaft_in = stored() + dissipated() + mismatch, exactly.
 //
 // Pressures count from p_3: fluid that passes a valve at p_3, or leaks to the accumulator, carries no power.

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
-namespace hydro::model {
+#include "model/terms/measurement.h"  // first: its Channel has enumerators of the same names
 
-// The layout of the state vector.
+namespace hydro::model {
 
 // The state vector: theta, theta', p1, p2; with a free shaft alpha, alpha'; then the states of the effects.
 inline constexpr int kMotorAngle = 0;
