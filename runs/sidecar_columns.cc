@@ -25,6 +25,9 @@ namespace {
 
 constexpr double kLongestStep = 86400;  // s from row to row
 
+const std::vector<std::pair<std::string, tables::DateOrder>> kDateOrders = {
+    {"dmy", tables::DateOrder::kDayFirst}, {"mdy", tables::DateOrder::kMonthFirst}};
+
 // Lists what a key of [columns] may name.
 std::string ColumnsOf(const tables::Table& table) {
   return "a column of " + table.file + ": " + QuotedList(table.names);
@@ -94,9 +97,10 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
     return entry;
   }
   if (!node->is(settings::TomlNode::Kind::kTable)) {
-    throw columns.Error(key, node->Shown(),
-                        "the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = "
-                        "\"...\", delay = ... }");
+    throw columns.Error(
+        key, node->Shown(),
+        std::string("the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = ") +
+            (key == "time" ? "\"...\" }, or { every = S } for rows S s apart" : "\"...\", delay = ... }"));
   }
   settings::SectionReader section(*node, "columns." + key);
   section.Require("column", "the name of a column of " + table.file);
@@ -112,6 +116,8 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
     if (known == table.names.end())
       throw section.Error("date", Quoted(date), ColumnsOf(table) + DidYouMean(date, table.names));
   }
+  tables::DateOrder order = tables::DateOrder::kUnknown;  // AskedBy() has already used it
+  if (key == "time") section.Choice("date_order", kDateOrders, &order);
   const bool delayed = section.Number("delay", &entry.source.delay);
   section.Finish();
   if (delayed && key == "time") {
@@ -215,10 +221,13 @@ tables::AskedColumns AskedBy(const settings::TomlNode& sidecar) {
   };
   asked.time = add(name_of("time"));
   const settings::TomlNode* time = columns->Find("time");
-  if (time != nullptr && time->is(settings::TomlNode::Kind::kTable))
+  if (time != nullptr && time->is(settings::TomlNode::Kind::kTable)) {
     asked.date = add(text_of(time->Find("date")));
-  for (const SignalName& name : kSignals) add(name_of(name.ours));
-  add(name_of("current"));
+    for (const auto& [order, value] : kDateOrders) {
+      if (text_of(time->Find("date_order")) == order) asked.date_order = value;
+    }
+  }
+  for (const std::string& key : ColumnKeys()) add(name_of(key));
   return asked;
 }
 
@@ -236,6 +245,7 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
     const char* key = KeyIn(*run, kSignals[i]);
     if (key != nullptr) sources[i] = ReadSource(columns, key, UnitIn(*run, kSignals[i]), *table);
   }
+  for (const std::string& key : ColumnKeys()) columns.Take(key);  // an unknown key is told all of them
   columns.Finish();
   if (every.has_value()) {
     CountRows(*every, table, run);
