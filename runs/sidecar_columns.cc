@@ -116,8 +116,7 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
     if (known == table.names.end())
       throw section.Error("date", Quoted(date), ColumnsOf(table) + DidYouMean(date, table.names));
   }
-  tables::DateOrder order = tables::DateOrder::kUnknown;  // AskedBy() has already used it
-  if (key == "time") section.Choice("date_order", kDateOrders, &order);
+  if (key == "time") section.Take("date_order");  // AskedBy() has already read it
   const bool delayed = section.Number("delay", &entry.source.delay);
   section.Finish();
   if (delayed && key == "time") {
@@ -223,9 +222,8 @@ tables::AskedColumns AskedBy(const settings::TomlNode& sidecar) {
   const settings::TomlNode* time = columns->Find("time");
   if (time != nullptr && time->is(settings::TomlNode::Kind::kTable)) {
     asked.date = add(text_of(time->Find("date")));
-    for (const auto& [order, value] : kDateOrders) {
-      if (text_of(time->Find("date_order")) == order) asked.date_order = value;
-    }
+    settings::SectionReader section(*time, "columns.time");
+    section.Choice("date_order", kDateOrders, &asked.date_order);
   }
   for (const std::string& key : ColumnKeys()) add(name_of(key));
   return asked;

@@ -70,10 +70,10 @@ double MeanErrorAtEnd(const Samples& samples, bool at_rest, double* time) {
   double sum = 0;
   int count = 0;
   for (size_t i = samples.size(); i-- > 0;) {
-    if (samples.times.back() - samples.times[i] > kFinalTime) break;
     if (at_rest && samples.references[i] != samples.references.back()) break;
+    *time = std::min(samples.times.back() - samples.times[i], kFinalTime);
+    if (samples.times.back() - samples.times[i] > kFinalTime) break;
     sum += samples.angles[i] - samples.references[i];
-    *time = samples.times.back() - samples.times[i];
     ++count;
   }
   return sum / count;

@@ -52,14 +52,14 @@ class Judge {
 
   // Why the message is doubtful; empty: it is not.
   std::string Doubt(const KeptEvent& place) const {
-    if (place.vouched) return {};
     const std::optional<Message> message = Read(place);
     if (!message) return {};
     const std::string channel(message->channel);
-    // Where none is complete, they come from another version.
+    // Where none is complete, they come from another version. One that was recorded as it is, was sent torn,
+    // or by another version beside this one: no verb that needs the whole run can read it.
     if (!message->complete && complete_.contains(message->channel))
       return "an event on " + channel + " that is not a whole " + message->kind->type;
-    if (message->session && IsNearlyKnown(message->channel, *message->session))
+    if (!place.vouched && message->session && IsNearlyKnown(message->channel, *message->session))
       return "an event on " + channel + " of a sender that no event with a checksum has";
     return {};
   }

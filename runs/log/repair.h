@@ -31,8 +31,9 @@ struct RepairResult {
 // only the events that it touches:
 // - it drops bytes that are not an event, and events with a damaged length (sound_events.h);
 // - it drops events whose checksum differs from when they were written (vouched_events.h);
-// - of the messages for which no checksum vouches, it drops those that damage has changed by all appearances
-//   (doubtful_events.h).
+// - it drops messages that are not what their channel holds, and those for which no checksum vouches and
+// which
+//   damage has changed by all appearances (doubtful_events.h).
 //
 // Throws InputError when the file cannot be read, has bytes but no event, or is of another kind. Unless `out`
 // is empty, writes the events to that log, renumbered and with new checksums, whole or not at all; `out` may

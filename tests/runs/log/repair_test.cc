@@ -140,6 +140,9 @@ TEST_F(RepairTest, UndecodableMessages) {
   WritePlain(Path("log"), events);
   EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(whole, 1));
 
+  WriteEvents(Path("log"), events);  // recorded as it is: docs/troubleshooting.md sends users here
+  EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(whole, 1));
+
   for (EventContents& event : events) event.data[0] = '?';
   WritePlain(Path("log"), events);
   RepairResult result;
