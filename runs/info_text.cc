@@ -9,6 +9,7 @@
 #include "bus/output_left.h"
 #include "runs/info.h"
 #include "runs/sampling.h"
+#include "runs/senders.h"
 
 namespace hydro::runs {
 namespace {
@@ -126,7 +127,11 @@ void AppendRuns(const LogInfo& info, std::string& text) {
   AppendSignals(info.signals, text);
   if (!info.several_runs) return;
   if (info.senders.empty())
-    text += "runs: states of several that cannot be told apart: their senders have one session\n";
+    text +=
+        "runs: states of several that cannot be told apart: their senders have one session, or there are "
+        "more "
+        "than " +
+        std::to_string(kMostRuns) + "\n";
   for (const SenderInfo& sender : info.senders) {
     Append(text, "run {} of {}, by sender {}: {}\n", &sender - info.senders.data() + 1, info.senders.size(),
            HexNumber(static_cast<uint64_t>(sender.session), 16),

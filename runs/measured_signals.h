@@ -1,6 +1,7 @@
 // The signals of a measured run by their names, here and in tables of hydro-log export.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -46,6 +47,20 @@ inline const char* KeyIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::motor_voltage) return run.current_commands ? "voltage" : nullptr;
   return name.ours;
 }
+// All keys that [columns] of a sidecar may have.
+inline std::vector<std::string> ColumnKeys() {
+  std::vector<std::string> keys = {"time"};
+  MeasuredRun run;
+  for (const bool current : {false, true}) {
+    run.current_commands = current;
+    for (const SignalName& name : kSignals) {
+      const char* key = KeyIn(run, name);
+      if (key != nullptr && std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+    }
+  }
+  return keys;
+}
+
 // Its unit in the run.
 inline std::string UnitIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::voltage && run.current_commands) return "A";

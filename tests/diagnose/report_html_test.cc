@@ -61,6 +61,26 @@ TEST(ReportHtml, Escapes) {
   EXPECT_EQ(UnbalancedTag(page), "");
 }
 
+// Tests that a value with an interval that shows nothing is said to be so, and which mean the verdict's gap
+// is and which the table's.
+TEST(ReportHtml, WhatIsNotShown) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  EXPECT_FALSE(Has(ReportHtml(diagnosis, false), "not shown by these runs"));
+  EXPECT_FALSE(TerminalSummary(diagnosis, "out", false).find("not shown by these runs") != std::string::npos);
+  diagnosis.effects[0].parameters[0].shown = false;
+  diagnosis.parameters[0].fitted.shown = false;
+  diagnosis.compared = {{15.7, 12, 9.3}, 0.4};
+  ASSERT_FALSE(diagnosis.horizons.empty());
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, "0.47 to 0.57: not shown by these runs"));
+  EXPECT_TRUE(Has(page, "0.0199 to 0.0207: not shown by these runs"));
+  EXPECT_TRUE(Has(page, "The held-out gap in the verdict, 15.7 to 9.3 over 0.4 s, is the typical one"));
+  const std::string text = TerminalSummary(diagnosis, "out", false);
+  EXPECT_NE(text.find("b 0.0203 [0.0199, 0.0207] in-lbf-s (not shown by these runs), was 0.01455"),
+            std::string::npos)
+      << text;
+}
+
 // Tests that the whole diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
 // ranking, the next experiment.
 TEST(ReportHtml, Complete) {
