@@ -13,6 +13,7 @@
 #include "diagnose/recording/recording_damage.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "diagnose/recording/run_data.h"
+#include "diagnose/recording/vacuum.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -78,6 +79,8 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
+  for (const auto* some : {&checked.vacuum, &checked.nearly})
+    remarks.insert(remarks.end(), some->begin(), some->end());
   if (!checked.load.empty()) remarks.push_back(checked.load);
   remarks.insert(remarks.end(), checked.ratios.begin(), checked.ratios.end());
   remarks.insert(remarks.end(), checked.repeats.begin(), checked.repeats.end());
@@ -100,6 +103,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   all.insert(all.end(), held_out->begin(), held_out->end());
   for (const runs::MeasuredRun& run : all) CheckUsable(run);
   checked.load = LoadRemark(all);
+  AddVacuumRemarks(model, all, &checked.vacuum, &checked.nearly);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);
     checked.repeats.insert(checked.repeats.end(), repeats.begin(), repeats.end());
@@ -187,6 +191,8 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.factors.begin(), checked.factors.end());
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
+  report.wrong.insert(report.wrong.end(), checked.vacuum.begin(), checked.vacuum.end());
+  report.limits.insert(report.limits.end(), checked.nearly.begin(), checked.nearly.end());
   if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.limits.insert(report.limits.end(), checked.ratios.begin(), checked.ratios.end());
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());

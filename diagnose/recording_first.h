@@ -23,6 +23,8 @@ struct CheckedRecordings {
   std::vector<std::string> repeats;  // slow sensors that repeat their values: one line each
   std::string load;                  // LoadRemark()
   std::vector<std::string> ratios;   // RatioRemarks()
+  std::vector<std::string> vacuum;   // pressures below absolute zero that noise does not explain
+  std::vector<std::string> nearly;   // and those that noise may explain: one line each
   std::string unjudged;              // runs that the given model does not predict at all; empty: none
   // The mistakes make a search useless, because it would explain them by physics.
   bool mend_first = false;

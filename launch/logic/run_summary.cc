@@ -111,14 +111,30 @@ std::vector<std::string> RunSummary::Lines() const {
                     Fitted(loop.latency_max_us, kLongestTime) + Fitted(loop.missed_deadlines, kMissed) +
                     Fitted(loop.lost_messages, kLost));
   }
-  for (const Fault& fault : faults_) {
-    lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
-                                fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
-                                fault.active ? ", still there at the end" : "",
-                                FirstBytes(fault.first.text, kLongestText)));
-  }
+  AppendFaults(&lines);
   AppendOutputs(&lines);
   return lines;
+}
+
+// A limit that the plant and the pressure loop both watch is passed once: what several see, in the same
+// words, has one line.
+void RunSummary::AppendFaults(std::vector<std::string>* lines) const {
+  const auto is_same = [](const Fault& one, const Fault& other) {
+    return one.first.code == other.first.code && one.first.text == other.first.text;
+  };
+  for (auto fault = faults_.begin(); fault != faults_.end(); ++fault) {
+    const auto same = [&](const Fault& other) { return is_same(*fault, other); };
+    if (std::any_of(faults_.begin(), fault, same)) continue;
+    std::string seen;
+    for (auto other = fault; other != faults_.end(); ++other) {
+      if (!same(*other)) continue;
+      seen += fmt::format("{}of {}, {}{}", seen.empty() ? "" : ", and ", other->first.source,
+                          other->times == 1 ? "once" : fmt::format("{} times", other->times),
+                          other->active ? ", still there at the end" : "");
+    }
+    lines->push_back(
+        fmt::format("fault {} {}: {}", fault->first.code, seen, FirstBytes(fault->first.text, kLongestText)));
+  }
 }
 
 void RunSummary::AppendOutputs(std::vector<std::string>* lines) const {

@@ -136,6 +136,27 @@ TEST(ReportHtml, AnswersFirst) {
   }
 }
 
+// Tests what paper needs: each heading begins a section that stays whole, the details begin on a page of
+// their own behind the answer, and nothing on the page has to be opened or clicked.
+TEST(ReportHtml, PrintsInSections) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(60), false);
+  const auto count = [&](const std::string& text) {
+    size_t number = 0;
+    for (size_t at = page.find(text); at != std::string::npos; at = page.find(text, at + 1)) ++number;
+    return number;
+  };
+  EXPECT_EQ(count("<h2>"), count("<section class=\"part"));
+  EXPECT_EQ(count("<section"), count("<section class=\"part\">\n<h2>") + 1);
+  EXPECT_EQ(count("<section class=\"part details\">\n<h2>The gap by signal"), 1U);
+  for (const char* rule : {".part { break-inside: avoid; }", ".details { break-before: page; }"}) {
+    const size_t at = page.find(rule);
+    ASSERT_NE(at, std::string::npos) << rule;
+    EXPECT_GT(at, page.find("@media print")) << "on screens there are no pages";
+  }
+  for (const char* leftover : {"<details", "<button", "<input", "<select", "<a "})
+    EXPECT_EQ(count(leftover), 0U) << leftover;
+}
+
 // Tests that the verdict's first sentence is the page's heading, that what follows it stands below, and that
 // the gap in brackets is said in words over 0.4 s.
 TEST(ReportHtml, LeadsWithTheVerdict) {

@@ -4,8 +4,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/maths/matrix_functions.h"
 #include "base/number_text.h"
@@ -47,6 +49,24 @@ std::string FastMotionRemark(const settings::StackConfig& config) {
       "V_ms and beta, and what its effects say, meant so, and in the units of the model?",
       config.model.resolved_file, ShortNumber(fastest, 3), ShortNumber(in_a_tick, 3),
       ShortestNumber(1 / config.plant.rate_hz));
+}
+
+std::vector<std::string> RemarksOn(const settings::StackConfig& config) {
+  std::vector<std::string> remarks;
+  for (std::string& remark : std::array{ArmRemark(config), FastMotionRemark(config)}) {
+    if (!remark.empty()) remarks.push_back(std::move(remark));
+  }
+  return remarks;
+}
+
+std::vector<std::string> RemarksOn(const settings::LimbConfig& limb) {
+  std::vector<std::string> remarks;
+  if (limb.arm) return remarks;  // the arm replaces the joints' own loads
+  for (const settings::JointConfig& joint : limb.joints) {
+    for (const std::string& remark : RemarksOn(joint.config))
+      remarks.push_back("joint " + joint.name + ": " + remark);
+  }
+  return remarks;
 }
 
 }  // namespace hydro::design
