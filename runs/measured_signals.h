@@ -22,7 +22,7 @@ struct SignalName {
   int arm = 0;       // power of the arm's coordinate in it
 };
 
-inline constexpr std::array<SignalName, 12> kSignals = {{
+inline constexpr std::array<SignalName, 13> kSignals = {{
     {&MeasuredRun::voltage, "voltage", "voltage_V", nullptr, nullptr, "V"},
     {&MeasuredRun::pressure_ref, "pressure_ref", "pressure_ref_psi", nullptr, nullptr, "psi"},
     {&MeasuredRun::motor_speed, "motor_speed", "motor_speed_rad_s", "motor_speed", "motor_speed_resolution",
@@ -34,6 +34,7 @@ inline constexpr std::array<SignalName, 12> kSignals = {{
      1},
     {&MeasuredRun::p1, "p1", "p1_psi", "p1", "p1_resolution", "psi"},
     {&MeasuredRun::p2, "p2", "p2_psi", "p2", "p2_resolution", "psi"},
+    {&MeasuredRun::dp, "dp", nullptr, nullptr, nullptr, "psi"},
     {&MeasuredRun::arm_force, "arm_force", nullptr, nullptr, nullptr, "in-lbf", -1},
     {&MeasuredRun::temperature, "temperature", nullptr, nullptr, nullptr, "degC"},
     {&MeasuredRun::motor_voltage, "motor_voltage", nullptr, nullptr, nullptr, "V"},

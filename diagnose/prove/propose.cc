@@ -172,11 +172,6 @@ std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
 
 std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   std::vector<std::string> remarks;
-  for (const RunMotion& motion : runs.motions()) {
-    if (motion.doubt.empty()) continue;
-    remarks.push_back("run " + motion.name + ": " + motion.doubt);
-    break;  // the recorder is the same for all
-  }
   for (const auto& [effect, value] : runs.doubles())
     remarks.push_back(effect + " does in these runs what another value of " + value +
                       " does: it is said as the value");
