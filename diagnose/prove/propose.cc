@@ -13,6 +13,7 @@
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/fit/intervals.h"
 #include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/prove/unrecorded.h"
 
