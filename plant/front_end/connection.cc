@@ -121,6 +121,7 @@ void Connection::OnIdentity(const hydro_frame& frame) {
     ++counts_.refused;
     return;
   }
+  other_protocol_ = 0;
   if (another && identified_ && was_up_) ++resets_;
   identified_ = true;
   identity_ = identity;

@@ -54,7 +54,9 @@ constexpr std::array kRigRows{
     },
     SafetyRow{
         .id = "sensor_input",
-        .fault = "a sensor's input at an end of its range, or outside its allowed readings, or no number",
+        .fault = "a sensor's input at an end of its range, outside its allowed readings or what such a "
+                 "machine gives, "
+                 "or no number",
         .detected = "driver",
         .codes =
             "sensor_p1 sensor_p2 sensor_motor_angle sensor_motor_speed sensor_arm_angle sensor_arm_speed",
@@ -68,12 +70,15 @@ constexpr std::array kRigRows{
                  "plant/driver/ComediRigTest.SaturatedInput "
                  "plant/driver/ComediRigTest.PlausibleVolts plant/driver/DeviceRigTest.NoNumber "
                  "plant/driver/DeviceRigTest.OneSilentInput own_driver.OwnDriverTest.test_promises "
-                 "plant/front_end/FrontEndRigTest.NoNumberAndNoFault",
+                 "plant/front_end/FrontEndRigTest.NoNumberAndNoFault "
+                 "plant/front_end/FrontEndLiesTest.ReadingsThatNoMachineGives "
+                 "plant/driver/DeviceRigTest.ReadingsThatNoMachineGives",
         .injected = "board_input",
     },
     SafetyRow{
         .id = "device_silent",
-        .fault = "a device on a network or bus answers no more, or reports a fault of its own",
+        .fault = "a device on a network or bus answers no more, reports a fault of its own, or says what "
+                 "cannot be: a state that does not exist, a clock that stands still",
         .detected = "driver",
         .codes = "device_silent device_fault",
         .within = {"`stale_input_s` after its last answer; the tick in which it reports the fault", 5},
@@ -86,7 +91,9 @@ constexpr std::array kRigRows{
             "own_driver.OwnDriverTest.test_promises plant/driver/DeviceRigTest.SilentDevice "
             "plant/driver/DeviceRigTest.FaultOfTheDevice front_end.LastLineTest.test_unplugged "
             "front_end.LastLineTest.test_reset plant/front_end/FrontEndRigTest.SilentDevice "
-            "plant/front_end/FrontEndRigTest.PulledCable plant/front_end/FrontEndRigTest.FaultsOfTheDevice",
+            "plant/front_end/FrontEndRigTest.PulledCable plant/front_end/FrontEndRigTest.FaultsOfTheDevice "
+            "plant/front_end/FrontEndLiesTest.FieldsThatCannotBe "
+            "plant/front_end/FrontEndLiesTest.ClockThatDoesNotGoOn",
         .not_injected = kNoDevice,
     },
     SafetyRow{
