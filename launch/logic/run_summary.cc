@@ -112,10 +112,12 @@ std::vector<std::string> RunSummary::Lines() const {
                     Fitted(loop.lost_messages, kLost));
   }
   for (const Fault& fault : faults_) {
-    lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
+    lines.push_back(fmt::format("fault {} of {}, {}{}: {}",
+                                bus::ReasonText(fault.first.code, "without a name"),
+                                bus::ReasonText(fault.first.source, "an unnamed process"),
                                 fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
                                 fault.active ? ", still there at the end" : "",
-                                FirstBytes(fault.first.text, kLongestText)));
+                                FirstBytes(bus::ReasonText(fault.first.text), kLongestText)));
   }
   AppendOutputs(&lines);
   return lines;
@@ -174,7 +176,8 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
 std::vector<std::string> RunSummary::FaultsLeft() const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
-    const std::string name = fault.first.code + " of " + fault.first.source;
+    const std::string name = bus::ReasonText(fault.first.code, "a fault without a name") + " of " +
+                             bus::ReasonText(fault.first.source, "an unnamed process");
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
     if (fault.active && !process::IsWarning(fault.first.code) && !known) left.push_back(name);
   }
