@@ -324,8 +324,9 @@ TEST(RearmForecast, NoMove) {
     heard.run->model_text = config.model.text;
     heard.state->arm_angle = target - 2.98e-9;
     const std::string at = target == 0 ? "0 rad" : "0.3 rad";
-    EXPECT_THAT(ForecastRearm(heard).text, StartsWith("the arm is at " + at + "; its reference comes back to " +
-                                                      at + ": the reference does not move; the arm follows"));
+    EXPECT_THAT(ForecastRearm(heard).text,
+                StartsWith("the arm is at " + at + "; its reference comes back to " + at +
+                           ": the reference does not move; the arm follows"));
     EXPECT_FALSE(ForecastRearm(heard).jumps);
     heard.state->arm_angle = target - 1e-5;
     EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("the reference moves by +1e-05 rad in 0.5 s"));
