@@ -227,6 +227,8 @@ double FrontEndRig::Drive(double voltage) {
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
+    // A device that was asked to arm may say falsely that it is not armed, and hold its last voltage.
+    if (asked_to_arm_at_ && !faults_.empty()) connection_.AskForZero(now_);
     connection_.KeepAlive(now_);
   } else if (armed && obeys && followed_) {
     if (!followed_->sent) SendFollowed();

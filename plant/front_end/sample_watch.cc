@@ -90,6 +90,7 @@ void SampleWatch::Forget() {
   wrong_windows_ = 0;
   rate_ = 1;
   wrong_tick_.clear();
+  left_uncounted_ = false;
   wrong_counts_ = {};
 }
 
@@ -98,9 +99,20 @@ void SampleWatch::Look(const ArrivedSample& arrived, const hydro_settings& setti
   if (const std::string wrong = WrongSelf(arrived.sample, settings); !wrong.empty()) {
     faults->push_back({"device_fault", "the front end " + wrong + ": is its firmware of this version?"});
   }
+  const hydro_sample& sample = arrived.sample;
+  if (!before_ || arrived.number != before_->number) {
+    left_uncounted_ = before_ && before_->state == HYDRO_ARMED && sample.state != HYDRO_ARMED &&
+                      sample.trips == before_->trips;
+  }
+  if (left_uncounted_) {
+    faults->push_back(
+        {"device_fault",
+         "the front end says that it is not armed any more, and counts no trip since it was: is "
+         "its output at zero?"});
+  }
   LookAtClock(arrived, tick_rate_hz, faults);
   LookAtCounts(arrived, settings, tick_rate_hz, faults);
-  before_ = {arrived.sample.tick, arrived.at, arrived.number, CountsOf(arrived.sample)};
+  before_ = {sample.tick, arrived.at, arrived.number, CountsOf(sample), sample.state, sample.trips};
 }
 
 void SampleWatch::LookAtClock(const ArrivedSample& arrived, uint32_t tick_rate_hz,

@@ -56,6 +56,8 @@ class SampleWatch {
     bus::Clock::TimePoint at;
     int64_t number;
     std::array<int32_t, 2> counts;  // of the motor and of the arm
+    uint8_t state;
+    uint32_t trips;
   };
   struct Begin {
     uint64_t tick;
@@ -68,6 +70,7 @@ class SampleWatch {
   int wrong_windows_ = 0;        // in a row
   double rate_ = 1;              // of the device's clock, as measured in the last window
   std::string wrong_tick_;       // of the newest sample
+  bool left_uncounted_ = false;  // the newest sample is not armed any more, and counts no trip
   std::array<std::string, 2> wrong_counts_;
 };
 

@@ -9,10 +9,10 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using Lie = std::function<void(hydro_sample& sample)>;
+using Falsify = std::function<void(hydro_sample& sample)>;
 
 // A device that drives with 3 V, and then lies for so many milliseconds.
-void Lied(DeviceBench* bench, const Lie& lie, int ticks = 2) {
+void Lied(DeviceBench* bench, const Falsify& lie, int ticks = 2) {
   ASSERT_TRUE(bench->Connect());
   bench->Ticks(150, 3);
   ASSERT_TRUE(bench->rig->faults().empty());
@@ -77,7 +77,7 @@ TEST(FrontEndLiesTest, EndsFollowLimits) {
 // zero volts.
 TEST(FrontEndLiesTest, FieldsThatCannotBe) {
   struct Case {
-    Lie lie;
+    Falsify lie;
     const char* says;
   };
   const Case cases[] = {
@@ -87,6 +87,13 @@ TEST(FrontEndLiesTest, FieldsThatCannotBe) {
       {[](auto& sample) { sample.saturated = 2; }, "says 2 for saturated"},
       {[](auto& sample) { sample.sensor_faults = 0x80; }, "names sensors that it does not have"},
       {[](auto& sample) { sample.state = HYDRO_READY; }, "acts by source 1 and that it is not armed"},
+      {[](auto& sample) {
+         sample.state = HYDRO_READY;
+         sample.source = HYDRO_SOURCE_ZERO;
+         sample.voltage = 0;
+         sample.command_age = UINT32_MAX;
+       },
+       "not armed any more, and counts no trip"},
       {[](auto& sample) { sample.command_age = UINT32_MAX; }, "acts by a command and that it has none"},
       {[](auto& sample) {
          sample.source = HYDRO_SOURCE_ZERO;
