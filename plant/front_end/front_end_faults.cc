@@ -47,9 +47,10 @@ bool FrontEndRig::FindSilence() {
   }
   if (resets_ != connection_.resets()) {
     Add("device_fault",
-        fmt::format("the front end at {} has reset itself; allowed is one that keeps its supply: it gets its "
-                    "settings anew",
-                    url));
+        fmt::format(
+            "the front end at {} has reset itself, or another one has taken its place; allowed is one "
+            "that keeps its supply: it gets its settings anew",
+            url));
     if (connection_.is_up()) resets_ = connection_.resets();
     trips_.reset();
     motor_count_.Forget();

@@ -194,6 +194,26 @@ TEST(FrontEndLiesTest, CountsThatCannotBe) {
   EXPECT_TRUE(jump.rig->faults().empty()) << "it stays there";
 }
 
+// Tests that a device which suddenly says that it has another output, without a reset, is not the device with
+// which the run began: it gets its settings anew.
+TEST(FrontEndLiesTest, AnotherDevice) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(150, 3);
+  bench.device.facts.output_max_V = 5;
+  std::string fault;
+  for (int i = 0; i < 300 && fault.empty(); ++i) {
+    bench.Tick(3, /*obeys=*/false);
+    if (i == 10) bench.rig->ZeroAtOnce();
+    fault = bench.Fault("device_fault");
+  }
+  EXPECT_THAT(fault, HasSubstr("has reset itself, or another one has taken its place"));
+  for (int i = 0; i < 200; ++i) bench.Tick(3, /*obeys=*/false);
+  EXPECT_TRUE(bench.rig->faults().empty());
+  bench.Ticks(50, 3);
+  EXPECT_EQ(bench.volts, -1.5F);
+}
+
 // Tests that a trip has words even where the device gives no reason for it.
 TEST(FrontEndLiesTest, TripWithoutAReason) {
   DeviceBench bench;

@@ -55,7 +55,7 @@ TEST(FastMotionRemark, RefusesWhatNoMachineDoes) {
   for (const settings::StackConfig& config : {With(1e-12, 2.47e5), heavy, sprung}) {
     EXPECT_THAT(refusal(config), AllOf(HasSubstr("model.toml: parameters and effects: found a machine that "
                                                  "oscillates at "),
-                                       HasSubstr(" Hz, allowed up to 10000000 Hz; check J_a, J, V_ms, beta"),
+                                       HasSubstr(" Hz, allowed up to 1e+07 Hz; check J_a, J, V_ms, beta"),
                                        Not(HasSubstr("\n"))));
   }
 }
