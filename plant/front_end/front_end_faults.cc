@@ -122,11 +122,14 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   // Those that have a fault of their own here. A sensor that is well again is named by no other.
   const unsigned named = HYDRO_FAULT_READ_BACK | (sample.sensor_faults != 0 ? HYDRO_FAULT_SENSOR : 0);
   const unsigned others = sample.faults_present & ~named;
-  if (others != 0 || tripped) {
-    Add("device_fault",
-        fmt::format("the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
-                    Reason(static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U)))));
-  }
+  if (others == 0 && !tripped) return;
+  const auto reasons = static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U));
+  // A ZERO leads to READY and latches nothing; a fault leads to TRIPPED.
+  const bool told = reasons == 0 && sample.state == HYDRO_READY;
+  Add("device_fault",
+      told ? "the front end has gone to zero volts: it was sent a ZERO, as anyone may do"
+           : fmt::format("the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
+                         Reason(reasons)));
 }
 
 // Armed, it may drive at any moment. The answer to a request may be late, and is then a fault of its own.
