@@ -120,6 +120,10 @@ int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop,
     std::printf("%s\n", hydro::launch::RearmJson(result).c_str());
     return result.exit_code;
   }
+  if (result.exit_code == 0 && !stop) {
+    std::fputs(hydro::launch::TerminalText(result).c_str(), stdout);
+    return 0;
+  }
   // Names and reasons come from the network, so they may hold any characters.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());

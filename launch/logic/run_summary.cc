@@ -128,12 +128,13 @@ void RunSummary::AppendFaults(std::vector<std::string>* lines) const {
     std::string seen;
     for (auto other = fault; other != faults_.end(); ++other) {
       if (!same(*other)) continue;
-      seen += fmt::format("{}of {}, {}{}", seen.empty() ? "" : ", and ", other->first.source,
+      seen += fmt::format("{}of {}, {}{}", seen.empty() ? "" : ", and ",
+                          bus::ReasonText(other->first.source, "an unnamed process"),
                           other->times == 1 ? "once" : fmt::format("{} times", other->times),
                           other->active ? ", still there at the end" : "");
     }
-    lines->push_back(
-        fmt::format("fault {} {}: {}", fault->first.code, seen, FirstBytes(fault->first.text, kLongestText)));
+    lines->push_back(fmt::format("fault {} {}: {}", bus::ReasonText(fault->first.code, "without a name"),
+                                 seen, FirstBytes(bus::ReasonText(fault->first.text), kLongestText)));
   }
 }
 
@@ -190,7 +191,8 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
 std::vector<std::string> RunSummary::FaultsLeft() const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
-    const std::string name = fault.first.code + " of " + fault.first.source;
+    const std::string name = bus::ReasonText(fault.first.code, "a fault without a name") + " of " +
+                             bus::ReasonText(fault.first.source, "an unnamed process");
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
     if (fault.active && !process::IsWarning(fault.first.code) && !known) left.push_back(name);
   }

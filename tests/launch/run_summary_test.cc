@@ -221,5 +221,25 @@ TEST(RunSummaryTest, ASenderIsItsSession) {
   EXPECT_THAT(summary.FaultsLeft(), ::testing::ElementsAre("stale_state of hip plant"));
 }
 
+// Tests that no fault is without words, whatever its message lacks: forged, or of a program of the user's
+// own.
+TEST(RunSummaryTest, NoFaultWithoutWords) {
+  RunSummary summary;
+  fault_t fault{};
+  fault.active = true;
+  summary.Add(fault);
+  fault.session = 2;
+  fault.source = "driver";
+  fault.code = "device_fault";
+  fault.text = " \t\n";
+  summary.Add(fault);
+  EXPECT_THAT(
+      summary.Lines(),
+      testing::ElementsAre(
+          "fault without a name of an unnamed process, once, still there at the end: no reason is given",
+          "fault device_fault of driver, once, still there at the end: no reason is given"));
+  EXPECT_EQ(summary.FaultsLeft().front(), "a fault without a name of an unnamed process");
+}
+
 }  // namespace
 }  // namespace hydro::launch

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/input_error.h"
 #include "base/maths/matrix_functions.h"
 #include "base/number_text.h"
 #include "tune/design/operating_cases.h"
@@ -19,6 +20,9 @@ namespace {
 // An oscillation takes about ten steps of about a microsecond. With this many oscillations, a tick of 1 ms
 // takes about as long as it lasts.
 constexpr double kMostInATick = 100;
+// Nothing of a machine that moves oil oscillates like that. A simulation of it fails in its first steps or
+// never ends.
+constexpr double kMost_Hz = 1e7;
 
 }  // namespace
 
@@ -41,7 +45,15 @@ std::string FastMotionRemark(const settings::StackConfig& config) {
   } catch (const model::ModelError&) {
     return "";  // the simulation itself reports this, with the time
   }
-  const double in_a_tick = fastest / (2 * std::numbers::pi * config.plant.rate_hz);
+  const double hz = fastest / (2 * std::numbers::pi);
+  if (hz > kMost_Hz) {
+    throw InputError(
+        fmt::format("{}: parameters and effects: found a machine that oscillates at {} Hz, allowed "
+                    "up to {} Hz; check J_a, J, V_ms, beta and mgl, what its effects say, and "
+                    "the units of all of them",
+                    config.model.resolved_file, ShortNumber(hz, 3), ShortNumber(kMost_Hz, 3)));
+  }
+  const double in_a_tick = hz / config.plant.rate_hz;
   if (!(in_a_tick > kMostInATick)) return "";
   return fmt::format(
       "{}: its fastest motion, {} rad/s, has {} oscillations in a tick of {} s, which may take very long to "
