@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "base/file_identity.h"
+#include "base/read_files.h"
 
 namespace hydro {
 

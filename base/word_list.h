@@ -1,10 +1,12 @@
-// Joins lists of words for a sentence.
+// Words for a message: lists of them, and the known word that a misspelt one may mean.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace hydro {
+
+// Joins lists of words for a sentence.
 
 // "a, b, c"
 std::string Joined(const std::vector<std::string>& parts, const std::string& between = ", ");
@@ -14,5 +16,13 @@ std::string Enumerated(const std::vector<std::string>& parts);
 std::string RunNamed(const std::string& name);
 // "run a"; "runs a and b"; "run 5 and run 6"
 std::string RunsNamed(const std::vector<std::string>& names);
+
+// Finds the name that a misspelling probably meant.
+
+// The entry of `names` nearest to `found` in single-character edits, or empty when none is close.
+std::string Nearest(const std::string& found, const std::vector<std::string>& names);
+
+// ", did you mean \"x\"?", or empty.
+std::string DidYouMean(const std::string& found, const std::vector<std::string>& names);
 
 }  // namespace hydro

@@ -10,13 +10,11 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "batch/finish.h"
-#include "batch/prepare.h"
-#include "batch/progress.h"
-#include "batch/run/missing_cases.h"
+#include "batch/run/case_count.h"
 #include "batch/run/run_cases.h"
 #include "batch/status.h"
 #include "batch/store/study_lock.h"
+#include "batch/study_folder.h"
 #include "process/stop_signal.h"
 
 namespace hydro::batch {

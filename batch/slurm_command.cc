@@ -11,11 +11,10 @@
 
 #include "base/input_error.h"
 #include "base/text_file.h"
-#include "batch/progress.h"
-#include "batch/run/missing_cases.h"
+#include "batch/run/case_count.h"
+#include "batch/run/case_times.h"
 #include "batch/run/run_cases.h"
 #include "batch/slurm/array_driver.h"
-#include "batch/slurm/case_seconds.h"
 #include "batch/slurm/slurm_answers.h"
 #include "batch/slurm/slurm_cluster.h"
 #include "batch/status.h"
@@ -28,10 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kMostPilot_s = 20;  // s that hydro-batch itself computes before it submits
 constexpr double kEnoughPilot_s = 1;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // A user who closes the terminal does not mean to end jobs on a cluster.
 StopWish Wish() {

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "base/number_text.h"
-#include "batch/prepare.h"
-#include "batch/run/missing_cases.h"
+#include "base/text_file.h"
+#include "batch/run/case_count.h"
+#include "batch/run/case_times.h"
 #include "batch/store/case_store.h"
 #include "batch/store/small_file.h"
 #include "batch/store/study_lock.h"
+#include "batch/study_folder.h"
 
 namespace hydro::batch {
 namespace {
@@ -37,10 +39,6 @@ void AddEnds(const std::string& text, std::vector<double>* ends) {
     const auto seconds = ParseNumber(line.substr(last + 1));
     if (began && seconds) ends->push_back(*began + *seconds);
   }
-}
-
-double WallClock() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 void AddTimes(const std::string& folder, StudyStatus* status) {
@@ -106,6 +104,36 @@ std::string StatusText(const StudyStatus& status) {
                         DurationText(static_cast<double>(status.missing()) / status.rate));
   }
   return text + "\n";
+}
+
+constexpr double kPeriod = 60;  // s
+
+Progress::Progress(std::FILE* out, bool terminal, int64_t total, int64_t there)
+    : out_(out), terminal_(terminal), total_(total), there_(there), line_(out) {}
+
+std::string ProgressText(const RunProgress& progress, int64_t total, int64_t there) {
+  std::string text = fmt::format("{} of {} cases", there + progress.ran, total);
+  if (progress.failed > 0) text += fmt::format(", {} failed", progress.failed);
+  if (progress.ran == 0 || progress.elapsed_s <= 0) return text;
+  const double each = progress.elapsed_s / static_cast<double>(progress.ran);
+  return text + ", " + DurationText(each * static_cast<double>(progress.to_run - progress.ran)) + " left";
+}
+
+void Progress::Say(const std::string& text) {
+  line_.Wipe();
+  std::fprintf(out_, "hydro-batch: %s\n", Printable(text).c_str());
+  std::fflush(out_);
+}
+
+void Progress::Show(const RunProgress& progress, const std::string& more) {
+  const std::string text = ProgressText(progress, total_, there_) + more;
+  if (terminal_) {
+    line_.Draw(static_cast<double>(there_ + progress.ran) / static_cast<double>(total_), text);
+  } else if (progress.elapsed_s - told_s_ >= kPeriod) {
+    told_s_ = progress.elapsed_s;
+    std::fprintf(out_, "%s\n", text.c_str());
+    std::fflush(out_);
+  }
 }
 
 }  // namespace hydro::batch

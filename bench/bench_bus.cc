@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
-#include "bus/seal/authenticated_channels.h"
 #include "bus/seal/authenticator.h"
 #include "process/timing/histogram.h"
 

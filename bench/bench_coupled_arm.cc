@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "model/arm/feed_forward.h"
+#include "model/arm/arm_coupling.h"
 #include "model/coupled_arm.h"
 #include "tests/table1.h"
 

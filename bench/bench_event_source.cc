@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/input_error.h"
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 #include "bus/udpm/udpm_socket.h"
 
 int main(int argc, char** argv) {

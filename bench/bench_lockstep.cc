@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "bench/child_process.h"
-#include "bus/seal/authenticated_channels.h"
+#include "bus/seal/authenticator.h"
 #include "bus/udpm/open_udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"

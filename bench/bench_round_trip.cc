@@ -16,7 +16,7 @@
 
 #include "bench/child_process.h"
 #include "bench/echo_peers.h"
-#include "bus/seal/authenticated_channels.h"
+#include "bus/seal/authenticator.h"
 #include "bus/udpm/open_udpm_bus.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "process/timing/histogram.h"

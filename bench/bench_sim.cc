@@ -13,7 +13,7 @@
 
 #include "base/maths/median.h"
 #include "bench/model_tick.h"
-#include "plant/simulated_machine.h"
+#include "plant/simulated_rig.h"
 #include "runs/log/log_writer.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"

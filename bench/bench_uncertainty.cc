@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
 #include "experiments/runs/stack_run.h"
-#include "experiments/studies/uncertain_steps.h"
+#include "experiments/studies/uncertain_machines.h"
 #include "model/actuator.h"
-#include "model/terms/drawn_model.h"
+#include "model/terms/description.h"
 #include "tune/design/bang_bang.h"
 
 namespace hydro::experiments {

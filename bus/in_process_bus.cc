@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 
 namespace hydro::bus {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 
 namespace hydro::bus {
 

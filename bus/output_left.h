@@ -1,6 +1,8 @@
-// Describes in words how a run ended: why, and which voltage a plant or driver has left at the amplifier.
+// Describes in words what a stack says of itself: why there is a fault or a run ended, and which voltage a
+// plant or driver has left at the amplifier.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <hydro/output_left_t.hpp>
 #include <hydro/stop_t.hpp>
@@ -10,6 +12,13 @@
 #include "base/number_text.h"
 
 namespace hydro::bus {
+
+// A reason as a person reads it. Whoever sent none, or blanks, is said to have given none.
+inline std::string ReasonText(const std::string& reason, const char* otherwise = "no reason is given") {
+  const bool blank =
+      std::all_of(reason.begin(), reason.end(), [](unsigned char c) { return c <= ' ' || c == 0x7f; });
+  return blank ? otherwise : reason;
+}
 
 // The beginning of a stop's reason when the run has ended by itself, after its duration.
 inline constexpr std::string_view kRunComplete = "the run is complete";

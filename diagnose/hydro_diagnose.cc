@@ -11,12 +11,12 @@
 #include <system_error>
 #include <utility>
 
-#include "base/did_you_mean.h"
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "diagnose/evidence/checklist.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording_first.h"

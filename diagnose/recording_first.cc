@@ -13,6 +13,8 @@
 #include "diagnose/recording/recording_damage.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "diagnose/recording/run_data.h"
+#include "diagnose/recording/second_sensors.h"
+#include "diagnose/recording/vacuum.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -60,6 +62,34 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
   }));
 }
 
+// The runs whose signals needed no alignment: only these tell by how many rows a command is late.
+std::vector<runs::MeasuredRun> OnOneClock(const std::vector<AlignedRun>& aligned) {
+  std::vector<runs::MeasuredRun> runs;
+  for (const AlignedRun& one : aligned) {
+    if (one.clocks.empty()) runs.push_back(one.run);
+  }
+  return runs;
+}
+
+// Leaves out sensors that are not believed, and says so.
+std::vector<std::string> WithoutUnbelieved(std::vector<runs::MeasuredRun>* runs,
+                                           std::vector<runs::MeasuredRun>* held_out,
+                                           std::vector<AlignedRun>* aligned) {
+  std::vector<runs::MeasuredRun*> recorded, prepared;
+  std::vector<runs::MeasuredRun> all;
+  for (auto* some : {runs, held_out}) {
+    for (runs::MeasuredRun& run : *some) recorded.push_back(&run);
+  }
+  for (AlignedRun& one : *aligned) {
+    prepared.push_back(&one.run);
+    all.push_back(one.run);
+  }
+  ComparedSensors compared = CompareSensors(all);
+  LeaveOut(compared.unbelieved, recorded);
+  LeaveOut(compared.unbelieved, prepared);
+  return std::move(compared.remarks);
+}
+
 std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
   if (unpredicted.empty()) return "";
   std::vector<std::string> names;
@@ -78,6 +108,9 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
+  for (const auto* some : {&checked.sensors, &checked.commands.late, &checked.commands.early, &checked.vacuum,
+                           &checked.nearly})
+    remarks.insert(remarks.end(), some->begin(), some->end());
   if (!checked.load.empty()) remarks.push_back(checked.load);
   remarks.insert(remarks.end(), checked.ratios.begin(), checked.ratios.end());
   remarks.insert(remarks.end(), checked.repeats.begin(), checked.repeats.end());
@@ -100,6 +133,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   all.insert(all.end(), held_out->begin(), held_out->end());
   for (const runs::MeasuredRun& run : all) CheckUsable(run);
   checked.load = LoadRemark(all);
+  AddVacuumRemarks(model, all, &checked.vacuum, &checked.nearly);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);
     checked.repeats.insert(checked.repeats.end(), repeats.begin(), repeats.end());
@@ -147,6 +181,9 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
         checked.inverted.push_back(sensor);
     }
   }
+  if (!checked.mend_first) checked.sensors = WithoutUnbelieved(runs, held_out, &checked.aligned);
+  if (!checked.mend_first && !time_is_up())
+    checked.commands = RemarksOnCommands(model, OnOneClock(checked.aligned), jobs);
   return checked;
 }
 
@@ -187,6 +224,11 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.factors.begin(), checked.factors.end());
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
+  report.wrong.insert(report.wrong.end(), checked.vacuum.begin(), checked.vacuum.end());
+  report.limits.insert(report.limits.end(), checked.nearly.begin(), checked.nearly.end());
+  report.wrong.insert(report.wrong.end(), checked.sensors.begin(), checked.sensors.end());
+  report.wrong.insert(report.wrong.end(), checked.commands.late.begin(), checked.commands.late.end());
+  report.limits.insert(report.limits.end(), checked.commands.early.begin(), checked.commands.early.end());
   if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.limits.insert(report.limits.end(), checked.ratios.begin(), checked.ratios.end());
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/evidence/clocks.h"
+#include "diagnose/evidence/late_command.h"
 #include "diagnose/evidence/recording_check.h"
 #include "diagnose/recording/diagnosis.h"
 #include "model/terms/description.h"
@@ -23,6 +24,10 @@ struct CheckedRecordings {
   std::vector<std::string> repeats;  // slow sensors that repeat their values: one line each
   std::string load;                  // LoadRemark()
   std::vector<std::string> ratios;   // RatioRemarks()
+  std::vector<std::string> vacuum;   // pressures below absolute zero that noise does not explain
+  std::vector<std::string> nearly;   // and those that noise may explain: one line each
+  CommandRemarks commands;           // RemarksOnCommands()
+  std::vector<std::string> sensors;  // CompareSensors()
   std::string unjudged;              // runs that the given model does not predict at all; empty: none
   // The mistakes make a search useless, because it would explain them by physics.
   bool mend_first = false;
@@ -32,9 +37,9 @@ struct CheckedRecordings {
   std::vector<AlignedRun> aligned = {};
 };
 
-// Checks the fitted and the held-out runs and sets damaged samples aside. A single inverted sensor is left to
-// the search if `sensor.sign` is among the effects that may be named (an empty list means all). Mistakes that
-// `time_is_up` cuts off are not found.
+// Checks the fitted and the held-out runs and sets damaged samples aside, and second sensors of a quantity
+// that contradict the first. A single inverted sensor is left to the search if `sensor.sign` is among the
+// effects that may be named (an empty list means all). Mistakes that `time_is_up` cuts off are not found.
 CheckedRecordings CheckFirst(
     const model::ModelDescription& model, const std::vector<std::string>& effects, int jobs,
     std::vector<runs::MeasuredRun>* runs, std::vector<runs::MeasuredRun>* held_out,

@@ -9,12 +9,11 @@
 #include <numeric>
 #include <thread>
 
-#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
-#include "experiments/report/comparison_text.h"
+#include "base/word_list.h"
 #include "experiments/report/experiment_files.h"
 #include "experiments/report/progress_display.h"
 #include "experiments/report/report.h"

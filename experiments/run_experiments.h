@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/experiment_request.h"
+#include "experiments/report/experiment_files.h"
 #include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {

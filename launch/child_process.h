@@ -1,16 +1,38 @@
-// A process that the launcher has started, with its two output pipes and the way in which it ended.
+// A process that the launcher has started, with the lines of its two output pipes and the way in which it
+// ended.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "launch/logic/child.h"
+#include "launch/logic/children.h"
 #include "launch/logic/stop_sequence.h"
 
 namespace hydro::launch {
+
+// Cuts the bytes that a pipe delivers into lines.
+class LineAssembler {
+ public:
+  using LineHandler = std::function<void(std::string_view line)>;  // without its line end
+
+  // A longer line is passed on in pieces, so that a program that never ends a line cannot fill the memory.
+  static constexpr std::size_t kLongestLine = 64 * 1024;
+
+  // Adds bytes and calls `handler` for each line that they complete.
+  void Feed(std::string_view bytes, const LineHandler& handler);
+
+  // Call it when the pipe has ended: an unfinished line counts as a line.
+  void Finish(const LineHandler& handler);
+
+ private:
+  std::string unfinished_;
+};
 
 // Owns a started process until it has been reaped. Nothing else reaps the process, so its pid cannot be
 // reused before TryReap() has succeeded, and Signal() can reach no other process.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
 #include "launch/logic/operator_request.h"
@@ -119,6 +119,10 @@ int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop,
   if (json) {
     std::printf("%s\n", hydro::launch::RearmJson(result).c_str());
     return result.exit_code;
+  }
+  if (result.exit_code == 0 && !stop) {
+    std::fputs(hydro::launch::TerminalText(result).c_str(), stdout);
+    return 0;
   }
   // Names and reasons come from the network, so they may hold any characters.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",

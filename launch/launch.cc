@@ -1,25 +1,90 @@
 #include "launch/launch.h"
 
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/read_files.h"
 #include "base/standard_output.h"
+#include "bus/udpm/udpm_url.h"
 #include "launch/labelled_output.h"
-#include "launch/launch_lock.h"
+#include "launch/logic/children.h"
 #include "launch/logic/stack_launch.h"
 #include "launch/supervisor.h"
 #include "launch/terminal_report.h"
+#include "process/abstract_socket.h"
 #include "process/own_program.h"
 #include "process/stack_bus.h"
 #include "settings/limb_config.h"
+#include "settings/stack_config.h"
 
 namespace hydro::launch {
 namespace {
+
+// Ensures that only one launch at a time starts a role of a stack on this machine, even when the bus cannot
+// tell: when two start in the same instant, when one's processes are stopped, or when one has another key.
+class LaunchLock {
+ public:
+  // Takes the roles of the children of `plan`, on the configuration's port and on the channels of the stack
+  // or of their joints, until this object or its process ends. Throws InputError when another launch has one
+  // of the roles. A spread stack's logger is not locked: each part may have one.
+  LaunchLock(const settings::StackConfig& config, const LaunchPlan& plan);
+  ~LaunchLock();
+  LaunchLock(const LaunchLock&) = delete;
+  LaunchLock& operator=(const LaunchLock&) = delete;
+
+ private:
+  void Take(const std::string& suffix, const std::string& role, const settings::StackConfig& config);
+  void Release();
+
+  std::vector<int> sockets_;  // bound to names in Linux's abstract namespace, which leave nothing behind
+};
+
+LaunchLock::LaunchLock(const settings::StackConfig& config, const LaunchPlan& plan) {
+  const auto suffix_of = [&](const std::string& joint) {
+    const auto found = std::find(config.joints.begin(), config.joints.end(), joint);
+    return config.bus.joint_suffixes.at(static_cast<size_t>(found - config.joints.begin()));
+  };
+  for (const ChildSpec& child : plan.children) {
+    const std::string role = child.role();
+    if (plan.spread && role == "logger") continue;
+    if (child.joints.empty()) Take(config.bus.channel_suffix, role, config);
+    // A limb is the plant of each of its joints.
+    for (const std::string& joint : child.joints)
+      Take(suffix_of(joint), role == "limb" ? "plant" : role, config);
+  }
+}
+
+void LaunchLock::Take(const std::string& suffix, const std::string& role,
+                      const settings::StackConfig& config) {
+  const std::string prefix =
+      "hydro-launch/" + std::to_string(bus::ParseUdpmUrl(config.bus.url).port) + "/" + suffix + "/";
+  errno = 0;
+  // A driver takes the plant's place.
+  const int fd = process::BindAbstract(SOCK_DGRAM, prefix + (role == "driver" ? "plant" : role));
+  if (fd >= 0) {
+    sockets_.push_back(fd);
+  } else if (errno == EADDRINUSE) {
+    Release();
+    throw InputError(config.file + ": found another hydro-launch on this machine that has started a " + role +
+                     " on " + config.bus.url + "; end it with `hydro-launch " + config.file +
+                     " --stop`, or give this one another port in bus.url or another bus.channel_suffix");
+  }
+}
+
+LaunchLock::~LaunchLock() { Release(); }
+
+void LaunchLock::Release() {
+  for (const int fd : sockets_) close(fd);
+  sockets_.clear();
+}
 
 // This is checked before anything is started: a logger that fails later stops its stack, and with it any
 // other stack that runs on this port.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/logic/plan.h"
+#include "launch/logic/children.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {

@@ -19,12 +19,13 @@ int NewController(const std::string& name) {
   WriteNewFiles({{program, Replaced(kControllerPython, "pid.py", program), 0777}, {stack, toml}});
   std::printf(
       "wrote %s, a position loop, and %s, a stack with it; next:\n"
+      "%s"
       "  hydro-launch %s --duration 3 --log %s.lcmlog    it runs as it is\n"
       "  change answer() in %s, and run it again; --time lockstep: as fast as it can, the same each time\n"
       "  hydro-log summary %s.lcmlog; hydro-log replay --controller ./%s %s.lcmlog\n"
       "docs/own_controller.md says more\n",
-      program.c_str(), stack.c_str(), stack.c_str(), name.c_str(), program.c_str(), name.c_str(),
-      program.c_str(), name.c_str());
+      program.c_str(), stack.c_str(), StepsToBuildOn().python.c_str(), stack.c_str(), name.c_str(),
+      program.c_str(), name.c_str(), program.c_str(), name.c_str());
   return 0;
 }
 

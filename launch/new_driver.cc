@@ -47,15 +47,16 @@ int NewDriver(const std::string& name) {
     throw;
   }
   const char* const n = name.c_str();
+  const FirstSteps first = StepsToBuildOn();
   std::printf(
       "wrote %s/: %s.cc, a driver for a box on Ethernet, simulated_device.cc, which stands for that box, and "
-      "%s.toml, a "
-      "stack with both; next:\n"
-      "  cmake -S %s -B %s/build && cmake --build %s/build\n"
+      "%s.toml, a stack with both; next:\n"
+      "%s"
+      "  cmake -S %s -B %s/build%s && cmake --build %s/build\n"
       "  hydro-launch %s/%s.toml              it runs as it is, and nothing real moves\n"
       "  hydro-driver-check %s/%s.toml        what docs/safety.md promises, tried with your driver\n"
       "docs/own_driver.md says how to go on to a device of your own\n",
-      n, n, n, n, n, n, n, n, n, n);
+      n, n, n, first.cpp.c_str(), n, n, first.cmake_options.c_str(), n, n, n, n, n);
   return 0;
 }
 

@@ -42,6 +42,34 @@ void WriteNew(const NewFile& file) {
   throw WriteError(file.path + ": cannot be written: " + why + "; space for it is needed");
 }
 
+// Of this program: bin/ is in it, beside what programs of the user's own are built on.
+fs::path Home() { return fs::path(process::OwnFolder()).parent_path(); }
+
+bool IsBuild() { return fs::exists(Home() / "CMakeCache.txt"); }
+
+// Where CMake finds an installed hydro: lib/cmake/hydro, or lib/ARCHITECTURE/cmake/hydro. Empty: nowhere.
+std::string PackageFolder(const fs::path& home) {
+  std::vector<fs::path> libraries = {home / "lib", home / "lib64"};
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(home / "lib", none)) libraries.push_back(entry.path());
+  for (const fs::path& folder : libraries) {
+    const fs::path package = folder / "cmake/hydro";
+    if (fs::exists(package / "hydroConfig.cmake", none)) return package.string();
+  }
+  return "";
+}
+
+// As a shell takes it.
+std::string ShellWord(const std::string& text) {
+  const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::strchr("/._-+", c) != nullptr;
+  });
+  if (plain && !text.empty()) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace
 
 void CheckNewName(const std::string& option, const std::string& name) {
@@ -62,11 +90,36 @@ std::string Replaced(std::string text, const std::string& old, const std::string
 }
 
 std::string InstalledConfig(const std::string& file) {
-  const fs::path path = fs::path(process::OwnFolder()).parent_path() / "share/hydro/config" / file;
+  const fs::path path = Home() / "share/hydro/config" / file;
   if (!fs::exists(path)) {
-    throw InputError(path.string() + ": found no such file; install hydro with its configurations");
+    throw InputError(
+        path.string() +
+        ": found no such file, which a build and an installation have beside bin/hydro-launch; run "
+        "hydro-launch where it was built (build/bin/hydro-launch), or install it: cmake --install "
+        "build --prefix PREFIX");
   }
   return path.string();
+}
+
+FirstSteps StepsToBuildOn() {
+  const fs::path home = Home();
+  const bool python = fs::exists(home / "share/hydro/python/hydro/__init__.py");
+  if (IsBuild()) {
+    const bool on_path = process::ProgramOnPath("hydro-launch") == process::OwnFolder() + "/hydro-launch";
+    const std::string path =
+        on_path ? "" : "  export PATH=" + ShellWord(process::OwnFolder()) + ":\"$PATH\"\n";
+    const std::string build = "  cmake --build " + ShellWord(home.string()) + " --target ";
+    return {.python = path + (python ? "" : build + "hydro_python\n"),
+            .cpp = path + build + "hydro_driver      what a driver is built on\n",
+            .cmake_options = " -Dhydro_DIR=" + ShellWord(home.string())};
+  }
+  const std::string missing = "  first install hydro's development files, which are not in " + home.string() +
+                              ": package libhydro-dev\n";
+  const bool found = !PackageFolder(home).empty();
+  const bool usual = home == "/usr" || home == "/usr/local";  // CMake looks there by itself
+  return {.python = python ? "" : missing,
+          .cpp = found ? "" : missing,
+          .cmake_options = usual ? "" : " -DCMAKE_PREFIX_PATH=" + ShellWord(home.string())};
 }
 
 void WriteNewFiles(const std::vector<NewFile>& files) {

@@ -19,6 +19,15 @@ std::string Replaced(std::string text, const std::string& old, const std::string
 // The path of an installed file under share/hydro/config. Throws InputError when it is not there.
 std::string InstalledConfig(const std::string& file);
 
+// The steps that come before those of the files themselves, one to a line and indented, where this
+// hydro-launch was built and not installed, or was installed without its development files.
+struct FirstSteps {
+  std::string python;         // for a program in Python; empty: none
+  std::string cpp;            // for one in C++; empty: none
+  std::string cmake_options;  // " -Dhydro_DIR=...", for CMake to find hydro; empty: it does
+};
+FirstSteps StepsToBuildOn();
+
 struct NewFile {
   std::string path;
   std::string text;

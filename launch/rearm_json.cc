@@ -1,7 +1,11 @@
 #include "launch/rearm_json.h"
 
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "base/json_text.h"
 #include "base/text_file.h"
@@ -37,7 +41,58 @@ Json ListOf(const OperatorResult& result) {
   return list;
 }
 
+// The parts between `separator`.
+std::vector<std::string> Parts(const std::string& text, std::string_view separator) {
+  std::vector<std::string> parts;
+  size_t begin = 0;
+  for (size_t at; (at = text.find(separator, begin)) != text.npos; begin = at + separator.size())
+    parts.push_back(text.substr(begin, at - begin));
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+// A forecast is one text with its clauses between semicolons; how the reference moves follows a colon.
+std::vector<std::string> Sentences(const std::string& text) {
+  constexpr std::string_view kMoves = ": the reference ";
+  std::vector<std::string> sentences;
+  for (const std::string& clause : Parts(text, "; ")) {
+    const size_t moves = clause.find(kMoves);
+    sentences.push_back(clause.substr(0, moves));
+    if (moves != clause.npos) sentences.push_back(clause.substr(moves + 2));
+  }
+  return sentences;
+}
+
+void AppendWrapped(const std::string& sentence, std::string line, std::string* text) {
+  const std::string more(4, ' ');
+  std::istringstream words(sentence);
+  bool begun = false;
+  for (std::string word; words >> word; begun = true) {
+    if (begun && line.size() + 1 + word.size() > kTerminalColumns) {
+      *text += line + "\n";
+      line = more + word;
+    } else {
+      line += (begun ? " " : "") + word;
+    }
+  }
+  *text += line + "\n";
+}
+
 }  // namespace
+
+std::string TerminalText(const OperatorResult& result) {
+  std::string text;
+  std::string begin = "hydro-launch: ";
+  for (std::string sentence : Sentences(Printable(result.text))) {
+    // A joint's name begins a sentence as it is written.
+    const bool joint = sentence.find(": ") < sentence.find(' ');
+    if (!text.empty() && !sentence.empty() && !joint)
+      sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    AppendWrapped(sentence + ".", begin, &text);
+    begin = "  ";
+  }
+  return text;
+}
 
 std::string ForecastsJson(const OperatorResult& result) { return JsonText(ListOf(result)); }
 

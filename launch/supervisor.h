@@ -10,7 +10,6 @@
 
 #include "launch/child_process.h"
 #include "launch/labelled_output.h"
-#include "launch/line_assembler.h"
 #include "launch/logic/children.h"
 
 namespace hydro::launch {

@@ -3,15 +3,34 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "base/file_identity.h"
+#include "base/read_files.h"
 #include "launch/labelled_output.h"
-#include "launch/logic/launch_report.h"
-#include "launch/logic/plan.h"
-#include "launch/timing_files.h"
+#include "launch/logic/children.h"
+#include "launch/logic/stack_launch.h"
+#include "runs/timing/timing_record.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
+
+// Writes the files of hydro-launch --timing: REPORT.json and, beside it, REPORT.html.
+class TimingFiles {
+ public:
+  // `json` is "REPORT.json". Throws InputError when the name has another ending or the folder is not
+  // writable, so that the error comes before the run starts.
+  explicit TimingFiles(const std::string& json);
+
+  // Writes both files, each whole or not at all. Throws WriteError or InputError.
+  void Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const;
+
+  const std::string& json() const { return json_; }
+  const std::string& page() const { return page_; }
+
+ private:
+  std::string json_;
+  std::string page_;
+};
 
 struct ReportStyle {
   bool status = false;  // draws the state of the processes below the other lines

@@ -1,9 +1,11 @@
-// Received events that wait to be written: the queue between the receiving and the writing thread.
+// The queue between a logger's receiving and its writing thread, and how much of it refused messages may be.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,8 +13,34 @@
 
 namespace hydro::logger {
 
-// Never holds more memory than its limit. When the disk is slower than the bus for longer than that memory
-// lasts, new events are refused and counted. Memory is allocated in chunks as needed and reused.
+// Limits how many refused messages (docs/security.md) are recorded: an intruder must not fill the disk.
+// Admits the first messages of each second, and of the run, up to a number and a size; counts the rest.
+class RefusedQuota {
+ public:
+  static constexpr int64_t kMessagesPerSecond = 1000;
+  static constexpr int64_t kBytesPerSecond = 256 << 10;
+  static constexpr int64_t kMessages = 20000;
+  static constexpr int64_t kBytes = 8 << 20;
+
+  static bool IsRefused(std::string_view channel) { return channel.starts_with("REFUSED_"); }
+
+  // Returns whether a refused message that came at `now` is to be recorded; counts it if not.
+  bool Admit(size_t bytes, bus::Clock::TimePoint now);
+
+  int64_t left_out() const { return left_out_; }
+  // One line about what was left out; empty when nothing was.
+  std::string Text() const;
+
+ private:
+  int64_t messages_ = 0, bytes_ = 0;                // recorded so far
+  int64_t second_messages_ = 0, second_bytes_ = 0;  // in the second that began at begin_
+  bus::Clock::TimePoint begin_{};
+  int64_t left_out_ = 0, left_out_bytes_ = 0;
+};
+
+// Received events that wait to be written. Never holds more memory than its limit. When the disk is slower
+// than the bus for longer than that memory lasts, new events are refused and counted. Memory is allocated in
+// chunks as needed and reused.
 class EventQueue {
  public:
   // `limit` is in bytes, including what is being written; at least one chunk.

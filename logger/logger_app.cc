@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
+constexpr int64_t kProgressTicks = 16;  // a quarter of plant::LoggerWindow
 constexpr int64_t kEndedTicks = 32;     // joints of a limb in lockstep are never so far apart
 constexpr auto kEchoTime = 200ms;       // wait for this logger's own last message to come back
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long

@@ -4,7 +4,7 @@
 // (recording.h), so that a slow disk delays no process. The queue holds up to logger.memory_mb. Messages that
 // find it full are left out of the log and counted, and the fault log_overflow is raised. Received messages
 // are handed to the kernel at least every WritingThread::kPeriod. Of the messages that a bus with a key
-// refuses, a bounded part is recorded (refused_quota.h). If the log is deleted while it is recorded, the
+// refuses, a bounded part is recorded (event_queue.h). If the log is deleted while it is recorded, the
 // logger reports that at once and ends with exit code 1.
 #pragma once
 
@@ -18,8 +18,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "logger/event_queue.h"
 #include "logger/recording.h"
-#include "logger/refused_quota.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "runs/log/causal_order.h"

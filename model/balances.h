@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/equations/equations.h"
-#include "model/unknown.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::model {
 

@@ -7,7 +7,7 @@
 
 #include "model/actuator.h"
 #include "model/arm/arm_description.h"
-#include "model/terms/power.h"
+#include "model/terms/measurement.h"
 
 namespace hydro::model {
 

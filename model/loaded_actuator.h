@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "model/actuator.h"
-#include "model/terms/arm_load.h"
-#include "model/terms/power.h"
+#include "model/terms/actuator_options.h"
+#include "model/terms/measurement.h"
 
 namespace hydro::model {
 

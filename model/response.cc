@@ -5,7 +5,6 @@
 #include "model/response_pass.h"
 
 namespace hydro::model {
-
 namespace {
 
 void PassWithDerivatives(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,

@@ -11,8 +11,8 @@
 
 #include "model/actuator.h"
 #include "model/terms/description.h"
-#include "model/terms/surroundings.h"
-#include "model/unknown.h"
+#include "model/terms/measurement.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::model {
 
@@ -58,18 +58,6 @@ inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
 // in^3: the volume that the accumulator of accumulator.stiffness has already taken in, so that its pressure
 // begins above p_3.
 inline constexpr size_t kReturned = 11;
-
-// The sensors, in the order of Measurement.
-enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };
-inline constexpr size_t kChannels = 6;
-using ChannelSet = std::array<bool, kChannels>;
-
-template <class T>
-const T& ChannelOf(const MeasurementOf<T>& measured, size_t channel) {
-  const T* const all[kChannels] = {&measured.motor_angle, &measured.motor_speed, &measured.arm_angle,
-                                   &measured.arm_speed,   &measured.p1,          &measured.p2};
-  return *all[channel];
-}
 
 struct Response {
   // By channel, then by sample; empty for channels that were not requested.

@@ -9,9 +9,8 @@
 
 #include "base/number_text.h"
 #include "page/panel_geometry.h"
-#include "page/range.h"
+#include "page/plot.h"
 #include "page/svg.h"
-#include "page/ticks.h"
 #include "page/typeset.h"
 
 namespace hydro::page {

@@ -1,8 +1,9 @@
-// The frame and the look of every HTML page that the project writes. Pages are self-contained.
+// The frame, the look and the tables of every HTML page that the project writes. Pages are self-contained.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hydro::page {
 
@@ -12,5 +13,15 @@ std::string HtmlPage(std::string_view title, std::string_view body, bool wide = 
 
 // The style sheet of pictures, which SVG files need as well.
 std::string_view ChartStyle();
+
+// A cell whose `text` is typeset as page/plot.h describes.
+std::string Cell(const std::string& text);
+// A cell with a number of four digits.
+std::string NumberCell(double value);
+
+// `rows` holds <tr> elements. Columns whose names begin with '#' hold numbers. `style` holds classes of
+// page.css.
+std::string Table(const std::vector<std::string>& columns, const std::string& rows,
+                  const std::string& style = "");
 
 }  // namespace hydro::page

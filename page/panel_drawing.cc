@@ -6,11 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "page/curve_thinning.h"
-#include "page/label_placement.h"
-#include "page/strokes.h"
+#include "page/curves.h"
+#include "page/panel_geometry.h"
 #include "page/svg.h"
-#include "page/ticks.h"
 #include "page/typeset.h"
 
 namespace hydro::page {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "page/curve_style.h"
+#include "page/curves.h"
 #include "page/panel_geometry.h"
 #include "page/plot.h"
 

@@ -1,13 +1,14 @@
-// Maps a panel's values to positions in the picture.
+// Maps a panel's values to positions in the picture; the ticks of its axes and their numbers.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
-#include "page/label_placement.h"
 #include "page/plot.h"
+#include "page/svg.h"
 
 namespace hydro::page {
 
@@ -45,5 +46,13 @@ struct PanelGeometry {
 // The ranges of a panel: the given ones, or else ranges wide enough for all curves, notes and rules. `where`
 // is for messages. Throws std::invalid_argument as FigureElement() does.
 PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
+
+// Ticks within the range, in rising order. They are round numbers with room between their labels on an axis
+// that is `pixels` long, where each label takes `label_pixels` along it. A logarithmic axis also has ticks
+// without a number (empty text) in between.
+std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixels);
+
+// "0.25", "−3", "2×10^{-5}": written in the convention of page/plot.h.
+std::string TickNumber(double value);
 
 }  // namespace hydro::page

@@ -8,6 +8,8 @@
 // static_excess stay unchanged.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -25,9 +27,9 @@ enum class Stroke { kLine, kDashed, kDotted, kSteps, kBars, kPoints, kLinePoints
 enum class Weight { kNormal, kFaint, kStrong, kBackdrop };
 
 struct Curve {
-  std::string label;      // in the key; empty: none
-  std::vector<double> x;  // of equal length; a NaN in y breaks the line
-  std::vector<double> y;
+  std::string label = {};      // in the key; empty: none
+  std::vector<double> x = {};  // of equal length; a NaN in y breaks the line
+  std::vector<double> y = {};
   Stroke stroke = Stroke::kLine;
   // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's
   // index in its panel.
@@ -39,8 +41,10 @@ struct Curve {
 };
 
 // y over x without bounds.
-Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
-           Stroke stroke = Stroke::kLine);
+inline Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y,
+                  int colour, Stroke stroke = Stroke::kLine) {
+  return {.label = label, .x = x, .y = y, .stroke = stroke, .colour = colour};
+}
 
 // A value on an axis and its text.
 struct Tick {
@@ -49,7 +53,7 @@ struct Tick {
 };
 
 struct Axis {
-  std::string label;         // quantity and unit: "pressure difference, psi"
+  std::string label = {};    // quantity and unit: "pressure difference, psi"
   bool logarithmic = false;  // values of 0 and below are not drawn
   double min = kAutomatic;
   double max = kAutomatic;
@@ -82,12 +86,12 @@ struct Band {
 };
 
 struct Panel {
-  std::string title;
-  Axis x;
-  Axis y;
-  std::vector<Curve> curves;
-  std::vector<Note> notes;
-  std::vector<Rule> rules;
+  std::string title = {};
+  Axis x = {};
+  Axis y = {};
+  std::vector<Curve> curves = {};
+  std::vector<Note> notes = {};
+  std::vector<Rule> rules = {};
   // One unit is equally long on both axes (for a plane of poles): one of the two ranges is widened, even if
   // it was given.
   bool equal_scales = false;
@@ -99,14 +103,37 @@ struct Panel {
 // Panels stand below each other, or side by side in rows. A panel's key extends over panels beside it that
 // have none.
 struct Figure {
-  std::string caption;  // what is shown, under which conditions; stands below the picture
-  std::vector<Panel> panels;
+  std::string caption = {};  // what is shown, under which conditions; stands below the picture
+  std::vector<Panel> panels = {};
   // A whole <svg> element that replaces the panels. Its first tag has a viewBox="0 0 WIDTH HEIGHT". It must
   // keep its ids unique.
   std::string drawing = {};
   size_t columns = 1;
   double width = 860;       // pixels
   double panel_height = 0;  // height of a panel's frame, pixels; 0: chosen by the number of panels
+};
+
+// A range that grows to hold values.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  bool empty() const { return !(low <= high); }
+  // Ignores values that are not finite.
+  void Include(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void Include(const std::vector<double>& values) {
+    for (const double value : values) Include(value);
+  }
+  // The range widened by an eighteenth on each side, and never empty.
+  Range WithMargin() const {
+    if (empty()) return {-1, 1};
+    const double margin = high > low ? (high - low) / 18 : std::max(1e-6, std::abs(low) / 10);
+    return {low - margin, high + margin};
+  }
 };
 
 }  // namespace hydro::page

@@ -5,10 +5,71 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
 #include "page/typeset.h"
 
 namespace hydro::page {
+namespace {
+
+constexpr double kCell = 3;        // pixels
+constexpr int kLabelWeight = 50;   // covering a label is worse than covering a curve
+constexpr double kOutside = 1000;  // leaving the frame is worst
+
+}  // namespace
+
+LabelPlacement::LabelPlacement(const Box& frame)
+    : frame_(frame),
+      columns_(std::max(1, static_cast<int>((frame.right - frame.left) / kCell) + 1)),
+      rows_(std::max(1, static_cast<int>((frame.bottom - frame.top) / kCell) + 1)),
+      cells_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)) {}
+
+void LabelPlacement::AddStroke(double x0, double y0, double x1, double y1) {
+  const double length = std::hypot(x1 - x0, y1 - y0);
+  if (!std::isfinite(length)) return;
+  // Follow a line far beyond the frame only for a limited distance.
+  const int steps = std::clamp(static_cast<int>(std::min(length / kCell, 2000.0)) + 1, 1, 2000);
+  for (int i = 0; i <= steps; ++i) {
+    const double column = (x0 + (x1 - x0) * i / steps - frame_.left) / kCell;
+    const double row = (y0 + (y1 - y0) * i / steps - frame_.top) / kCell;
+    if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+    cells_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] = 1;
+  }
+}
+
+double LabelPlacement::Cost(const Box& box) const {
+  double cost = 0;
+  if (box.left < frame_.left || box.right > frame_.right || box.top < frame_.top ||
+      box.bottom > frame_.bottom) {
+    cost += kOutside;
+  }
+  const auto index = [](double pixels, double origin, int count) {
+    return std::clamp(static_cast<int>(std::clamp((pixels - origin) / kCell, -1e6, 1e6)), 0, count - 1);
+  };
+  for (int row = index(box.top, frame_.top, rows_); row <= index(box.bottom, frame_.top, rows_); ++row) {
+    for (int column = index(box.left, frame_.left, columns_);
+         column <= index(box.right, frame_.left, columns_); ++column) {
+      cost += cells_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)];
+    }
+  }
+  return cost;
+}
+
+Box LabelPlacement::Place(const std::vector<Box>& candidates) {
+  const Box best = *std::min_element(candidates.begin(), candidates.end(),
+                                     [this](const Box& a, const Box& b) { return Cost(a) < Cost(b); });
+  for (double y = best.top; y <= best.bottom; y += kCell) {
+    for (double x = best.left; x <= best.right; x += kCell) {
+      const double column = (x - frame_.left) / kCell;
+      const double row = (y - frame_.top) / kCell;
+      if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+      cells_[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)] =
+          kLabelWeight;
+    }
+  }
+  return best;
+}
 
 std::string Pixels(double value) {
   char text[32];
@@ -47,6 +108,31 @@ std::string SvgClipped(const Box& box, std::string_view content) {
   return fmt::format(
       "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left,
       top, width, height, content);
+}
+
+std::string FillDrawing(std::string_view drawing, const std::map<std::string, std::string>& texts) {
+  std::string out;
+  std::set<std::string> filled;
+  for (size_t begin = 0; begin < drawing.size();) {
+    const size_t open = drawing.find("{{", begin);
+    const size_t close = drawing.find("}}", open);
+    if (open == std::string_view::npos || close == std::string_view::npos) {
+      out += drawing.substr(begin);
+      break;
+    }
+    const std::string place(drawing.substr(open + 2, close - open - 2));
+    const auto text = texts.find(place);
+    if (text == texts.end())
+      throw std::logic_error("the drawing has a placeholder '" + place + "' without a text");
+    filled.insert(place);
+    out += drawing.substr(begin, open - begin);
+    out += EscapeMarkup(text->second);
+    begin = close + 2;
+  }
+  for (const auto& [place, text] : texts) {
+    if (!filled.contains(place)) throw std::logic_error("the drawing has no placeholder '" + place + "'");
+  }
+  return out;
 }
 
 }  // namespace hydro::page

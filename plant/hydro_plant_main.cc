@@ -25,8 +25,7 @@ int main(int argc, char** argv) {
       "hydro-plant", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
         hydro::plant::SimulatedRig rig(config);  // first: a refusal is to be the only output
-        if (const std::string remark = hydro::design::FastMotionRemark(config); !remark.empty())
-          spdlog::warn("{}", remark);
+        for (const std::string& remark : hydro::design::RemarksOn(config)) spdlog::warn("{}", remark);
         return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-plant",
                                       hydro::process::HeartbeatArrived)
             .Run();

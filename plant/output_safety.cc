@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bus/output_left.h"
 #include "process/fault_codes.h"
 #include "process/status.h"
 
@@ -93,7 +94,8 @@ void OutputSafety::CheckController(bool safe_command, bus::Clock::TimePoint now)
     std::string why = "the pressure loop commands a safe output";
     if (remote) {
       const fault_t& first = remote_.first();
-      why = fmt::format("{}: {}: {}", first.source, first.code, first.text);
+      why = fmt::format("{}: {}: {}", bus::ReasonText(first.source, "an unnamed process"),
+                        bus::ReasonText(first.code, "a fault without a name"), bus::ReasonText(first.text));
     }
     return Finding{why, NAN, NAN};
   });
@@ -103,7 +105,7 @@ void OutputSafety::CheckRig(const std::vector<RigFault>& faults) {
   if (limits_.rearm != settings::Rearm::kExplicit) return;
   Set(Cause::kRigFault, !faults.empty(), [&] {
     const RigFault& first = faults.front();
-    return Finding{first.code + ": " + first.text, first.value, first.limit};
+    return Finding{first.code + ": " + bus::ReasonText(first.text), first.value, first.limit};
   });
 }
 

@@ -8,16 +8,11 @@
 #include <utility>
 
 #include "bus/output_left.h"
+#include "plant/plant_pace.h"
 #include "process/stop_signal.h"
 
 namespace hydro::plant {
 namespace {
-
-using namespace std::chrono_literals;
-
-// The time a participant may take to report its configuration; a program of the user's own never reports it.
-constexpr auto kConfigurationTime = 300ms;
-constexpr auto kDescriptionPeriod = 1s;  // often enough for logs and plots that start late
 
 // The channels on which loggers may report: a joint's logger may be that of its limb.
 std::vector<bus::Channels> LoggersChannels(const settings::BusSection& bus) {
@@ -26,16 +21,18 @@ std::vector<bus::Channels> LoggersChannels(const settings::BusSection& bus) {
   return channels;
 }
 
-std::vector<std::string> WithControllers(std::vector<std::string> roles) {
-  roles.insert(roles.begin(), {"pressure_ctrl", "position_ctrl"});
-  return roles;
-}
-
-std::string NotAtZero(const OutputLeft& left) {
-  const std::string holds =
-      std::isnan(left.voltage) ? "cannot be read back" : fmt::format("reads back {:.4g} V", left.voltage);
-  return fmt::format("the output has not taken zero volts at the end, and {}: cut the amplifier's supply",
-                     holds);
+RunStart::Options StartOf(const settings::StackConfig& config, const std::vector<std::string>& expected,
+                          const std::string& program) {
+  RunStart::Options options;
+  options.roles = ExpectedRoles(expected);
+  options.roles.insert(options.roles.begin(), {"pressure_ctrl", "position_ctrl"});
+  options.joints = ExpectedJoints(expected);
+  options.loggers = LoggersChannels(config.bus);
+  options.timeout_s = config.time.start_timeout_s;
+  options.description = DescriptionOf(config, program);
+  options.description.model_file = config.model.resolved_file;
+  options.description.model_text = config.model.text;
+  return options;
 }
 
 }  // namespace
@@ -61,81 +58,36 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                 {.follows = config.joints_concern_each_other,
                  .last_tick = config.last_tick,
                  .on_newcomer = [this] { participant_.RepeatFaults(); }}),
-      expected_joints_(ExpectedJoints(expected)),
-      roll_call_(WithControllers(ExpectedRoles(expected))),
+      start_(participant_, siblings_, StartOf(config, expected, program)),
+      pacemaker_(config.time.mode == settings::TimeMode::kRealtime ? rig.pacemaker() : nullptr),
+      commands_(participant_, config, safety_, start_.roll_call(), pacemaker_ != nullptr ? 1 : 0),
+      launcher_watch_(std::move(heartbeat), config.limits.stale_supervisor_s, safety_),
+      messages_(participant_, rig, config),
       program_(program),
-      heartbeat_(std::move(heartbeat)),
-      state_publisher_(bus.Advertise<state_t>(participant_.channels().Of<state_t>())),
-      stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
-      stall_time_(bus::FromSeconds(config.time.stall_timeout_s)),
-      realtime_(config.time.mode == settings::TimeMode::kRealtime),
-      voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
-                     config.model.description.parameters.k_1),
-      pacemaker_(realtime_ ? rig.pacemaker() : nullptr),
-      ticks_ahead_(pacemaker_ != nullptr ? 1 : 0),
-      pressure_ticks_(config.pressure_interval_ticks),
-      position_ticks_(config.position_interval_ticks),
-      command_monitor_(stale_time_) {
+      realtime_(config.time.mode == settings::TimeMode::kRealtime) {
   safety_.RefuseRearmWhile([this] {
     return tuning_.changing()
                ? "values are being changed, which may be limits: ask again when they are in force"
                : std::string();
   });
-  const bus::Channels& channels = participant_.channels();
-  bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(),
-                                 [this](const motor_command_t& command) { OnMotorCommand(command); });
-  bus.Subscribe<pressure_command_t>(
-      channels.Of<pressure_command_t>(),
-      [this](const pressure_command_t& command) { OnPressureCommand(command); });
-  bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
-                                  [this](const process_status_t& status) { roll_call_.Observe(status); });
-  for (const bus::Channels& loggers : LoggersChannels(config.bus)) {
-    bus.Subscribe<log_progress_t>(loggers.Of<log_progress_t>(), [this](const log_progress_t& progress) {
-      // Only loggers that were present when the run began count, so that a flood of made-up ones is not
-      // stored.
-      const auto known = log_progress_.find(progress.session);
-      if (known != log_progress_.end()) known->second = progress.tick;
-    });
-  }
-  if (config.bus.limb_suffix) {
-    bus.Subscribe<process_status_t>(bus::Channels(*config.bus.limb_suffix).Of<process_status_t>(),
-                                    [this](const process_status_t& status) {
-                                      if (status.role == "logger") roll_call_.Observe(status);
-                                    });
-  }
   participant_.OnRefusal([this](int64_t session, const std::string& text) { OnRefusal(session, text); });
 }
 
-void PlantApp::DescribeRun() {
-  description_.session = participant_.session();
-  description_.config_file = config_.file;
-  description_.config_text = config_.text;
-  description_.model_file = config_.model.resolved_file;
-  description_.model_text = config_.model.text;
-  description_.program = program_;
-  description_.version = HYDRO_VERSION;
-  description_.host = participant_.host();
-  description_.rate_hz = config_.plant.rate_hz;
-  description_.seed = config_.seed;
-}
-
 int PlantApp::Run() {
-  if (Begin()) {
-    Safely([this] { config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime(); });
-  }
+  if (Begin()) Safely([this] { PlantPace(*this, config_, pacemaker_).Run(); });
   return End();
 }
 
 bool PlantApp::Begin() {
-  DescribeRun();
   participant_.Announce(process_status_t::READY);
-  PublishDescription();
-  if (!WaitForParticipants()) return false;
-  participant_.Announce(process_status_t::RUNNING);
-  PublishDescription();
-  took_part_ = roll_call_.Participants();
-  for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
-  return true;
+  start_.Describe();
+  const bool begins = start_.Await([this] { return Ended(); },
+                                   [this](bus::Clock::TimePoint now) {
+                                     PollDue(now);
+                                     rig_.Attend();
+                                   });
+  if (begins) start_.Begin();
+  return begins;
 }
 
 int PlantApp::End() {
@@ -147,7 +99,7 @@ int PlantApp::End() {
     participant_.RequestStop(failure, 1);
   }
   RequestStop();
-  PublishOutputLeft(left);
+  messages_.PublishOutputLeft(left);
   return participant_.Leave(failure);
 }
 
@@ -173,10 +125,10 @@ void PlantApp::RequestStop() {
     return;
   }
   const std::string latched = safety_.Latched();
+  const double time = messages_.state().time;
   participant_.RequestStop(
-      latched.empty()
-          ? fmt::format("{} after {} s", bus::kRunComplete, state_.time)
-          : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
+      latched.empty() ? fmt::format("{} after {} s", bus::kRunComplete, time)
+                      : fmt::format("the run ends after {} s, stopped by {} and not re-armed", time, latched),
       latched.empty() ? 0 : 1);
 }
 
@@ -189,101 +141,124 @@ bool PlantApp::Ended() const {
   return participant_.stop().has_value() || process::StopSignal(participant_.bus()) != 0;
 }
 
-bool PlantApp::AllHaveSaidTheirConfiguration() const {
-  const std::vector<int64_t> sessions = roll_call_.Participants();
-  return std::all_of(sessions.begin(), sessions.end(),
-                     [&](int64_t session) { return participant_.HasSaidItsConfiguration(session); });
-}
-
 // A stack whose processes do not agree never starts. A process that joins a run later with another
 // configuration is not obeyed and leaves, and the run goes on.
 void PlantApp::OnRefusal(int64_t session, const std::string& text) {
-  ForgetCommandsOf(session);
-  const std::vector<int64_t>& own = took_part_;
-  const bool began_with_it = std::find(own.begin(), own.end(), session) != own.end();
-  if (participant_.state() == process_status_t::READY || began_with_it) participant_.RequestStop(text, 1);
+  commands_.ForgetAllOf(session);
+  if (participant_.state() == process_status_t::READY || start_.BeganWith(session)) {
+    participant_.RequestStop(text, 1);
+  }
 }
 
-bool PlantApp::WaitForParticipants() {
-  const auto start = participant_.clock().Now();
-  const auto deadline = start + bus::FromSeconds(config_.time.start_timeout_s);
-  auto next_notice = start + 2s;
-  std::optional<bus::Clock::TimePoint> complete;
-  while (!Ended()) {
-    std::vector<std::string> absent = roll_call_.Missing();
-    for (const std::string& joint : siblings_.Missing(expected_joints_)) absent.push_back(joint);
-    const std::string missing = fmt::format("{}", fmt::join(absent, ", "));
-    const auto now = participant_.clock().Now();
-    auto until = now + 5ms;
-    if (missing.empty()) {
-      if (!complete) complete = now;
-      if (AllHaveSaidTheirConfiguration() || now - *complete > kConfigurationTime) return true;
-    } else {
-      if (now >= deadline) {
-        participant_.RequestStop(fmt::format("not ready after {} s (time.start_timeout_s): {}",
-                                             config_.time.start_timeout_s, missing),
-                                 1);
-        return false;
-      }
-      if (now >= next_notice) {
-        spdlog::info("waiting for {}", missing);
-        next_notice = now + 2s;
-      }
-      until = std::min(now + 50ms, deadline);
-    }
-    participant_.bus().HandleUntil(until);
-    PollDue(participant_.clock().Now());
-    rig_.Attend();
+inline void PlantApp::SetTick(int64_t tick) {
+  tick_ = tick;
+  commands_.SetTick(tick);
+  participant_.set_tick(tick);
+}
+
+inline bus::Clock::TimePoint PlantApp::Publish(int64_t skipped_ticks, bus::Clock::TimePoint now) {
+  now = commands_.BeforeSending(now);
+  messages_.PublishState(tick_, skipped_ticks);
+  return now;
+}
+
+bus::Clock::TimePoint PlantApp::Start(bus::Clock::TimePoint now) {
+  messages_.Measure(0, 0, -1);
+  SetTick(0);
+  return Publish(0, now);
+}
+
+void PlantApp::AdvanceTo(int64_t tick) {
+  tuning_.OnTick(tick);
+  messages_.Measure(tick, voltage_, command_tick_);
+  SetTick(tick);
+}
+
+bus::Clock::TimePoint PlantApp::PublishState(bus::Clock::TimePoint now) { return Publish(0, now); }
+
+bus::Clock::TimePoint PlantApp::Wake(const WakeUp& wake_up) {
+  const int64_t skipped = wake_up.elapsed - 1;
+  participant_.statistics().set_missed_deadlines(wake_up.skipped);
+  AdvanceTo(tick_ + wake_up.elapsed);  // under the voltage that was held during all of these ticks
+  commands_.OnSlept(static_cast<double>(skipped) / (config_.plant.rate_hz * config_.time.speed));
+  return Publish(skipped, wake_up.at);
+}
+
+bool PlantApp::AwaitAnswers() {
+  auto now = participant_.clock().Now();
+  return PlantPace(*this, config_, pacemaker_).AwaitAnswers(&now);
+}
+
+const char* PlantApp::Unanswered() const {
+  if (const char* const loop = commands_.Unanswered()) return loop;
+  return start_.loggers().HasTaken(tick_ - LoggerWindow::kTicks) ? nullptr : "logger";
+}
+
+void PlantApp::Check(bus::Clock::TimePoint now) {
+  commands_.TakeEffect();
+  if (!safety_.AllIsWell(messages_.state(), commands_.SafeInForce(), rig_.faults()) ||
+      !commands_.AllIsWell(now)) {
+    CheckAll(now);
   }
-  return false;
+  if (realtime_) launcher_watch_.Check(tick_, now);
+  safety_.CheckSuspended(now);
+  if (!siblings_.follows()) return;
+  HoldForSilence(siblings_.Silence(now));
+  HoldForOthers(siblings_.Fault(now));
+  if (const auto& stop = siblings_.stop()) participant_.RequestStop(stop->reason, stop->exit_code);
+}
+
+void PlantApp::CheckAll(bus::Clock::TimePoint now) {
+  commands_.Check(now);
+  safety_.CheckMeasured(messages_.state());
+  safety_.CheckRig(rig_.faults());
+  safety_.CheckOtherStack(now);
+}
+
+// Chooses the voltage of the command in force, or zero while any check fails.
+void PlantApp::ChooseVoltage() {
+  const motor_command_t* const obeyed = commands_.Obeyed(IsHeld());
+  voltage_ = safety_.Voltage(obeyed != nullptr ? obeyed->voltage : 0);
+  command_tick_ = obeyed != nullptr ? obeyed->tick : -1;
+  rig_.Obey(command_tick_);
 }
 
 // Puts out the chosen voltage first and publishes the faults second.
 void PlantApp::Drive() {
   voltage_ = rig_.Drive(voltage_);
   if (pacemaker_ != nullptr) command_tick_ = pacemaker_->acting_command_tick();
-  const std::vector<RigFault>& faults = rig_.faults();
-  if (!faults.empty() || !rig_faults_.empty()) PublishRigFaults(faults);
+  messages_.PublishFaults(tick_);
   safety_.PublishFaults();
 }
 
-void PlantApp::PublishRigFaults(const std::vector<RigFault>& faults) {
-  const auto still_there = [&](const std::string& code) {
-    return std::any_of(faults.begin(), faults.end(), [&](const RigFault& f) { return f.code == code; });
-  };
-  for (const std::string& code : rig_faults_) {
-    if (!still_there(code)) participant_.Clear(code);
-  }
-  rig_faults_.clear();
-  for (const RigFault& fault : faults) {
-    participant_.Raise(fault.code, fmt::format("tick {}: {}", tick_, fault.text), fault.value, fault.limit,
-                       false);
-    rig_faults_.push_back(fault.code);
-  }
+// The pressure loop reports its faults in its commands.
+bool PlantApp::HasOwnFault() const {
+  return safety_.holds_by_itself() || !rig_.faults().empty() || commands_.SafeInForce();
+}
+
+std::string PlantApp::OwnFault() const {
+  if (!rig_.faults().empty()) return rig_.faults().front().code;
+  const std::string cause = safety_.OwnCause();
+  return cause.empty() ? "the pressure loop commands a safe output" : cause;
+}
+
+void PlantApp::HoldWhile(VoltageGuard::Cause cause, const std::string& text) {
+  safety_.Set(cause, !text.empty(), [&] {
+    return OutputSafety::Finding{fmt::format("tick {}: {}", tick_, text), NAN, NAN};
+  });
+}
+
+void PlantApp::Poll(bus::Clock::TimePoint now) {
+  const bool due = participant_.IsDue(now) || tuning_.IsDue(now) || start_.IsDue(now) ||
+                   LostMessages() != participant_.statistics().lost_messages();
+  if (due) PollDue(now);
 }
 
 void PlantApp::PollDue(bus::Clock::TimePoint now) {
   participant_.statistics().set_lost_messages(LostMessages());
   participant_.Poll(now);
   tuning_.Poll(now);
-  if (now >= next_description_) PublishDescription();
-}
-
-void PlantApp::PublishOutputLeft(const OutputLeft& left) {
-  output_left_t message;
-  message.utime = participant_.clock().Utime();
-  message.tick = participant_.tick();
-  message.session = participant_.session();
-  message.role = participant_.role();
-  message.accepted = left.accepted;
-  message.voltage = left.voltage;
-  participant_.bus().Publish(participant_.channels().Of<output_left_t>(), message);
-}
-
-void PlantApp::PublishDescription() {
-  next_description_ = participant_.clock().Now() + kDescriptionPeriod;
-  description_.utime = participant_.clock().Utime();
-  participant_.bus().Publish(participant_.channels().Of<run_description_t>(), description_);
+  start_.Poll(now);
 }
 
 }  // namespace hydro::plant

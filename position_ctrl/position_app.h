@@ -2,7 +2,7 @@
 // publishes the reference and the pressure command that follows from it. A reference of the arm's angle goes
 // through eq. (17); pressure, torque and open-loop voltage references pass through. All pressures are limited
 // and quantised in the same way. After zero volts the reference comes back without a jump
-// (reference_return.h).
+// (ReferenceReturn).
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,7 @@
 
 #include "base/multiples.h"
 #include "bus/sequence_monitor.h"
-#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
-#include "position_ctrl/law/reference_return.h"
 #include "position_ctrl/plan_follower.h"
 #include "process/control_loop.h"
 #include "process/fault_codes.h"

@@ -8,6 +8,7 @@
 
 #include "runs/run_log.h"
 #include "runs/stack_choice.h"
+#include "settings/joint_documents.h"
 
 namespace hydro::runs {
 
@@ -27,7 +28,7 @@ std::set<std::string> StateSuffixes(const RunLog& log);
 std::vector<JointChannels> JointsIn(const RunLog& log);
 
 // More joints than this are forged channels rather than a limb. A caller that wants one of them names it.
-inline constexpr size_t kMostJoints = 1000;
+inline constexpr size_t kMostJoints = settings::kMostJoints;
 
 // Whether `choice` leaves open which of several joints to read.
 bool IsWholeLimb(const RunLog& log, const StackChoice& choice);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <string_view>
+#include <tuple>
 
 #include "base/saturating.h"
 #include "base/units.h"
@@ -173,24 +175,20 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
 
 std::vector<ProgramInfo> ProgramsOf(const std::vector<process_status_t>& statuses) {
   std::vector<ProgramInfo> programs;
+  std::set<std::tuple<std::string_view, std::string_view, std::string_view>> known;
   for (const process_status_t& status : statuses) {
-    const bool known = std::any_of(programs.begin(), programs.end(), [&](const ProgramInfo& program) {
-      return program.role == status.role && program.host == status.host && program.version == status.version;
-    });
-    if (!known) programs.push_back({status.role, status.host, status.version});
+    if (known.emplace(status.role, status.host, status.version).second)
+      programs.push_back({status.role, status.host, status.version});
   }
   return programs;
 }
 
 std::vector<run_description_t> DistinctDescriptions(const std::vector<run_description_t>& all) {
   std::vector<run_description_t> distinct;
-  for (const run_description_t& description : all) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const run_description_t& other) {
-      return other.session == description.session && other.config_text == description.config_text &&
-             other.model_text == description.model_text && other.program == description.program &&
-             other.version == description.version;
-    });
-    if (!known) distinct.push_back(description);
+  std::set<std::tuple<int64_t, std::string_view, std::string_view, std::string_view, std::string_view>> known;
+  for (const run_description_t& one : all) {
+    if (known.emplace(one.session, one.config_text, one.model_text, one.program, one.version).second)
+      distinct.push_back(one);
   }
   return distinct;
 }
@@ -218,16 +216,19 @@ bool IsSameStop(const stop_t& a, const stop_t& b) {
   return (a.session == b.session || handed_on) && a.reason == b.reason && a.exit_code == b.exit_code;
 }
 
-// Each stop once, with its tick if any message has it.
+// Each stop once, with its tick if any message has it. A run has a few; more than these are made up, and are
+// left out.
 std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
+  constexpr size_t kMost = 100;
   std::vector<stop_t> distinct;
   for (const stop_t& stop : all) {
     const auto known = std::find_if(distinct.begin(), distinct.end(),
                                     [&](const stop_t& other) { return IsSameStop(stop, other); });
-    if (known == distinct.end())
+    if (known != distinct.end()) {
+      if (known->tick < 0 && stop.tick >= 0) *known = stop;
+    } else if (distinct.size() < kMost) {
       distinct.push_back(stop);
-    else if (known->tick < 0 && stop.tick >= 0)
-      *known = stop;
+    }
   }
   return distinct;
 }

@@ -9,6 +9,7 @@
 #include "bus/output_left.h"
 #include "runs/info.h"
 #include "runs/sampling.h"
+#include "runs/senders.h"
 
 namespace hydro::runs {
 namespace {
@@ -126,7 +127,11 @@ void AppendRuns(const LogInfo& info, std::string& text) {
   AppendSignals(info.signals, text);
   if (!info.several_runs) return;
   if (info.senders.empty())
-    text += "runs: states of several that cannot be told apart: their senders have one session\n";
+    text +=
+        "runs: states of several that cannot be told apart: their senders have one session, or there are "
+        "more "
+        "than " +
+        std::to_string(kMostRuns) + "\n";
   for (const SenderInfo& sender : info.senders) {
     Append(text, "run {} of {}, by sender {}: {}\n", &sender - info.senders.data() + 1, info.senders.size(),
            HexNumber(static_cast<uint64_t>(sender.session), 16),
@@ -155,12 +160,12 @@ std::string TickText(int64_t tick) { return tick >= 0 ? "tick " + std::to_string
 void AppendEnds(const LogInfo& info, std::string& text) {
   for (const fault_t& fault : info.faults) {
     Append(text, "fault: {}{}: {} {}: {}\n", TickText(fault.tick), fault.source, fault.code,
-           fault.active != 0 ? "begins" : "has gone", fault.text);
+           fault.active != 0 ? "begins" : "has gone", bus::ReasonText(fault.text));
   }
   if (info.faults.empty()) text += "faults: none\n";
   for (const stop_t& stop : info.stops) {
-    Append(text, "stop: {}{}: {} (exit code {})\n", TickText(stop.tick), stop.source, stop.reason,
-           stop.exit_code);
+    Append(text, "stop: {}{}: {} (exit code {})\n", TickText(stop.tick), stop.source,
+           bus::ReasonText(stop.reason), stop.exit_code);
   }
   for (const TuningStep& tuning : info.tunings) Append(text, "tuned: {}\n", DescribeTuning(tuning));
   for (const output_left_t& left : info.outputs_left) Append(text, "end: {}\n", bus::OutputLeftText(left));

@@ -70,6 +70,7 @@ struct MeasuredRun {
   MeasuredSignal p1;
   MeasuredSignal p2;
   // Other quantities that were measured.
+  MeasuredSignal dp;              // p2 - p1 of a differential transducer, beside p1 and p2
   MeasuredSignal arm_force;       // on the arm, in the direction of its angle, besides its weight (load cell)
   MeasuredSignal temperature;     // degC, of the oil
   MeasuredSignal motor_voltage;   // V, at the motor's terminals, where the command is a current

@@ -1,6 +1,7 @@
 // The signals of a measured run by their names, here and in tables of hydro-log export.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -21,7 +22,7 @@ struct SignalName {
   int arm = 0;       // power of the arm's coordinate in it
 };
 
-inline constexpr std::array<SignalName, 12> kSignals = {{
+inline constexpr std::array<SignalName, 13> kSignals = {{
     {&MeasuredRun::voltage, "voltage", "voltage_V", nullptr, nullptr, "V"},
     {&MeasuredRun::pressure_ref, "pressure_ref", "pressure_ref_psi", nullptr, nullptr, "psi"},
     {&MeasuredRun::motor_speed, "motor_speed", "motor_speed_rad_s", "motor_speed", "motor_speed_resolution",
@@ -33,6 +34,7 @@ inline constexpr std::array<SignalName, 12> kSignals = {{
      1},
     {&MeasuredRun::p1, "p1", "p1_psi", "p1", "p1_resolution", "psi"},
     {&MeasuredRun::p2, "p2", "p2_psi", "p2", "p2_resolution", "psi"},
+    {&MeasuredRun::dp, "dp", nullptr, nullptr, nullptr, "psi"},
     {&MeasuredRun::arm_force, "arm_force", nullptr, nullptr, nullptr, "in-lbf", -1},
     {&MeasuredRun::temperature, "temperature", nullptr, nullptr, nullptr, "degC"},
     {&MeasuredRun::motor_voltage, "motor_voltage", nullptr, nullptr, nullptr, "V"},
@@ -46,6 +48,20 @@ inline const char* KeyIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::motor_voltage) return run.current_commands ? "voltage" : nullptr;
   return name.ours;
 }
+// All keys that [columns] of a sidecar may have.
+inline std::vector<std::string> ColumnKeys() {
+  std::vector<std::string> keys = {"time"};
+  MeasuredRun run;
+  for (const bool current : {false, true}) {
+    run.current_commands = current;
+    for (const SignalName& name : kSignals) {
+      const char* key = KeyIn(run, name);
+      if (key != nullptr && std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+    }
+  }
+  return keys;
+}
+
 // Its unit in the run.
 inline std::string UnitIn(const MeasuredRun& run, const SignalName& name) {
   if (name.signal == &MeasuredRun::voltage && run.current_commands) return "A";

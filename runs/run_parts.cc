@@ -20,9 +20,13 @@ constexpr double kFromTheBeginning = -std::numeric_limits<double>::infinity();
 // A recorded valve is open above this.
 constexpr double kOpenAbove = 0.5;
 
-const char kShaftsAllowed[] =
-    "\"clamped\", \"free\" or \"driven\", or a list of what holds from which time on: [{ from = 0, is = "
-    "\"clamped\", arm_angle = 0.1 }, { from = 5.2, is = \"free\" }]";
+std::string ShaftsAllowed() {
+  std::vector<std::string> names;
+  for (const auto& [name, shaft] : kShafts) names.push_back(name);
+  return QuotedList(names) +
+         ", or a list of what holds from which time on: [{ from = 0, is = \"clamped\", arm_angle = 0.1 }, { "
+         "from = 5.2, is = \"free\" }]";
+}
 const char kBypassAllowed[] =
     "true or false, or a list of what holds from which time on: [{ from = 0, is = false }, { from = 5.2, is "
     "= true }]";
@@ -68,18 +72,18 @@ void ReadAngle(SectionReader& section, const UnitSystem& units, model::Shaft sha
 }
 
 void ReadShafts(SectionReader& document, const UnitSystem& units, RunPlan* plan) {
-  document.Require("shaft", kShaftsAllowed);
+  document.Require("shaft", ShaftsAllowed());
   const TomlNode* node = document.Take("shaft");
   if (node == nullptr || !node->is(Kind::kArray)) {
     RunPlan::ShaftFrom one{.from = kFromTheBeginning};
     if (node != nullptr && !node->is(Kind::kString))
-      throw document.Error("shaft", node->Shown(), kShaftsAllowed);
+      throw document.Error("shaft", node->Shown(), ShaftsAllowed());
     if (!document.Choice("shaft", kShafts, &one.shaft)) one.shaft = model::Shaft::kClamped;  // Finish reports
     ReadAngle(document, units, one.shaft, &one.arm_angle);
     plan->shafts.push_back(one);
     return;
   }
-  ReadChanges(document, "shaft", *node, kShaftsAllowed, [&](SectionReader& section, double from) {
+  ReadChanges(document, "shaft", *node, ShaftsAllowed(), [&](SectionReader& section, double from) {
     RunPlan::ShaftFrom one{.from = from};
     section.Choice("is", kShafts, &one.shaft);
     ReadAngle(section, units, one.shaft, &one.arm_angle);

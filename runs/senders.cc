@@ -88,6 +88,7 @@ std::vector<SenderMessages> RunsIn(const RunMessages& messages) {
     if (is_new) by_run.emplace_back();
     by_run[place->second].push_back(state);
   }
+  if (by_run.size() > kMostRuns) return {};
   std::vector<SenderMessages> runs;
   std::vector<Span> spans;
   bool alone = true;  // each session is one run
@@ -97,6 +98,7 @@ std::vector<SenderMessages> RunsIn(const RunMessages& messages) {
     alone = alone && parts.size() == 1;
     for (std::vector<state_t>& part : parts) {
       if (ContradictedTick(part)) return {};
+      if (runs.size() == kMostRuns) return {};
       spans.push_back(SpanOf(part));
       runs.push_back({part.front().session, {}});
       runs.back().messages.Of<state_t>() = std::move(part);

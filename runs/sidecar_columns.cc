@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "base/unit_spelling.h"
+#include "base/unit_system.h"
 #include "base/units.h"
 #include "base/word_list.h"
 #include "runs/counters.h"
@@ -24,6 +23,9 @@ namespace hydro::runs {
 namespace {
 
 constexpr double kLongestStep = 86400;  // s from row to row
+
+const std::vector<std::pair<std::string, tables::DateOrder>> kDateOrders = {
+    {"dmy", tables::DateOrder::kDayFirst}, {"mdy", tables::DateOrder::kMonthFirst}};
 
 // Lists what a key of [columns] may name.
 std::string ColumnsOf(const tables::Table& table) {
@@ -94,9 +96,10 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
     return entry;
   }
   if (!node->is(settings::TomlNode::Kind::kTable)) {
-    throw columns.Error(key, node->Shown(),
-                        "the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = "
-                        "\"...\", delay = ... }");
+    throw columns.Error(
+        key, node->Shown(),
+        std::string("the name of a column, or { column = \"...\", scale = ..., offset = ..., unit = ") +
+            (key == "time" ? "\"...\" }, or { every = S } for rows S s apart" : "\"...\", delay = ... }"));
   }
   settings::SectionReader section(*node, "columns." + key);
   section.Require("column", "the name of a column of " + table.file);
@@ -112,6 +115,7 @@ std::optional<Entry> ReadEntry(settings::SectionReader& columns, const std::stri
     if (known == table.names.end())
       throw section.Error("date", Quoted(date), ColumnsOf(table) + DidYouMean(date, table.names));
   }
+  if (key == "time") section.Take("date_order");  // AskedBy() has already read it
   const bool delayed = section.Number("delay", &entry.source.delay);
   section.Finish();
   if (delayed && key == "time") {
@@ -215,10 +219,12 @@ tables::AskedColumns AskedBy(const settings::TomlNode& sidecar) {
   };
   asked.time = add(name_of("time"));
   const settings::TomlNode* time = columns->Find("time");
-  if (time != nullptr && time->is(settings::TomlNode::Kind::kTable))
+  if (time != nullptr && time->is(settings::TomlNode::Kind::kTable)) {
     asked.date = add(text_of(time->Find("date")));
-  for (const SignalName& name : kSignals) add(name_of(name.ours));
-  add(name_of("current"));
+    settings::SectionReader section(*time, "columns.time");
+    section.Choice("date_order", kDateOrders, &asked.date_order);
+  }
+  for (const std::string& key : ColumnKeys()) add(name_of(key));
   return asked;
 }
 
@@ -236,6 +242,7 @@ void ReadColumns(settings::SectionReader columns, tables::Table* table, Measured
     const char* key = KeyIn(*run, kSignals[i]);
     if (key != nullptr) sources[i] = ReadSource(columns, key, UnitIn(*run, kSignals[i]), *table);
   }
+  for (const std::string& key : ColumnKeys()) columns.Take(key);  // an unknown key is told all of them
   columns.Finish();
   if (every.has_value()) {
     CountRows(*every, table, run);

@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -54,6 +55,20 @@ class ArmText {
   double factor_ = 1;
 };
 
+// "; mean of the last 0.1 s": what a final error is.
+std::string MeanText(const Tracking& tracking) {
+  return "mean of the last " + ShortNumber(tracking.final_time_s, 2) + " s";
+}
+
+// How close to its reference a step brought the arm, and when.
+std::string SettlingText(const StepResponse& step, const ArmText& arm) {
+  const double part = step.tolerance_rad / std::fabs(step.to_rad - step.from_rad);
+  const bool usual = part < 1.001 * kSettlingBand;  // a small step has the least tolerance
+  const std::string band = usual ? fmt::format("{:g} %", 100 * kSettlingBand) : arm.Size(step.tolerance_rad);
+  return step.settling_time_s ? fmt::format("within {} after {:.2f} s", band, *step.settling_time_s)
+                              : "not within " + band;
+}
+
 // The stop that ended the run early: one that failed it, or else one before its full duration.
 const stop_t* EarlyEnd(const LogInfo& info) {
   const stop_t* first = nullptr;
@@ -80,12 +95,13 @@ std::string TrackingText(const Tracking& tracking, const LogInfo& info, bool si)
   if (!tracking.at_target) {
     return text +
            (early ? "the reference moves: error " : "the reference still moves at the end: error there ") +
-           arm.Error(tracking.final_error_rad) + rms;
+           arm.Error(tracking.final_error_rad) + " (" + MeanText(tracking) + ")" + rms;
   }
   return text +
-         fmt::format("arm {} its target {}: {} {}", *tracking.at_target ? "at" : "NOT at",
-                     arm.Place(tracking.target_rad), early ? "error" : "final error",
-                     arm.Error(tracking.final_error_rad)) +
+         fmt::format("arm {} its target {}: {} {} ({}; up to {} is at it)",
+                     *tracking.at_target ? "at" : "NOT at", arm.Place(tracking.target_rad),
+                     early ? "error" : "final error", arm.Error(tracking.final_error_rad), MeanText(tracking),
+                     arm.Size(tracking.tolerance_rad)) +
          rms;
 }
 
@@ -148,9 +164,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     if (info.ticks.states > 1 || EarlyEnd(info) == nullptr) text += TrackingText(tracking, info, si);
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {}", step.time_s,
-           arm.Place(step.to_rad), step.overshoot_percent,
-           step.settling_time_s ? fmt::format("within 2 % after {:.2f} s", *step.settling_time_s)
-                                : std::string("not within 2 %"),
+           arm.Place(step.to_rad), step.overshoot_percent, SettlingText(step, arm),
            arm.Error(step.final_error_rad));
     }
     if (tracking.steps_left_out > 0) {
@@ -193,12 +207,15 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
            {"from" + unit, step.from_rad},
            {"to" + unit, step.to_rad},
            {"overshoot_percent", step.overshoot_percent},
+           {"tolerance" + unit, step.tolerance_rad},
            {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
            {"final_error" + unit, step.final_error_rad}});
     }
     json["tracking"] = {{"at_target", tracking.at_target ? Json(*tracking.at_target) : Json(nullptr)},
                         {"target" + unit, tracking.target_rad},
+                        {"tolerance" + unit, tracking.tolerance_rad},
                         {"final_error" + unit, tracking.final_error_rad},
+                        {"final_time_s", tracking.final_time_s},
                         {"rms_error" + unit, tracking.rms_error_rad},
                         {"steps", steps}};
   }

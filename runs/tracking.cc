@@ -10,7 +10,6 @@ namespace hydro::runs {
 namespace {
 
 constexpr double kShortestRest = 0.2;  // s
-constexpr double kEndTime = 0.1;       // s
 constexpr int kRestingReferences = 3;  // with one value at the end: a step that was just made is not motion
 constexpr double kSmallestAngle = 0.001;    // rad; a smaller error counts as none
 constexpr double kSmallestDistance = 1e-4;  // m, the same for a linear arm
@@ -66,13 +65,14 @@ Samples ReadSamples(const RunLog& log) {
 }
 
 // The mean over the last 0.1 s, or, if the reference has rested at its last value for less than that, over
-// the time since then.
-double MeanErrorAtEnd(const Samples& samples, bool at_rest) {
+// the time since then, which `time` receives.
+double MeanErrorAtEnd(const Samples& samples, bool at_rest, double* time) {
   double sum = 0;
   int count = 0;
   for (size_t i = samples.size(); i-- > 0;) {
-    if (samples.times.back() - samples.times[i] > kEndTime) break;
     if (at_rest && samples.references[i] != samples.references.back()) break;
+    *time = std::min(samples.times.back() - samples.times[i], kFinalTime);
+    if (samples.times.back() - samples.times[i] > kFinalTime) break;
     sum += samples.angles[i] - samples.references[i];
     ++count;
   }
@@ -84,7 +84,7 @@ double MeanErrorAtEnd(const Samples& samples, bool at_rest) {
 bool RestsAtEnd(const Samples& samples) {
   if (samples.resting >= kRestingReferences) return true;
   for (size_t i = samples.size(); i-- > 0;) {
-    if (samples.times.back() - samples.times[i] > kEndTime) break;
+    if (samples.times.back() - samples.times[i] > kFinalTime) break;
     if (samples.references[i] != samples.references.back()) return false;
   }
   return true;
@@ -109,7 +109,7 @@ std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* l
   if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep * tolerance &&
       rests(0)) {
     steps.push_back(MeasureStep(samples.times, samples.angles, 0, samples.size(), samples.angles[0],
-                                samples.references[0]));
+                                samples.references[0], tolerance));
   }
   for (size_t k = 1; k <= last; ++k) {
     if (!is_step(k)) continue;
@@ -118,10 +118,19 @@ std::vector<StepResponse> Steps(const Samples& samples, double tolerance, int* l
       continue;
     }
     steps.push_back(MeasureStep(samples.times, samples.angles, changes[k], changes[k + 1],
-                                samples.references[changes[k] - 1], samples.references[changes[k]]));
+                                samples.references[changes[k] - 1], samples.references[changes[k]],
+                                tolerance));
     if (steps.size() > kMostSteps) return {};
   }
   return steps;
+}
+
+// The tolerance of the step to the last reference, or as much of the reference's range where no step leads
+// there.
+double ToleranceAtEnd(const Samples& samples, const std::vector<StepResponse>& steps, double smallest) {
+  if (!steps.empty() && steps.back().to_rad == samples.references.back()) return steps.back().tolerance_rad;
+  const auto [low, high] = std::minmax_element(samples.references.begin(), samples.references.end());
+  return std::max(kSettlingBand * (*high - *low), smallest);
 }
 
 template <class Message>
@@ -158,23 +167,15 @@ Tracking TrackArm(const RunLog& log) {
     const double error = samples.angles[i] - samples.references[i];
     squares += error * error;
   }
-  const auto [low, high] = std::minmax_element(samples.references.begin(), samples.references.end());
   tracking.rms_error_rad = std::sqrt(squares / static_cast<double>(samples.size()));
   tracking.target_rad = samples.references.back();
   const bool at_rest = RestsAtEnd(samples);
-  tracking.final_error_rad = MeanErrorAtEnd(samples, at_rest);
+  tracking.final_error_rad = MeanErrorAtEnd(samples, at_rest, &tracking.final_time_s);
   tracking.steps = Steps(samples, tolerance, &tracking.steps_left_out);
-  double scale = *high - *low;
-  if (!tracking.steps.empty()) {
-    scale = 0;
-    for (const StepResponse& step : tracking.steps) {
-      scale = std::max(scale, std::fabs(step.to_rad - step.from_rad));
-    }
-  }
+  tracking.tolerance_rad = ToleranceAtEnd(samples, tracking.steps, tolerance);
   tracking.held = IsHeldAtEnd(log.messages, samples.follow_arm);
-  if (at_rest && !tracking.held) {
-    tracking.at_target = std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, tolerance);
-  }
+  if (at_rest && !tracking.held)
+    tracking.at_target = std::fabs(tracking.final_error_rad) <= tracking.tolerance_rad;
   return tracking;
 }
 

@@ -17,11 +17,13 @@ struct Tracking {
   UnitSystem units;            // of the run's model
   bool has_reference = false;  // the log has arm-angle references and measured arm angles
   double rms_error_rad = 0;    // over the run
-  double final_error_rad = 0;  // arm minus reference, the mean over the last 0.1 s
+  double final_error_rad = 0;  // arm minus reference, the mean over final_time_s
+  double final_time_s = 0;     // the last 0.1 s, or the time since the last step where that is shorter
+  double tolerance_rad = 0;    // what counts as being at the target, which is that of the last step
   double target_rad = 0;       // last reference
   bool held = false;           // the voltage was held at zero at the end, and the reference followed the arm
-  // |final error| within 2 % of the largest step, at least 0.001 rad or 0.1 mm. None: the reference is still
-  // moving, or the voltage is held.
+  // |final error| within the tolerance: 2 % of the step to the target (without steps: of the reference's
+  // range), at least 0.001 rad or 0.1 mm. None: the reference is still moving, or the voltage is held.
   std::optional<bool> at_target;
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
   int steps_left_out = 0;  // steps whose response a hold, a ramp or a curve of the reference cut short

@@ -8,12 +8,12 @@
 #include <cstdio>
 #include <limits>
 
-#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 
 namespace hydro::settings {
 namespace {

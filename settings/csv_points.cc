@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/tables/csv_text.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 
 namespace hydro::settings {
 using tables::CsvLayout;

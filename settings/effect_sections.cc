@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 #include "model/effects/catalogue.h"
 #include "model/terms/parameter_info.h"
 #include "settings/effect_file.h"

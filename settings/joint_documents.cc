@@ -4,9 +4,10 @@
 #include <array>
 #include <cctype>
 #include <limits>
+#include <unordered_set>
 
-#include "base/did_you_mean.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "settings/overrides.h"
 #include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
@@ -136,10 +137,15 @@ std::vector<std::string> JointNames(const TomlNode& root) {
     throw KeyError(joints->place, "joint", joints->is(TomlNode::Kind::kArray) ? "none" : joints->Shown(),
                    "sections [[joint]], each with a name");
   }
+  if (joints->items.size() > kMostJoints) {
+    throw KeyError(joints->items[kMostJoints].place, "joint",
+                   std::to_string(joints->items.size()) + " joints", "up to " + std::to_string(kMostJoints));
+  }
   std::vector<std::string> names;
+  std::unordered_set<std::string> known;
   for (const TomlNode& joint : joints->items) {
     names.push_back(NameOf(joint));
-    if (std::count(names.begin(), names.end(), names.back()) > 1) {
+    if (!known.insert(names.back()).second) {
       throw KeyError(joint.place, "joint.name", "a second joint " + Quoted(names.back()), "one of each name");
     }
   }

@@ -2,6 +2,7 @@
 // overlaid with the joint's own.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,11 +16,14 @@ struct JointDocument {
   TomlNode root;  // the whole configuration of a stack with this joint alone
 };
 
+// A limb has no more joints. In a log, more than these are forged channels.
+inline constexpr size_t kMostJoints = 1000;
+
 // Whether the document describes several joints: it has a [[joint]] section.
 bool HasJoints(const TomlNode& root);
 
 // The names of its joints, in the document's order. Throws InputError for a name that is missing, that does
-// not fit in a channel's suffix, or that occurs twice.
+// not fit in a channel's suffix, or that occurs twice, and for more than kMostJoints.
 std::vector<std::string> JointNames(const TomlNode& root);
 
 // What tells a joint's channels from the others': the configuration's own suffix, followed by "_" and the

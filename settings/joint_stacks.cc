@@ -7,10 +7,10 @@
 namespace hydro::settings {
 namespace {
 
-std::string ErrorOf(const JointDocument& document, const std::string& file) {
+std::string ErrorOf(const JointDocument& document, const std::string& file, ModelFiles* models) {
   TomlNode root = document.root;
   try {
-    StackOf(&root, file);
+    StackOf(&root, file, models);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -47,17 +47,26 @@ bool NamesItsModel(const TomlNode& root) {
 
 }  // namespace
 
-void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
-                        const std::vector<JointDocument>& documents, const std::string& file) {
-  const std::vector<JointDocument> as_written = SplitJoints(before, {});
-  const UnitSystem common = UnitsOfModelIn(NamesItsModel(root) ? root : documents.front().root, file);
+std::vector<std::string> ModelsOfJoints(const TomlNode& root) {
+  const TomlNode* joints = root.Find("joint");
+  std::vector<std::string> models;
+  if (joints == nullptr) return models;
+  for (const TomlNode& joint : joints->items)
+    models.push_back(ModelNameIn(NamesItsModel(joint) ? joint : root));
+  return models;
+}
+
+void CheckUnitsOfJoints(const std::vector<std::string>& written, const TomlNode& root,
+                        const std::vector<JointDocument>& documents, const std::string& file,
+                        ModelFiles* models) {
+  const UnitSystem common = UnitsOfModelIn(NamesItsModel(root) ? root : documents.front().root, file, models);
   for (size_t i = 0; i < documents.size(); ++i) {
     const TomlNode& document = documents[i].root;
     try {
-      if (i < as_written.size()) CheckUnitsOfOtherModel(as_written[i].root, document, file);
+      if (i < written.size()) CheckUnitsOfOtherModel(written[i], document, file, models);
       if (root.Find("arm") != nullptr) continue;  // all joints of an arm have the same units
       CheckNumbersKeepTheirUnits(WithoutOwn(document, root.Find("joint")->items[i]), document, common,
-                                 UnitsOfModelIn(document, file));
+                                 UnitsOfModelIn(document, file, models));
     } catch (const InputError& error) {
       const std::string message = error.what();
       const size_t place = message.find(": ");
@@ -67,14 +76,16 @@ void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
 }
 
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
-                            const std::string& file) {
+                            const std::string& file, ModelFiles* models) {
   TomlNode own = documents[index].root;
   try {
-    return StackOf(&own, file);
+    return StackOf(&own, file, models);
   } catch (const InputError& error) {
     const std::string message = error.what();
     std::string place = PlaceIn(root.Find("joint")->items[index], message);
-    const auto says_the_same = [&](const JointDocument& other) { return ErrorOf(other, file) == message; };
+    const auto says_the_same = [&](const JointDocument& other) {
+      return ErrorOf(other, file, models) == message;
+    };
     if (place.empty() && std::all_of(documents.begin(), documents.end(), says_the_same)) throw;
     if (place.empty()) place = message.substr(0, message.find(": "));
     throw InputError(place + ": joint " + documents[index].name + message.substr(place.size()));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "settings/joint_documents.h"
+#include "settings/model_file.h"
 #include "settings/stack_config.h"
 
 namespace hydro::settings {
@@ -14,13 +15,17 @@ namespace hydro::settings {
 // it names the joint when the error stands in the joint's own section, or concerns this joint and not all of
 // them.
 StackConfig StackOfDocument(const TomlNode& root, const std::vector<JointDocument>& documents, size_t index,
-                            const std::string& file);
+                            const std::string& file, ModelFiles* models);
+
+// The model that each joint of the limb names, its own or that of all joints.
+std::vector<std::string> ModelsOfJoints(const TomlNode& root);
 
 // Throws InputError where a number would change its meaning with the units of a joint's model. It may be a
 // number of the file, when an option gives a joint another model, or one in the sections for all joints, when
-// a joint's own model is in other units than these. `before` is the limb as in its file; `root` and
+// a joint's own model is in other units than these. `written` are the models that the file names; `root` and
 // `documents` include the options.
-void CheckUnitsOfJoints(const TomlNode& before, const TomlNode& root,
-                        const std::vector<JointDocument>& documents, const std::string& file);
+void CheckUnitsOfJoints(const std::vector<std::string>& written, const TomlNode& root,
+                        const std::vector<JointDocument>& documents, const std::string& file,
+                        ModelFiles* models);
 
 }  // namespace hydro::settings

@@ -178,7 +178,7 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
     throw InputError("--joint: found " + Quoted(*joint) + ", allowed with [[joint]] sections only, which " +
                      root.place + " does not have");
   }
-  const TomlNode before = root;
+  const std::vector<std::string> written = ModelsOfJoints(root);
   ApplyOverrides(overrides, &root);
   const std::vector<std::string> names = JointNames(root);
   if (!joint) {
@@ -188,10 +188,11 @@ StackConfig StackOfJoint(TomlNode root, const std::vector<std::string>& override
   std::optional<StackConfig> chosen;
   std::vector<Sibling> siblings;
   const std::vector<JointDocument> documents = SplitJoints(root, overrides);
-  CheckUnitsOfJoints(before, root, documents, root.place);
+  ModelFiles models;
+  CheckUnitsOfJoints(written, root, documents, root.place, &models);
   for (size_t i = 0; i < documents.size(); ++i) {
     if (documents[i].name == *joint) {
-      chosen = StackOfDocument(root, documents, i, root.place);
+      chosen = StackOfDocument(root, documents, i, root.place, &models);
     } else {
       siblings.push_back({.name = documents[i].name, .suffix = SuffixOf(documents[i])});
     }
@@ -225,21 +226,22 @@ LimbConfig LoadLimbConfig(const std::string& file, const std::vector<std::string
   if (const auto joint = TakeJointChoice(&others)) {
     throw InputError("--joint: found " + Quoted(*joint) + ", allowed for a program of one joint's stack");
   }
-  const TomlNode before = root;
+  const std::vector<std::string> written = ModelsOfJoints(root);
   ApplyOverrides(others, &root);
   if (!HasJoints(root)) throw InputError(file + ": found no [[joint]] section, allowed one or more");
   const std::vector<JointDocument> documents = SplitJoints(root, others);
-  CheckUnitsOfJoints(before, root, documents, file);
+  ModelFiles models;
+  CheckUnitsOfJoints(written, root, documents, file, &models);
   LimbConfig limb;
   for (size_t i = 0; i < documents.size(); ++i) {
-    limb.joints.push_back({documents[i].name, StackOfDocument(root, documents, i, file)});
+    limb.joints.push_back({documents[i].name, StackOfDocument(root, documents, i, file, &models)});
   }
   TomlNode common = documents.front().root;
   const TomlNode* bus = root.Find("bus");
   common.Erase("bus");
   if (bus != nullptr) common.members.push_back({"bus", *bus});
   PutProcesses(root, &common);
-  limb.common = StackOf(&common, file);
+  limb.common = StackOf(&common, file, &models);
   for (const JointConfig& joint : limb.joints) {
     limb.common.joints.push_back(joint.name);
     limb.common.bus.joint_suffixes.push_back(joint.config.bus.channel_suffix);

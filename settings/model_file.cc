@@ -208,15 +208,37 @@ std::string UnitsText(const UnitSystem& units) {
   return FormatToml(root);
 }
 
-ModelWithText LoadModelWithText(const std::string& file) {
-  ModelWithText model;
-  model.text = ReadTextFile(file);
+namespace {
+
+ModelWithText WithDefinitions(const std::string& text, const std::string& file) {
+  ModelWithText model{text, {}};
   RequireKind(FileKind::kModel, model.text, file, "a model");
   TomlNode root = ParseToml(model.text, file);
   root.place = file;
   if (IncludeDefinitions(&root, file)) model.text = FormatToml(root);
   model.description = ReadModel(root);
   return model;
+}
+
+}  // namespace
+
+ModelWithText LoadModelWithText(const std::string& file) { return WithDefinitions(ReadTextFile(file), file); }
+
+ModelFiles::File& ModelFiles::Read(const std::string& file) {
+  const auto known = files_.find(file);
+  return known != files_.end() ? known->second : files_.emplace(file, File{ReadTextFile(file)}).first->second;
+}
+
+const UnitSystem& ModelFiles::Units(const std::string& file) {
+  File& read = Read(file);
+  if (!read.units) read.units = ParseModelUnits(read.text, file);
+  return *read.units;
+}
+
+const ModelWithText& ModelFiles::Model(const std::string& file) {
+  File& read = Read(file);
+  if (!read.model) read.model = WithDefinitions(read.text, file);
+  return *read.model;
 }
 
 model::ModelDescription LoadModelFile(const std::string& file) { return LoadModelWithText(file).description; }

@@ -1,6 +1,7 @@
 #include "settings/overrides.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/text_file.h"
 #include "settings/quantity_keys.h"
@@ -25,8 +26,12 @@ void MarkAsOption(TomlNode* node, bool option) {
 }
 
 void LayOver(const TomlNode& own, TomlNode* under) {
+  // Places rather than pointers, as the list grows below.
+  std::unordered_map<std::string, size_t> places;
+  for (size_t i = 0; i < under->members.size(); ++i) places.emplace(under->members[i].first, i);
   for (const auto& [key, node] : own.members) {
-    TomlNode* below = under->Find(key);
+    const auto place = places.find(key);
+    TomlNode* below = place == places.end() ? nullptr : &under->members[place->second].second;
     if (below != nullptr && below->is(NodeKind::kTable) && node.is(NodeKind::kTable)) {
       LayOver(node, below);
     } else if (below != nullptr) {

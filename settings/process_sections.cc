@@ -34,10 +34,10 @@ std::string OurProgramFor(const std::string& role) {
 // either of them.
 void ReadRole(SectionReader& section, std::string* role) {
   section.Text("role", role);
-  section.Require("role",
-                  "\"position_ctrl\", \"pressure_ctrl\" or \"driver\", whose place the command takes");
-  if (role->empty() || *role == kPressure || *role == kPosition || *role == kDriver) return;
-  std::string allowed = "\"position_ctrl\", \"pressure_ctrl\", \"driver\"";
+  const std::vector<std::string> replaceable = {kPosition, kPressure, kDriver};
+  std::string allowed = QuotedList(replaceable);
+  section.Require("role", allowed + ", whose place the command takes");
+  if (role->empty() || std::ranges::find(replaceable, *role) != replaceable.end()) return;
   if (const std::string ours = OurProgramFor(*role); !ours.empty()) {
     allowed += "; the " + *role + " is always " + ours;
     if (*role == kPlant) allowed += "; a machine of your own is a driver";

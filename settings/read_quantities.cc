@@ -6,7 +6,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "base/unit_spelling.h"
+#include "base/unit_system.h"
 #include "base/units.h"
 #include "settings/quantity_keys.h"
 #include "settings/toml/section_reader.h"

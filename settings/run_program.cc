@@ -13,7 +13,6 @@
 #include <system_error>
 
 #include "base/input_error.h"
-#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
 #include "settings/command_line.h"

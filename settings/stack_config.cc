@@ -54,16 +54,8 @@ void RequireModelFile(const TomlNode& root, const std::string& named, const std:
                  "a path that counts from the configuration's folder");
 }
 
-// Empty where no model is named, which the section's reader reports.
-std::string ModelNameIn(const TomlNode& root) {
-  const TomlNode* model = root.Find("model");
-  const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
-  return name != nullptr && name->is(TomlNode::Kind::kString) ? name->text : "";
-}
-
-// The path of the model that a document names. Throws InputError where there is no such file.
-std::string ModelFileOf(const TomlNode& root, const std::string& file) {
-  const std::string name = ModelNameIn(root);
+// The path of the model that `root` names. Throws InputError where there is no such file.
+std::string ModelFileOf(const TomlNode& root, const std::string& name, const std::string& file) {
   if (name.empty()) return "";
   std::string path = PathBeside(file, name);
   RequireModelFile(root, name, path);
@@ -72,9 +64,11 @@ std::string ModelFileOf(const TomlNode& root, const std::string& file) {
 
 // The units of the model that another one replaces. None where that model cannot be read, because nothing
 // requires it.
-std::optional<UnitSystem> UnitsOfReplacedModel(const TomlNode& root, const std::string& file) {
+std::optional<UnitSystem> UnitsOfReplacedModel(const std::string& name, const std::string& file,
+                                               ModelFiles* models) {
+  if (name.empty()) return UnitSystem{};
   try {
-    return UnitsOfModelIn(root, file);
+    return models->Units(PathBeside(file, name));
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -114,18 +108,25 @@ TomlNode ReadConfigDocument(const std::string& file) {
   return root;
 }
 
-UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file) {
-  const std::string path = ModelFileOf(root, file);
-  return path.empty() ? UnitSystem{} : ParseModelUnits(ReadTextFile(path), path);
+std::string ModelNameIn(const TomlNode& root) {
+  const TomlNode* model = root.Find("model");
+  const TomlNode* name = model == nullptr ? nullptr : model->Find("file");
+  return name != nullptr && name->is(TomlNode::Kind::kString) ? name->text : "";
+}
+
+UnitSystem UnitsOfModelIn(const TomlNode& root, const std::string& file, ModelFiles* models) {
+  const std::string path = ModelFileOf(root, ModelNameIn(root), file);
+  return path.empty() ? UnitSystem{} : models->Units(path);
 }
 
 // The numbers of the configuration keep the units of the model that it names itself.
-void CheckUnitsOfOtherModel(const TomlNode& before, const TomlNode& root, const std::string& file) {
-  if (ModelNameIn(root) == ModelNameIn(before)) return;
-  const std::string path = ModelFileOf(root, file);
+void CheckUnitsOfOtherModel(const std::string& written, const TomlNode& root, const std::string& file,
+                            ModelFiles* models) {
+  if (ModelNameIn(root) == written) return;
+  const std::string path = ModelFileOf(root, ModelNameIn(root), file);
   if (path.empty()) return;
-  const std::optional<UnitSystem> was = UnitsOfReplacedModel(before, file);
-  const UnitSystem is = LoadModelFile(path).units;  // a file that is not a model has no units
+  const std::optional<UnitSystem> was = UnitsOfReplacedModel(written, file, models);
+  const UnitSystem is = models->Model(path).description.units;  // a file that is not a model has no units
   if (was) CheckNumbersKeepTheirUnits(root, root, *was, is);
 }
 
@@ -139,17 +140,17 @@ void CheckNumbersKeepTheirUnits(const TomlNode& numbers, const TomlNode& root, c
                  "a model in the same units, or values with a unit of their own, such as \"2000 psi\"");
 }
 
-StackConfig StackOf(TomlNode* root, const std::string& file) {
+StackConfig StackOf(TomlNode* root, const std::string& file, ModelFiles* models) {
   CheckKeysHaveSections(*root);
-  ReadQuantities(root, UnitsOfModelIn(*root, file));
+  ReadQuantities(root, UnitsOfModelIn(*root, file, models));
   StackConfig config = ReadDocument(root, file);
   if (config.model.file.empty()) {
     throw KeyError(*root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  ModelWithText model = LoadModelWithText(config.model.resolved_file);
-  config.model.text = std::move(model.text);
-  config.model.description = std::move(model.description);
+  const ModelWithText& model = models->Model(config.model.resolved_file);
+  config.model.text = model.text;
+  config.model.description = model.description;
   CheckAgainstModel(*root, &config);
   config.agreed = AgreedEntries(config);
   RememberRead(config.bus.resolved_key_file);  // the code that opens the bus reads it
@@ -165,10 +166,11 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
     if (root.Find(key) != nullptr)
       throw KeyError(root, key, "it without joints", "it with [[joint]] sections");
   }
-  const TomlNode before = root;
+  const std::string written = ModelNameIn(root);
   ApplyOverrides(others, &root);
-  CheckUnitsOfOtherModel(before, root, file);
-  StackConfig config = StackOf(&root, file);
+  ModelFiles models;
+  CheckUnitsOfOtherModel(written, root, file, &models);
+  StackConfig config = StackOf(&root, file, &models);
   CheckHasNoJoints(config);
   return config;
 }

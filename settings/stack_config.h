@@ -101,7 +101,7 @@ struct PositionSection {
   double c1 = 0;                     // psi/rad
   double c2 = 0;                     // psi s/rad
   bool derivative_on_error = false;  // derivative = "error" (eq. (17) as printed) | "measurement"
-  // rad/s^2: a braking curve before eq. (17) (position_ctrl/law/braking_curve.h); none: eq. (17) alone.
+  // rad/s^2: a braking curve before eq. (17) (position_ctrl/law/position_law.h); none: eq. (17) alone.
   std::optional<double> braking_rad_s2;
   int dac_bits = 0;             // 0: no D/A quantisation of the pressure command
   double dac_range_psi = 2000;  // full scale of the D/A, +/-

@@ -8,7 +8,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "process/stop_signal.h"
 #include "runs/log/log_writer.h"
@@ -58,6 +58,10 @@ bool IsWholeLimb(const hydro::settings::CommonOptions& options) {
 using Simulation = std::function<hydro::sim::SimulationResult(
     const std::function<void(const hydro::bus::RawMessage&)>& tap)>;
 
+void Warn(const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) hydro::Remark("hydro-sim: warning: " + remark);
+}
+
 Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std::string& tunings_of,
                         const std::string& machine_file) {
   if (IsWholeLimb(options)) {
@@ -68,13 +72,12 @@ Simulation SimulationOf(const hydro::settings::CommonOptions& options, const std
     }
     const auto limb = std::make_shared<const hydro::settings::LimbConfig>(
         hydro::settings::LoadLimbConfig(options.config, options.overrides));
+    Warn(hydro::design::RemarksOn(*limb));
     return [limb](const auto& tap) { return hydro::sim::SimulateLimb(*limb, tap); };
   }
   const auto config = std::make_shared<const hydro::settings::StackConfig>(
       WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides)));
-  for (const std::string& remark : {ArmRemark(*config), hydro::design::FastMotionRemark(*config)}) {
-    if (!remark.empty()) hydro::Remark("hydro-sim: warning: " + remark);
-  }
+  Warn(hydro::design::RemarksOn(*config));
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) {
     std::vector<std::string> overrides = options.overrides;

@@ -30,7 +30,7 @@ void DescribeLimb(const settings::LimbConfig& config,
   bus::SimulatedClock clock;
   bus::InProcessBus bus(&clock);
   bus.SubscribeAll(tap);
-  run_description_t description = limb::DescriptionOf(config, "hydro-sim");
+  run_description_t description = plant::DescriptionOf(config.common, "hydro-sim");
   description.session = SessionOf(config.common);
   description.utime = clock.Utime();
   description.host = HostName();

@@ -1,5 +1,6 @@
 #include "base/maths/matrix_functions.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -23,6 +24,19 @@ Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, con
   Eigen::MatrixXcd resolvent = -A.cast<std::complex<double>>();
   resolvent.diagonal().array() += s;
   return resolvent.partialPivLu().solve(b.cast<std::complex<double>>());
+}
+
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.ldlt().solve(B);
+}
+
+Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.transpose() * B;
+}
+
+SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
 }  // namespace hydro::maths

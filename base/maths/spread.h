@@ -1,11 +1,22 @@
 // How numbers spread, and on what they depend. Infinite numbers are allowed, NaN is not.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "base/maths/estimate.h"
-
 namespace hydro::maths {
+
+// A value with its 95 % confidence interval.
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+
+  double half_width() const { return (high - low) / 2; }
+};
+
+// "4.000017 +/- 0.000075", with as many decimals as the interval justifies.
+std::string PlusMinus(const Estimate& estimate);
 
 // The value that the share `share` (0 to 1) of `sorted` (increasing, not empty) does not exceed; between its
 // numbers, straight lines interpolate.

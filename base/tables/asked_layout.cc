@@ -26,7 +26,7 @@ struct NamesLine {
 };
 
 bool HoldsValue(std::string_view cell) {
-  return ParseNumber(cell).has_value() || ParseDecimalComma(cell).has_value() || ParseClock(cell).has_value();
+  return ParseNumber(cell).has_value() || ParseDecimalComma(cell).has_value() || IsClock(cell);
 }
 
 // The cells of a line at the places of the asked columns.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/tables/clock_text.h"
 
 namespace hydro::tables {
 
@@ -40,6 +41,8 @@ struct AskedColumns {
   std::vector<std::string> names = {};  // empty: all of the table
   std::string time = {};                // the asked column that may hold dates and times of day
   std::string date = {};                // the column that holds the dates for `time`
+  // What comes first in their dates with slashes; kUnknown: found from the rows.
+  DateOrder date_order = DateOrder::kUnknown;
 
   bool all() const { return names.empty(); }
   bool Has(const std::string& name) const {

@@ -8,6 +8,7 @@
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/tables/csv_text.h"
+#include "base/tables/date_order.h"
 #include "base/tables/table.h"
 #include "base/tables/text_encoding.h"
 #include "base/tables/unit_cells.h"
@@ -77,7 +78,7 @@ class LastCells {
 class RowReader {
  public:
   RowReader(CsvText& text, const AskedColumns& asked, Table* table)
-      : text_(text), asked_(asked), table_(*table) {
+      : text_(text), asked_(asked), table_(*table), time_(OrderOf(text, asked)) {
     // A separator at the end of every line makes an extra column without a name, which does not count.
     const std::vector<std::string>& names = text.names();
     columns_ = names.size() - (names.size() > 1 && names.back().empty() ? 1 : 0);
@@ -109,6 +110,10 @@ class RowReader {
   }
 
  private:
+  static DateOrder OrderOf(const CsvText& text, const AskedColumns& asked) {
+    return asked.date_order != DateOrder::kUnknown ? asked.date_order : FindDateOrder(text, asked);
+  }
+
   double Value(size_t k) {
     const size_t column = places_[k];
     const std::string_view cell = text_.cell(column);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <string>
+#include <unordered_set>
 
 #include "base/input_error.h"
 #include "base/new_file.h"
@@ -36,10 +38,11 @@ std::string RowsWrong(const MatVector& vector, size_t rows, const std::string& l
 
 // In a file of vectors, all vectors form the table, and anything else is an error.
 void TakeAll(std::vector<MatVector>& vectors, Table* table) {
+  std::unordered_set<std::string> known;
   for (MatVector& vector : vectors) {
     const std::string place = table->file + ": column '" + vector.name + "': ";
     if (vector.name.empty()) throw InputError(place + "found no name; every column needs one");
-    if (table->Find(vector.name) != nullptr)
+    if (!known.insert(vector.name).second)
       throw InputError(place + "found a second time; each name is allowed once");
     if (!vector.wrong.empty()) throw InputError(place + vector.wrong);
     if (!table->columns.empty() && vector.values.size() != table->rows()) {
@@ -55,10 +58,11 @@ void TakeAll(std::vector<MatVector>& vectors, Table* table) {
 // it.
 void TakeSignals(std::vector<MatVector>& vectors, const AskedColumns& asked, Table* table) {
   const size_t rows = RowsOfMost(vectors, asked);
+  std::unordered_set<std::string> known;
   for (MatVector& vector : vectors) {
     std::string wrong = vector.wrong;
     if (wrong.empty() && vector.values.size() != rows) wrong = RowsWrong(vector, rows, "its signals have");
-    if (wrong.empty() && table->Find(vector.name) != nullptr)
+    if (wrong.empty() && !known.insert(vector.name).second)
       wrong = "found a second time; each name is allowed once";
     if (wrong.empty()) {
       table->columns.push_back({vector.name, std::move(vector.values)});

@@ -29,10 +29,10 @@ std::optional<double> TimeColumn::Take(std::string_view cell, std::optional<doub
 
 std::optional<double> TimeColumn::TakeClock(std::string_view cell, std::optional<std::string_view> date) {
   if (kind_ == TimeKind::kWholeNumbers) return std::nullopt;
-  std::optional<ClockTime> clock = ParseClock(cell);
+  std::optional<ClockTime> clock = ParseClock(cell, order_);
   if (!clock.has_value() || !clock->time) return std::nullopt;
   if (date.has_value()) {
-    const std::optional<ClockTime> day = ParseClock(*date);
+    const std::optional<ClockTime> day = ParseClock(*date, order_);
     if (clock->date || !day.has_value() || day->time) return std::nullopt;
     clock->date = true;
     clock->seconds += day->seconds;
@@ -61,9 +61,9 @@ std::string TimeColumn::Allowed() const {
       break;
   }
   if (kind_.has_value()) return "a number, nan or an empty cell";
-  return "a number, or a date and a time like 2026-01-31T10:30:25.000, or a time of day like 10:30:25.000 "
-         "(with its "
-         "dates in another column: date = \"...\")";
+  return "a number, or a date and a time like 2026-01-31T10:30:25.000 or 31/1/2026 10:30:25.000, or a time "
+         "of "
+         "day like 10:30:25.000 (with its dates in another column: date = \"...\")";
 }
 
 }  // namespace hydro::tables

@@ -23,6 +23,9 @@ enum class TimeKind {
 
 class TimeColumn {
  public:
+  // `order` is that of its dates with slashes, if it has such.
+  explicit TimeColumn(DateOrder order) : order_(order) {}
+
   // Takes a cell, with its value if it is a number, and with the cell of the column of dates, if there is
   // one. The first cell that is not empty determines what the column holds. Empty when the cell does not have
   // that kind.
@@ -37,6 +40,7 @@ class TimeColumn {
  private:
   std::optional<double> TakeClock(std::string_view cell, std::optional<std::string_view> date);
 
+  DateOrder order_;
   std::optional<TimeKind> kind_;
   std::string first_;
   int64_t first_whole_ = 0;

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "base/tables/csv_cells.h"
-#include "base/unit_spelling.h"
+#include "base/unit_system.h"
 #include "base/units.h"
 
 namespace hydro::tables {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "batch/study/draw.h"
+#include "batch/study/value.h"
 
 namespace hydro::batch {
 namespace {

@@ -10,7 +10,6 @@
 #include "batch/report/study_pictures.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
-#include "page/html_table.h"
 #include "page/typeset.h"
 
 namespace hydro::batch {

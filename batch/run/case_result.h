@@ -1,4 +1,4 @@
-// What a case leaves behind: result.json.
+// What a case leaves behind: the numbers in its files, and result.json.
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,11 @@ std::string ResultText(const Study& study, int64_t index, const CaseResult& resu
 // Reads the text back. Returns nothing when it is not whole, as after a power cut, or when it belongs to
 // another case.
 std::optional<CaseResult> ParseResult(const Study& study, int64_t index, const std::string& text);
+
+// Collects the numbers that a case leaves in its files, in the order of study.collect; none where the file
+// says null. The file exit_codes.json is the list of `exit_codes`, the exit codes of the steps. Throws
+// InputError naming file and pointer.
+std::vector<std::optional<Value>> CollectNumbers(const Study& study, const std::string& folder,
+                                                 const std::vector<int>& exit_codes);
 
 }  // namespace hydro::batch

@@ -20,7 +20,7 @@
 #include "base/text_lines.h"
 #include "base/utf8.h"
 #include "batch/run/case_command.h"
-#include "batch/run/collect.h"
+#include "batch/run/case_result.h"
 #include "batch/store/small_file.h"
 #include "process/process_end.h"
 

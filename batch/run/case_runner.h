@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "batch/run/case_command.h"
 #include "batch/run/case_result.h"
-#include "batch/run/child.h"
 #include "batch/store/case_store.h"
 #include "batch/study/case_inputs.h"
 #include "batch/study/study.h"

@@ -2,11 +2,22 @@
 // are kept apart from the results, which do not depend on the times.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace hydro::batch {
+
+// s since 1970.
+inline double WallClock() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+inline double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 class CaseTimes {
  public:
@@ -23,5 +34,9 @@ class CaseTimes {
   std::string file_;
   std::string lines_;
 };
+
+// The mean time in s of the cases listed in times/ , in the 100 files that were written
+// last. None when no case is listed.
+std::optional<double> MeanCaseSeconds(const std::string& folder);
 
 }  // namespace hydro::batch

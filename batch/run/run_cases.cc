@@ -1,33 +1,69 @@
 #include "batch/run/run_cases.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "batch/run/case_count.h"
 #include "batch/run/case_runner.h"
 #include "batch/run/case_times.h"
-#include "batch/run/missing_cases.h"
-#include "batch/run/scratch.h"
 #include "batch/store/case_store.h"
+#include "batch/store/small_file.h"
+#include "batch/store/study_lock.h"
 
 namespace hydro::batch {
 namespace {
 
+// A folder on this machine's own disk for cases while they run, in $TMPDIR or /tmp.
+class Scratch {
+ public:
+  // Also removes what this user's killed processes left. Throws StoreError.
+  Scratch();
+  ~Scratch();
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+namespace fs = std::filesystem;
+
+Scratch::Scratch() {
+  const char* place = std::getenv("TMPDIR");
+  const std::string all = fs::absolute(place == nullptr || *place == '\0' ? "/tmp" : place).string() +
+                          "/hydro-batch-" + std::to_string(getuid());
+  if (mkdir(all.c_str(), 0700) != 0 && errno != EEXIST) ThrowCannotWrite(all);
+  // Another user may have made it first, to see or change what runs there.
+  struct stat status = {};
+  if (lstat(all.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != getuid())
+    throw StoreError(all + ": found somebody else's, allowed a folder of yours; set TMPDIR");
+  std::error_code ignored;
+  for (const std::string& path : LeftBehind(all)) fs::remove_all(path, ignored);
+  path_ = all + "/" + NewOwnerName();
+  if (mkdir(path_.c_str(), 0700) != 0) ThrowCannotWrite(path_);
+}
+
+Scratch::~Scratch() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
 using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double WallClock() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 class Pool {
  public:

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "batch/run/case_count.h"
 #include "batch/slurm/array_folder.h"
 #include "batch/slurm/cluster.h"
-#include "batch/slurm/shared_count.h"
 #include "batch/store/case_store.h"
 
 namespace hydro::batch {

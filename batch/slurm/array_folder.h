@@ -17,6 +17,23 @@
 
 namespace hydro::batch {
 
+// The script that a job of an array runs.
+struct ScriptRequest {
+  std::string program;  // absolute path of hydro-batch
+  std::string study;    // absolute path of the study's folder
+  std::string array;    // absolute path of the array's folder (below)
+};
+
+// A script for sh that runs the cases in the job's line of `cases`, on as many processors as Slurm gives the
+// job. The paths may hold any character.
+std::string ArrayScript(const ScriptRequest& request);
+
+// Quotes `text` as one word for sh.
+std::string ShellWord(const std::string& text);
+
+// A name for sbatch: letters, digits and "._-" of `text`, with a limited length.
+std::string PlainName(const std::string& text);
+
 // The cases from `first` to the one before `second`.
 using CaseRange = std::pair<int64_t, int64_t>;
 
@@ -38,7 +55,7 @@ class ArrayFolders {
   // All arrays in order. A folder that was not finished is left out.
   std::vector<ArrayRecord> Read() const;
 
-  // Makes the folder of a new array with a unique name, its cases and its script (array_script.h). `study`
+  // Makes the folder of a new array with a unique name, its cases and its script (above). `study`
   // becomes part of the name. Throws StoreError.
   ArrayRecord Make(const std::string& study, const std::vector<CaseRange>& cases, int64_t pass) const;
   void Write(const ArrayRecord& record) const;

@@ -1,22 +1,101 @@
 #include "batch/slurm/slurm_cluster.h"
 
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "base/input_error.h"
 #include "base/text_file.h"
-#include "batch/slurm/answered_command.h"
 #include "batch/slurm/slurm_answers.h"
+#include "process/spawn.h"
 
 namespace hydro::batch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class OpenFile {
+ public:
+  explicit OpenFile(int number) : number_(number) {
+    if (number_ < 0) throw std::runtime_error(std::string("no descriptor: ") + std::strerror(errno));
+  }
+  ~OpenFile() { close(number_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+std::string ContentsOf(const OpenFile& file) {
+  std::string text;
+  std::array<char, 65536> part;
+  for (ssize_t size;
+       (size = pread(file.number(), part.data(), part.size(), static_cast<off_t>(text.size()))) > 0;)
+    text.append(part.data(), static_cast<size_t>(size));
+  return text;
+}
+
+bool EndsWithin(const OpenFile& child, Clock::time_point deadline, const std::function<bool()>& stop) {
+  while (!stop() && Clock::now() < deadline) {
+    pollfd wait{child.number(), POLLIN, 0};
+    if (poll(&wait, 1, 100) > 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string ProgramInPath(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    std::string program = (folder.empty() ? "." : folder) + "/" + name;
+    if (access(program.c_str(), X_OK) == 0) return program;
+  }
+  return "";
+}
+
+Answer AskCommand(const std::vector<std::string>& argv, std::chrono::seconds limit,
+                  const std::function<bool()>& stop) {
+  // Uses files in memory rather than pipes, which would have to be emptied while the command runs.
+  const OpenFile out(memfd_create("out", MFD_CLOEXEC)), err(memfd_create("err", MFD_CLOEXEC));
+  const process::Spawned spawned = process::Spawn({.argv = argv, .out = out.number(), .err = err.number()});
+  const OpenFile child(static_cast<int>(syscall(SYS_pidfd_open, spawned.pid, 0)));
+  Answer answer;
+  answer.ended_itself = EndsWithin(child, Clock::now() + limit, stop);
+  if (!answer.ended_itself) kill(-spawned.pid, SIGKILL);
+  int status = 0;
+  while (waitpid(spawned.pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  answer.ended_itself = answer.ended_itself && WIFEXITED(status);
+  if (answer.ended_itself) answer.exit_code = WEXITSTATUS(status);
+  answer.out = ContentsOf(out);
+  answer.err = ContentsOf(err);
+  return answer;
+}
+
 namespace {
 
 // A busy slurmctld answers late. sbatch even retries for minutes when slurmctld has as many jobs as it may
 // have.
 constexpr std::chrono::seconds kPatience{60};
 
-std::string LastLine(const std::string& text) {
+std::string LastLineOf(const std::string& text) {
   std::string last;
   size_t start = 0;
   while (start < text.size()) {
@@ -36,7 +115,7 @@ Answer Ask(std::vector<std::string> argv, const std::function<bool()>& stop) {
 
 [[noreturn]] void Refuse(const std::string& program, const Answer& answer) {
   if (!answer.ended_itself) throw ClusterError(program + ": no answer", false);
-  const std::string line = LastLine(answer.err.empty() ? answer.out : answer.err);
+  const std::string line = LastLineOf(answer.err.empty() ? answer.out : answer.err);
   // For now, slurmctld is unreachable or has too many jobs.
   const bool later = line.find("contact") != std::string::npos ||
                      line.find("timed out") != std::string::npos ||

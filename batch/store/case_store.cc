@@ -10,8 +10,8 @@
 #include <memory>
 #include <string_view>
 
-#include "batch/store/owner.h"
 #include "batch/store/small_file.h"
+#include "batch/store/study_lock.h"
 
 namespace hydro::batch {
 namespace {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/store/store_error.h"
+#include "batch/store/small_file.h"
 
 namespace hydro::batch {
 

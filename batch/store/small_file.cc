@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "batch/store/store_error.h"
-
 namespace hydro::batch {
 namespace {
 

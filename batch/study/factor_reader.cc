@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/tables/csv_text.h"
-#include "batch/study/key.h"
+#include "base/word_list.h"
+#include "batch/study/value.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::batch {

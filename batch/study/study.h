@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "batch/study/draw.h"
 #include "batch/study/value.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
@@ -82,5 +81,11 @@ struct Study {
 Study ReadStudy(const std::string& file, std::vector<settings::AskedKey>* asked = nullptr);
 
 inline constexpr int64_t kMostCases = 1'000'000'000;
+
+// Whether two studies are the same.
+
+// The first difference, as "study.toml: grid[0].steps: was 5, is 6"; empty when there is none. What only
+// affects the report does not count as a difference.
+std::string StudyDifference(const Study& was, const Study& is);
 
 }  // namespace hydro::batch

@@ -48,4 +48,19 @@ const std::vector<MessageDefinition>& Definitions();
 // The definition whose channel is the beginning of `channel`; the rest is the stack's suffix. Null: none.
 const MessageDefinition* DefinitionOf(std::string_view channel);
 
+// Reads the text of a message definition in the part of LCM's language that ours use: one struct of plain
+// fields, lists whose length is an earlier field, and constants. The comment at a line's end belongs to its
+// field, and continues in lines that hold nothing but a comment. `channel` and `hash` are left empty. Throws
+// InputError that names `file` and the line: a struct within another, a list of fixed length and a list of
+// lists are not allowed.
+MessageDefinition ParseDefinition(std::string_view text, const std::string& file);
+
+// The texts of lcmtypes/*.lcm, which the build compiles into the program.
+struct DefinitionText {
+  std::string_view file;  // "hydro_state_t.lcm"
+  std::string_view text;
+};
+
+const std::vector<DefinitionText>& DefinitionTexts();
+
 }  // namespace hydro::definitions

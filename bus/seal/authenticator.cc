@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bus/seal/authenticated_channels.h"
 #include "bus/session.h"
 
 namespace hydro::bus {

@@ -1,7 +1,7 @@
 // Decides which messages are genuine and new in a stack with a key: seals what this process sends and checks
 // the seals of what it receives.
 //
-// It accepts a message whose seal is right (message_seal.h), whose sender has proved that it is alive, and
+// It accepts a message whose seal is right (bus_key.h), whose sender has proved that it is alive, and
 // whose counter is above all earlier ones on that channel. The proof is an introduction (introduction_t) that
 // names the session of this bus, a fresh random number that no recording of an earlier run can contain.
 // Therefore
@@ -28,6 +28,17 @@
 #include "bus/session.h"
 
 namespace hydro::bus {
+
+// The channels that are authenticated when the stack has a key: those that the table of messages marks as
+// sealed. The channel of the introductions comes first.
+inline std::vector<std::string> AuthenticatedChannels(const Channels& channels) {
+  std::vector<std::string> sealed = {channels.Of<introduction_t>()};
+  ForEachMessage([&]<class Message>(const MessageRow<Message>& row) {
+    const std::string& channel = channels.Of<Message>();
+    if (row.sealed && channel != sealed.front()) sealed.push_back(channel);
+  });
+  return sealed;
+}
 
 class Authenticator {
  public:

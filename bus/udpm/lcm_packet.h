@@ -8,6 +8,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace hydro::bus {
 
@@ -52,5 +56,42 @@ inline bool ReadLcmWhole(const uint8_t* packet, size_t size, LcmWhole* whole) {
             static_cast<size_t>(packet + size - (zero + 1))};
   return true;
 }
+
+// Reassembles messages that LCM split into several packets.
+//
+// Memory is bounded: messages have at most 16 MiB, at most four are incomplete at a time (a new one replaces
+// the oldest), and they take no more memory than the received packets took.
+class FragmentAssembly {
+ public:
+  struct Message {
+    std::string channel;
+    std::vector<uint8_t> data;
+  };
+
+  // Takes a fragment, as a whole packet, from a sender. Returns the message when this was its last missing
+  // piece. Ignores a packet that is not a valid fragment.
+  std::optional<Message> Take(uint64_t sender, const uint8_t* packet, size_t size);
+
+ private:
+  struct Piece {
+    size_t offset = 0;
+    std::vector<uint8_t> data;
+    bool have = false;
+  };
+  struct Unfinished {
+    uint64_t sender = 0;
+    uint32_t sequence = 0;
+    size_t size = 0;  // of all the data
+    std::string channel;
+    std::vector<Piece> pieces;
+  };
+  static std::optional<Message> Joined(const Unfinished& whole);
+
+  std::deque<Unfinished> unfinished_;
+};
+
+// Makes the UDP socket `fd` pass LCM packets on exactly these channels, and all fragments. The kernel drops
+// the others before they wake the process; if it refuses the filter, all packets arrive.
+void AttachChannelFilter(int fd, const std::vector<std::string>& channels);
 
 }  // namespace hydro::bus

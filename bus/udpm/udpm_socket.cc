@@ -14,7 +14,6 @@
 #include <cstring>
 
 #include "bus/bus.h"
-#include "bus/udpm/channel_filter.h"
 #include "bus/udpm/lcm_packet.h"
 
 namespace hydro::bus {

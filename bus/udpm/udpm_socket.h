@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bus/udpm/fragment_assembly.h"
+#include "bus/udpm/lcm_packet.h"
 #include "bus/udpm/udpm_url.h"
 
 namespace hydro::bus {

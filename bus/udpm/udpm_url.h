@@ -1,4 +1,5 @@
-// The URL of an LCM network, read strictly (LCM itself ignores unknown options).
+// The URL of an LCM network, and a port for a private one. The URL is read strictly (LCM itself ignores
+// unknown options).
 #pragma once
 
 #include <cstdint>
@@ -18,5 +19,22 @@ struct UdpmUrl {
 // Reads "udpm://GROUP:PORT?ttl=N&recv_buf_size=N"; group, port and options may be left out. Throws InputError
 // naming `text`, what is wrong with it, and an example.
 UdpmUrl ParseUdpmUrl(const std::string& text);
+
+// A UDP port of this machine for a private bus, a port that no other socket of this machine uses. As long as
+// this object lives, processes that ask for a port get other ones, and a bus, which shares its port, can use
+// this one.
+class ReservedPort {
+ public:
+  ReservedPort();  // throws BusError when no port is free
+  ~ReservedPort();
+  ReservedPort(const ReservedPort&) = delete;
+  ReservedPort& operator=(const ReservedPort&) = delete;
+
+  std::string Url() const;  // the URL of a bus on this machine alone (ttl 0) at that port
+
+ private:
+  int socket_;
+  int number_ = 0;
+};
 
 }  // namespace hydro::bus

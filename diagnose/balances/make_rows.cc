@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "base/word_list.h"
 #include "diagnose/balances/latent_pressures.h"
+#include "diagnose/balances/rows_to_read.h"
 #include "diagnose/balances/test_functions.h"
 #include "model/balances.h"
 #include "model/terms/model_error.h"
@@ -133,9 +135,9 @@ const double* ColumnIn(const RowBlock& block, int column) {
   return block.X.col(found - block.columns.begin()).data();
 }
 
-// Whether a column is another one times a number, in all rows.
-bool IsDouble(const Rows& rows, int column, int other) {
-  constexpr double kSame = 1e-6;  // of the squared size: difference due to rounding and smoothing
+// Whether a column is another one times a number, in all rows. `apart` is the share of its square by which it
+// may differ.
+bool IsDouble(const Rows& rows, int column, int other, double apart) {
   double aa = 0, ab = 0, bb = 0;
   for (const RowBlock& block : rows.blocks) {
     const double* a = ColumnIn(block, column);
@@ -148,12 +150,37 @@ bool IsDouble(const Rows& rows, int column, int other) {
       bb += y * y / size;
     }
   }
-  return aa > 0 && bb > 0 && ab * ab > (1 - kSame) * aa * bb;
+  return aa > 0 && bb > 0 && ab * ab > (1 - apart) * aa * bb;
 }
 
-// Removes effects of one number that change all balances exactly as a base parameter does, because a wrong
-// value is the likelier cause.
-std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
+void SetToZero(int column, Rows* rows) {
+  for (RowBlock& block : rows->blocks) {
+    const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), column);
+    if (found == block.columns.end() || *found != column) continue;
+    block.X.col(found - block.columns.begin()).setZero();
+    block.noise_X.col(found - block.columns.begin()).setZero();
+  }
+}
+
+// Whether the motors turn one way only. What they turn the other way by may be an overshoot.
+bool TurnOneWay(const std::vector<RunMotion>& runs) {
+  constexpr double kOvershoot = 0.01;  // of the whole path
+  double forward = 0, backward = 0;
+  for (const RunMotion& run : runs) {
+    if (!run.speed_known) continue;
+    for (const model::KnownMotion& at : run.at)
+      (at.motor_speed > 0 ? forward : backward) += std::abs(at.motor_speed) * run.step;
+  }
+  return std::min(forward, backward) < kOvershoot * std::max(forward, backward);
+}
+
+// Removes effects that change all balances as base parameters do, because wrong values are the likelier
+// cause: those of one number that are exactly a parameter's column, and, where the motors turn one way only,
+// those of which each number is a parameter's column but for starts and overshoots (a constant torque and
+// friction that differs between the directions).
+std::vector<std::pair<std::string, std::string>> TakeOutDoubles(bool one_way, Rows* rows) {
+  constexpr double kSame = 1e-6;  // of the squared size: difference due to rounding and smoothing
+  constexpr double kSameOneWay = 0.02;
   std::vector<std::pair<std::string, std::string>> doubles;
   std::map<std::string, std::vector<int>> sets;
   for (size_t i = 0; i < rows->columns.size(); ++i) {
@@ -162,18 +189,18 @@ std::vector<std::pair<std::string, std::string>> TakeOutDoubles(Rows* rows) {
       sets[set].push_back(static_cast<int>(i));
   }
   for (const auto& [set, columns] : sets) {
-    if (columns.size() != 1) continue;
-    for (const int base : rows->base) {
-      if (!IsDouble(*rows, columns[0], base)) continue;
-      doubles.emplace_back(set, rows->columns[static_cast<size_t>(base)].name);
-      for (RowBlock& block : rows->blocks) {
-        const auto found = std::lower_bound(block.columns.begin(), block.columns.end(), columns[0]);
-        if (found == block.columns.end() || *found != columns[0]) continue;
-        block.X.col(found - block.columns.begin()).setZero();
-        block.noise_X.col(found - block.columns.begin()).setZero();
-      }
-      break;
+    if (columns.size() != 1 && !one_way) continue;
+    std::vector<std::string> values;
+    for (const int column : columns) {
+      const auto base = std::find_if(rows->base.begin(), rows->base.end(), [&](int one) {
+        return IsDouble(*rows, column, one, one_way ? kSameOneWay : kSame);
+      });
+      if (base == rows->base.end()) break;
+      values.push_back(rows->columns[static_cast<size_t>(*base)].name);
     }
+    if (values.size() != columns.size()) continue;
+    doubles.emplace_back(set, Enumerated(values));
+    for (const int column : columns) SetToZero(column, rows);
   }
   return doubles;
 }
@@ -208,8 +235,11 @@ ScanRuns::ScanRuns(const model::ModelDescription& given, const std::vector<const
   noisy_.resize(runs.size());
   base_.resize(runs.size());
   noisy_base_.resize(runs.size());
+  const RowsRead read = RowsToRead(runs);
+  const std::vector<std::array<double, kGridChannels>> noises = LeastNoises(runs);
   ParallelFor(runs.size(), jobs_, [&](size_t r) {
-    motions_[r] = MotionOf(*runs[r], given.parameters, options.inverted);
+    const ReadAs as = {options.inverted, read.every, noises[r]};
+    motions_[r] = BusiestPart(MotionOf(*runs[r], given.parameters, as), read.part);
     if (MayMarch(motions_[r])) MarchPressures(options.marched.value_or(given), &motions_[r]);
     noisy_[r] = WithNoiseAgain(motions_[r], given.parameters, kNoiseSeed + r);
     base_[r] = SeriesOf(given, motions_[r]);
@@ -345,10 +375,10 @@ Rows ScanRuns::MakeRows(const std::vector<int>& periods) {
   NameBase(meaning_, &rows);
   SetPrior(setup_, meaning_, &rows);
   double step = 0;
-  for (const RunMotion& run : motions_) step = std::max(step, run.step);
+  for (const RunMotion& run : motions_) step = std::max(step, run.interval);
   rows.clock = std::max(kClock, kClockPart * step);
   Project(clean, noisy, &rows);
-  doubles_ = TakeOutDoubles(&rows);
+  doubles_ = TakeOutDoubles(TurnOneWay(motions_), &rows);
   return rows;
 }
 

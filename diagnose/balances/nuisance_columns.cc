@@ -62,7 +62,7 @@ SignalErrors Constant(const RunMotion& run, GridChannel signal) {
 
 void AddLateness(ColumnMaker* maker, bool oil, bool moves) {
   double step = 0;
-  for (const RunMotion& run : *maker->runs) step = std::max(step, run.step);
+  for (const RunMotion& run : *maker->runs) step = std::max(step, run.interval);
   const double sd = std::hypot(0.5 * step, kLate);
   const int voltage = maker->Add({"late.voltage", "", sd, false});
   maker->works.back().push_back([maker, voltage](size_t run) {

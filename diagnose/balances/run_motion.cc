@@ -6,8 +6,8 @@
 #include <random>
 
 #include "base/maths/range.h"
-#include "base/number_text.h"
 #include "diagnose/recording/sample_interval.h"
+#include "diagnose/recording/second_sensors.h"
 
 namespace hydro::diagnose {
 
@@ -17,16 +17,11 @@ using std::numbers::sqrt2;
 
 // The Gaussian's reach, in standard deviations.
 constexpr double kReach = 4;
-// s: the balances are needed at this interval, at four times the highest frequency of their test functions.
-constexpr double kBalanceStep = 2e-3;
 // The arm's direction is certain once it has moved by this part of its range since it turned, or by more than
 // noise hides.
 constexpr double kTurnPart = 1e-3;
 constexpr double kTurnNoise = 3;
 
-constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kGridChannels] = {
-    &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
-    &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
 constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed,
                                                       model::Channel::kMotorAngle, model::Channel::kArmAngle,
                                                       model::Channel::kP1, model::Channel::kP2};
@@ -87,14 +82,21 @@ GridSignal OnGrid(const RunData& run, size_t which, double step, size_t count) {
   return grid;
 }
 
-std::vector<double> HeldOnGrid(const RunData& run, double step, size_t count) {
+// The command that is held from each instant to the next; where the grid is coarser than the recording, its
+// mean.
+std::vector<double> HeldOnGrid(const RunData& run, double step, size_t every, size_t count) {
   std::vector<double> held(count);
   const std::vector<double>& time = run.stimulus.time;
   size_t at = 0;
   for (size_t k = 0; k < count; ++k) {
-    const double t = time.front() + static_cast<double>(k) * step;
-    while (at + 1 < time.size() && time[at + 1] <= t + 1e-6 * step) ++at;
-    held[k] = run.stimulus.voltage[at];
+    double sum = 0;
+    for (size_t i = 0; i < every; ++i) {
+      const double t = time.front() +
+                       (static_cast<double>(k) + static_cast<double>(i) / static_cast<double>(every)) * step;
+      while (at + 1 < time.size() && time[at + 1] <= t + 1e-6 * step) ++at;
+      sum += run.stimulus.voltage[at];
+    }
+    held[k] = sum / static_cast<double>(every);
   }
   return held;
 }
@@ -224,10 +226,10 @@ void SetMotion(const model::Parameters& given, double begin, RunMotion* run) {
   }
 }
 
-// Explains why the angle is used although the speed was measured too; "": they agree. An angle is counted,
-// whereas a recorded speed has passed through a filter.
-std::string WhyTheAngle(const RunMotion& run) {
-  constexpr double kFactor = 0.02, kLateSamples = 2, kLateSeconds = 2e-3, kSurely = 5;
+// Whether the speed contradicts the angle in this run (second_sensors.h says it, of all runs together). The
+// angle is then used alone, because it is counted, whereas a recorded speed has passed through a filter.
+bool SpeedContradictsAngle(const RunMotion& run) {
+  constexpr double kSurely = 5;  // standard errors
   const double sigma = SmoothingOf(run.step) / run.step;
   const std::vector<double> speed = Smoothed(run.Of(GridChannel::kSpeed).values, sigma);
   const std::vector<double> turned =
@@ -244,18 +246,16 @@ std::string WhyTheAngle(const RunMotion& run) {
     ss += speed[k] * speed[k];
   }
   const double determinant = tt * rr - tr * tr;
-  if (!(determinant > 1e-6 * tt * rr)) return "";
-  const double factor = (ts * rr - rs * tr) / determinant, late = -(rs * tt - ts * tr) / determinant;
+  if (!(determinant > 1e-6 * tt * rr)) return false;
+  SecondSensor second;
+  second.factor = (ts * rr - rs * tr) / determinant;
+  second.late = -(rs * tt - ts * tr) / determinant;
   // Noise must not decide.
-  const double left = std::max(0.0, ss - factor * ts + late * rs);
-  const double error = std::sqrt(left / static_cast<double>(speed.size()));
-  if (std::abs(factor - 1) > kFactor + kSurely * error / std::sqrt(tt))
-    return "motor_speed is " + ShortNumber(factor, 3) +
-           " times as fast as motor_angle turns: the angle is believed";
-  if (std::abs(late) > std::max(kLateSamples * run.step, kLateSeconds) + kSurely * error / std::sqrt(rr))
-    return "motor_speed is " + ShortNumber(late, 2) +
-           " s later than motor_angle turns: the angle is believed";
-  return "";
+  const double left = std::max(0.0, ss - second.factor * ts + second.late * rs);
+  const double error = kSurely * std::sqrt(left / static_cast<double>(speed.size()));
+  second.factor_half = error / std::sqrt(tt);
+  second.late_half = error / std::sqrt(rr);
+  return HowTheyDiffer(second, 0, run.step) != SensorsDiffer::kNot;
 }
 
 }  // namespace
@@ -300,8 +300,7 @@ std::vector<double> Smoothed(const std::vector<double>& values, double sigma) {
   return smooth;
 }
 
-RunMotion MotionOf(const RunData& run, const model::Parameters& given,
-                   const std::vector<std::string>& inverted) {
+RunMotion MotionOf(const RunData& run, const model::Parameters& given, const ReadAs& as) {
   RunMotion motion;
   motion.name = run.name;
   motion.options.shaft = run.stimulus.shaft;
@@ -313,16 +312,21 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   motion.options.begin = run.stimulus.begin;
   motion.options.motion = run.stimulus.motion;
   const std::vector<double>& time = run.stimulus.time;
-  motion.step = MedianInterval({&time});
+  motion.interval = MedianInterval({&time});
+  motion.step = static_cast<double>(as.every) * motion.interval;
   const auto count =
       static_cast<size_t>(std::floor((time.back() - time.front()) / motion.step * (1 + 1e-9))) + 1;
   motion.stride =
       std::max<size_t>(1, static_cast<size_t>(std::floor(kBalanceStep / motion.step * (1 + 1e-9))));
-  motion.voltage = HeldOnGrid(run, motion.step, count);
+  motion.voltage = HeldOnGrid(run, motion.step, as.every, count);
   motion.around = AroundOnGrid(run.stimulus, motion.step, count);
-  for (size_t s = 0; s < kGridChannels; ++s) motion.signals[s] = OnGrid(run, s, motion.step, count);
   for (size_t s = 0; s < kGridChannels; ++s) {
-    if (std::find(inverted.begin(), inverted.end(), ChannelName(kChannelOf[s])) == inverted.end()) continue;
+    motion.signals[s] = OnGrid(run, s, motion.step, count);
+    motion.signals[s].noise = std::max(motion.signals[s].noise, as.least_noise[s]);
+  }
+  for (size_t s = 0; s < kGridChannels; ++s) {
+    if (std::find(as.inverted.begin(), as.inverted.end(), ChannelName(kChannelOf[s])) == as.inverted.end())
+      continue;
     for (double& value : motion.signals[s].values) value = -value;
   }
   motion.pressures = !run.stimulus.bypass && motion.Of(GridChannel::kP1).measured() &&
@@ -331,10 +335,8 @@ RunMotion MotionOf(const RunData& run, const model::Parameters& given,
   motion.from_angle = !motion.Of(GridChannel::kSpeed).measured();
   motion.speed_known = motion.Of(GridChannel::kSpeed).measured() || motion.Of(GridChannel::kAngle).measured();
   motion.from_angle = motion.from_angle && motion.speed_known;
-  if (!motion.from_angle && motion.Of(GridChannel::kAngle).measured()) {
-    motion.doubt = WhyTheAngle(motion);
-    motion.from_angle = !motion.doubt.empty();
-  }
+  if (!motion.from_angle && motion.Of(GridChannel::kAngle).measured())
+    motion.from_angle = SpeedContradictsAngle(motion);
   SetMotion(given, time.front(), &motion);
   return motion;
 }

@@ -16,6 +16,11 @@ namespace hydro::diagnose {
 // The signals from which balances are made.
 enum class GridChannel { kSpeed, kAngle, kArm, kP1, kP2 };
 inline constexpr size_t kGridChannels = 5;
+inline constexpr runs::MeasuredSignal runs::MeasuredRun::*kSignalOf[kGridChannels] = {
+    &runs::MeasuredRun::motor_speed, &runs::MeasuredRun::motor_angle, &runs::MeasuredRun::arm_angle,
+    &runs::MeasuredRun::p1, &runs::MeasuredRun::p2};
+// s: the balances are needed at this interval, at four times the highest frequency of their test functions.
+inline constexpr double kBalanceStep = 2e-3;
 
 // One measured signal on the grid, with its gaps bridged.
 struct GridSignal {
@@ -38,17 +43,18 @@ struct PressureSlopes {
 
 struct RunMotion {
   std::string name;
-  model::ActuatorOptions options;  // how the shaft was held
-  double step = 0;                 // s, of the grid
-  size_t stride = 1;               // the balances need only every stride-th instant
-  std::string doubt;            // which of two signals of one quantity is believed, and why; "": they agree
-  std::vector<double> voltage;  // held from each instant to the next
+  model::ActuatorOptions options;           // how the shaft was held
+  double step = 0;                          // s, of the grid
+  double interval = 0;                      // s, between the samples of the recording
+  size_t stride = 1;                        // the balances need only every stride-th instant
+  std::vector<double> voltage;              // held from each instant to the next
   std::vector<model::Surroundings> around;  // at each instant; empty: none were recorded
   std::array<GridSignal, kGridChannels> signals;
-  bool pressures = false;              // both are known, and the bypass does not connect the two sides
-  bool arm_moves = false;              // and its motion was measured
-  bool speed_known = false;            // measured, or derived from the angle
-  bool from_angle = false;             // the speed is the derivative of the angle
+  bool pressures = false;    // both are known, and the bypass does not connect the two sides
+  bool arm_moves = false;    // and its motion was measured
+  bool speed_known = false;  // measured, or derived from the angle
+  // The speed is the derivative of the angle: it was not measured, or contradicts the angle.
+  bool from_angle = false;
   double speed_noise = 0;              // rad/s, of the smoothed speed
   std::vector<model::KnownMotion> at;  // one entry an instant
   // At every stride-th instant, where a pressure was not measured but follows from the flow balance
@@ -66,9 +72,16 @@ struct RunMotion {
 inline constexpr double kSmoothing = 1.5e-3;
 double SmoothingOf(double step);
 
-// `inverted` names sensors ("p1") whose readings have the wrong sign. Their sign is turned back.
-RunMotion MotionOf(const RunData& run, const model::Parameters& given,
-                   const std::vector<std::string>& inverted = {});
+struct ReadAs {
+  // Sensors ("p1") whose readings have the wrong sign. Their sign is turned back.
+  std::vector<std::string> inverted = {};
+  // Of so many samples only the first is read, and the command is their mean.
+  size_t every = 1;
+  // What is known of a sensor's noise from other runs: it is not smaller in this one.
+  std::array<double, kGridChannels> least_noise = {};
+};
+RunMotion MotionOf(const RunData& run, const model::Parameters& given, const ReadAs& as = {});
+
 // The same motion with the sensors' noise added once more, from a separate generator. The difference shows
 // what noise does.
 RunMotion WithNoiseAgain(const RunMotion& run, const model::Parameters& given, uint64_t seed);

@@ -12,6 +12,7 @@
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
+#include "diagnose/recording/vacuum.h"
 #include "runs/measured_signals.h"
 #include "runs/slow_samples.h"
 
@@ -43,7 +44,7 @@ size_t MissingIn(const std::vector<double>& values) {
 class RunChecklist {
  public:
   RunChecklist(const model::ModelDescription& model, const MeasuredRun& run, bool si)
-      : p_(model.parameters), units_(model.units), si_(si), run_(run), mistakes_(model, run) {}
+      : model_(model), p_(model.parameters), units_(model.units), si_(si), run_(run), mistakes_(model, run) {}
 
   std::vector<ChecklistLine> Lines() {
     AddSamples();
@@ -86,15 +87,22 @@ class RunChecklist {
     }
     Range range = RangeOf(signal.values);
     std::string unit = units_.UnitFor(name.unit, name.arm);
+    double factor = 1;
     if (const auto shown = InSi(unit, std::max(std::abs(range.low), std::abs(range.high)))) {
-      range = {range.low * shown->factor, range.high * shown->factor};
+      factor = shown->factor;
+      range = {range.low * factor, range.high * factor};
       unit = shown->to;
     }
     if (name.signal == &MeasuredRun::voltage)
       unit = runs::UnitIn(run_, name) + " (the command that k_1 takes)";
     const bool moves = range.high > range.low;
-    Add(moves ? State::kGood : State::kLook, runs::KeyIn(run_, name),
-        Text(range, unit, MissingIn(signal.values)) + (moves ? "" : ": it never changes"));
+    std::string doubt = moves ? "" : ": it never changes";
+    if (name.signal == &MeasuredRun::p1 || name.signal == &MeasuredRun::p2) {
+      const std::optional<BelowVacuum> below = FindBelowVacuum(model_, signal);
+      if (below) doubt = "; " + diagnose::Text(*below, factor, unit);
+    }
+    Add(doubt.empty() ? State::kGood : State::kLook, runs::KeyIn(run_, name),
+        Text(range, unit, MissingIn(signal.values)) + doubt);
   }
 
   // The lowest pressure of a closed circuit is its charge pressure, whatever moves.
@@ -245,6 +253,7 @@ class RunChecklist {
         "the arm moves down while the motor turns forward: turn the sign of one of them");
   }
 
+  const model::ModelDescription& model_;
   const model::Parameters& p_;
   const UnitSystem& units_;
   bool si_;

@@ -33,8 +33,8 @@ constexpr double kMostDelay = 1, kMostOfTheRun = 0.02;
 constexpr double kHighest[] = {0.25, 0.5, 1, 2};
 // s: a tile whose first test function is at 0.125 Hz.
 constexpr double kTile = 2;
-// s: rows up to 2 Hz need no more samples.
-constexpr double kStep = 5e-3;
+// s: rows up to 2 Hz need no more samples, and the delays that are sought are at least twice as long.
+constexpr double kStep = 1e-2;
 // Relative to the given values: with a deviation of a factor of two or more, nothing relies on them.
 constexpr double kAsGoodAsFree = 1;
 constexpr int kMostSteps = 8;  // of Gauss-Newton, on rows up to one frequency
@@ -145,11 +145,7 @@ class ClockSteps {
     options.tile = kTile;
     ScanRuns runs(given_, {&data}, options);
     Rows rows = runs.MakeRows({});
-    for (const int base : rows.base) {
-      const double more = kAsGoodAsFree * kAsGoodAsFree;
-      rows.columns[static_cast<size_t>(base)].sd = std::sqrt(rows.prior(base, base) + more);
-      rows.prior(base, base) += more;
-    }
+    FreeBaseValues(&rows);
     std::vector<int> columns;
     for (const Late late : late_) {
       const auto found =
@@ -210,7 +206,15 @@ std::vector<runs::SignalDelay> OfSignals(const Delays& delays) {
           {&Run::arm_angle, arm},
           {&Run::arm_speed, arm},
           {&Run::p1, p},
-          {&Run::p2, p + p2}};
+          {&Run::p2, p + p2},
+          {&Run::dp, p}};
+}
+
+void FreeBaseValues(Rows* rows) {
+  for (const int base : rows->base) {
+    rows->prior(base, base) += kAsGoodAsFree * kAsGoodAsFree;
+    rows->columns[static_cast<size_t>(base)].sd = std::sqrt(rows->prior(base, base));
+  }
 }
 
 double LargestDelay(const Run& run) {

@@ -1,10 +1,10 @@
-// Finds how late the signals of a run are, by Gauss-Newton on the evidence of its balances. Only clocks.cc
-// uses it.
+// Finds how late the signals of a run are, by Gauss-Newton on the evidence of its balances.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "diagnose/balances/rows.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 #include "runs/run_delays.h"
@@ -27,9 +27,12 @@ struct LateSignals {
   std::vector<double> delay, error;  // s, in the order of what may be late; standard errors
 };
 
-// `late` has no duplicates. All values of the model are nearly free, so that a wrong value is not taken for a
-// delay. Scores of one run can be compared with each other. Throws InputError as PrepareRun does, and
-// ModelError where the model's equations cannot be set up.
+// Makes all values of the model nearly free, so that a wrong value is not taken for a delay.
+void FreeBaseValues(Rows* rows);
+
+// `late` has no duplicates. All values of the model are nearly free. Scores of one run can be compared
+// with each other. Throws InputError as PrepareRun does, and ModelError where the model's equations cannot be
+// set up.
 LateSignals FindLate(const model::ModelDescription& given, const runs::MeasuredRun& run,
                      const std::vector<Late>& late);
 

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/fit/intervals.h"
 
 namespace hydro::diagnose {
 

@@ -10,10 +10,6 @@
 
 namespace hydro::diagnose {
 
-// The errors of all models here are alike in all rows, but the evidence takes rows for independent.
-// Measurements on 63 rigs show that a third of a difference in scores counts.
-inline constexpr double kTemperature = 3;
-
 struct WeighedExplanation {
   ChangeSet changes;  // without their variants
   ChangeSet set;      // the variants with most of the weight

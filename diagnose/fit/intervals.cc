@@ -5,7 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
-#include "base/maths/solve.h"
+#include "base/maths/matrix_functions.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/recording/sample_interval.h"
@@ -169,7 +169,7 @@ std::vector<bool> RestOnKnown(const Fitted& fitted) {
 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
-  const double discrepancy = DiscrepancyOf(fitted, runs, jobs);
+  const double discrepancy = kTemperature * DiscrepancyOf(fitted, runs, jobs);
   const double sample = MedianInterval(runs.front()->stimulus.time);
   Fitted all = WithHeld(fitted, runs, jobs);
   if (!all.ok()) all = fitted;
@@ -188,7 +188,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   if (runs.size() > 2) {
     const MatrixXd total =
         discrepancy * InformationOf(fitted, discrepancy, KnownVariances(fitted.hypothesis));
-    variance = variance.cwiseMax(ScatterOf(fitted, total));
+    variance = variance.cwiseMax(kTemperature * ScatterOf(fitted, total));
   }
   // The fit follows the held numbers to the extent that the runs cannot distinguish them from the free ones.
   const Map<const Eigen::VectorXd> off_by(off.data(), static_cast<Index>(off.size()));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/solve.h"
+#include "base/maths/matrix_functions.h"
 
 namespace hydro::diagnose {
 

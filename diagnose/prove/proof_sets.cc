@@ -6,6 +6,7 @@
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/fit/closure.h"
 #include "diagnose/fit/fit.h"
+#include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/prove/refined_values.h"
 #include "diagnose/prove/whole_runs.h"
@@ -169,6 +170,8 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   }
   if (!fitted.ok()) return;
   whole.hypothesis = fitted.hypothesis;
+  MoveToLikeliestScale(context_.given, whole.hypothesis.base, whole.hypothesis.changes,
+                       &whole.hypothesis.model);
   JudgeSet(windows_, context_.jobs, &whole);
   if (!whole.tested()) return;
   JudgeFar(windows_, context_.jobs, set);

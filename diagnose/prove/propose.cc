@@ -13,6 +13,8 @@
 #include "diagnose/evidence/run_values.h"
 #include "diagnose/evidence/wave_periods.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/fit/intervals.h"
+#include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/prove/unrecorded.h"
 
 namespace hydro::diagnose {
@@ -100,6 +102,22 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
   return sets;
 }
 
+// The balances measure every torque by k_1 v and every flow by D w, so that the estimate has k_1 as given and
+// moves flows that it did not estimate.
+void AtLikeliestScale(const model::ModelDescription& given, EstimatedModel* estimated) {
+  std::vector<size_t> moved;
+  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
+    const auto member = model::BaseParameters()[place].member;
+    const bool there =
+        std::find(estimated->base.begin(), estimated->base.end(), place) != estimated->base.end();
+    const bool differs = estimated->model.parameters.*member != given.parameters.*member;
+    if (there || differs || member == &model::Parameters::k_1) moved.push_back(place);
+  }
+  MoveToLikeliestScale(given, moved, estimated->changes, &estimated->model);
+  if (estimated->model.parameters.k_1 != given.parameters.k_1)
+    estimated->base.push_back(model::BasePlace("k_1"));
+}
+
 // Whether the likeliest amount of an effect that can only add is negative, in company with others.
 bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
   for (size_t i = 0; i < fit.columns.size(); ++i) {
@@ -172,11 +190,6 @@ std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
 
 std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   std::vector<std::string> remarks;
-  for (const RunMotion& motion : runs.motions()) {
-    if (motion.doubt.empty()) continue;
-    remarks.push_back("run " + motion.name + ": " + motion.doubt);
-    break;  // the recorder is the same for all
-  }
   for (const auto& [effect, value] : runs.doubles())
     remarks.push_back(effect + " does in these runs what another value of " + value +
                       " does: it is said as the value");
@@ -303,7 +316,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
     const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;
     const Rows& own_rows = shaped.any() ? shaped.rows() : rows;
     const SetFit fit = own.Fit(set);
-    const std::optional<EstimatedModel> estimated = ModelOf(runs, own_rows, set, fit);
+    std::optional<EstimatedModel> estimated = ModelOf(runs, own_rows, set, fit);
+    if (estimated) AtLikeliestScale(context.given, &*estimated);
     if (!estimated || IsImpossible(own_rows, set, fit) || HasTwoOfAKind(estimated->model)) continue;
     if (set.empty()) proposed.shown = Shown(rows, *estimated, allowed);
     Proposal proposal{estimated->changes,
@@ -317,7 +331,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
         const SetEvidence others = own.Without({r});
         const bool shown = others.Shows(set);
         const ChangeSet left = shown ? set : ChangeSet{};
-        const std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
+        std::optional<EstimatedModel> without = ModelOf(runs, own_rows, left, others.Fit(left));
+        if (without) AtLikeliestScale(context.given, &*without);
         proposal.without.push_back(without && shown ? without->model : estimated->model);
       }
     }

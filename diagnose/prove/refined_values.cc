@@ -6,6 +6,7 @@
 
 #include "base/maths/median.h"
 #include "diagnose/fit/fit.h"
+#include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/thinned.h"
 
@@ -98,6 +99,9 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
     ProvedSet refined = *set;
     refined.hypothesis = at.hypothesis;
     refined.without.clear();
+    MoveToLikeliestScale(context.given, refined.hypothesis.base, refined.hypothesis.changes,
+                         &refined.hypothesis.model);
+    at.hypothesis.model = refined.hypothesis.model;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

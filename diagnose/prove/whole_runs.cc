@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/maths/solve.h"
+#include "base/maths/matrix_functions.h"
 #include "base/parallel.h"
 #include "diagnose/prove/proof_context.h"
 

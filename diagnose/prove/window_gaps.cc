@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/maths/matrix_functions.h"
 #include "base/maths/median.h"
-#include "base/maths/solve.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/turn.h"

@@ -32,6 +32,7 @@ struct Estimated {
   double value = 0;
   double low = 0, high = 0;
   std::string unit;
+  bool shown = true;  // false: the interval is so wide that the runs do not show the value
 };
 
 struct Window {
@@ -232,6 +233,8 @@ struct Diagnosis {
   std::vector<FoundStretch> stretches;  // of effects without a term
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> parameters;
+  // Values that were refitted with the others and which the runs do not show to differ from those given.
+  std::vector<std::string> unsure;
   std::vector<ValueByRun> per_run;
   std::vector<SignalGap> signals;
   BeforeAfter fit, held_out;

@@ -6,8 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "base/maths/estimate.h"
 #include "base/maths/linear_fit.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 

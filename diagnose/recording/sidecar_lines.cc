@@ -45,7 +45,7 @@ std::string Line(const std::string& name, const runs::ColumnSource& source, cons
   if (std::abs(scale - 1) > 1e-4) line += ", scale = " + ShortNumber(scale, 8);
   if (offset != 0) line += ", offset = " + ShortNumber(offset, 8);
   if (!unit.empty()) line += ", unit = \"" + unit + "\"";
-  if (source.delay != 0) line += ", delay = " + ShortestNumber(source.delay);
+  if (source.delay != 0) line += ", delay = " + ShortNumber(source.delay, 8);
   return line + " }";
 }
 
@@ -97,6 +97,13 @@ std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Ru
     lines.push_back(Line(runs::KeyIn(run, one), now, units[one.ours], runs::UnitIn(run, one)));
   }
   return Joined(lines, "; ");
+}
+
+std::string LineOf(const Run& run, SignalOfRun signal, const runs::ColumnSource& source) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return Line(runs::KeyIn(run, one), source, "", runs::UnitIn(run, one));
+  }
+  return "";
 }
 
 }  // namespace hydro::diagnose

@@ -12,4 +12,7 @@ namespace hydro::diagnose {
 // a unit is known.
 std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const runs::MeasuredRun& run);
 
+// The line of the run's sidecar that gives the signal this source.
+std::string LineOf(const runs::MeasuredRun& run, SignalOfRun signal, const runs::ColumnSource& source);
+
 }  // namespace hydro::diagnose

@@ -177,6 +177,17 @@ std::string WhatMayExplain(const Diagnosis& diagnosis) {
          "compare what was tried, and nothing else.</p>\n";
 }
 
+// Which of two means is which: that of the verdict is not one of the table.
+std::string TypicalInWords(const Diagnosis& diagnosis) {
+  const ComparedGap& compared = diagnosis.compared;
+  if (!(compared.seconds > 0) || diagnosis.horizons.empty()) return "";
+  return " The " + std::string(compared.of_fitted ? "fitted" : "held-out") + " gap in the verdict, " +
+         ShortNumber(compared.gap.before, 3) + " to " + ShortNumber(compared.gap.after, 3) + " over " +
+         ShortNumber(compared.seconds, 2) +
+         " s, is the typical one: the geometric mean of the windows' gaps, which a few windows that no model "
+         "follows do not decide. The table has root mean squares, which they do.";
+}
+
 std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
   std::string rows;
   for (const HorizonGap& horizon : diagnosis.horizons) {
@@ -192,7 +203,8 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
          "<i>Before</i>: "
          "the model as given; <i>refitted</i>: its own values refitted, nothing added; <i>after</i>: with "
          "what was "
-         "found. Dashed: the fitted runs.</p>\n" +
+         "found. Dashed: the fitted runs." +
+         TypicalInWords(diagnosis) + "</p>\n" +
          (diagnosis.horizons.empty()
               ? ""
               : page::HtmlFigure(HorizonFigure(diagnosis), "the gap at each horizon")) +

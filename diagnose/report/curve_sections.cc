@@ -56,7 +56,7 @@ std::string PercentCell(double part) {
 
 std::string IntervalCell(const Estimated& estimated) {
   return "<td class=\"number\">" + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high) +
-         "</td>";
+         (estimated.shown ? "" : ": not shown by these runs") + "</td>";
 }
 
 std::string Lines(const std::string& text) {

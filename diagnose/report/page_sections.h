@@ -5,7 +5,7 @@
 #include <string>
 
 #include "diagnose/recording/diagnosis.h"
-#include "page/html_table.h"
+#include "page/html_page.h"
 
 namespace hydro::diagnose {
 

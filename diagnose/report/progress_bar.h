@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "base/terminal_line.h"
+#include "base/standard_output.h"
 #include "diagnose/prove/progress.h"
 
 namespace hydro::diagnose {

@@ -21,9 +21,11 @@
 namespace hydro::diagnose {
 namespace {
 
-// A section; "" without content.
-std::string Section(const std::string& heading, const std::string& content) {
-  return content.empty() ? "" : "<h2>" + heading + "</h2>\n" + content;
+// A section; "" without content. On paper it stays whole where it fits on a page.
+std::string Section(const std::string& heading, const std::string& content, const char* kind = "part") {
+  return content.empty() ? ""
+                         : std::string("<section class=\"") + kind + "\">\n<h2>" + heading + "</h2>\n" +
+                               content + "</section>\n";
 }
 
 std::string Plural(size_t count, const std::string& one) {
@@ -181,7 +183,9 @@ std::string ReportHtml(const Diagnosis& given, bool si, const std::string& model
           Section("What no known effect explains", ClosureSection(diagnosis)) +
           Section("What differs from run to run", PerRunSection(diagnosis)) +
           Section("What to measure next", WhatToMeasureNext(diagnosis)) +
-          Section("Remarks", Remarks(diagnosis)) + Section("The gap by signal", GapTable(diagnosis, si)) +
+          Section("Remarks", Remarks(diagnosis)) +
+          // On paper the details begin on a page of their own, so that the answer can be printed alone.
+          Section("The gap by signal", GapTable(diagnosis, si), "part details") +
           Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
           Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
           Section("The model with what was found",

@@ -41,6 +41,7 @@ Json EffectJson(const FoundEffect& effect) {
   for (const Estimated& parameter : effect.parameters) {
     parameters[parameter.name] = {
         {"value", parameter.value}, {"ci95", IntervalJson(parameter)}, {"unit", parameter.unit}};
+    if (!parameter.shown) parameters[parameter.name]["shown"] = false;
   }
   return {{"id", effect.id},
           {"says", effect.summary},
@@ -99,6 +100,7 @@ Json ParameterJson(const ChangedParameter& parameter) {
   Json json = {{"name", parameter.fitted.name},    {"model", parameter.model},
                {"fitted", parameter.fitted.value}, {"ci95", IntervalJson(parameter.fitted)},
                {"unit", parameter.fitted.unit},    {"implausible", parameter.implausible}};
+  if (!parameter.fitted.shown) json["shown"] = false;
   if (!parameter.why.empty()) json["why"] = parameter.why;
   return json;
 }

@@ -7,7 +7,6 @@
 
 #include "diagnose/recording/diagnosis.h"
 #include "page/plot.h"
-#include "page/range.h"
 
 namespace hydro::diagnose {
 

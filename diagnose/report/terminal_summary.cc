@@ -32,7 +32,7 @@ std::string HorizonLine(const Diagnosis& diagnosis) {
                     ShortNumber(horizon.held_out.after, 3) + " over " + ShortNumber(horizon.seconds, 2) +
                     " s");
   }
-  return parts.empty() ? "" : "horizons:   held out, " + Joined(parts, "; ") + "\n";
+  return parts.empty() ? "" : "horizons:   held out, root mean squares: " + Joined(parts, "; ") + "\n";
 }
 
 std::string EffectText(const FoundEffect& effect) {
@@ -79,7 +79,7 @@ std::string IntervalText(const Estimated& estimated) {
   if (!std::isfinite(estimated.low) && !std::isfinite(estimated.high)) return "no interval";
   const bool plain = estimated.unit.empty() || estimated.unit == "1";
   return "95 %: " + ShortNumber(estimated.low) + " to " + ShortNumber(estimated.high) +
-         (plain ? "" : " " + estimated.unit);
+         (plain ? "" : " " + estimated.unit) + (estimated.shown ? "" : ", so not shown by these runs");
 }
 
 // Comments by the key of their line: "parameters.b", "effects.pump.stribeck.speed"; for the effect itself, by
@@ -169,7 +169,8 @@ std::string WithInterval(const Estimated& estimated) {
   if (std::isfinite(estimated.low) || std::isfinite(estimated.high)) {
     text += " [" + ShortNumber(estimated.low) + ", " + ShortNumber(estimated.high) + "]";
   }
-  return estimated.unit == "1" || estimated.unit.empty() ? text : text + " " + estimated.unit;
+  if (estimated.unit != "1" && !estimated.unit.empty()) text += " " + estimated.unit;
+  return estimated.shown ? text : text + " (not shown by these runs)";
 }
 
 std::string TerminalSummary(const Diagnosis& given, const std::string& folder, bool si) {

@@ -9,6 +9,7 @@
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
 #include "diagnose/say/found_values.h"
+#include "diagnose/say/shown.h"
 
 namespace hydro::diagnose {
 
@@ -34,10 +35,12 @@ FoundEffect Describe(const Change& change, const model::ModelDescription& model,
     });
     if (fitted != free.end()) {
       const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
-      found.parameters.push_back({parameter.name, fitted->value, interval.low, interval.high, fitted->unit});
+      found.parameters.push_back(
+          {parameter.name, fitted->value, interval.low, interval.high, fitted->unit, true});
+      JudgeInterval(parameter, &found.parameters.back());
     } else if (parameter.role == model::Role::kPeriods && effect != model.effects.end()) {
       const double whole = effect->parameters.at(parameter.name);
-      found.parameters.push_back({parameter.name, whole, whole, whole, parameter.UnitIn(model.units)});
+      found.parameters.push_back({parameter.name, whole, whole, whole, parameter.UnitIn(model.units), true});
     }
   }
   return found;

@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/fit/hypothesis.h"
+#include "diagnose/say/shown.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
@@ -18,42 +19,35 @@ struct OwnNumber {
   std::string name, unit;
   double given = 0, found = 0;
   bool is_base = false;
+  const model::ParameterInfo* info = nullptr;
 };
 
 std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::ModelDescription found) {
   std::vector<OwnNumber> numbers;
   for (const model::BaseParameter& base : model::BaseParameters()) {
     numbers.push_back({base.info.name, base.info.UnitIn(given.units), given.parameters.*base.member,
-                       found.parameters.*base.member, true});
+                       found.parameters.*base.member, true, &base.info});
   }
   model::ModelDescription before = given;
   for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
     const std::string& id = given.effects[parameter.effect].id;
     // Effects that were added come after those that the model has.
     if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;
-    std::string unit;
-    for (const model::ParameterInfo& info : model::FindEffect(given.effects[parameter.effect])->parameters) {
-      if (info.name == parameter.name) unit = info.UnitIn(given.units);
-    }
-    numbers.push_back(
-        {id + "." + parameter.Label(), unit, parameter.In(&before), parameter.In(&found), false});
+    const std::vector<model::ParameterInfo>& infos =
+        model::FindEffect(given.effects[parameter.effect])->parameters;
+    const auto info = std::ranges::find(infos, parameter.name, &model::ParameterInfo::name);
+    numbers.push_back({id + "." + parameter.Label(), info->UnitIn(given.units), parameter.In(&before),
+                       parameter.In(&found), false, &*info});
   }
   return numbers;
 }
 
-// "moves by a factor of 3" where a value moves by more than a factor of 2, a larger error than data sheets
-// and drawings usually have. "" otherwise, and where the value was given as 0.
-std::string WhyRemarkable(const ChangedParameter& changed) {
-  const double ratio = changed.fitted.value / changed.model;
-  if (changed.model == 0 || (ratio >= 1 / kImplausible && ratio <= kImplausible)) return "";
-  return "moves by a factor of " + ShortNumber(ratio, 3);
-}
-
 ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& interval) {
   ChangedParameter changed;
-  changed.fitted = {number.name, number.found, interval.low, interval.high, number.unit};
+  changed.fitted = {number.name, number.found, interval.low, interval.high, number.unit, true};
   changed.model = number.given;
-  changed.why = WhyRemarkable(changed);
+  JudgeInterval(*number.info, &changed.fitted);
+  changed.why = WhyRemarkable(*number.info, changed);
   changed.implausible = !changed.why.empty();
   return changed;
 }
@@ -129,6 +123,7 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
     const bool as_given = number.given >= interval.low && number.given <= interval.high;
     if (follows || (hypothesis.known != nullptr && as_given)) {
       if (!LooksTheSame(number)) {
+        d->unsure.push_back(number.name);
         unsure.push_back(number.name + " = " + ShortNumber(number.found) + " (was " +
                          ShortNumber(number.given) + ")");
       }

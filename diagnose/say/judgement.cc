@@ -6,6 +6,7 @@
 #include "base/maths/range.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_weights.h"
+#include "diagnose/fit/intervals.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/say/claims.h"
 

@@ -80,7 +80,7 @@ ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, cons
   std::vector<model::ModelDescription> own(cut.runs.size(), model);
   for (size_t r = 0; r < own.size(); ++r) {
     own[r].parameters.*base.member = of.value[r];
-    value.values.push_back({cut.runs[r]->name, of.value[r], of.low[r], of.high[r], ""});
+    value.values.push_back({cut.runs[r]->name, of.value[r], of.low[r], of.high[r], "", true});
   }
   const std::vector<WindowGap> before =
       GapsOfWindows([&](size_t) -> const model::ModelDescription& { return shared; }, cut.judging, jobs);

@@ -41,16 +41,22 @@ std::vector<std::string> EffectsOf(const Diagnosis& d) {
   return names;
 }
 
+// What is said where the runs show no value by itself: of a single one its name, of several only that.
+std::string NotShownAlone(const Diagnosis& d) {
+  std::vector<std::string> names = d.unsure;
+  for (const ChangedParameter& changed : d.parameters) names.push_back(changed.fitted.name);
+  return names.size() == 1 ? names.front() + ", which these runs do not show by itself (see the remarks)"
+                           : "several together, none of which these runs show alone (see the remarks)";
+}
+
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
   std::vector<std::string> parameters;
   for (const ChangedParameter& changed : d.parameters) {
     const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
-    if (!changed.resting && now != before)
+    if (!changed.resting && changed.fitted.shown && now != before)
       parameters.push_back(changed.fitted.name + " = " + now + " instead of " + before);
   }
-  if (parameters.empty() && d.effects.empty()) {
-    parameters.emplace_back("several together, none of which these runs show alone (see the remarks)");
-  }
+  if (parameters.empty() && d.effects.empty()) parameters.push_back(NotShownAlone(d));
   return parameters;
 }
 

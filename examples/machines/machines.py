@@ -160,6 +160,7 @@ def about(machine):
     lines.append(f"- Command: `hydro-diagnose {' '.join(machine['runs'])}"
                  + "".join(f" --hold-out {run}" for run in machine.get("hold_out", []))
                  + f" --model {os.path.basename(machine['model'])} --out out`")
+    lines.append(f"- To print: `machines/{machine['folder']}/report.html`")
     return lines
 
 
@@ -195,6 +196,9 @@ start of its own, in units of the sensors' noise (1: nothing is left).
 ```
 examples/machines/machines.py DATA --page docs/machines.md       # DATA has a folder for each machine
 ```
+
+The study keeps a report of each machine, `machines/FOLDER/report.html` (`--out`). It is made to be printed: its first page is the
+one to keep beside the machine, and [gap_finder.md](gap_finder.md#how-to-read-the-page) says how to print it.
 """
 
 

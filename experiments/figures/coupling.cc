@@ -9,8 +9,8 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/studies/coupling_study.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/torque_clamped.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/torque_runs.h"
 
 namespace hydro::experiments {
 namespace {
@@ -98,25 +98,20 @@ page::Panel TorquePanel(const CouplingStudy& study, const Moving& moving, int jo
   const CouplingAlongPath expected = ExpectedCoupling(study, moving)[joint];
   const CoupledArmRun& run = study.Find(moving, FeedForward::kWhole, true);
   return {.title = fmt::format("Torque at the {} beyond what its own model knows", kJointWords[joint]),
-          .x = {.label = "", .min = 0, .numbers = false},
+          .x = {.min = 0, .numbers = false},
           .y = {.label = "torque, in-lbf"},
           .curves = {page::Line("inertia", time, Thin(expected.inertia), 1),
                      page::Line("gravity", time, Thin(expected.gravity), 2),
                      page::Line("speeds", time, Thin(expected.velocity), 4),
                      page::Line("run", time, Thin(run.joints[joint].coupling), 0),
-                     page::Line("sum, closed form", time, Thin(Sum(expected)), 3, page::Stroke::kDashed)},
-          .notes = {},
-          .rules = {}};
+                     page::Line("sum, closed form", time, Thin(Sum(expected)), 3, page::Stroke::kDashed)}};
 }
 
 page::Panel ErrorPanel(const CouplingStudy& study, const Moving& moving, int joint) {
   const std::vector<double> time = Thin(study.time);
   page::Panel panel{.title = fmt::format("Angle error of the {}", kJointWords[joint]),
                     .x = {.label = "time, s", .min = 0},
-                    .y = {.label = "α - reference, mrad"},
-                    .curves = {},
-                    .notes = {},
-                    .rules = {}};
+                    .y = {.label = "α - reference, mrad"}};
   const CoupledArmRun& alone = study.Find(moving, FeedForward::kOwn, false);
   panel.curves.push_back(page::Line("own model, not coupled", time,
                                     Thin(alone.joints[joint].angle_error, 1e3), 5, page::Stroke::kDotted));
@@ -131,19 +126,16 @@ page::Panel ErrorPanel(const CouplingStudy& study, const Moving& moving, int joi
 
 Picture CasePicture(const CouplingStudy& study, const Moving& moving, const std::string& suffix) {
   page::Panel path{.title = "The path of a joint that moves",
-                   .x = {.label = "", .min = 0, .numbers = false},
+                   .x = {.min = 0, .numbers = false},
                    .y = {.label = "reference, rad"},
                    .curves = {page::Line("", Thin(study.time), Thin(study.reference), 0)},
-                   .notes = {},
-                   .rules = {},
                    .height = 0.5};
   return {suffix,
           {.caption = fmt::format("Two coupled joints; {}. Feed-forward of each joint's own model, of the "
                                   "whole arm's gravity in its place, "
                                   "and of the whole arm's inverse dynamics.",
                                   Words(moving)),
-           .panels = {path, TorquePanel(study, moving, kForearm), ErrorPanel(study, moving, kForearm)},
-           .drawing = ""}};
+           .panels = {path, TorquePanel(study, moving, kForearm), ErrorPanel(study, moving, kForearm)}}};
 }
 
 // What feedback has to supply with each kind of feed-forward.
@@ -152,8 +144,6 @@ Picture FeedbackPicture(const CouplingStudy& study) {
       .title = "Largest torque that eq. (17) has to supply",
       .x = {.label = "feed-forward", .min = -0.3, .max = 3.3},
       .y = {.label = "k_2 dp_ref of eq. (17), in-lbf", .logarithmic = true, .min = 20, .max = 2000},
-      .curves = {},
-      .notes = {},
       .rules = {{"friction band", false, FrictionBandTorque()}}};
   const std::array<const char*, kFeedForwards.size()> names = {"none", "own model", "gravity",
                                                                "inverse dynamics"};
@@ -164,8 +154,6 @@ Picture FeedbackPicture(const CouplingStudy& study) {
   for (const Moving& moving : kCases) {
     for (int joint = 0; joint < kArmJoints; ++joint) {
       page::Curve curve{.label = fmt::format("{}: {}", Words(moving), kJointWords[joint]),
-                        .x = {},
-                        .y = {},
                         .stroke = page::Stroke::kLinePoints,
                         .colour = colour++};
       for (size_t i = 0; i < kFeedForwards.size(); ++i) {
@@ -177,8 +165,7 @@ Picture FeedbackPicture(const CouplingStudy& study) {
   }
   return {"-feedback",
           {.caption = "Two coupled joints. A pump that rests stays at rest within the friction band.",
-           .panels = {panel},
-           .drawing = ""}};
+           .panels = {panel}}};
 }
 
 std::vector<Comparison> Comparisons(const CouplingStudy& study) {

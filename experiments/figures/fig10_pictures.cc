@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "experiments/studies/design_numbers.h"
+#include "experiments/studies/position_loop.h"
 
 namespace hydro::experiments {
 namespace {
@@ -30,30 +30,21 @@ Picture FormsPicture(const Figure10Runs& figure) {
                                   page::Line("linear, on the measurement", figure.forms[1].linear.time,
                                              figure.forms[1].linear.angle, 1),
                                   page::Line("full model", full.time, full.angle, 2)},
-                       .notes = {},
                        .rules = {{"", false, kFigure10Step}},
                        .height = 1.6},
                       {.title = "Motor torque, full model",
                        .x = kTime,
                        .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
                        .curves = {page::Line("", full.time, full.torque, 2)},
-                       .notes = {},
-                       .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
-           .drawing = ""}};
+                       .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}}}};
 }
 
 Picture CausesPicture(const Figure10Runs& figure) {
-  page::Panel slow{.title = "Eq. (16) as printed",
-                   .x = kTime,
-                   .y = kAngle,
-                   .curves = {},
-                   .notes = {},
-                   .rules = {{"", false, kFigure10Step}}};
+  page::Panel slow{
+      .title = "Eq. (16) as printed", .x = kTime, .y = kAngle, .rules = {{"", false, kFigure10Step}}};
   page::Panel fast{.title = "Without the k_v term braking the arm",
                    .x = kTime,
                    .y = kAngle,
-                   .curves = {},
-                   .notes = {},
                    .rules = {{"", false, kFigure10Step}}};
   for (size_t i = 0; i < kCauses.size(); ++i) {
     const ArmRun& run = figure.causes.runs[i];
@@ -67,8 +58,7 @@ Picture CausesPicture(const Figure10Runs& figure) {
           {.caption = fmt::format("What makes the full model differ from Figure 8's, switched off one after "
                                   "another: step of {:g} rad at g = {:g}, derivative on the measurement.",
                                   kFigure10Step, kPaperGain),
-           .panels = {slow, fast},
-           .drawing = ""}};
+           .panels = {slow, fast}}};
 }
 
 Picture RetunedPicture(const Figure10Runs& figure) {
@@ -86,32 +76,25 @@ Picture RetunedPicture(const Figure10Runs& figure) {
            "{:g} rad, to stay, before {:.3f} s; the loop takes {}. After that its torque ripples, "
            "because the arm swings on the oil by {:.0e} rad, hardly damped.",
            kFigure10Step, figure.retuned.shortest, SettlingText(run.response), ripple),
-       .panels =
-           {{.title = "Arm",
-             .x = kShortTime,
-             .y = {.label = "α, rad", .min = 0, .max = 0.15},
-             .curves = {page::Line("retuned", run.time, run.angle, 0),
-                        page::Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle, 1)},
-             .notes = {},
-             .rules = {{"", false, kFigure10Step}, {"shortest settling", true, figure.retuned.shortest}},
-             .height = 1.6},
-            {.title = "Motor torque",
-             .x = kShortTime,
-             .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
-             .curves = {page::Line("", run.time, run.torque, 0),
-                        page::Line("", assisted.time, assisted.torque, 1)},
-             .notes = {},
-             .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
-       .drawing = ""}};
+       .panels = {
+           {.title = "Arm",
+            .x = kShortTime,
+            .y = {.label = "α, rad", .min = 0, .max = 0.15},
+            .curves = {page::Line("retuned", run.time, run.angle, 0),
+                       page::Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle, 1)},
+            .rules = {{"", false, kFigure10Step}, {"shortest settling", true, figure.retuned.shortest}},
+            .height = 1.6},
+           {.title = "Motor torque",
+            .x = kShortTime,
+            .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
+            .curves = {page::Line("", run.time, run.torque, 0),
+                       page::Line("", assisted.time, assisted.torque, 1)},
+            .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}}}};
 }
 
 Picture StepsPicture(const Figure10Runs& figure) {
-  page::Panel steps{.title = "",
-                    .x = kShortTime,
-                    .y = {.label = "α/step", .min = -0.2, .max = 1.3},
-                    .curves = {},
-                    .notes = {},
-                    .rules = {{"", false, 1}}};
+  page::Panel steps{
+      .x = kShortTime, .y = {.label = "α/step", .min = -0.2, .max = 1.3}, .rules = {{"", false, 1}}};
   for (const RetunedStep& r : figure.retuned.steps) {
     std::vector<double> share = r.run.angle;
     for (double& value : share) value /= r.step;
@@ -122,8 +105,7 @@ Picture StepsPicture(const Figure10Runs& figure) {
   return {"-robustness",
           {.caption = "The retuned loop on other steps, with noise and with gravity (m g l = 562 in-lbf, "
                       "assumed: the arm starts where the loop holds it), as a share of the step.",
-           .panels = {steps},
-           .drawing = ""}};
+           .panels = {steps}}};
 }
 
 }  // namespace

@@ -8,9 +8,7 @@
 
 #include "base/units.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
-#include "experiments/studies/design_numbers.h"
-#include "experiments/studies/retuning.h"
+#include "experiments/studies/position_loop.h"
 #include "settings/model_file.h"
 #include "tune/design/arm_loop.h"
 

@@ -8,8 +8,8 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig10_pictures.h"
 #include "experiments/figures/fig10_runs.h"
-#include "experiments/studies/design_numbers.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/position_loop.h"
 
 namespace hydro::experiments {
 namespace {

@@ -9,9 +9,8 @@
 #include "experiments/figures/fig10_runs.h"
 #include "experiments/figures/fig10_uncertainty_pictures.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/uncertain_spread.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/uncertain_machines.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::experiments {

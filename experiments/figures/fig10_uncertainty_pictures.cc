@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/maths/spread.h"
-#include "model/terms/drawn_model.h"
+#include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::experiments {
@@ -81,27 +81,22 @@ Picture Distributions(const UncertainSteps& steps, const UncertainSpread& spread
                                         page::Stroke::kBars),
                               Histogram("shortest possible", shortest, machines, 0.2, 1, 0.01, 1,
                                         page::Stroke::kSteps)},
-                   .notes = {},
                    .rules = {known}},
                   {.title = "Overshoot",
                    .x = {.label = "overshoot, % of the step", .min = 0, .max = 40},
                    .y = {.label = "machines, % per 1 %", .min = 0},
                    .curves = {Histogram("", overshoot, machines, 0, 40, 1, 0, page::Stroke::kBars)},
-                   .notes = {},
                    .rules = {{"", true, kMuchOvershoot}}},
                   {.title = "Settled by then",
                    .x = time,
                    .y = {.label = "machines, %", .min = 0, .max = 100},
                    .curves = {Cumulative("", settling, machines, 0), Cumulative("", shortest, machines, 1)},
-                   .notes = {},
                    .rules = {known}},
                   {.title = "Overshoot up to that",
                    .x = {.label = "overshoot, % of the step", .min = 0, .max = 40},
                    .y = {.label = "machines, %", .min = 0, .max = 100},
                    .curves = {Cumulative("", overshoot, machines, 0)},
-                   .notes = {},
                    .rules = {{"", true, kMuchOvershoot}}}},
-       .drawing = "",
        .columns = 2}};
 }
 
@@ -134,21 +129,14 @@ page::Panel Over(const UncertainSteps& steps, size_t base, const page::Axis& y, 
     median.x.push_back(std::exp(part * width));
     median.y.push_back(maths::Quantile(values, 0.5));
   }
-  return {.title = "",
-          .x = {.label = parameter.info.name + " over that of Table 1"},
-          .y = y,
-          .curves = {points, median},
-          .notes = {},
-          .rules = {}};
+  return {.x = {.label = parameter.info.name + " over that of Table 1"}, .y = y, .curves = {points, median}};
 }
 
 page::Panel Effects(const UncertainSpread& spread, const std::string& title, double Influence::*effect) {
   page::Panel panel{.title = title,
-                    .x = {.label = "", .min = 0, .max = static_cast<double>(spread.influences.size())},
+                    .x = {.min = 0, .max = static_cast<double>(spread.influences.size())},
                     .y = {.label = "of the variance, %", .min = 0},
-                    .curves = {page::Line("", {}, {}, 0, page::Stroke::kBars)},
-                    .notes = {},
-                    .rules = {}};
+                    .curves = {page::Line("", {}, {}, 0, page::Stroke::kBars)}};
   page::Curve& bars = panel.curves[0];
   for (const Influence& influence : spread.influences) {
     const auto place = static_cast<double>(&influence - spread.influences.data());
@@ -174,7 +162,6 @@ Picture Causes(const UncertainSteps& steps, const UncertainSpread& spread) {
                       Over(steps, first, {.label = "overshoot, %", .min = 0}, Overshoot),
                       Effects(spread, "Settling time", &Influence::settling_effect),
                       Effects(spread, "Overshoot", &Influence::overshoot_effect)},
-           .drawing = "",
            .columns = 2}};
 }
 
@@ -193,12 +180,9 @@ Picture Machines(const UncertainSteps& steps, const UncertainSpread& spread) {
     const UncertainStep &first = steps.drawn[a], &second = steps.drawn[b];
     return first.settles() && (!second.settles() || first.settling < second.settling);
   });
-  page::Panel panel{.title = "",
-                    .x = {.label = "time since the step, s", .min = 0, .max = kShownTime},
+  page::Panel panel{.x = {.label = "time since the step, s", .min = 0, .max = kShownTime},
                     .y = {.label = "α, rad", .min = 0},
                     .curves = {ArmCurve(steps.trial, "Table 1", 0)},
-                    .notes = {},
-                    .rules = {},
                     .bands = {{"2 % of the step", false, 0.98 * steps.trial.step, 1.02 * steps.trial.step}}};
   panel.curves[0].weight = page::Weight::kStrong;
   const auto add = [&](size_t machine, const std::string& what) {
@@ -218,8 +202,7 @@ Picture Machines(const UncertainSteps& steps, const UncertainSpread& spread) {
       "-machines",
       {.caption = "Steps of single machines with the gains for Table 1; the table of all of them gives each "
                   "machine's parameters under its number.",
-       .panels = {panel},
-       .drawing = ""}};
+       .panels = {panel}}};
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiments/studies/experiment.h"
-#include "experiments/studies/uncertain_spread.h"
+#include "experiments/studies/uncertain_machines.h"
 
 namespace hydro::experiments {
 

@@ -9,12 +9,40 @@
 #include "base/json_text.h"
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
-#include "experiments/figures/fig1_drawing.h"
+#include "experiments/figures/drawings.h"
 #include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
+#include "model/terms/description.h"
+#include "page/svg.h"
 
 namespace hydro::experiments {
 namespace {
+
+// Figure 1 of the paper as a schematic.
+
+// An <svg> element: amplifier, motor, pump, the two lines with their leakages, one-way valves, accumulator,
+// bypass and transducers, the rotary actuator and its arm. Symbols are those of eqs. (1) to (15); the
+// parameters stand beside the parts, in the paper's units.
+std::string ApparatusDrawing(const model::Parameters& parameters);
+
+std::string ApparatusDrawing(const model::Parameters& p) {
+  const auto number = [](double value) { return fmt::format("{:g}", value); };
+  return page::FillDrawing(kApparatusDrawing, {{"k_1", number(p.k_1)},
+                                               {"T_pmax", number(p.T_pmax)},
+                                               {"D", number(p.D)},
+                                               {"J", number(p.J)},
+                                               {"b", number(p.b)},
+                                               {"T_s", number(p.T_s)},
+                                               {"f", number(p.f)},
+                                               {"beta", number(p.beta)},
+                                               {"c_I", fmt::format("{:.1e}", p.c_I)},
+                                               {"c_E", fmt::format("{:.1e}", p.c_E)},
+                                               {"p_3", number(p.p_3)},
+                                               {"V_ms", number(p.V_ms)},
+                                               {"c", fmt::format("{:.4g}", p.c)},
+                                               {"k_2", number(p.k_2)},
+                                               {"J_a", number(p.J_a)}});
+}
 
 using nlohmann::ordered_json;
 

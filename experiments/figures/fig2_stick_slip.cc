@@ -10,7 +10,7 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/open_loop_run.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {
@@ -84,7 +84,7 @@ json Describe(const Scanned& scanned, double kinetic) {
 
 // The part of a run that the picture shows.
 page::Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
-  page::Curve curve{.label = label, .x = {}, .y = {}, .colour = colour, .y_low = {}, .y_high = {}};
+  page::Curve curve{.label = label, .colour = colour};
   for (size_t i = 0; i < run.time.size() && run.time[i] <= kPictured; ++i) {
     curve.x.push_back(run.time[i]);
     curve.y.push_back(run.dp[i]);
@@ -109,8 +109,7 @@ page::Panel DpPanel(const std::string& title, std::vector<page::Curve> curves,
           .x = {.label = "time, s", .min = 0, .max = kPictured},
           .y = {.label = "p_2 - p_1, psi", .min = 0},
           .curves = std::move(curves),
-          .notes = std::move(notes),
-          .rules = {}};
+          .notes = std::move(notes)};
 }
 
 struct StickSlipStudy {
@@ -236,28 +235,26 @@ std::string Explanation(const StickSlipStudy& study) {
 }
 
 std::vector<Comparison> Comparisons(const StickSlipStudy& study) {
-  return {
-      {"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(study.plain.sticks()),
-       "the paper's equations do not cycle: one stick, then creep"},
-      {"dp when it slips again, Table 1 alone", "psi", "", (kStickSlipTorque - study.p.T_s) / study.p.D,
-       study.slip().dp, "expected: (T_p - T_s)/D"},
-      {"how long that stick lasts, Table 1 alone", "s", "",
-       std::log(study.stick().dp / study.slip().dp) / study.leak_rate, study.slip().time - study.stick().time,
-       "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
-      {"dp at the end, Table 1 alone", "psi", "", study.creep_dp, study.plain.dp.back(),
-       "expected: steady creep, side 1 held at p_3"},
-      {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
-       static_cast<double>(study.cycling.sticks()), fmt::format("in {} s", kStickSlipDuration)},
-      {"period of the cycles", "s", "", page::kAutomatic, study.cycles.period,
-       "follows from the assumed friction"},
-      {"dp at each slip of the cycles", "psi", "", study.slip_dp, study.cycles.slip_dp,
-       "expected: (T_p - T_static)/D"},
-      {"how long each stick of the cycles lasts", "s", "",
-       std::log(study.cycles.stick_dp / study.cycles.slip_dp) / study.leak_rate, study.cycles.stick_time,
-       "expected: as above"},
-      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", page::kAutomatic,
-       study.threshold.cycles, fmt::format("{:.3f} still creeps", study.threshold.none)},
-  };
+  return {{"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(study.plain.sticks()),
+           "the paper's equations do not cycle: one stick, then creep"},
+          {"dp when it slips again, Table 1 alone", "psi", "", (kStickSlipTorque - study.p.T_s) / study.p.D,
+           study.slip().dp, "expected: (T_p - T_s)/D"},
+          {"how long that stick lasts, Table 1 alone", "s", "",
+           std::log(study.stick().dp / study.slip().dp) / study.leak_rate,
+           study.slip().time - study.stick().time, "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
+          {"dp at the end, Table 1 alone", "psi", "", study.creep_dp, study.plain.dp.back(),
+           "expected: steady creep, side 1 held at p_3"},
+          {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
+           static_cast<double>(study.cycling.sticks()), fmt::format("in {} s", kStickSlipDuration)},
+          {"period of the cycles", "s", "", page::kAutomatic, study.cycles.period,
+           "follows from the assumed friction"},
+          {"dp at each slip of the cycles", "psi", "", study.slip_dp, study.cycles.slip_dp,
+           "expected: (T_p - T_static)/D"},
+          {"how long each stick of the cycles lasts", "s", "",
+           std::log(study.cycles.stick_dp / study.cycles.slip_dp) / study.leak_rate, study.cycles.stick_time,
+           "expected: as above"},
+          {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", page::kAutomatic,
+           study.threshold.cycles, fmt::format("{:.3f} still creeps", study.threshold.none)}};
 }
 
 Finding TableFinding(const StickSlipStudy& study) {
@@ -352,25 +349,20 @@ Picture CyclesPicture(const StickSlipStudy& study) {
                                   "paper's equations and Table 1. Below: with static friction of {:.1f} "
                                   "in-lbf, which falls off to {} in-lbf over {} rad/s (assumed).",
                                   kStickSlipTorque, study.static_torque, study.p.T_s, study.speed),
-           .panels = {once, often},
-           .drawing = ""}};
+           .panels = {once, often}}};
 }
 
 Picture TorquesPicture(const StickSlipStudy& study) {
   return {"-torques",
           {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: at any torque the pump "
                       "sticks once, at the same time. The curves are in proportion to T_p - T_s.",
-           .panels = {DpPanel("Table 1 alone at several torques", study.scaled, {})},
-           .drawing = ""}};
+           .panels = {DpPanel("Table 1 alone at several torques", study.scaled, {})}}};
 }
 
 Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double threshold_ratio) {
-  page::Curve period{
-      .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
-  page::Curve high{
-      .label = "highest", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
-  page::Curve low{
-      .label = "lowest", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  page::Curve period{.stroke = page::Stroke::kLinePoints};
+  page::Curve high{.label = "highest", .stroke = page::Stroke::kLinePoints};
+  page::Curve low{.label = "lowest", .stroke = page::Stroke::kLinePoints};
   for (const Scanned& scanned : scans) {
     if (scanned.torque != kStickSlipTorque || !scanned.cycles.sustained) continue;
     for (page::Curve* curve : {&period, &high, &low}) curve->x.push_back(scanned.ExcessRatio(kinetic));
@@ -384,20 +376,17 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
                       .x = ratio,
                       .y = {.label = "period, s", .min = 0},
                       .curves = {period},
-                      .notes = {},
                       .rules = {threshold}};
   page::Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kStickSlipTorque),
                      .x = ratio,
                      .y = {.label = "p_2 - p_1, psi", .min = 0},
                      .curves = {high, low},
-                     .notes = {},
                      .rules = {threshold}};
   return {"-scan",
           {.caption = fmt::format("Static friction above kinetic at rest only (gone at {} rad/s), Table 1 "
                                   "otherwise, clamped at α = 0, T_p = {} in-lbf, second half of {} s.",
                                   kAtRestOnly, kStickSlipTorque, kStickSlipDuration),
-           .panels = {periods, swings},
-           .drawing = ""}};
+           .panels = {periods, swings}}};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/open_loop_run.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "model/equations/equations.h"
 #include "model/integrate/runge_kutta.h"
 
@@ -134,23 +134,21 @@ std::string Explanation(const StepStudy& study) {
 std::vector<Comparison> Comparisons(const StepStudy& study) {
   const model::Parameters& p = study.p;
   const WithoutValves& bare = study.bare;
-  return {
-      {"peak of p_2", "psi", "", p.p_3 + study.spring.peak_dp, study.peak().p2,
-       "expected: closed form, one side at p_3"},
-      {"peak of dp", "psi", "", study.spring.peak_dp, study.peak().dp, ""},
-      {"time of the peak", "s", "", study.spring.peak_time, study.peak().time,
-       "expected: half a damped period"},
-      {"pump sticks", "s", "", page::kAutomatic, study.stick().time,
-       "after the peak the valve closes and both sides compress: no closed form"},
-      {"dp when it slips again", "psi", "", study.slip_dp, study.slip().dp, "expected: (T_p - T_s)/D"},
-      {"pump slips again", "s", "",
-       study.stick().time + std::log(study.stick().dp / study.slip_dp) / study.leak_rate, study.slip().time,
-       "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
-      {"peak of dp without the valves", "psi", "", page::kAutomatic, study.bare_dp(), ""},
-      {"p_2 then", "psi", "", page::kAutomatic, bare.p2[bare.peak], ""},
-      {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak],
-       "no fluid withstands that: it would cavitate"},
-  };
+  return {{"peak of p_2", "psi", "", p.p_3 + study.spring.peak_dp, study.peak().p2,
+           "expected: closed form, one side at p_3"},
+          {"peak of dp", "psi", "", study.spring.peak_dp, study.peak().dp, ""},
+          {"time of the peak", "s", "", study.spring.peak_time, study.peak().time,
+           "expected: half a damped period"},
+          {"pump sticks", "s", "", page::kAutomatic, study.stick().time,
+           "after the peak the valve closes and both sides compress: no closed form"},
+          {"dp when it slips again", "psi", "", study.slip_dp, study.slip().dp, "expected: (T_p - T_s)/D"},
+          {"pump slips again", "s", "",
+           study.stick().time + std::log(study.stick().dp / study.slip_dp) / study.leak_rate,
+           study.slip().time, "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
+          {"peak of dp without the valves", "psi", "", page::kAutomatic, study.bare_dp(), ""},
+          {"p_2 then", "psi", "", page::kAutomatic, bare.p2[bare.peak], ""},
+          {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak],
+           "no fluid withstands that: it would cavitate"}};
 }
 
 json Numbers(const StepStudy& study) {
@@ -196,13 +194,11 @@ std::vector<page::Panel> Panels(const StepStudy& study) {
       .title = "The two sides",
       .x = time,
       .y = {.label = "pressure, psi"},
-      .curves = {page::Line("p_2", study.run.time, study.run.p2, 0),
-                 page::Line("p_1", study.run.time, study.run.p1, 1),
-                 page::Line("p_2 without valves, to the first stop", bare.time, bare.p2, 0,
-                            page::Stroke::kDashed),
-                 page::Line("p_1 without valves", bare.time, bare.p1, 1, page::Stroke::kDashed)},
-      .notes = {},
-      .rules = {}};
+      .curves = {
+          page::Line("p_2", study.run.time, study.run.p2, 0),
+          page::Line("p_1", study.run.time, study.run.p1, 1),
+          page::Line("p_2 without valves, to the first stop", bare.time, bare.p2, 0, page::Stroke::kDashed),
+          page::Line("p_1 without valves", bare.time, bare.p1, 1, page::Stroke::kDashed)}};
   return {difference, sides};
 }
 
@@ -233,8 +229,7 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
        {.caption = fmt::format("Open loop, Table 1, clamped at α = 0, T_p = {} in-lbf from rest at p_1 = p_2 "
                                "= p_3. Dashed: without the one-way valves.",
                                kAppliedTorque),
-        .panels = Panels(study),
-        .drawing = ""}});
+        .panels = Panels(study)}});
   options.progress(1);
   return result;
 }

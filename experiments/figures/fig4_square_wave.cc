@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/figures/catalogue.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/tracking_study.h"
 
 namespace hydro::experiments {
@@ -53,7 +53,6 @@ page::Panel HeldPanel(const TrackingStudy& study) {
           .y = {.label = "p_2 - p_1, psi", .min = kWaveAmplitude - 25, .max = kWaveAmplitude + 10},
           .curves = {SignalCurve("without feed-forward", study.hold, study.hold.dp, 0, 0.5),
                      SignalCurve("with feed-forward", study.hold_with, study.hold_with.dp, 1, 0.5)},
-          .notes = {},
           .rules = {{"reference", false, kWaveAmplitude},
                     {"closed form, without", false, SettledPressure(kWaveAmplitude, 0)},
                     {"closed form, with", false, SettledPressure(kWaveAmplitude, study.feedforward)}}};
@@ -62,13 +61,10 @@ page::Panel HeldPanel(const TrackingStudy& study) {
 page::Panel LevelsPanel(const std::vector<Remainder>& remainders) {
   page::Panel panel{.title = "Steady-state error at rising references",
                     .x = {.label = "reference, psi", .min = 0, .max = 650},
-                    .y = {.label = "reference - (p_2 - p_1), psi"},
-                    .curves = {},
-                    .notes = {},
-                    .rules = {}};
+                    .y = {.label = "reference - (p_2 - p_1), psi"}};
   int colour = 0;
   for (const Remainder& remainder : remainders) {
-    page::Curve measured{.label = remainder.label, .x = {}, .y = {}, .y_low = {}, .y_high = {}};
+    page::Curve measured{.label = remainder.label};
     measured.stroke = page::Stroke::kPoints;
     measured.colour = colour++;
     page::Curve closed = measured;
@@ -195,8 +191,7 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
       {"-hold",
        {.caption = "Closed pressure loop, Table 1, clamped at α = 0. Below: points are runs of the stack, "
                    "lines the balance of eqs. (4) and (16) in closed form.",
-        .panels = {HeldPanel(study), LevelsPanel(remainders)},
-        .drawing = ""}});
+        .panels = {HeldPanel(study), LevelsPanel(remainders)}}});
   options.progress(1);
   return result;
 }

@@ -8,7 +8,7 @@
 
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/tracking_study.h"
 
 namespace hydro::experiments {

@@ -12,7 +12,7 @@
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {
@@ -241,8 +241,7 @@ std::vector<Comparison> Comparisons(const MidStrokeStudy& study) {
        "the motor's torque limit"},
       {"largest difference from the linearised loop, gain", "dB", "", 0, study.worst_db,
        "in the cases without friction's switching"},
-      {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg, "the same"},
-  };
+      {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg, "the same"}};
 }
 
 Finding GainsFinding(const MidStrokeStudy& study) {
@@ -293,7 +292,8 @@ Picture ResponsePicture(const MidStrokeStudy& study) {
   return {
       "",
       {.caption = fmt::format(
-           "Swept sine of ±{} psi about zero through the closed pressure loop, arm clamped at α = 0, Table "
+           "Swept sine of ±{} psi about zero through the closed pressure loop, arm clamped at α = 0, "
+           "Table "
            "1. Fit: ω_n = {:.1f} rad/s, ζ = {:.2f}. Dashed: the linearised loop without Coulomb friction.",
            figure.sweep.amplitude, figure.fit.model.natural_frequency, figure.fit.model.damping_ratio),
        .panels = WithCoherence(
@@ -304,8 +304,7 @@ Picture ResponsePicture(const MidStrokeStudy& study) {
                  page::Stroke::kLine, 1},
                 Predicted(figure, "linearised", page::Stroke::kDashed, 2)},
                rules, -30),
-           {Measured(figure, 0)}),
-       .drawing = ""}};
+           {Measured(figure, 0)})}};
 }
 
 Picture AmplitudePicture(const MidStrokeStudy& study) {
@@ -327,8 +326,7 @@ Picture AmplitudePicture(const MidStrokeStudy& study) {
                                   "ones by the motor's {} in-lbf (±{} psi: saturated {:.0f} % of the time).",
                                   small.sweep.amplitude, 100 * small.swept.stuck_fraction, study.p.T_pmax,
                                   large.sweep.amplitude, 100 * large.swept.saturated_fraction),
-           .panels = BodePanels("Amplitude", family, {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40),
-           .drawing = ""}};
+           .panels = BodePanels("Amplitude", family, {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40)}};
 }
 
 Picture SidesPicture(const MidStrokeStudy& study) {
@@ -346,8 +344,7 @@ Picture SidesPicture(const MidStrokeStudy& study) {
                              Measured(cases.one_sided_gains, 2), Predicted(none, "", page::Stroke::kLine, 0),
                              Predicted(cases.one_sided, "", page::Stroke::kLine, 1),
                              Predicted(cases.one_sided_gains, "", page::Stroke::kLine, 2)},
-                            {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40),
-       .drawing = ""}};
+                            {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40)}};
 }
 
 }  // namespace

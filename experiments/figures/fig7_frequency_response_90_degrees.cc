@@ -13,7 +13,7 @@
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {
@@ -213,30 +213,29 @@ std::string Explanation(const QuarterTurnStudy& study) {
 std::vector<Comparison> Comparisons(const QuarterTurnStudy& study) {
   const QuarterTurnCases& cases = study.cases;
   const BodeCase& figure = study.figure();
-  return {
-      {"bandwidth (-3 dB)", "Hz", "about 32", study.two_sided_hz, figure.bandwidth_hz,
-       "expected: both sides compressing, no Coulomb friction"},
-      {"natural frequency of the fit", "rad/s", "roughly 150", study.two_sides.natural_frequency,
-       figure.fit.model.natural_frequency, "expected: 150 rad/s times the stiffness's square root"},
-      {"damping ratio of the fit", "", "roughly .5", study.two_sides.damping_ratio,
-       figure.fit.model.damping_ratio, "Coulomb friction adds to the expected value"},
-      {"natural frequency at α = 0, the same gains", "rad/s", "roughly 150", kLoopNaturalFrequency,
-       cases.mid_stroke.fit.model.natural_frequency, ""},
-      {"bandwidth with gains for π/2", "Hz", "about 32",
-       design::SecondOrderModel{1, kLoopNaturalFrequency, kLoopDampingRatio, 0}.BandwidthHz(),
-       cases.redesigned.bandwidth_hz, ""},
-      {"natural frequency, only V_2 compresses", "rad/s", "", study.large_side.natural_frequency,
-       cases.large_side.fit.model.natural_frequency, ""},
-      {"damping ratio, only V_2 compresses", "", "", study.large_side.damping_ratio,
-       cases.large_side.fit.model.damping_ratio, ""},
-      {"natural frequency, only V_1 compresses", "rad/s", "", study.small_side.natural_frequency,
-       cases.small_side.fit.model.natural_frequency, ""},
-      {"damping ratio, only V_1 compresses", "", "", study.small_side.damping_ratio,
-       cases.small_side.fit.model.damping_ratio, ""},
-      {"largest difference from the linearised loop, gain", "dB", "", 0, study.worst_db(),
-       "in the two cases with one side held"},
-      {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg(), "the same"},
-  };
+  return {{"bandwidth (-3 dB)", "Hz", "about 32", study.two_sided_hz, figure.bandwidth_hz,
+           "expected: both sides compressing, no Coulomb friction"},
+          {"natural frequency of the fit", "rad/s", "roughly 150", study.two_sides.natural_frequency,
+           figure.fit.model.natural_frequency, "expected: 150 rad/s times the stiffness's square root"},
+          {"damping ratio of the fit", "", "roughly .5", study.two_sides.damping_ratio,
+           figure.fit.model.damping_ratio, "Coulomb friction adds to the expected value"},
+          {"natural frequency at α = 0, the same gains", "rad/s", "roughly 150", kLoopNaturalFrequency,
+           cases.mid_stroke.fit.model.natural_frequency, ""},
+          {"bandwidth with gains for π/2", "Hz", "about 32",
+           design::SecondOrderModel{1, kLoopNaturalFrequency, kLoopDampingRatio, 0}.BandwidthHz(),
+           cases.redesigned.bandwidth_hz, ""},
+          {"natural frequency, only V_2 compresses", "rad/s", "", study.large_side.natural_frequency,
+           cases.large_side.fit.model.natural_frequency, ""},
+          {"damping ratio, only V_2 compresses", "", "", study.large_side.damping_ratio,
+           cases.large_side.fit.model.damping_ratio, ""},
+          {"natural frequency, only V_1 compresses", "rad/s", "", study.small_side.natural_frequency,
+           cases.small_side.fit.model.natural_frequency, ""},
+          {"damping ratio, only V_1 compresses", "", "", study.small_side.damping_ratio,
+           cases.small_side.fit.model.damping_ratio, ""},
+          {"largest difference from the linearised loop, gain", "dB", "", 0, study.worst_db(),
+           "in the two cases with one side held"},
+          {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg(),
+           "the same"}};
 }
 
 Finding AngleFinding(const QuarterTurnStudy& study) {
@@ -295,8 +294,7 @@ Picture ResponsePicture(const QuarterTurnStudy& study) {
                            {fmt::format("-3 dB: {:.1f} Hz", figure.bandwidth_hz), true, figure.bandwidth_hz}},
                           -40),
                {{"", figure.swept.points, page::Stroke::kPoints, 0},
-                {"", cases.mid_stroke.swept.points, page::Stroke::kPoints, 3}}),
-           .drawing = ""}};
+                {"", cases.mid_stroke.swept.points, page::Stroke::kPoints, 3}})}};
 }
 
 Picture CasesPicture(const QuarterTurnCases& cases) {
@@ -311,8 +309,7 @@ Picture CasesPicture(const QuarterTurnCases& cases) {
                 {cases.small_side.title, cases.small_side.swept.points, page::Stroke::kPoints, 3},
                 PredictedAtQuarterTurn(cases.large_side, "", page::Stroke::kLine, 2),
                 PredictedAtQuarterTurn(cases.small_side, "", page::Stroke::kLine, 3)},
-               {PaperRule()}, -40),
-           .drawing = ""}};
+               {PaperRule()}, -40)}};
 }
 
 }  // namespace

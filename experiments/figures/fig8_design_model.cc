@@ -3,17 +3,40 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
-#include "experiments/figures/fig8_block_diagram.h"
+#include "experiments/figures/drawings.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/design_numbers.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/position_loop.h"
+#include "page/svg.h"
 #include "tune/design/arm_loop.h"
+#include "tune/design/position_design.h"
 
 namespace hydro::experiments {
 namespace {
+
+// The drawing of the paper's Figure 8: the position loop's block diagram with its numbers.
+
+// An <svg> element for Figure::drawing.
+std::string DrawPositionLoop(const design::DesignModel& model, double gain);
+
+std::string DrawPositionLoop(const design::DesignModel& m, double gain) {
+  const auto number = [](double value) { return fmt::format("{:g}", value); };
+  return page::FillDrawing(kPositionLoopDrawing,
+                           {{"zero", number(m.zero)},
+                            {"omega_n", number(m.natural_frequency)},
+                            {"omega_n_squared", number(m.natural_frequency * m.natural_frequency)},
+                            {"two_zeta_omega_n", number(2 * m.damping_ratio * m.natural_frequency)},
+                            {"zeta", number(m.damping_ratio)},
+                            {"k_2", number(m.k_2)},
+                            {"J_a", number(m.J_a)},
+                            {"gain", number(gain)},
+                            {"c_1", number(m.zero * gain)},
+                            {"c_2", number(gain)}});
+}
 
 using nlohmann::json;
 
@@ -164,8 +187,7 @@ std::vector<Comparison> Comparisons(const DesignStudy& study) {
        -SlowestPole(design::Poles(study.design, kPaperGain)).real(), -SlowestPole(study.exact).real(),
        "expected: of Figure 8's model; here: of the exact one"},
       {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, study.reflected,
-       fmt::format("J_a = {:g}; Figure 8 has J_a alone", study.p.J_a)},
-  };
+       fmt::format("J_a = {:g}; Figure 8 has J_a alone", study.p.J_a)}};
 }
 
 json Numbers(const DesignStudy& study) {
@@ -211,7 +233,6 @@ Picture DiagramPicture(const design::DesignModel& design) {
                fmt::format("The design model of the position loop with its numbers, as the paper's Figure 8. "
                            "Continuous time; eq. (17) samples it. e = α - α_ref, g = {:g}.",
                            kPaperGain),
-           .panels = {},
            .drawing = DrawPositionLoop(design, kPaperGain)}};
 }
 
@@ -249,8 +270,7 @@ Picture BodePicture(const DesignStudy& study) {
                "Figure 8's model at g = {:g}: open loop with its margins, and closed loop with the "
                "derivative on the measurement.",
                kPaperGain),
-           .panels = {magnitude, phase},
-           .drawing = ""}};
+           .panels = {magnitude, phase}}};
 }
 
 Picture FreeArmPicture(const Bode& bode) {
@@ -258,17 +278,15 @@ Picture FreeArmPicture(const Bode& bode) {
       .title = "Δp over Δp_ref",
       .x = FrequencyAxis(),
       .y = {.label = "dB", .min = -70, .max = 30},
-      .curves = {OverFrequency(bode, "Figure 8", bode.design_db, 0),
-                 OverFrequency(bode, "exact, arm clamped", bode.clamped_db, 1, page::Stroke::kDashed),
-                 OverFrequency(bode, "exact, arm free", bode.free_db, 2),
-                 OverFrequency(bode, "exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)},
-      .notes = {},
-      .rules = {}};
+      .curves = {
+          OverFrequency(bode, "Figure 8", bode.design_db, 0),
+          OverFrequency(bode, "exact, arm clamped", bode.clamped_db, 1, page::Stroke::kDashed),
+          OverFrequency(bode, "exact, arm free", bode.free_db, 2),
+          OverFrequency(bode, "exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)}};
   return {"-free-arm",
           {.caption = "The pressure loop once the arm may move, where Figure 8 assumes the clamped loop. "
                       "Exact linearisations of Table 1's model at mid-stroke under eq. (16).",
-           .panels = {pressure},
-           .drawing = ""}};
+           .panels = {pressure}}};
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/design_numbers.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/position_loop.h"
 #include "runs/step_response.h"
 #include "tune/design/sampled_position_loop.h"
 
@@ -57,8 +57,7 @@ std::vector<std::vector<design::Complex>> FollowBranches(
 
 page::Curve Points(const std::string& label, const std::vector<design::Complex>& points, int colour,
                    page::Stroke stroke = page::Stroke::kPoints) {
-  page::Curve curve{
-      .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+  page::Curve curve{.label = label, .stroke = stroke, .colour = colour};
   if (stroke == page::Stroke::kPoints) curve.weight = page::Weight::kStrong;
   for (const design::Complex& point : points) {
     curve.x.push_back(point.real());
@@ -207,8 +206,7 @@ std::vector<Comparison> Comparisons(const RootLocusStudy& study) {
        design::CriticalGainOfPoles(study.printed_ratio),
        fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
       {"largest stable T at g = 350", "ms", "", kNaN, 1e3 * study.largest,
-       "in either form of the derivative"},
-  };
+       "in either form of the derivative"}};
   for (const SampledLoop& loop : study.sampled) {
     comparisons.push_back(
         {fmt::format("overshoot at T = {:g} ms, derivative of the measurement", 1e3 * loop.interval), "%", "",
@@ -306,10 +304,8 @@ std::vector<tables::Column> Columns(const RootLocusStudy& study) {
 
 Picture LocusPicture(const RootLocusStudy& study) {
   page::Panel locus{
-      .title = "",
       .x = {.label = "real part, 1/s", .logarithmic = false, .min = -200, .max = 100},
       .y = {.label = "imaginary part, rad/s", .logarithmic = false, .min = -200, .max = 200},
-      .curves = {},
       .notes = {{fmt::format("g = {:.1f} at {:.1f} rad/s", study.limit.gain, study.limit.frequency), 0,
                  study.limit.frequency}},
       .rules = {{"", true, 0}, {"", false, 0}},
@@ -328,8 +324,7 @@ Picture LocusPicture(const RootLocusStudy& study) {
                "Root locus of Figure 8's model, c_1/c_2 = {:g}, g from 0 to {:g}. The poles cross the "
                "imaginary axis at g = {:.1f}; the paper prints 770.",
                study.design.zero, study.gains.back(), study.limit.gain),
-           .panels = {locus},
-           .drawing = ""}};
+           .panels = {locus}}};
 }
 
 // Steps of the loop with one form of the derivative, continuous and sampled.
@@ -365,16 +360,12 @@ Picture StepsPicture(const RootLocusStudy& study) {
                "Figure 8's model at g = {:g} under the sampled law: a step of {:g} rad. At T = 10 ms the "
                "loop is unstable.",
                kPaperGain, kReferenceStep),
-           .panels = {StepPanel(study.design, 0), StepPanel(study.design, 1)},
-           .drawing = ""}};
+           .panels = {StepPanel(study.design, 0), StepPanel(study.design, 1)}}};
 }
 
 Picture SampledPolesPicture(const RootLocusStudy& study) {
-  page::Panel plane{.title = "",
-                    .x = {.label = "real part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
+  page::Panel plane{.x = {.label = "real part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
                     .y = {.label = "imaginary part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
-                    .curves = {},
-                    .notes = {},
                     .rules = {{"", true, 0}, {"", false, 0}},
                     .equal_scales = true,
                     .height = 1.8};
@@ -390,8 +381,7 @@ Picture SampledPolesPicture(const RootLocusStudy& study) {
                "Poles of the sampled loop at g = {:g}, the same in both forms of the derivative: stable "
                "inside the unit circle.",
                kPaperGain),
-           .panels = {plane},
-           .drawing = ""}};
+           .panels = {plane}}};
 }
 
 }  // namespace

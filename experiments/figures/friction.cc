@@ -12,7 +12,7 @@
 #include "base/maths/linear_fit.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/pump_friction.h"
 #include "runs/slow_samples.h"
 #include "settings/model_file.h"
@@ -166,15 +166,12 @@ page::Curve FittedLine(const PumpFriction& friction, double direction, double fa
   return {.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
           .x = {0, end},
           .y = {direction * intercept, direction * intercept + friction.b.value * end},
-          .colour = direction > 0 ? 1 : 2,
-          .y_low = {},
-          .y_high = {}};
+          .colour = direction > 0 ? 1 : 2};
 }
 
 // Points minus lines, with the speeds' error bars converted to torques.
 page::Panel ResidualsPanel(const PumpFriction& friction, const page::Axis& speed) {
-  page::Curve residuals{
-      .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kPoints, .colour = 0, .y_low = {}, .y_high = {}};
+  page::Curve residuals{.stroke = page::Stroke::kPoints, .colour = 0};
   for (const FrictionPoint& point : friction.points) {
     residuals.x.push_back(point.window.speed);
     // 95 %; ten blocks leave nine degrees of freedom.
@@ -187,18 +184,11 @@ page::Panel ResidualsPanel(const PumpFriction& friction, const page::Axis& speed
           .x = speed,
           .y = {.label = "10^-3 in-lbf"},
           .curves = {residuals},
-          .notes = {},
           .rules = {{"", false, 0}}};
 }
 
 Picture LinesPicture(const PumpFriction& friction, const std::string& conditions) {
-  page::Curve points{.label = "steady states",
-                     .x = {},
-                     .y = {},
-                     .stroke = page::Stroke::kPoints,
-                     .colour = 0,
-                     .y_low = {},
-                     .y_high = {}};
+  page::Curve points{.label = "steady states", .stroke = page::Stroke::kPoints, .colour = 0};
   double fastest = 0;
   for (const FrictionPoint& point : friction.points) {
     points.x.push_back(point.window.speed);
@@ -214,13 +204,11 @@ Picture LinesPicture(const PumpFriction& friction, const std::string& conditions
                                 friction.T_s_forward.value},
                                {fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_backward)), 0,
                                 -friction.T_s_backward.value}},
-                     .rules = {},
                      .height = 2};
   return {"",
           {.caption = fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
                                   conditions, maths::PlusMinus(friction.b), maths::PlusMinus(friction.T_s)),
-           .panels = {torque, ResidualsPanel(friction, speed)},
-           .drawing = ""}};
+           .panels = {torque, ResidualsPanel(friction, speed)}}};
 }
 
 struct RampReading {
@@ -242,30 +230,20 @@ RampReading ReadRamp(const runs::MeasuredRun& run, double from, const model::Par
 Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>& readings, double T_s,
                     const model::Parameters& p) {
   const double ramp = p.k_1 * kRampRate;
-  page::Curve command{.label = "", .x = run.time, .y = {}, .colour = 0, .y_low = {}, .y_high = {}};
+  page::Curve command{.x = run.time, .colour = 0};
   for (const double voltage : run.voltage.values) command.y.push_back(p.k_1 * voltage);
-  page::Panel torque{.title = "The ramps",
-                     .x = {.label = "time, s"},
-                     .y = {.label = "T_p, in-lbf"},
-                     .curves = {command},
-                     .notes = {},
-                     .rules = {}};
+  page::Panel torque{
+      .title = "The ramps", .x = {.label = "time, s"}, .y = {.label = "T_p, in-lbf"}, .curves = {command}};
   page::Panel angle{.title = "How far the motor has turned",
                     .x = {.label = "|T_p|, in-lbf", .min = T_s - 0.01, .max = T_s + 0.03},
                     .y = {.label = "angle from rest, 10^-3 rad", .min = 0, .max = 6},
-                    .curves = {},
-                    .notes = {},
                     .rules = {{"T_s", true, T_s}, {"counts as moved", false, 1e3 * kMoved}}};
   for (const RampReading& reading : readings) {
     torque.notes.push_back({fmt::format("moves at {:.4f} in-lbf", reading.torque), reading.moved.time,
                             reading.direction * reading.torque});
     page::Curve curve{.label = reading.direction > 0 ? "forward" : "backward",
-                      .x = {},
-                      .y = {},
                       .stroke = page::Stroke::kSteps,
-                      .colour = reading.direction > 0 ? 1 : 2,
-                      .y_low = {},
-                      .y_high = {}};
+                      .colour = reading.direction > 0 ? 1 : 2};
     double rest = std::nan("");
     for (size_t i = 0; i < run.samples(); ++i) {
       const double at = reading.direction * command.y[i];
@@ -276,13 +254,7 @@ Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>
     }
     angle.curves.push_back(curve);
   }
-  page::Curve expected{.label = "(T_p - T_s)^3 / (6 J T_p'^2)",
-                       .x = {},
-                       .y = {},
-                       .stroke = page::Stroke::kDashed,
-                       .colour = 0,
-                       .y_low = {},
-                       .y_high = {}};
+  page::Curve expected{.label = "(T_p - T_s)^3 / (6 J T_p'^2)", .stroke = page::Stroke::kDashed, .colour = 0};
   for (double excess = 0; excess < 0.03; excess += 5e-4) {
     expected.x.push_back(T_s + excess);
     expected.y.push_back(1e3 * std::pow(excess, 3) / (6 * p.J * ramp * ramp));
@@ -293,8 +265,7 @@ Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>
                "Break-away: the torque rises by {:.3g} in-lbf/s until an encoder of {:.3g} rad per step has "
                "moved by five steps. The dashed line is what eq. (4) gives without viscous friction.",
                ramp, kEncoderStep),
-           .panels = {torque, angle},
-           .drawing = ""}};
+           .panels = {torque, angle}}};
 }
 
 // The simulated rig, measured as the paper measured its own.
@@ -361,8 +332,7 @@ std::vector<Comparison> Comparisons(const RigStudy& study) {
       {"break-away torque, forward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[0].torque,
        "expected: T_s and what the ramp adds until motion is seen"},
       {"break-away torque, backward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[1].torque, ""},
-      {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"},
-  };
+      {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"}};
 }
 
 json Numbers(const RigStudy& study) {

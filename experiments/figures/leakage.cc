@@ -10,7 +10,7 @@
 #include "base/maths/linear_fit.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/leakage_fit.h"
 #include "runs/slow_samples.h"
 #include "settings/model_file.h"
@@ -82,7 +82,7 @@ json Numbers(const LeakageFit& fit) {
 }
 
 page::Curve Empty(const std::string& label, page::Stroke stroke, int colour) {
-  return {.label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+  return {.label = label, .stroke = stroke, .colour = colour};
 }
 
 // Measured and simulated dp, the pressure of the side that the pump draws from, and the residuals.
@@ -92,24 +92,16 @@ Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit&
   page::Panel dp{.title = "Pressure difference: measured (one sample in 60) and fitted (lines)",
                  .x = time,
                  .y = {.label = "p_2 - p_1, psi"},
-                 .curves = {},
-                 .notes = {},
-                 .rules = {},
                  .height = 1.6};
   page::Panel low{
       .title =
           "The lower of the two pressures, above the accumulator's: leakage into it while the pump "
           "sticks",
       .x = time,
-      .y = {.label = "min(p_1, p_2) - p_3, psi"},
-      .curves = {},
-      .notes = {},
-      .rules = {}};
+      .y = {.label = "min(p_1, p_2) - p_3, psi"}};
   page::Panel residuals{.title = "Measured minus fitted, p_2 - p_1",
                         .x = time,
                         .y = {.label = "standard deviations of the noise"},
-                        .curves = {},
-                        .notes = {},
                         .rules = {{"", false, 0}}};
   for (size_t r = 0; r < runs.size(); ++r) {
     const runs::MeasuredRun& run = runs[r];
@@ -139,7 +131,7 @@ Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit&
     low.curves.push_back(low_line);
     residuals.curves.push_back(rest);
   }
-  return {"", {.caption = caption, .panels = {dp, low, residuals}, .drawing = ""}};
+  return {"", {.caption = caption, .panels = {dp, low, residuals}}};
 }
 
 // All runs one after the other, as measured and as simulated.

@@ -9,9 +9,8 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/torque_clamped.h"
-#include "experiments/studies/torque_driven.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/torque_runs.h"
 
 namespace hydro::experiments {
 namespace {
@@ -100,15 +99,11 @@ Picture StepPicture(const Study& study) {
   page::Panel response{.title = "Torque at the clamped arm after a step of the command",
                        .x = {.label = "time, s", .min = 0, .max = kUntil},
                        .y = {.label = "torque / command", .min = 0},
-                       .curves = {},
-                       .notes = {},
                        .rules = {{"command", false, 1}},
                        .height = 1.4};
   page::Panel motor{.title = "Motor torque",
                     .x = response.x,
                     .y = {.label = "T_p, in-lbf", .min = -50, .max = 50},
-                    .curves = {},
-                    .notes = {},
                     .rules = {{"T_pmax", false, PressureLoopParameters().T_pmax},
                               {"", false, -PressureLoopParameters().T_pmax}}};
   int colour = 0;
@@ -123,8 +118,7 @@ Picture StepPicture(const Study& study) {
   return {
       "",
       {.caption = "Torque commanded to the arm clamped at α = 0, from rest, eq. (16) without feed-forward.",
-       .panels = {response, motor},
-       .drawing = ""}};
+       .panels = {response, motor}}};
 }
 
 Picture BandwidthPicture(const Study& study) {
@@ -133,8 +127,6 @@ Picture BandwidthPicture(const Study& study) {
       .title = "Torque at the clamped arm per commanded torque",
       .x = frequency,
       .y = {.label = "gain, dB", .min = -30, .max = 5},
-      .curves = {},
-      .notes = {},
       .rules = {{"-3 dB of the command", false, -3},
                 {fmt::format("linear, both sides: {:.1f} Hz", LinearBandwidthHz(2)), true,
                  LinearBandwidthHz(2)},
@@ -143,12 +135,9 @@ Picture BandwidthPicture(const Study& study) {
   page::Panel coherence{.title = "Coherence",
                         .x = frequency,
                         .y = {.label = "coherence", .min = 0, .max = 1.05},
-                        .curves = {},
-                        .notes = {},
-                        .rules = {},
                         .height = 0.7};
   for (const TorqueSweep& sweep : study.sweeps) {
-    page::Curve gains{.label = SweepName(sweep), .x = {}, .y = {}, .y_low = {}, .y_high = {}};
+    page::Curve gains{.label = SweepName(sweep)};
     page::Curve coherences = gains;
     for (const design::ResponsePoint& point : sweep.points) {
       gains.x.push_back(point.frequency_hz);
@@ -164,8 +153,7 @@ Picture BandwidthPicture(const Study& study) {
                "Swept sines of the commanded torque, {} to {} Hz, arm clamped at α = 0. Bandwidths are where "
                "the gain is 3 dB below that at the lowest frequency.",
                kSweepFirst, kSweepLast),
-           .panels = {gain, coherence},
-           .drawing = ""}};
+           .panels = {gain, coherence}}};
 }
 
 Picture PathPicture(const Study& study) {
@@ -188,8 +176,6 @@ Picture PathPicture(const Study& study) {
                     .x = time,
                     .y = {.label = "α, rad"},
                     .curves = {SignalCurve("", without.run, without.run.arm_angle, 0, end)},
-                    .notes = {},
-                    .rules = {},
                     .height = 0.6};
   page::Panel arm{
       .title = "Torque at the arm",
@@ -201,23 +187,18 @@ Picture PathPicture(const Study& study) {
                  SignalCurve("closed form of both", without.run, expected(without), 3, end,
                              page::Stroke::kDotted),
                  SignalCurve("", with.run, expected(with), 3, end, page::Stroke::kDotted)},
-      .notes = {},
-      .rules = {},
       .height = 1.3};
   page::Panel error{
       .title = "Torque error with arm-speed feed-forward",
       .x = time,
       .y = {.label = "command - torque, in-lbf", .min = -80, .max = 80},
       .curves = {SignalCurve("run", with.run, with.error, 1, end),
-                 SignalCurve("closed form", with.run, with.closed_form, 3, end, page::Stroke::kDotted)},
-      .notes = {},
-      .rules = {}};
+                 SignalCurve("closed form", with.run, with.closed_form, 3, end, page::Stroke::kDotted)}};
   return {"-path",
           {.caption = fmt::format("The arm is moved from -0.1 to 0.1 rad and back at up to {:.2f} rad/s "
                                   "while the torque that carries it there is commanded.",
                                   with.largest_speed),
-           .panels = {angle, arm, error},
-           .drawing = ""}};
+           .panels = {angle, arm, error}}};
 }
 
 Picture SpeedPicture(const Study& study) {
@@ -225,23 +206,17 @@ Picture SpeedPicture(const Study& study) {
       .title = "Largest torque error along the path",
       .x = {.label = "largest speed of the arm, rad/s", .logarithmic = true, .min = 0.04, .max = 0.6},
       .y = {.label = "error, in-lbf", .logarithmic = true},
-      .curves = {},
-      .notes = {},
       .rules = {{"friction band", false, FrictionBandTorque()}}};
   for (const bool with : {false, true}) {
     page::Curve curve{.label = with ? "with arm-speed feed-forward" : "eq. (16)",
-                      .x = {},
-                      .y = {},
-                      .stroke = page::Stroke::kLinePoints,
-                      .y_low = {},
-                      .y_high = {}};
+                      .stroke = page::Stroke::kLinePoints};
     for (const TorqueOnPath& path : with ? study.paths_with : study.paths) {
       curve.x.push_back(path.largest_speed);
       curve.y.push_back(path.largest_error);
     }
     panel.curves.push_back(std::move(curve));
   }
-  return {"-speed", {.caption = "The same path at several speeds.", .panels = {panel}, .drawing = ""}};
+  return {"-speed", {.caption = "The same path at several speeds.", .panels = {panel}}};
 }
 
 json Numbers(const Study& study) {

@@ -12,7 +12,7 @@
 #include "experiments/figures/waves_study.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {
@@ -36,9 +36,7 @@ page::Panel TrialPanel(const GainTrial& trial) {
                                100 * trial.factor, trial.growth, trial.expected),
           .x = {.label = "time, s", .min = 0},
           .y = {.label = "dp, psi"},
-          .curves = {page::Line("", trial.time, trial.dp, 0)},
-          .notes = {},
-          .rules = {}};
+          .curves = {page::Line("", trial.time, trial.dp, 0)}};
 }
 
 std::string Conditions(const WavesStudy& study) {
@@ -94,25 +92,23 @@ std::string Explanation(const WavesStudy& study) {
 }
 
 std::vector<Comparison> Comparisons(const WavesStudy& study) {
-  return {
-      {"natural frequency of the waves", "Hz", "about 300", kWaveHz, study.mode_hz,
-       "expected: the effect's; the pump gives way a little"},
-      {"damping of the waves, open loop", "", "", kWaveDamping, study.mode_damping,
-       "expected: the line's; pump friction and leakage add"},
-      {"peak of the swept sine", "Hz", "about 300", study.closed_pole.imag() / (2 * std::numbers::pi),
-       study.peak.frequency_hz, "expected: the closed loop's pole"},
-      {"highest stable k_p, k_v as designed, analog", "V/psi", "", page::kAutomatic, study.highest_k_p(),
-       fmt::format("design: {:.4f}", study.gains.k_p)},
-      {"highest stable ω_n, ζ = .5, analog", "rad/s", "", page::kAutomatic, study.limits.natural_frequency,
-       "the paper's is 150"},
-      {"growth at 95 % of the limit, 5 kHz", "1/s", "", study.trials[0].expected, study.trials[0].growth,
-       "expected: eigenvalue of the sampled loop"},
-      {"growth at 105 % of the limit, 5 kHz", "1/s", "", study.trials[1].expected, study.trials[1].growth,
-       "the same"},
-      {"largest difference from the linearised loop, gain", "dB", "", 0, study.worst_db, "6 to 600 Hz"},
-      {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg,
-       "6 to 600 Hz"},
-  };
+  return {{"natural frequency of the waves", "Hz", "about 300", kWaveHz, study.mode_hz,
+           "expected: the effect's; the pump gives way a little"},
+          {"damping of the waves, open loop", "", "", kWaveDamping, study.mode_damping,
+           "expected: the line's; pump friction and leakage add"},
+          {"peak of the swept sine", "Hz", "about 300", study.closed_pole.imag() / (2 * std::numbers::pi),
+           study.peak.frequency_hz, "expected: the closed loop's pole"},
+          {"highest stable k_p, k_v as designed, analog", "V/psi", "", page::kAutomatic, study.highest_k_p(),
+           fmt::format("design: {:.4f}", study.gains.k_p)},
+          {"highest stable ω_n, ζ = .5, analog", "rad/s", "", page::kAutomatic,
+           study.limits.natural_frequency, "the paper's is 150"},
+          {"growth at 95 % of the limit, 5 kHz", "1/s", "", study.trials[0].expected, study.trials[0].growth,
+           "expected: eigenvalue of the sampled loop"},
+          {"growth at 105 % of the limit, 5 kHz", "1/s", "", study.trials[1].expected, study.trials[1].growth,
+           "the same"},
+          {"largest difference from the linearised loop, gain", "dB", "", 0, study.worst_db, "6 to 600 Hz"},
+          {"largest difference from the linearised loop, phase", "degrees", "", 0, study.worst_deg,
+           "6 to 600 Hz"}};
 }
 
 json ByVolume(const WavesStudy& study) {
@@ -204,8 +200,7 @@ Picture BodePicture(const WavesStudy& study) {
              page::Stroke::kLine, 1},
             {"without waves", Sampled(6, 600, [&](double hz) { return rigid.ClosedGain(gains, hz); }),
              page::Stroke::kDashed, 2}},
-           {{"paper: waves at 300 Hz", true, kWaveHz}}, -70),
-       .drawing = ""}};
+           {{"paper: waves at 300 Hz", true, kWaveHz}}, -70)}};
 }
 
 // The real part of the wave's pole over k_p, followed from gain to gain.
@@ -242,12 +237,10 @@ Picture GainPicture(const WavesStudy& study) {
                    .x = {.label = "k_p, V/psi", .min = 0},
                    .y = {.label = "growth of the wave, 1/s", .min = -kShownDecay, .max = 40},
                    .curves = growth,
-                   .notes = {},
                    .rules = {{"stable below", false, 0},
                              {fmt::format("design: {:.3f}", gains.k_p), true, gains.k_p}}},
                   TrialPanel(study.trials[0]),
-                  TrialPanel(study.trials[1])},
-       .drawing = ""}};
+                  TrialPanel(study.trials[1])}}};
 }
 
 Picture VolumePicture(const WavesStudy& study) {
@@ -269,9 +262,7 @@ Picture VolumePicture(const WavesStudy& study) {
                        .x = {.label = "volume at the pump, in^3", .min = 0, .max = 1.8},
                        .y = {.label = "frequency, Hz", .min = 0},
                        .curves = {closed_form, eigenvalues},
-                       .notes = {},
-                       .rules = {{"paper: about 300 Hz", false, kWaveHz}}}},
-           .drawing = ""}};
+                       .rules = {{"paper: about 300 Hz", false, kWaveHz}}}}}};
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/units.h"
-#include "experiments/runs/clamped_loop_config.h"
+#include "experiments/runs/pressure_sweep.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
 #include "settings/model_file.h"

@@ -1,4 +1,4 @@
-// The files of an experiment: NAME.json, NAME.csv, NAME.svg and further pictures.
+// What the user asks hydro-experiment to do, and its results as files and as text for a terminal.
 #pragma once
 
 #include <string>
@@ -8,6 +8,17 @@
 
 namespace hydro::experiments {
 
+// What the user asks hydro-experiment to do.
+struct ExperimentRequest {
+  std::string name = "all";                // or an experiment's name
+  std::string folder = "out/experiments";  // created if missing
+  int jobs = 2;  // number of experiments that run at the same time, and of threads of one
+  bool si = false;
+  bool real_time = false;  // for the record only; options.run_stack decides
+  ExperimentOptions options = {};
+};
+
+// The files of an experiment: NAME.json, NAME.csv, NAME.svg and further pictures.
 struct RenderedPicture {
   std::string name;  // NAME and the picture's suffix
   std::string svg;   // the file
@@ -27,5 +38,21 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
 // cannot be created there.
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
                           const tables::Table& table, const std::vector<RenderedPicture>& pictures);
+
+// Results as text for a terminal.
+
+// An aligned table with the columns quantity, paper, independent, here, unit, and with any remark below its
+// row. With `si`, units that have an SI equivalent are converted. The paper's value is converted when it is a
+// number; otherwise its unit is named beside it.
+std::string ComparisonsText(const std::vector<Comparison>& comparisons, bool si);
+
+// The same rows in SI units, for --si.
+std::vector<Comparison> InSi(const std::vector<Comparison>& comparisons);
+
+// A value for display: five digits; "-" for NaN.
+std::string ShownNumber(double value);
+
+// The whole text of an experiment: title, comparisons, explanation, findings.
+std::string SummaryText(const Experiment& experiment, const ExperimentResult& result, bool si);
 
 }  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/terminal_line.h"
+#include "base/standard_output.h"
 
 namespace hydro::experiments {
 

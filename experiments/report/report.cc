@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/report/comparison_text.h"
+#include "experiments/report/experiment_files.h"
 #include "page/html_page.h"
 #include "page/typeset.h"
 #include "settings/command_line.h"

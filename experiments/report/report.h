@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "experiments/report/experiment_files.h"
-#include "experiments/report/experiment_request.h"
 #include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {

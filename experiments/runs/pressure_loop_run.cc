@@ -131,8 +131,7 @@ double MeanError(const PressureLoopRun& run, double until, double length) {
 
 page::Curve SignalCurve(const std::string& label, const PressureLoopRun& run,
                         const std::vector<double>& values, int colour, double until, page::Stroke stroke) {
-  page::Curve curve{
-      .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+  page::Curve curve{.label = label, .stroke = stroke, .colour = colour};
   for (size_t i = 0; i < run.time.size() && run.time[i] <= until + 0.5 / kLoopRate; ++i) {
     curve.x.push_back(run.time[i]);
     curve.y.push_back(values[i]);

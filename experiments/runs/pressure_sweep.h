@@ -12,6 +12,20 @@
 
 namespace hydro::experiments {
 
+// The configuration of a stack that runs the pressure loop with the arm clamped.
+struct ClampedLoop {
+  double arm_angle = 0;         // rad
+  double initial_pressure = 0;  // psi
+  double duration = 0;          // s
+  double rate_hz = 0;
+  int delay_ticks = 0;  // 0: the command of tick k acts from tick k on
+  pressure_ctrl::PressureGains gains = {};
+  std::string reference;  // the keys of [reference] after its signal
+};
+
+// The reference is sampled at every tick; no pressure trips a fault. The model is model.toml.
+std::string ClampedLoopConfig(const ClampedLoop& loop);
+
 // One run: a sine whose frequency rises linearly through the band, from a quarter of its lower end to 1.4
 // times its upper end.
 struct SweptBand {

@@ -157,15 +157,8 @@ std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<
   page::Panel magnitude{.title = title,
                         .x = {.label = "frequency, Hz", .logarithmic = true},
                         .y = {.label = "gain dp/dp_ref, dB", .min = least_db},
-                        .curves = {},
-                        .notes = {},
                         .rules = vertical};
-  page::Panel phase{.title = "",
-                    .x = {.label = "frequency, Hz", .logarithmic = true},
-                    .y = {.label = "phase, degrees"},
-                    .curves = {},
-                    .notes = {},
-                    .rules = {}};
+  page::Panel phase{.x = {.label = "frequency, Hz", .logarithmic = true}, .y = {.label = "phase, degrees"}};
   for (page::Rule rule : vertical) {
     rule.label.clear();
     phase.rules.push_back(rule);
@@ -176,9 +169,7 @@ std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<
                      .x = parts.frequency,
                      .y = parts.gain_db,
                      .stroke = curve.stroke,
-                     .colour = curve.colour,
-                     .y_low = {},
-                     .y_high = {}};
+                     .colour = curve.colour};
     page::Curve angle = gain;
     angle.label.clear();
     angle.y = parts.phase_deg;
@@ -194,13 +185,8 @@ std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<
 
 std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
                                        const std::vector<BodeCurve>& measured) {
-  page::Panel coherence{.title = "",
-                        .x = panels.front().x,
-                        .y = {.label = "coherence", .min = 0, .max = 1.05},
-                        .curves = {},
-                        .notes = {},
-                        .rules = {},
-                        .height = 0.6};
+  page::Panel coherence{
+      .x = panels.front().x, .y = {.label = "coherence", .min = 0, .max = 1.05}, .height = 0.6};
   // The same range as the panels above, whose curves may extend beyond the points.
   std::vector<double> frequencies;
   for (const page::Curve& curve : panels.front().curves) {
@@ -211,13 +197,10 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
   coherence.x.max = *most;
   for (const BodeCurve& curve : measured) {
     const Parts parts(curve.points);
-    coherence.curves.push_back({.label = "",
-                                .x = parts.frequency,
+    coherence.curves.push_back({.x = parts.frequency,
                                 .y = parts.coherence,
                                 .stroke = page::Stroke::kPoints,
-                                .colour = curve.colour,
-                                .y_low = {},
-                                .y_high = {}});
+                                .colour = curve.colour});
   }
   panels.push_back(std::move(coherence));
   return panels;

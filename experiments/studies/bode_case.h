@@ -10,7 +10,7 @@
 
 #include "base/tables/table.h"
 #include "experiments/runs/pressure_sweep.h"
-#include "model/terms/mode.h"
+#include "model/terms/state.h"
 #include "page/plot.h"
 #include "tune/design/linear_loop.h"
 #include "tune/design/second_order_fit.h"

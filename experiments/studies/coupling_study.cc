@@ -6,9 +6,8 @@
 #include <stdexcept>
 
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
 #include "model/actuator.h"
-#include "model/arm/feed_forward.h"
+#include "model/arm/arm_coupling.h"
 #include "model/arm/planar_arm.h"
 #include "model/coupled_arm.h"
 #include "settings/stack_config.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/studies/torque_driven.h"
+#include "experiments/studies/torque_runs.h"
 #include "model/arm/arm_description.h"
 #include "model/terms/description.h"
 

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "base/maths/spread.h"
 #include "base/tables/table.h"
 #include "experiments/runs/stack_run.h"
 #include "page/plot.h"
@@ -72,5 +74,17 @@ struct Experiment {
 
 // All experiments, in the order of the paper and of the report.
 const std::vector<Experiment>& Experiments();
+
+// JSON to text and back: nlohmann's writer and parser, compiled once, because they cost seconds in each file
+// that uses them.
+
+// Indented by 2; values that are not finite become null.
+std::string JsonText(const nlohmann::json& value);
+
+// Throws nlohmann::json::parse_error.
+nlohmann::json ParseJson(const std::string& text);
+
+// [low, high].
+nlohmann::json IntervalJson(const maths::Estimate& estimate);
 
 }  // namespace hydro::experiments

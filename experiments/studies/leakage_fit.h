@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/maths/estimate.h"
+#include "base/maths/spread.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
 

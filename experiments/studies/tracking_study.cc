@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {
@@ -37,21 +37,18 @@ Picture WavePicture(const std::string& suffix, const std::string& caption, const
       .y = {.label = "p_2 - p_1, psi"},
       .curves = {SignalCurve("reference", without, without.reference, 5, kPictured, page::Stroke::kDashed),
                  SignalCurve("without feed-forward", without, without.dp, 0, kPictured)},
-      .notes = {},
-      .rules = {},
       .height = 1.5};
   page::Panel torque{
       .title = "Motor torque",
       .x = time,
       .y = {.label = "T_p, in-lbf", .min = -1.25 * limit, .max = 1.25 * limit},
       .curves = {SignalCurve("without feed-forward", without, without.torque, 0, kPictured)},
-      .notes = {},
       .rules = {{fmt::format("T_pmax = {} in-lbf", limit), false, limit}, {"", false, -limit}}};
   if (!with.time.empty()) {
     pressure.curves.push_back(SignalCurve("with feed-forward", with, with.dp, 1, kPictured));
     torque.curves.push_back(SignalCurve("with feed-forward", with, with.torque, 1, kPictured));
   }
-  return {suffix, {.caption = caption, .panels = {pressure, torque}, .drawing = ""}};
+  return {suffix, {.caption = caption, .panels = {pressure, torque}}};
 }
 
 json ErrorJson(const TrackingError& error) {
@@ -168,8 +165,7 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
       {"time at the torque limit, without feed-forward", "%", "", page::kAutomatic,
        100 * study.error.saturated_fraction, ""},
       {"time at the torque limit, with feed-forward", "%", "", page::kAutomatic,
-       100 * study.error_with.saturated_fraction, ""},
-  };
+       100 * study.error_with.saturated_fraction, ""}};
   result.numbers = JsonText(Numbers(study));
   result.table.columns = {{"time_s", study.wave.time},
                           {"pressure_ref_psi", study.wave.reference},

@@ -9,6 +9,7 @@
 
 #include "base/text_file.h"
 #include "launch/doctor/doctor_facts.h"
+#include "process/role.h"
 #include "settings/limb_config.h"
 
 namespace hydro::launch {
@@ -26,7 +27,8 @@ DoctorTask TaskOf(const std::string& config_file, const std::vector<std::string>
   DoctorTask task;
   if (config_file.empty()) {
     task.url = bus::ParseUdpmUrl(settings::BusSection().url);
-    task.priority = kUsualPriority;
+    task.priority = task.plant_priority = kUsualPriority;
+    task.rate_hz = settings::PlantSection().rate_hz;
     return task;
   }
   const settings::StackConfig config = settings::LoadCommonConfig(config_file, overrides);
@@ -42,6 +44,11 @@ DoctorTask TaskOf(const std::string& config_file, const std::vector<std::string>
     if (!IsOf(process, host)) continue;
     task.priority = std::max(task.priority, process.priority);
     if (process.cpu >= 0) task.cpus.push_back(process.cpu);
+    const std::string role = process.command.empty() ? process::RoleOf(process.program) : process.role;
+    if (config.time.mode != settings::TimeMode::kRealtime || !process::IsPlant(role)) continue;
+    task.rate_hz = config.plant.rate_hz * config.time.speed;
+    task.plant_priority = process.priority;
+    task.plant_cpu = process.cpu;
   }
   if (!host.empty() && host != "localhost" && !hosts.contains(host)) {
     throw InputError("--host " + host + ": no such host in the [[process]] sections of " + config_file);

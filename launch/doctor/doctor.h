@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bus/udpm/udpm_url.h"
+#include "launch/doctor/wake_ups.h"
 
 namespace hydro::launch {
 
@@ -31,6 +32,9 @@ struct DoctorTask {
   bool open_network = false;  // messages may come from other hosts, and nothing authenticates them
   int priority = 0;           // the highest SCHED_FIFO priority of its processes here; 0: none requests one
   std::vector<int> cpus;      // the processors that the processes request
+  double rate_hz = 0;         // of the plant's or driver's loop here, in real time; 0: there is none
+  int plant_priority = 0;     // its SCHED_FIFO priority
+  int plant_cpu = -1;         // its processor
   double stale_input_s = std::numeric_limits<double>::infinity();  // limits.stale_input_s, in real time
   std::string config;                                              // file; empty: none was given
 };
@@ -75,6 +79,7 @@ struct MachineFacts {
   ClockState clock = ClockState::kUnknown;
   int64_t clock_error_us = 0;  // the kernel's bound on the clock's error
   bool timesyncd = false;      // systemd-timesyncd is installed
+  WakeUps wake_ups;            // at DoctorTask::rate_hz
 };
 
 std::vector<Finding> Diagnose(const DoctorTask& task, const MachineFacts& facts);

@@ -15,9 +15,9 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "bus/channels.h"
-#include "bus/udpm/multicast_self_test.h"
 #include "bus/udpm/open_udpm_bus.h"
 
 namespace hydro::launch {
@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr auto kListenTime = 2s;  // every process of a stack reports once a second
+constexpr double kWakeUpTime_s = 1;
 
 // Returns an empty text when the file cannot be read.
 std::string TextOf(const fs::path& path) {
@@ -164,12 +165,18 @@ MachineFacts GatherFacts(const DoctorTask& task) {
   facts.firewall = Firewall();
   facts.receive_buffer_asked = task.url.recv_buf_size > 0 ? task.url.recv_buf_size : bus::kReceiveBufferBytes;
   facts.receive_buffer_bytes = ReceiveBuffer(facts.receive_buffer_asked);
+  // While the others are asked, as a stack's loops wake beside other work.
+  std::thread sleeper([&] {
+    if (task.rate_hz > 0)
+      facts.wake_ups = MeasureWakeUps(task.rate_hz, kWakeUpTime_s, task.plant_priority, task.plant_cpu);
+  });
   try {
     bus::TestMulticast(task.url);
     Listen(task, &facts);
   } catch (const bus::BusError& error) {
     facts.self_test_error = error.what();
   }
+  sleeper.join();
   facts.rtprio_limit = LimitOf(RLIMIT_RTPRIO);
   facts.memlock_limit = LimitOf(RLIMIT_MEMLOCK);
   facts.process_status = TextOf("/proc/self/status");

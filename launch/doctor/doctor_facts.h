@@ -6,7 +6,8 @@
 
 namespace hydro::launch {
 
-// Takes two seconds, during which it listens on the port; up to four when multicast packets do not come back.
+// Takes two seconds, during which it listens on the port and measures wake-ups; up to four when multicast
+// packets do not come back.
 MachineFacts GatherFacts(const DoctorTask& task);
 
 }  // namespace hydro::launch

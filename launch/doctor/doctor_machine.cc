@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "launch/doctor/doctor.h"
+#include "runs/timing/timing_report.h"
 
 namespace hydro::launch {
 namespace {
@@ -114,12 +115,27 @@ Finding ClockFinding(const DoctorTask& task, const MachineFacts& facts) {
           facts.timesyncd ? "timedatectl set-ntp true" : "apt-get install -y chrony"};
 }
 
+// As the advice after a run with skipped ticks judges them.
+Finding WakeUpFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "wake-ups";
+  const WakeUps& found = facts.wake_ups;
+  if (found.ticks == 0) return {kCheck, true, "no loop in real time here: nothing was measured", ""};
+  const std::string measured = fmt::format("{} of {} ticks skipped at {:.6g} Hz, the latest {:.1f} ms late",
+                                           found.skipped, found.ticks, task.rate_hz, 1e3 * found.latest_s);
+  if (!timing::ManySkipped(found.skipped, found.ticks)) return {kCheck, true, measured + ", now", ""};
+  return {kCheck, false,
+          measured + "; allowed are less than 1 %: this machine is too busy, or too slow for plant.rate_hz",
+          "ps -eo pcpu,pid,comm --sort=-pcpu | head -6    # end what need not run; " +
+              std::string(task.plant_priority > 0 ? "or a lower plant.rate_hz"
+                                                  : "or priority = 80 for the plant's [[process]]")};
+}
+
 }  // namespace
 
 std::vector<Finding> DiagnoseMachine(const DoctorTask& task, const MachineFacts& facts) {
   return {PriorityFinding(task, facts), MemoryFinding(task, facts),   CpuFinding(task, facts),
           KernelFinding(task, facts),   GovernorFinding(task, facts), SwapFinding(task, facts),
-          ClockFinding(task, facts)};
+          ClockFinding(task, facts),    WakeUpFinding(task, facts)};
 }
 
 }  // namespace hydro::launch

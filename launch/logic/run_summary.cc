@@ -111,14 +111,31 @@ std::vector<std::string> RunSummary::Lines() const {
                     Fitted(loop.latency_max_us, kLongestTime) + Fitted(loop.missed_deadlines, kMissed) +
                     Fitted(loop.lost_messages, kLost));
   }
-  for (const Fault& fault : faults_) {
-    lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
-                                fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
-                                fault.active ? ", still there at the end" : "",
-                                FirstBytes(fault.first.text, kLongestText)));
-  }
+  AppendFaults(&lines);
   AppendOutputs(&lines);
   return lines;
+}
+
+// A limit that the plant and the pressure loop both watch is passed once: what several see, in the same
+// words, has one line.
+void RunSummary::AppendFaults(std::vector<std::string>* lines) const {
+  const auto is_same = [](const Fault& one, const Fault& other) {
+    return one.first.code == other.first.code && one.first.text == other.first.text;
+  };
+  for (auto fault = faults_.begin(); fault != faults_.end(); ++fault) {
+    const auto same = [&](const Fault& other) { return is_same(*fault, other); };
+    if (std::any_of(faults_.begin(), fault, same)) continue;
+    std::string seen;
+    for (auto other = fault; other != faults_.end(); ++other) {
+      if (!same(*other)) continue;
+      seen += fmt::format("{}of {}, {}{}", seen.empty() ? "" : ", and ",
+                          bus::ReasonText(other->first.source, "an unnamed process"),
+                          other->times == 1 ? "once" : fmt::format("{} times", other->times),
+                          other->active ? ", still there at the end" : "");
+    }
+    lines->push_back(fmt::format("fault {} {}: {}", bus::ReasonText(fault->first.code, "without a name"),
+                                 seen, FirstBytes(bus::ReasonText(fault->first.text), kLongestText)));
+  }
 }
 
 void RunSummary::AppendOutputs(std::vector<std::string>* lines) const {
@@ -174,7 +191,8 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
 std::vector<std::string> RunSummary::FaultsLeft() const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
-    const std::string name = fault.first.code + " of " + fault.first.source;
+    const std::string name = bus::ReasonText(fault.first.code, "a fault without a name") + " of " +
+                             bus::ReasonText(fault.first.source, "an unnamed process");
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
     if (fault.active && !process::IsWarning(fault.first.code) && !known) left.push_back(name);
   }

@@ -30,10 +30,10 @@ class RunSummary {
   void Add(const fault_t& fault);
   void Add(const output_left_t& left);
 
-  // One line per process, one per kind of fault, and one per plant or driver on what it left. Percentiles
-  // come from the process's report on its whole run or, without one, from its last report that covers most of
-  // a second. The largest latency, missed deadlines and lost messages are those of the whole run. Empty when
-  // nothing was reported. Times are in microseconds, with or without --si.
+  // One line per process, one per fault whoever sees it, and one per plant or driver on what it left.
+  // Percentiles come from the process's report on its whole run or, without one, from its last report that
+  // covers most of a second. The largest latency, missed deadlines and lost messages are those of the whole
+  // run. Empty when nothing was reported. Times are in microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
   // Advice for when a plant, driver or limb has slept through a part of its ticks; empty when none has.
@@ -49,6 +49,7 @@ class RunSummary {
   std::vector<std::string> FaultsLeft() const;
 
  private:
+  void AppendFaults(std::vector<std::string>* lines) const;
   void AppendOutputs(std::vector<std::string>* lines) const;
 
   struct Loop {

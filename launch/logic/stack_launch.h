@@ -9,13 +9,33 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 #include "launch/logic/children.h"
-#include "launch/logic/launch_report.h"
-#include "launch/logic/plan.h"
+#include "launch/logic/run_summary.h"
 #include "launch/logic/stack_watch.h"
-#include "launch/logic/stop_announcer.h"
+#include "launch/logic/stop_sequence.h"
+#include "runs/timing/timing_record.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
+
+// What a launch reports to people: lines on a terminal, and files on how well the loops kept time.
+class LaunchReport {
+ public:
+  virtual ~LaunchReport() = default;
+
+  virtual void Print(const std::string& text) = 0;
+  virtual void PrintError(const std::string& text) = 0;
+
+  // Shows how the processes are doing, about once a second while the run goes on; an empty list means that it
+  // is over.
+  virtual void ShowStatus(const std::vector<ProcessStatus>& /*processes*/) {}
+
+  // Called when the launch is over; nothing is printed after it.
+  virtual void End(int /*exit_code*/) {}
+
+  // Writes how well the loops kept time and returns a line that says where; empty when that is not kept.
+  // Throws std::exception.
+  virtual std::string WriteTiming(const timing::TimingRecord& record) = 0;
+};
 
 class StackLaunch {
  public:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "bus/output_left.h"
 #include "launch/logic/stack_launch.h"
 #include "process/role.h"
 
@@ -106,7 +107,8 @@ void StackLaunch::OnStopHeard() {
   const stop_t& stop = *watch_.stop();
   // The stop's sender leaves at once, and the network may have lost its one message to another host.
   if (plan_.spread) stop_announcer_.Announce(stop.source + ": " + stop.reason, stop.exit_code);
-  const std::string text = "stopped by " + stop.source + ": " + stop.reason;
+  const std::string text = "stopped by " + bus::ReasonText(stop.source, "an unnamed process") + ": " +
+                           bus::ReasonText(stop.reason);
   if (stop.exit_code == 0) {
     Print(text);
   } else {

@@ -16,7 +16,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/hosted_process.h"
-#include "launch/logic/child.h"
+#include "launch/logic/children.h"
 #include "launch/logic/run_summary.h"
 #include "runs/timing/timing_record.h"
 #include "settings/stack_config.h"

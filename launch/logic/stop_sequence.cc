@@ -5,6 +5,33 @@
 #include <algorithm>
 
 namespace hydro::launch {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kTimesAtOnce = 3;
+constexpr int kRepeats = 5;
+constexpr auto kRepeatPeriod = 50ms;
+
+}  // namespace
+
+void StopAnnouncer::Announce(const std::string& reason, int exit_code) {
+  reason_ = reason;
+  exit_code_ = exit_code;
+  repeats_left_ = kRepeats;
+  for (int i = 0; i < kTimesAtOnce; ++i) PublishOnce();
+}
+
+void StopAnnouncer::Repeat() {
+  if (repeats_left_ == 0 || clock_.Now() < next_repeat_) return;
+  --repeats_left_;
+  PublishOnce();
+}
+
+void StopAnnouncer::PublishOnce() {
+  next_repeat_ = clock_.Now() + kRepeatPeriod;
+  publish_(reason_, exit_code_);
+}
 
 void StopSequence::Begin(TimePoint first_signal) {
   stop_at_ = stop_at_ ? std::min(*stop_at_, first_signal) : first_signal;

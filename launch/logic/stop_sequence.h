@@ -1,14 +1,19 @@
-// Decides in which order, and with how much patience, the children of a launch are stopped.
+// Decides how a stack is stopped: how often the stop is announced, in which order the children of a launch
+// are ended, and with how much patience.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bus/clock.h"
 
 namespace hydro::launch {
 
+// How much time the children have.
 struct Grace {
   bus::Clock::Duration child = std::chrono::seconds(3);  // from SIGTERM to SIGKILL
   bus::Clock::Duration last =
@@ -68,6 +73,38 @@ class StopSequence {
   std::vector<Step> children_;
   std::optional<TimePoint> stop_at_;
   std::optional<TimePoint> first_gone_at_;  // during a stop: when only the `last` children remained
+};
+
+// Announces a stop to every process of the stack, several times because UDP may lose messages.
+class StopAnnouncer {
+ public:
+  using TimePoint = bus::Clock::TimePoint;
+  // Publishes HYDRO_STOP once. Throws BusError.
+  using Publish = std::function<void(const std::string& reason, int exit_code)>;
+
+  StopAnnouncer(const bus::Clock& clock, Publish publish) : clock_(clock), publish_(std::move(publish)) {}
+
+  // Publishes a stop a few times at once; Repeat() publishes it a few times more. A later announcement
+  // replaces the one before it.
+  void Announce(const std::string& reason, int exit_code);
+
+  // Publishes the announced stop again when that is due. Call it often.
+  void Repeat();
+
+  bool announced() const { return !reason_.empty(); }
+  // Whether repetitions are left, and when the next is due.
+  bool repeating() const { return repeats_left_ > 0; }
+  TimePoint next_repeat() const { return next_repeat_; }
+
+ private:
+  void PublishOnce();
+
+  const bus::Clock& clock_;
+  Publish publish_;
+  std::string reason_;
+  int exit_code_ = 0;
+  int repeats_left_ = 0;
+  TimePoint next_repeat_;
 };
 
 }  // namespace hydro::launch

@@ -1,8 +1,10 @@
 #include "model/arm/arm_coupling.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
-#include "model/arm/factor.h"
+#include "model/arm/planar_arm.h"
 #include "model/terms/model_error.h"
 
 namespace hydro::model {
@@ -90,6 +92,27 @@ void ArmCoupling::Solve(const JointCoupling& at, const std::vector<double>& torq
                         std::vector<double>* x) const {
   for (int i = 0; i < joints(); ++i) (*x)[i] = at.held[i] ? 0 : torques[i] - work_[i];
   SolveFactored(joints(), factors_, *x);
+}
+
+void CouplingTorques(const PlanarArm& arm, std::span<const Parameters> joints, std::span<const double> angles,
+                     std::span<const double> speeds, std::span<const double> accelerations,
+                     std::span<double> torques) {
+  arm.JointTorques(angles, speeds, accelerations, torques);
+  for (size_t i = 0; i < joints.size(); ++i) {
+    torques[i] -= joints[i].J_a * accelerations[i] + joints[i].mgl * std::cos(angles[i]);
+  }
+}
+
+void SetOwnLoads(const PlanarArm& arm, std::span<const double> angles, std::span<Parameters> joints) {
+  const auto n = static_cast<size_t>(arm.links());
+  const ArmPose pose = arm.PoseAt(angles);
+  std::vector<double> matrix(n * n), gravity(n);
+  arm.MassMatrix(pose, matrix);
+  arm.Bias(pose, std::vector<double>(n), gravity);
+  for (size_t i = 0; i < n; ++i) {
+    joints[i].J_a = matrix[i + i * n];
+    joints[i].mgl = gravity[i] / std::cos(angles[i]);
+  }
 }
 
 }  // namespace hydro::model

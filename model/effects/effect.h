@@ -17,7 +17,6 @@
 
 #include "model/terms/measurement.h"
 #include "model/terms/parameter_info.h"
-#include "model/terms/power.h"
 #include "model/terms/state.h"
 #include "model/terms/terms.h"
 

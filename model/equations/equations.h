@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "model/terms/actuator_options.h"
-#include "model/terms/arm_load.h"
 #include "model/terms/description.h"
 #include "model/terms/measurement.h"
-#include "model/terms/mode.h"
 #include "model/terms/model_error.h"
-#include "model/terms/power.h"
 #include "model/terms/state.h"
-#include "model/terms/surroundings.h"
 #include "model/terms/terms.h"
 
 namespace hydro::model {

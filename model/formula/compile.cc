@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/did_you_mean.h"
+#include "base/word_list.h"
 #include "model/terms/state.h"
 
 namespace hydro::model {

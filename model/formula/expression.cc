@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 
 namespace hydro::model {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "model/formula/expression.h"
 #include "model/terms/measurement.h"
-#include "model/terms/mode.h"
+#include "model/terms/state.h"
 #include "model/terms/terms.h"
 
 namespace hydro::model {

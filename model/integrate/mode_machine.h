@@ -25,9 +25,7 @@
 #include "model/equations/evaluate.h"
 #include "model/equations/state_history.h"
 #include "model/integrate/event_search.h"
-#include "model/integrate/event_shift.h"
 #include "model/integrate/point.h"
-#include "model/integrate/where.h"
 
 namespace hydro::model {
 

@@ -1,7 +1,10 @@
 // A state together with everything that is known at it.
 #pragma once
 
-#include "model/terms/mode.h"
+#include <sstream>
+#include <string>
+
+#include "model/equations/evaluate.h"
 #include "model/terms/state.h"
 
 namespace hydro::model {
@@ -21,5 +24,18 @@ inline constexpr double kLongestStep = 1e-2;  // s
 
 // The longest step when states between the steps are read.
 inline constexpr double kLongestStepToRead = 2e-3;  // s
+
+// "... at t = 0.25 s, state motor_angle = 0, ...": describes where a simulation stands, for its error
+// messages.
+template <class T>
+std::string Where(const Equations& equations, const PointOf<T>& at) {
+  std::ostringstream out;
+  out.precision(10);
+  out << " at t = " << at.time << " s, state";
+  const auto names = equations.StateNames();
+  for (int i = 0; i < equations.states(); ++i)
+    out << (i == 0 ? " " : ", ") << names[i] << " = " << ValueOf(at.state[i]);
+  return out.str();
+}
 
 }  // namespace hydro::model

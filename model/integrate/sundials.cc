@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/integrate/where.h"
+#include "model/integrate/point.h"
 
 namespace hydro::model {
 namespace {

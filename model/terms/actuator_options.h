@@ -1,4 +1,4 @@
-// The conditions under which an actuator runs, and its integrator.
+// The conditions under which an actuator runs, the load on its arm, and its integrator.
 #pragma once
 
 #include <limits>
@@ -6,6 +6,8 @@
 #include "model/trajectory/trajectory.h"
 
 namespace hydro::model {
+
+// The conditions under which an actuator runs, and its integrator.
 
 // What holds the actuator's shaft.
 enum class Shaft { kFree, kClamped, kDriven };
@@ -31,6 +33,17 @@ struct ActuatorOptions {
   double begin = 0;
   // An effect may appear more than once. Derivatives by several effects of size zero need this.
   bool repeated_effects = false;
+};
+
+// The load that an arm puts on its actuator when it is part of something larger.
+
+// Replaces J_a and -mgl cos(alpha) of eq. (15): inertia alpha'' = k_2 dp + torque + torque_rate s +
+// torque_curve s^2, with s the time since the load was set.
+struct ArmLoad {
+  double inertia = 0;       // in-lbf-s^2, above 0
+  double torque = 0;        // in-lbf, in the direction of alpha
+  double torque_rate = 0;   // in-lbf/s
+  double torque_curve = 0;  // in-lbf/s^2
 };
 
 }  // namespace hydro::model

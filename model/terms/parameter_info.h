@@ -171,4 +171,18 @@ const EffectInfo* FindEffect(const EffectDescription& effect);
 // Whether one of the effect's parameters has the role; false for an unknown effect.
 bool HasRole(const std::string& effect, Role role);
 
+// What may be unknown in a model and in a run, a direction of derivatives: a quantity by which a response or
+// a balance is differentiated.
+struct Unknown {
+  enum class Kind {
+    kBase,    // a base parameter: `index` as in BaseParameters()
+    kEffect,  // a parameter of an effect: `index` as in EffectParameters()
+    kStart,   // a number of the start: `index` in StartState
+  };
+  Kind kind = Kind::kBase;
+  size_t index = 0;
+
+  bool operator==(const Unknown&) const = default;
+};
+
 }  // namespace hydro::model

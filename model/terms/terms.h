@@ -5,8 +5,8 @@
 
 #include "model/terms/description.h"
 #include "model/terms/jet.h"
-#include "model/terms/mode.h"
-#include "model/terms/surroundings.h"
+#include "model/terms/measurement.h"
+#include "model/terms/state.h"
 
 namespace hydro::model {
 

@@ -1,5 +1,6 @@
 // Values that are held until the next step.
 #include <algorithm>
+#include <cmath>
 
 #include "model/trajectory/checks.h"
 #include "model/trajectory/trajectory.h"
@@ -48,6 +49,65 @@ std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps) {
   RequireFinite("initial", initial);
   RequireIncreasing("step", steps);
   return std::make_unique<Steps>(initial, std::move(steps));
+}
+
+// A square wave.
+namespace {
+
+class Square : public Trajectory {
+ public:
+  Square(double offset, double amplitude, double frequency_hz, double start)
+      : offset_(offset), amplitude_(amplitude), frequency_(frequency_hz), start_(start) {}
+
+  double Value(double t) const override {
+    if (t < start_) return offset_;
+    return std::fmod(Half(t), 2) == 0 ? offset_ + amplitude_ : offset_ - amplitude_;
+  }
+  double Rate(double) const override { return 0; }
+  double NextBreak(double t) const override {
+    if (t < start_) return start_;
+    if (std::isinf(t)) return t;
+    const double next = Edge(Half(t) + 1);
+    // Where halves are shorter than the spacing of doubles, the next double is the nearest possible.
+    return next > t ? next : std::nextafter(t, std::numeric_limits<double>::infinity());
+  }
+  bool continuous() const override { return amplitude_ == 0; }
+  double Min() const override { return offset_ - std::abs(amplitude_); }
+  double Max() const override { return offset_ + std::abs(amplitude_); }
+
+ private:
+  // Start of half period k. A sample taken "at" an edge may lie a rounding error before it. Edges are moved
+  // forward in time by more than that error, so that they fall on the sample that a person expects.
+  double Edge(double k) const {
+    if (k == 0) return start_;
+    const double since_start = k / (2 * frequency_);
+    const double rounding =
+        4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(start_), since_start);
+    return std::max(start_, start_ + since_start - rounding);
+  }
+
+  // The half period, counted from 0, in which t (not before the start) lies.
+  double Half(double t) const {
+    const double k = std::floor((t - start_) * 2 * frequency_);
+    if (Edge(k + 1) <= t) return k + 1;
+    return k > 0 && Edge(k) > t ? k - 1 : k;
+  }
+
+  double offset_;
+  double amplitude_;
+  double frequency_;
+  double start_;
+};
+
+}  // namespace
+
+std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start) {
+  RequireFinite("offset", offset);
+  RequireFinite("amplitude", amplitude);
+  RequirePositive("frequency", frequency_hz);
+  RequireFinite("start", start);
+  RequireFinite("offset + amplitude", std::abs(offset) + std::abs(amplitude));
+  return std::make_unique<Square>(offset, amplitude, frequency_hz, start);
 }
 
 }  // namespace hydro::trajectory

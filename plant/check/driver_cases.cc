@@ -228,6 +228,8 @@ CaseResult RunDriverCase(const DriverCase& which, const TrialSettings& settings)
   DriverTrial trial(settings);
   try {
     return which.run(trial);
+  } catch (const NotBegun& error) {
+    return {.verdict = Verdict::kBroken, .found = error.what(), .begun = false};
   } catch (const std::runtime_error& error) {
     return Broken(error.what());
   }

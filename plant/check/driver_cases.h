@@ -11,7 +11,8 @@ namespace hydro::plant {
 struct CaseResult {
   enum class Verdict { kKept, kBroken, kNotTried };
   Verdict verdict = Verdict::kBroken;
-  std::string found;  // a few words
+  std::string found;  // a few words, or what the driver said
+  bool begun = true;  // false: the driver never was ready, so the case says nothing of its promise
 };
 
 struct DriverCase {

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kZero_V = 0.02;  // above half a step of a converter of 12 bits
 constexpr double kHeld_s = 0.08;  // longer than a half-wave of the loops' voltage
-constexpr double kReady_s = 10, kDriven_s = 10;
+constexpr double kDriven_s = 10;
+constexpr double kSays_s = 5;  // for a driver to say why, after it has waited for its device
 
 std::vector<std::string> OverridesFor(const TrialSettings& settings, const std::string& url) {
   std::vector<std::string> overrides = settings.overrides;
@@ -29,6 +30,7 @@ DriverTrial::DriverTrial(const TrialSettings& settings) {
   const settings::StackConfig config = settings::LoadStackConfig(settings.file, overrides);
   stale_s_ = config.limits.stale_input_s;
   tick_s_ = 1 / config.plant.rate_hz;
+  ready_s_ = config.time.start_timeout_s + kSays_s;
   device_.emplace(config);
   overrides.emplace_back("driver.simulated_device=[]");  // it is there already
   stack_.emplace(settings::LoadStackConfig(settings.file, overrides), overrides, settings.verbose);
@@ -37,19 +39,22 @@ DriverTrial::DriverTrial(const TrialSettings& settings) {
 bool DriverTrial::IsZero(double voltage) { return std::fabs(voltage) < kZero_V; }
 
 void DriverTrial::AwaitReady() {
-  if (stack_->Await([this] { return stack_->ready() || stack_->Ended(); }, kReady_s) && !stack_->Ended())
+  if (stack_->Await([this] { return stack_->ready() || stack_->Ended(); }, ready_s_) && !stack_->Ended())
     return;
+  throw NotBegun((stack_->Ended() ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
+                                  : "the driver has not said that it is ready") +
+                 WhatItSaid());
+}
+
+std::string DriverTrial::WhatItSaid() const {
   const std::string said = stack_->LastLine();
-  throw std::runtime_error((stack_->Ended()
-                                ? process::DescribeEnd("the driver", stack_->end()) + " as it began"
-                                : "the driver has not said that it is ready") +
-                           (said.empty() ? "" : "; it said: " + said));
+  return said.empty() ? "" : "; it said: " + said;
 }
 
 void DriverTrial::Drive() {
   AwaitReady();
   stack_->StartLoops();
-  if (!AwaitVoltage(kDriven_s)) throw std::runtime_error("the driver puts out no voltage");
+  if (!AwaitVoltage(kDriven_s)) throw std::runtime_error("the driver puts out no voltage" + WhatItSaid());
 }
 
 bool DriverTrial::AwaitVoltage(double limit_s) {

@@ -2,14 +2,21 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 
-#include "bus/udpm/reserved_port.h"
+#include "bus/udpm/udpm_url.h"
 #include "plant/check/checked_device.h"
 #include "plant/check/checked_stack.h"
 #include "plant/check/driver_cases.h"
 
 namespace hydro::plant {
+
+// The driver has ended before it was ready, or never was.
+class NotBegun : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class DriverTrial {
  public:
@@ -20,7 +27,8 @@ class DriverTrial {
   double stale_s() const { return stale_s_; }
   double tick_s() const { return tick_s_; }
 
-  // Waits until the driver has announced that it is ready. Throws std::runtime_error when it does not.
+  // Waits until the driver has announced that it is ready. Throws NotBegun, with what the driver said, when
+  // it does not.
   void AwaitReady();
   // Does the same, then lets the loops begin and waits for a voltage at the machine.
   void Drive();
@@ -38,8 +46,10 @@ class DriverTrial {
   static bool IsZero(double voltage);
 
  private:
+  std::string WhatItSaid() const;  // "; it said: ...", or nothing
+
   bus::ReservedPort port_;
-  double stale_s_, tick_s_;
+  double stale_s_, tick_s_, ready_s_;
   std::optional<CheckedDevice> device_;
   std::optional<CheckedStack> stack_;
 };

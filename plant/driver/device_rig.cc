@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "plant/driver/zero_output.h"
+#include "plant/driver/zero_guardian.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::plant {

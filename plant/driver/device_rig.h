@@ -19,8 +19,8 @@ namespace hydro::plant {
 class DeviceRig : public Rig {
  public:
   // Checks that the device has what [driver] names and writes zero volts. From then on the output goes to
-  // zero on every way out of the process (zero_output.h, zero_guardian.h). Throws InputError when the device
-  // lacks what the configuration names, RigError when it does not accept the zero.
+  // zero on every way out of the process (zero_guardian.h). Throws InputError when the device lacks what the
+  // configuration names, RigError when it does not accept the zero.
   DeviceRig(const settings::StackConfig& config, const bus::Clock& clock, std::unique_ptr<Device> device);
   // Writes zero volts, then closes the device.
   ~DeviceRig() override;

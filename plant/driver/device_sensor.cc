@@ -40,6 +40,7 @@ DeviceSensor::DeviceSensor(const DeviceDescription& device, const settings::Stac
                            const DeviceSensor* angle)
     : name_(name),
       section_(section),
+      ends_(CredibleEndsOf(config, name, section)),
       from_device_(section.source == Source::kAnalog || section.source == Source::kCounter),
       angle_(angle),
       patience_(bus::FromSeconds(config.limits.stale_input_s)),
@@ -66,7 +67,8 @@ void DeviceSensor::Interrupt() {
 double DeviceSensor::Signal(const DeviceReadings& readings, bus::Clock::TimePoint now) {
   if (!from_device_) {
     elapsed_s_ = angle_->elapsed_s_;
-    return derivative_.Update(angle_->unfiltered_, elapsed_s_);  // the angle raises the fault, if any
+    const double rate = derivative_.Update(angle_->unfiltered_, elapsed_s_);
+    return std::isnan(rate) ? rate : Believed(rate);  // without an angle, the fault is the angle's
   }
   reading_ = readings.inputs[index_];
   elapsed_s_ = read_at_ ? bus::ToSeconds(reading_.at - *read_at_) : 0;
@@ -105,8 +107,17 @@ double DeviceSensor::Value() {
                           fmt::arg("unit", input_.unit)),
         value, std::isnan(limit) ? value : limit);
   }
+  return Believed(section_.scale * value + section_.offset);
+}
+
+double DeviceSensor::Believed(double signal) {
+  if (!ends_.Contain(signal)) {
+    return NotCredible(fmt::format("{} is {:.6g} {}, which is not credible: allowed is {}", name_, signal,
+                                   ends_.unit, ends_.Allowed(signal)),
+                       signal, signal < ends_.low.value ? ends_.low.value : ends_.high.value);
+  }
   Judge(true);
-  return section_.scale * value + section_.offset;
+  return signal;
 }
 
 double DeviceSensor::Counted() {
@@ -123,8 +134,7 @@ double DeviceSensor::Counted() {
                                "more since the last reading; the angle is lost",
                                name_, input_.highest_count));
   }
-  Judge(true);
-  return section_.scale * static_cast<double>(*count) + section_.offset;
+  return Believed(section_.scale * static_cast<double>(*count) + section_.offset);
 }
 
 // Several good readings in a row end the fault: a loose contact must not switch the voltage on and off at

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bus/clock.h"
+#include "plant/credible_ends.h"
 #include "plant/driver/device.h"
 #include "plant/driver/signal_conditioning.h"
 #include "plant/rig.h"
@@ -24,8 +25,9 @@ class DeviceSensor {
 
   // The signal that these readings give. Rates and low passes use the time of the reading, so that a late
   // wake-up causes no false speed. NaN: not measured, or not credible (no number, older than
-  // limits.stale_input_s, at an end of the input's range or outside what the configuration allows). Throws
-  // RigError "encoder_lost" when a counter has moved too far to be followed.
+  // limits.stale_input_s, at an end of the input's range, outside what the configuration allows, or beyond
+  // what such a signal can be, credible_ends.h). Throws RigError "encoder_lost" when a counter has moved too
+  // far to be followed.
   double Take(const DeviceReadings& readings, bus::Clock::TimePoint now);
 
   // Call it when the device is silent: there is no signal, and filters and rates start again.
@@ -45,12 +47,14 @@ class DeviceSensor {
  private:
   double Signal(const DeviceReadings& readings, bus::Clock::TimePoint now);
   double Value();
+  double Believed(double signal);
   double Counted();
   double NotCredible(std::string text, double found, double allowed);
   void Judge(bool good);
 
   std::string name_;
   settings::SensorSection section_;
+  CredibleEnds ends_;
   bool from_device_;
   const DeviceSensor* angle_;
   bus::Clock::Duration patience_;

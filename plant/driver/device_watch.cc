@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bus/output_left.h"
+
 namespace hydro::plant {
 
 DeviceWatch::DeviceWatch(const DeviceDescription& description, bus::Clock::Duration patience,
@@ -29,7 +31,9 @@ bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now
                        found, allowed});
   }
   if (!readings.fault.empty()) {
-    faults->push_back({"device_fault", fmt::format("{} reports {}", name_, readings.fault)});
+    faults->push_back(
+        {"device_fault",
+         fmt::format("{} reports {}", name_, bus::ReasonText(readings.fault, "a fault without words"))});
   }
   LookAtOutput(readings.output, now, faults);
   return silent;

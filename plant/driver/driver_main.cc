@@ -1,22 +1,99 @@
 #include "plant/driver/driver_main.h"
 
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "plant/driver/check_sensors.h"
+#include "plant/driver/device.h"
 #include "plant/driver/device_rig.h"
-#include "plant/driver/stand_in.h"
 #include "plant/plant_app.h"
+#include "process/child_lines.h"
+#include "process/own_program.h"
 #include "process/process_main.h"
+#include "process/spawn.h"
 #include "process/stop_signal.h"
 #include "process/supervision.h"
 #include "process/timing/real_time.h"
 #include "settings/process_sections.h"
+#include "settings/stack_config.h"
 
 namespace hydro::plant {
 namespace {
+
+constexpr std::chrono::seconds kStart(5);  // of the program that stands for the device
+constexpr int kExit_ms = 1000;             // its time to end
+
+// driver.simulated_device: a program that stands for a device and that the driver starts and ends.
+class StandIn {
+ public:
+  // If the configuration names a program, starts it in the configuration's folder and waits for its line
+  // "ready". Throws InputError when there is no such program, RigError when it does not become ready.
+  explicit StandIn(const settings::StackConfig& config);
+  ~StandIn() { End(); }
+  StandIn(const StandIn&) = delete;
+  StandIn& operator=(const StandIn&) = delete;
+
+ private:
+  void End();
+
+  pid_t pid_ = -1;
+};
+
+StandIn::StandIn(const settings::StackConfig& config) {
+  const std::vector<std::string>& command = config.driver->simulated_device;
+  if (command.empty()) return;
+  const std::string folder = std::filesystem::absolute(config.file).lexically_normal().parent_path().string();
+  process::SpawnRequest request;
+  request.argv = command;
+  request.argv.front() =
+      process::FindOwnProgram(command.front(), folder, config.file + ": driver.simulated_device");
+  request.folder = folder;
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw DeviceError("driver.simulated_device: cannot make a pipe for it: " + process::ReasonOf(errno));
+  }
+  request.out = ends[1];
+  try {
+    pid_ = process::Spawn(request).pid;
+  } catch (...) {
+    close(ends[0]);
+    close(ends[1]);
+    throw;
+  }
+  close(ends[1]);
+  const std::string instead =
+      process::ChildLines(ends[0]).Await("ready", std::chrono::steady_clock::now() + kStart);
+  close(ends[0]);  // the program ignores SIGPIPE; its further output is lost
+  if (!instead.empty()) {
+    End();
+    throw DeviceError("driver.simulated_device: " + command.front() + " must say \"ready\" within " +
+                      std::to_string(kStart.count()) + " s, but " + instead +
+                      "; start it by hand to see why");
+  }
+  spdlog::warn("{} stands for the device (driver.simulated_device): nothing real moves", command.front());
+}
+
+void StandIn::End() {
+  if (pid_ < 0) return;
+  kill(-pid_, SIGTERM);  // and what it has started
+  for (int i = 0; i < kExit_ms; ++i) {
+    if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
+    usleep(1000);
+  }
+  kill(-pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
 
 constexpr char kOurs[] = "hydro-driver";
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "plant/driver/zero_output.h"
+#include "plant/driver/zero_guardian.h"
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro::plant {

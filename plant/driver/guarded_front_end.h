@@ -13,9 +13,9 @@
 namespace hydro::plant {
 
 // Connects to the device. From then on, each way out of this process in which the process can still act first
-// asks the device for zero volts (zero_output.h). After any other way out its guardian, which shares the open
-// link, asks for them (zero_guardian.h). If that fails too, the device hears nothing and goes to zero volts
-// by itself (driver.watchdog_s).
+// asks the device for zero volts. After any other way out its guardian, which shares the open link, asks for
+// them (zero_guardian.h). If that fails too, the device hears nothing and goes to zero volts by itself
+// (driver.watchdog_s).
 class GuardedFrontEnd : public FrontEndRig {
  public:
   // Throws InputError like FrontEndRig::Connect().
@@ -27,7 +27,7 @@ class GuardedFrontEnd : public FrontEndRig {
  private:
   void OnLink(int descriptor) override;
 
-  // The rig as far as zero_output.h needs one.
+  // The rig as far as zero_guardian.h needs one.
   class ZeroRequest : public Device {
    public:
     ZeroRequest(const FrontEndRig& rig, bool drains) : rig_(rig), drains_(drains) {}

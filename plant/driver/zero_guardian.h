@@ -1,5 +1,5 @@
-// A second process that writes zero volts when the first one cannot: after SIGKILL, the out-of-memory killer
-// or _exit().
+// The one write that must always work, zero volts at the amplifier: while this process can still act, and
+// after it.
 #pragma once
 
 #include <sys/types.h>
@@ -10,6 +10,19 @@
 
 namespace hydro::plant {
 
+// Has `device` put out `zero`, and tries again when the device refuses. As async-signal-safe as
+// Device::Zero(); preserves errno. Returns whether the device took it.
+bool WriteZeroTo(Device& device, double zero) noexcept;
+
+// From now on every way out of this process in which it can still act has `device` put out `zero` first:
+// exit(), quick_exit(), std::terminate (an uncaught exception) and every signal that ends or stops a process,
+// except SIGKILL, SIGSTOP and those that already have a handler. The signal then takes its default action.
+// This lasts until DisarmZero(). A process can arm one device; call ArmZero() after CatchStopSignals().
+void ArmZero(Device& device, double zero);
+void DisarmZero();
+
+// A second process that writes zero volts when the first one cannot: after SIGKILL, the out-of-memory killer
+// or _exit().
 class ZeroGuardian {
  public:
   // Forks a child that shares the open device and sleeps until this process has gone. The child then has

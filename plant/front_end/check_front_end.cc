@@ -6,8 +6,9 @@
 #include <cstdio>
 #include <string>
 
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 #include "plant/front_end/front_end_rig.h"
+#include "plant/front_end/front_end_settings.h"
 #include "plant/front_end/refusals.h"
 #include "process/stop_signal.h"
 
@@ -46,8 +47,7 @@ void PrintTable(const settings::StackConfig& config, const model::Measurement& m
   const std::array<double, HYDRO_SENSORS> values = {measured.p1,          measured.p2,
                                                     measured.motor_angle, measured.motor_speed,
                                                     measured.arm_angle,   measured.arm_speed};
-  const std::array<const settings::SensorSection*, HYDRO_SENSORS> sections = {
-      &driver.p1, &driver.p2, &driver.motor_angle, &driver.motor_speed, &driver.arm_angle, &driver.arm_speed};
+  const auto sections = SensorSections(driver);
   for (int i = 0; i < HYDRO_SENSORS; ++i) {
     const double value = values[static_cast<size_t>(i)];
     const std::string signal =

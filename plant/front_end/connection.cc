@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
@@ -28,6 +29,14 @@ bool SameSettings(const hydro_settings& a, const hydro_settings& b) {
   const size_t bytes = hydro_encode(&frame, wires[0].data());
   frame.body.settings = b;
   return hydro_encode(&frame, wires[1].data()) == bytes && wires[0] == wires[1];
+}
+
+// Whether what a device says of itself and what cannot change without a reset is the same.
+bool SameDevice(const hydro_identity& a, const hydro_identity& b) {
+  return a.boot == b.boot && a.modes == b.modes && a.tick_rate_hz == b.tick_rate_hz &&
+         a.analog_inputs == b.analog_inputs && a.counters == b.counters && a.output_min_V == b.output_min_V &&
+         a.output_max_V == b.output_max_V && std::equal(a.firmware, a.firmware + 3, b.firmware) &&
+         std::equal(a.board, a.board + HYDRO_BOARD_NAME_BYTES, b.board);
 }
 
 }  // namespace
@@ -115,12 +124,13 @@ void Connection::OnIdentity(const hydro_frame& frame) {
     return;
   }
   const hydro_identity& identity = frame.body.identity;
-  const bool another = !identified_ || identity.boot != identity_.boot;
+  const bool another = !identified_ || !SameDevice(identity, identity_);
   if (another) heard_ = false;  // the device's sequence begins anew
   if (!IsNewer(frame)) {
     ++counts_.refused;
     return;
   }
+  other_protocol_ = 0;
   if (another && identified_ && was_up_) ++resets_;
   identified_ = true;
   identity_ = identity;

@@ -55,6 +55,9 @@ class Connection {
   const FrameCounts& counts() const { return counts_; }
   const Link& link() const { return *link_; }
 
+  // Whether a front end answers, but none of this protocol has.
+  bool hears_another_protocol() const { return other_protocol_ != 0; }
+
   // Why there is no connection yet, for a message: what was found and what is allowed.
   LinkTrouble WhyNot() const;
 
@@ -105,8 +108,8 @@ class Connection {
   bool heard_ = false;          // whether a frame of this device came; the next is judged by its sequence
   uint32_t newest_ = 0;         // its sequence
   int64_t bytes_ = 0;
-  int64_t echoes_ = 0;  // our own frames that came back
-  uint8_t other_protocol_ = 0;
+  int64_t echoes_ = 0;          // our own frames that came back
+  uint8_t other_protocol_ = 0;  // of the device that answers; 0: it is ours
 
   hydro_identity identity_{};
   bool identified_ = false;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/text_file.h"
-#include "bus/sleep_until.h"
+#include "bus/clock.h"
 #include "plant/front_end/front_end_settings.h"
 #include "plant/front_end/refusals.h"
 #include "process/stop_signal.h"
@@ -24,6 +24,7 @@ using Source = settings::SensorSection::Source;
 constexpr auto kTurn = 1ms;           // between two turns of a waiting function
 constexpr auto kZeroRepeat = 10ms;    // a lost ZERO is sent again
 constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of this
+constexpr auto kForeign = 300ms;      // a device asked this long answers several times
 constexpr double kNearZero = 0.05;    // V; offsets of converters are below it
 constexpr double kSampleBytes = 107;  // on the wire
 constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop bits
@@ -33,19 +34,12 @@ uint32_t RandomSession() {
   return std::uniform_int_distribution<uint32_t>(1)(random);
 }
 
-double SecondsOf(double ticks, double ticks_per_s) { return ticks / ticks_per_s; }
-
-// Whether the reading of an analog input is one that its settings allow; other kinds have no ends. A little
-// beyond an end is the rounding of single precision.
-bool MayRead(const hydro_sensor_settings& sensor, float value) {
-  if (sensor.kind != HYDRO_SENSOR_ANALOG || !std::isfinite(value)) return true;
-  const double ends[] = {static_cast<double>(sensor.scale) * sensor.minimum_V + sensor.offset,
-                         static_cast<double>(sensor.scale) * sensor.maximum_V + sensor.offset};
-  const auto [low, high] = std::minmax(ends[0], ends[1]);
-  const auto room = [&](double end) {
-    return std::isfinite(end) ? 1e-5 * (std::fabs(end) + std::fabs(sensor.scale)) : 0;
-  };
-  return !(value < low - room(low)) && !(value > high + room(high));
+SensorEnds EndsOf(const settings::StackConfig& config) {
+  const auto sections = SensorSections(*config.driver);
+  SensorEnds ends;
+  for (size_t i = 0; i < ends.size(); ++i)
+    ends[i] = CredibleEndsOf(config, SensorName(static_cast<int>(i)), *sections[i]);
+  return ends;
 }
 
 }  // namespace
@@ -62,7 +56,9 @@ FrontEndRig::FrontEndRig(const settings::StackConfig& config, const bus::Clock& 
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       ticks_per_s_(config.plant.rate_hz),
       voltage_limit_(config.driver->voltage.limit_V),
-      output_(*config.driver, stale_time_, bus::FromSeconds(config.limits.transfer_s)) {
+      output_(*config.driver, stale_time_, bus::FromSeconds(config.limits.transfer_s)),
+      ends_(EndsOf(config)),
+      watch_(ends_) {
   CheckSpeed();
 }
 
@@ -110,9 +106,14 @@ void FrontEndRig::Connect() {
     return settings::KeyError(config_.file, "driver.url", trouble.found + when, trouble.allowed);
   };
   const auto deadline = clock_.Now() + bus::FromSeconds(config_.time.start_timeout_s);
+  std::optional<bus::Clock::TimePoint> foreign_since;
   bool done = Poll();
   if (!connection_.link_is_open()) throw refuse(connection_.WhyNot(), "");
   while (!done && process::StopSignal() == 0) {
+    // Waiting gives a device no other firmware; but one wrong answer may come from somewhere else.
+    if (!connection_.hears_another_protocol()) foreign_since.reset();
+    if (connection_.hears_another_protocol() && !foreign_since) foreign_since = now_;
+    if (foreign_since && now_ - *foreign_since > kForeign) throw refuse(connection_.WhyNot(), "");
     if (now_ >= deadline) {
       throw refuse(connection_.WhyNot(),
                    fmt::format(" at {} within {} s (time.start_timeout_s)", config_.driver->front_end.url,
@@ -137,11 +138,13 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   if (FindSilence()) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     driving_since_.reset();
+    watch_.Forget();
     return {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   }
   read_ = connection_.sample();
   has_read_back_ |= !std::isnan(read_.read_back);
   FindSensorFaults(read_);
+  FindContradictions();
   FindDeviceFaults(read_);
   FindUnaskedArming(read_);
   FindOldCommands(read_);
@@ -164,7 +167,10 @@ std::optional<int64_t> FrontEndRig::Arrived() {
   polled_ = true;
   const int64_t before = std::exchange(arrived_before_, connection_.counts().samples);
   if (!connection_.is_up() || arrived_before_ == before) return std::nullopt;
-  return static_cast<int64_t>(connection_.sample().tick / connection_.settings().sample_interval_ticks);
+  // Ticks that a device makes up must not overflow what is added to them.
+  constexpr uint64_t kMost = std::numeric_limits<int64_t>::max() / 2;
+  return static_cast<int64_t>(connection_.sample().tick / connection_.settings().sample_interval_ticks %
+                              kMost);
 }
 
 // Meanwhile, no other program shall take the device, and no old samples shall queue up.
@@ -199,141 +205,6 @@ model::Measurement FrontEndRig::Measured() {
   return measured;
 }
 
-void FrontEndRig::Add(std::string code, std::string text, double value, double limit) {
-  faults_.push_back({std::move(code), std::move(text), value, limit});
-}
-
-// Returns true when the newest sample no longer counts.
-bool FrontEndRig::FindSilence() {
-  const double silence = bus::ToSeconds(now_ - connection_.sampled_at());
-  const double allowed = config_.limits.stale_input_s;
-  const std::string& url = config_.driver->front_end.url;
-  if (!connection_.link_is_open()) {
-    Add("device_silent",
-        fmt::format("the link to {} is cut; allowed is one that stays: plug it in again", url), silence,
-        allowed);
-    return true;
-  }
-  if (resets_ != connection_.resets()) {
-    Add("device_fault",
-        fmt::format("the front end at {} has reset itself; allowed is one that keeps its supply: it gets its "
-                    "settings anew",
-                    url));
-    if (connection_.is_up()) resets_ = connection_.resets();
-    trips_.reset();
-    motor_count_.Forget();
-    arm_count_.Forget();
-    return true;
-  }
-  if (connection_.is_up() && now_ - connection_.sampled_at() <= stale_time_) return false;
-  Add("device_silent",
-      fmt::format("no sample from {} for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)", url,
-                  1e3 * silence, 1e3 * allowed),
-      silence, allowed);
-  return true;
-}
-
-// A signal that is not a number is missing, whatever the device reports. A rate that is missing is a fault of
-// its angle.
-void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
-  const bool answered = (sample.faults_present & HYDRO_FAULT_CONVERTER) == 0;
-  for (int i = 0; i < HYDRO_SENSORS; ++i) {
-    const uint8_t kind = connection_.settings().sensors[i].kind;
-    const bool by_device = (sample.sensor_faults & (1 << i)) != 0;
-    const bool of_angle = kind == HYDRO_SENSOR_RATE && !std::isfinite(sample.value[i - 1]);
-    const bool expected = kind != HYDRO_SENSOR_NONE && answered && !of_angle;
-    const std::string code = std::string("sensor_") + SensorName(i);
-    if (by_device) {
-      Add(code, fmt::format("the front end's reading of {} is not credible: an end of its range, or outside "
-                            "of what driver.{} allows",
-                            SensorName(i), SensorName(i)));
-    } else if (expected && !MayRead(connection_.settings().sensors[i], sample.value[i])) {
-      Add(code,
-          fmt::format("the front end gives {:.6g} for {} and reports no fault of it; driver.{} allows no "
-                      "such reading",
-                      sample.value[i], SensorName(i), SensorName(i)));
-      read_.value[i] = std::numeric_limits<float>::quiet_NaN();
-    } else if (expected && !std::isfinite(sample.value[i])) {
-      Add(code, fmt::format("the front end gives {} for {} and reports no fault of it; allowed is a number",
-                            sample.value[i], SensorName(i)));
-    }
-    // No process shall take this value for a signal.
-    if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
-void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
-  if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
-    output_.Look(sample, Range(), connection_.settings().sample_interval_ticks, now_, &faults_);
-  } else {
-    Add("output_differs",
-        fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V", sample.read_back,
-                    sample.voltage),
-        sample.read_back, sample.voltage);
-  }
-  const bool tripped = trips_ && *trips_ != sample.trips;
-  constexpr unsigned kNamed = HYDRO_FAULT_SENSOR | HYDRO_FAULT_READ_BACK;
-  const unsigned others = sample.faults_present & ~kNamed;
-  if (others != 0 || tripped) {
-    Add("device_fault",
-        fmt::format(
-            "the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",
-            DescribeDeviceFaults(static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U)))));
-  }
-}
-
-// Armed, it may drive at any moment. The answer to a request may be late, and is then a fault of its own.
-void FrontEndRig::FindUnaskedArming(const hydro_sample& sample) {
-  if (sample.state != HYDRO_ARMED) {
-    if (asked_to_arm_at_ && now_ - *asked_to_arm_at_ > 2 * stale_time_) asked_to_arm_at_.reset();
-    return;
-  }
-  if (asked_to_arm_at_) return;
-  Add("device_fault",
-      fmt::format("the front end says that it is armed with {:.4g} V and was not asked to arm; allowed is "
-                  "one that arms "
-                  "when it is asked: cut the amplifier's supply",
-                  sample.voltage),
-      sample.voltage, 0);
-}
-
-// Its samples may be current and yet tell that it does not get what it is sent; or they are old ones that
-// were queued somewhere.
-void FrontEndRig::FindOldCommands(const hydro_sample& sample) {
-  const double allowed = config_.limits.stale_input_s;
-  if (arming_since_ && now_ - *arming_since_ > stale_time_ && sample.state != HYDRO_ARMED) {
-    const double waited = bus::ToSeconds(now_ - *arming_since_);
-    Add("device_fault",
-        fmt::format("the front end was asked to arm {:.0f} ms ago and has not, allowed are {:.0f} ms",
-                    1e3 * waited, 1e3 * allowed),
-        waited, allowed);
-  }
-  if (!driving_since_ || sample.state != HYDRO_ARMED) return;
-  const auto age = static_cast<double>(tick_ - std::max(sample.host_tick, *driving_since_));
-  if (sample.source != HYDRO_SOURCE_ZERO && sample.host_tick > tick_) {
-    Add("output_differs",
-        fmt::format("the front end says that it acts by a command for tick {}; the newest is for tick {}",
-                    sample.host_tick, tick_));
-    return;
-  }
-  if (age <= allowed * ticks_per_s_ + 1) {
-    // Its own word on the tick of a command is not all: the command's number tells when it was sent.
-    if (output_.ActsByAnOldCommand(sample)) {
-      Add("device_silent",
-          fmt::format(
-              "the front end acts by a command that was sent more than {:.0f} ms ago, allowed are {:.0f} ms "
-              "(limits.stale_input_s)",
-              1e3 * allowed, 1e3 * allowed));
-    }
-    return;
-  }
-  Add("device_silent",
-      fmt::format(
-          "the front end obeys commands of {:.0f} ms ago, allowed are {:.0f} ms (limits.stale_input_s)",
-          1e3 * SecondsOf(age, ticks_per_s_), 1e3 * allowed),
-      SecondsOf(age, ticks_per_s_), allowed);
-}
-
 double FrontEndRig::Drive(double voltage) {
   // The motor command of a loop on the device is its answer to the very state that was read.
   acting_command_tick_ = output_.ActsByLaw(read_) ? tick_ : output_.CommandTick(read_);
@@ -356,6 +227,8 @@ double FrontEndRig::Drive(double voltage) {
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
+    // A device that was asked to arm may say falsely that it is not armed, and hold its last voltage.
+    if (asked_to_arm_at_ && !faults_.empty()) connection_.AskForZero(now_);
     connection_.KeepAlive(now_);
   } else if (armed && obeys && followed_) {
     if (!followed_->sent) SendFollowed();

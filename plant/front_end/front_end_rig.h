@@ -14,6 +14,7 @@
 #include "bus/clock.h"
 #include "plant/front_end/connection.h"
 #include "plant/front_end/output_watch.h"
+#include "plant/front_end/sample_watch.h"
 #include "plant/rig.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/stack_config.h"
@@ -119,6 +120,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   bool FindSilence();
   void TakeTurn();
   void FindSensorFaults(const hydro_sample& sample);
+  void FindContradictions();
   void FindDeviceFaults(const hydro_sample& sample);
   void FindUnaskedArming(const hydro_sample& sample);
   void FindOldCommands(const hydro_sample& sample);
@@ -131,6 +133,8 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   const double ticks_per_s_;
   const double voltage_limit_;  // V, +/-
   OutputWatch output_;
+  const SensorEnds ends_;
+  SampleWatch watch_;
   std::vector<RigFault> faults_;
   std::function<void()> beside_;
 

@@ -79,11 +79,15 @@ hydro_sensor_settings SensorSettings(const settings::StackConfig& config, const 
   return sensor;
 }
 
+constexpr int kModes = 3;  // the bits of both modes
+
 void CheckMode(const settings::StackConfig& config, const hydro_identity& identity, int mode) {
   if ((identity.modes & (1 << (mode - 1))) != 0) return;
   throw KeyError(config.file, "driver.mode", mode == HYDRO_REMOTE_IO ? "\"remote_io\"" : "\"loop_on_device\"",
-                 fmt::format("a mode that the front end has: {}",
-                             mode == HYDRO_REMOTE_IO ? "\"loop_on_device\"" : "\"remote_io\""));
+                 (identity.modes & kModes) == 0
+                     ? std::string("a front end with a mode of this version; this one names none")
+                     : fmt::format("a mode that the front end has: {}",
+                                   mode == HYDRO_REMOTE_IO ? "\"loop_on_device\"" : "\"remote_io\""));
 }
 
 uint16_t SampleInterval(const settings::StackConfig& config, const hydro_identity& identity) {
@@ -107,6 +111,14 @@ uint32_t WatchdogTicks(const settings::StackConfig& config, const hydro_identity
 
 // The range that the output can reach, V of eq. (1), must contain zero volts.
 void CheckOutput(const settings::StackConfig& config, const hydro_identity& identity) {
+  if (!(std::isfinite(identity.output_min_V) && std::isfinite(identity.output_max_V) &&
+        identity.output_min_V < identity.output_max_V)) {
+    throw KeyError(config.file, "driver.url",
+                   fmt::format("a front end whose output goes from {:.6g} to {:.6g} V, as it says",
+                               identity.output_min_V, identity.output_max_V),
+                   "one with a range of two numbers, the smaller one first: give its board's firmware the "
+                   "converter's range");
+  }
   const settings::AmplifierSection& amplifier = config.driver->voltage;
   const double zero_V = -amplifier.offset / amplifier.scale;
   if (zero_V >= identity.output_min_V && zero_V <= identity.output_max_V) return;
@@ -133,6 +145,12 @@ void SetLimits(const settings::StackConfig& config, hydro_settings* settings) {
 
 }  // namespace
 
+std::array<const settings::SensorSection*, HYDRO_SENSORS> SensorSections(
+    const settings::DriverSection& driver) {
+  return {&driver.p1,          &driver.p2,        &driver.motor_angle,
+          &driver.motor_speed, &driver.arm_angle, &driver.arm_speed};
+}
+
 hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro_identity& identity) {
   const settings::DriverSection& driver = *config.driver;
   hydro_settings settings{};
@@ -148,10 +166,9 @@ hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro
   settings.output_scale = static_cast<float>(driver.voltage.scale);
   settings.output_offset = static_cast<float>(driver.voltage.offset);
   settings.read_back_tolerance = static_cast<float>(driver.front_end.read_back_tolerance_V);
-  const settings::SensorSection* const sections[] = {
-      &driver.p1, &driver.p2, &driver.motor_angle, &driver.motor_speed, &driver.arm_angle, &driver.arm_speed};
+  const auto sections = SensorSections(driver);
   for (int i = 0; i < HYDRO_SENSORS; ++i) {
-    settings.sensors[i] = SensorSettings(config, SensorName(i), *sections[i], identity);
+    settings.sensors[i] = SensorSettings(config, SensorName(i), *sections[static_cast<size_t>(i)], identity);
   }
   return settings;
 }

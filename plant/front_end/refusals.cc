@@ -45,7 +45,7 @@ Refusal RefusalOf(uint8_t refused) {
     case HYDRO_REFUSED_OUTPUT:
       return {"voltage", "scale, offset or driver.read_back_tolerance_V is not one that it can use"};
     case HYDRO_REFUSED_SENSOR:
-      return {"", "it has no such channel, or cannot use these numbers"};
+      return {"url", "of a sensor, it has no such channel, or cannot use these numbers"};
     case HYDRO_REFUSED_MISSING:
       return {"url", "a sensor is missing that the mode or a limit needs"};
     case HYDRO_REFUSED_ZERO:

@@ -1,12 +1,16 @@
-// What happens when something goes wrong: one row for each situation. docs/safety.md shows the table
+// What happens when something goes wrong: one row for each situation, in safety_table.toml, which the build
+// compiles in. docs/safety.md shows the table
 // (tests/process writes it there), the tests compare the code with it, and hydro-torture reports which rows
 // its runs have reached.
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
+
+namespace hydro::settings {
+struct TomlNode;
+}
 
 namespace hydro::process {
 
@@ -27,6 +31,10 @@ enum class Cleared {
   kRunEnds,
 };
 
+// As the table writes it: "zero_volts", "by_rearm".
+std::string_view NameOf(SafeOutput output);
+std::string_view NameOf(Cleared cleared);
+
 struct Within {
   std::string_view text;
   // The limit that a program can check: at most this number of plant ticks ...
@@ -38,15 +46,18 @@ struct Within {
 
 // Texts are Markdown, for a cell of docs/safety.md. Lists are words separated by one space.
 struct SafetyRow {
-  std::string_view id;
+  std::string_view id;        // the section's name
   std::string_view fault;     // what happens
   std::string_view detected;  // by whom, and how
   std::string_view codes = {};
-  Within within;
-  SafeOutput output;
+  Within within;  // a text, or { text = "text", ticks = 5, after = "stale_input_s" }
+  // output = { zero_volts = "text" }
+  SafeOutput output = SafeOutput::kZeroVolts;
   std::string_view output_text;
-  Cleared restart;         // with limits.rearm = "restart"
-  Cleared explicit_rearm;  // with "explicit"
+  // cleared = { by_itself = "text", explicit = "by_rearm" }
+  Cleared restart = Cleared::kByItself;  // with limits.rearm = "restart"
+  Cleared explicit_rearm =
+      Cleared::kByItself;  // with "explicit"; like `restart` where the row has no such key
   std::string_view cleared_text;
   // Tests in tests/e2e: fault_loops.FaultLoopsTest.test_plant_dies; in other folders of tests/:
   // plant/PlantAppTest.ModelErrorEndsTheRun.
@@ -68,14 +79,8 @@ int TicksWithin(std::string_view id);
 // Splits "a b" into a, b.
 std::vector<std::string_view> WordsOf(std::string_view list);
 
-// The parts of the table, one file each.
-std::span<const SafetyRow> ProcessRows();
-std::span<const SafetyRow> LoggerRows();
-std::span<const SafetyRow> RigRows();
-std::span<const SafetyRow> MotorCommandRows();
-std::span<const SafetyRow> PressureCommandRows();
-std::span<const SafetyRow> TuningRows();
-std::span<const SafetyRow> NetworkRows();
-std::span<const SafetyRow> RunRows();
+// The rows of such a document, which must outlive them. Throws InputError for a key or a name that no row may
+// have.
+std::vector<SafetyRow> ReadSafetyTable(const settings::TomlNode& document);
 
 }  // namespace hydro::process

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "bus/definitions/message_definition.h"
 
 namespace hydro::exports {

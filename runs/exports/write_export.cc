@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <iterator>
 
-#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "runs/exports/output.h"
 
 namespace hydro::exports {

@@ -30,25 +30,6 @@ bool BeginsAsText(const MappedFile& file) {
          });
 }
 
-// For a file of another kind, the error names the program that reads it, because repair would only find that
-// the file is damaged.
-void RefuseOtherKinds(const std::string& name, const MappedFile& file) {
-  constexpr size_t kLooked = 1u << 16;
-  const std::string_view beginning(reinterpret_cast<const char*>(file.data()),
-                                   std::min(file.size(), kLooked));
-  const std::optional<FileKind> kind = FindFileKind(beginning);
-  if (kind.has_value() && *kind != FileKind::kLog)
-    throw InputError(OtherKind(*kind, name, "an LCM event log"));
-  if (!BeginsAsText(file)) return;
-  const bool named = std::any_of(std::begin(kTableEndings), std::end(kTableEndings),
-                                 [&](std::string_view ending) { return name.ends_with(ending); });
-  throw InputError(
-      "found text, allowed an LCM event log; hydro-log import " +
-      (named ? name + " -o RUN.lcmlog makes one of a table with export's columns"
-             : "makes one of a table with export's columns, and hydro-diagnose reads others with a sidecar; "
-               "a table has to be named .csv or .mat: rename it"));
-}
-
 }  // namespace
 
 std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event) {
@@ -87,6 +68,15 @@ std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& even
   return {};
 }
 
+int64_t NextSyncWord(const MappedFile& file, int64_t from) {
+  const auto size = static_cast<int64_t>(file.size());
+  if (from >= size) return size;
+  uint8_t sync[4];
+  StoreBigEndian32(kLogSyncWord, sync);
+  const void* found = memmem(file.data() + from, file.size() - static_cast<size_t>(from), sync, sizeof sync);
+  return found == nullptr ? size : static_cast<const uint8_t*>(found) - file.data();
+}
+
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset) {
   uint8_t sync[4];
   StoreBigEndian32(kLogSyncWord, sync);
@@ -106,6 +96,23 @@ bool LogEventIsTornAt(const MappedFile& file, int64_t offset) {
 
 int64_t EndOf(const LogEvent& event) {
   return event.offset + static_cast<int64_t>(kLogHeaderSize + event.channel.size()) + event.size;
+}
+
+void RefuseOtherKinds(const std::string& name, const MappedFile& file) {
+  constexpr size_t kLooked = 1u << 16;
+  const std::string_view beginning(reinterpret_cast<const char*>(file.data()),
+                                   std::min(file.size(), kLooked));
+  const std::optional<FileKind> kind = FindFileKind(beginning);
+  if (kind.has_value() && *kind != FileKind::kLog)
+    throw InputError(OtherKind(*kind, name, "an LCM event log"));
+  if (!BeginsAsText(file)) return;
+  const bool named = std::any_of(std::begin(kTableEndings), std::end(kTableEndings),
+                                 [&](std::string_view ending) { return name.ends_with(ending); });
+  throw InputError(
+      "found text, allowed an LCM event log; hydro-log import " +
+      (named ? name + " -o RUN.lcmlog makes one of a table with export's columns"
+             : "makes one of a table with export's columns, and hydro-diagnose reads others with a sidecar; "
+               "a table has to be named .csv or .mat: rename it"));
 }
 
 LogReader::LogReader(const std::string& file, OnDamage on_damage)

@@ -47,6 +47,9 @@ bool DecodeAs(const LogEvent& event, Message& message) {
 // "found ...; allowed ...". Does not change `event.index`.
 std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event);
 
+// The first sync word at or after `from`; the end of the file if there is none.
+int64_t NextSyncWord(const MappedFile& file, int64_t from);
+
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
 
@@ -55,6 +58,10 @@ bool LogEventIsTornAt(const MappedFile& file, int64_t offset);
 
 // The offset of the first byte after an event.
 int64_t EndOf(const LogEvent& event);
+
+// Throws InputError for a file of another kind, and names the program that reads it: repair would only find
+// that it is damaged.
+void RefuseOtherKinds(const std::string& name, const MappedFile& file);
 
 // What to do where a log is damaged.
 enum class OnDamage {

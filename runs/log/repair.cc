@@ -6,94 +6,42 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <optional>
-#include <set>
-#include <string_view>
 
 #include "base/read_files.h"
+#include "runs/log/doubtful_events.h"
+#include "runs/log/listed_events.h"
 #include "runs/log/log_check.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
-#include "runs/log/message_kinds.h"
 #include "runs/log/vouched_events.h"
 
 namespace hydro::log {
 namespace {
 
-// Moves incomplete messages from `kept` to `lost` when other messages on the same channel are complete.
-void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
-  std::map<std::string_view, const MessageKind*> decodable;
-  std::vector<size_t> undecodable;
-  LogEvent event;
-  for (size_t k = 0; k < kept.size(); ++k) {
-    ParseLogEvent(file, kept[k].begin, event);
-    const MessageKind* kind = KindOfChannel(event.channel);
-    if (kind == nullptr) continue;
-    if (kind->decodes(event)) {
-      decodable.emplace(event.channel, kind);
-    } else {
-      undecodable.push_back(k);
-    }
-  }
-  for (auto k = undecodable.rbegin(); k != undecodable.rend(); ++k) {
-    const KeptEvent place = kept[*k];
-    ParseLogEvent(file, place.begin, event);
-    const auto kind = decodable.find(event.channel);
-    if (kind == decodable.end()) continue;  // from another version rather than damaged
-    lost.push_back(
-        {place.begin, place.end,
-         "an event on " + std::string(event.channel) + " that is not a whole " + kind->second->type});
-    kept[*k].end = kept[*k].begin;
-  }
-  std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
-}
-
-// Moves messages that no checksum covers from `kept` to `lost` when no covered message on the same channel
-// has the same sender: a flipped bit in a session looks like one more sender.
-void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
-  std::map<std::string, std::set<int64_t>, std::less<>> senders;  // by channel
-  LogEvent event;
-  const auto session = [&](const KeptEvent& place) -> std::optional<int64_t> {
-    ParseLogEvent(file, place.begin, event);
-    const MessageKind* kind = KindOfChannel(event.channel);
-    return kind == nullptr ? std::nullopt : kind->session(event);
-  };
-  for (const KeptEvent& place : kept) {
-    if (!place.vouched) continue;
-    if (const auto sender = session(place)) senders[std::string(event.channel)].insert(*sender);
-  }
-  std::erase_if(kept, [&](const KeptEvent& place) {
-    if (place.vouched) return false;
-    const auto sender = session(place);
-    const auto known = senders.find(event.channel);
-    if (!sender || known == senders.end() || known->second.contains(*sender)) return false;
-    lost.push_back(
-        {place.begin, place.end,
-         "an event on " + std::string(event.channel) + " of a sender that no event with a checksum has"});
-    return true;
-  });
-}
-
 // The places where logs were joined end to end. A part of a rotated recording continues the part before it,
 // which another log does not. Without check events, the event numbers tell, because each recorder counts from
-// 0.
+// 0. Messages that number themselves 0 throughout tell nothing.
 std::vector<int64_t> JoinsOf(const MappedFile& file, const std::vector<KeptEvent>& sound) {
-  std::vector<int64_t> begins, restarts;
-  LogEvent event;
-  bool checked = false;
+  std::vector<int64_t> joins;
+  LogEvent event, next;
   int64_t previous = 0;
-  for (const KeptEvent& place : sound) {
-    ParseLogEvent(file, place.begin, event);
-    const std::optional<LogCheck> check = IsCheck(event) ? ParseCheck(event) : std::nullopt;
-    checked = checked || check.has_value();
-    const bool begins_anew =
-        check && check->sound && check->kind == CheckKind::kBegin && check->previous == 0;
-    if (begins_anew && place.begin > 0) begins.push_back(place.begin);
-    if (event.number == 0 && previous > 0) restarts.push_back(place.begin);
+  bool after_begin = false;
+  for (size_t k = 0; k < sound.size(); ++k) {
+    ParseLogEvent(file, sound[k].begin, event);
+    const bool is_check = IsCheck(event);
+    const std::optional<LogCheck> check = is_check ? ParseCheck(event) : std::nullopt;
+    const bool opens = check && check->sound && check->kind == CheckKind::kBegin;
+    bool counts_anew = !is_check && !after_begin && event.number == 0 && k > 0;
+    if (counts_anew && previous == 0) {
+      counts_anew = k + 1 < sound.size() && ParseLogEvent(file, sound[k + 1].begin, next).empty() &&
+                    next.number == 1 && !IsCheck(next);
+    }
+    if (k > 0 && (counts_anew || (opens && check->previous == 0))) joins.push_back(sound[k].begin);
     previous = event.number;
+    after_begin = opens;
   }
-  return checked ? begins : restarts;
+  return joins;
 }
 
 // The note in a mended log about its repair.
@@ -125,9 +73,9 @@ std::string EndingOf(const LogVerdict& verdict) {
 void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, const RepairResult& result,
                const std::string& file, const std::string& out) {
   std::string note = result.verdict.note;
-  if (const std::string added = NoteOf(result, file); !added.empty())
-    note += (note.empty() ? "" : "; ") + added;
   const bool in_place = out == file;  // RepairInPlace() keeps the original
+  if (const std::string added = NoteOf(result, in_place ? result.damaged : file); !added.empty())
+    note += (note.empty() ? "" : "; ") + added;
   if (in_place) ForgetRead(file);
   LogWriter writer(out, Opening::kTemporary, note, 0, in_place ? Existing::kReplaced : Existing::kKept);
   LogEvent event;
@@ -139,30 +87,34 @@ void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, c
   writer.Finish(EndingOf(result.verdict));
 }
 
-}  // namespace
-
-bool RepairResult::mended() const {
-  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
-         verdict.completeness == Completeness::kIncomplete;
+// The error for a file in which there is no event at all: it is rather of another kind than damaged.
+void RefuseWithoutEvents(const std::string& file, const MappedFile& contents) {
+  if (contents.size() == 0) return;
+  try {
+    RefuseOtherKinds(file, contents);
+  } catch (const InputError& error) {
+    throw InputError(file + ": " + error.what());
+  }
+  throw InputError(file + ": found no event in " + std::to_string(contents.size()) +
+                   " bytes; an LCM event log is needed");
 }
 
-RepairResult RepairLog(const std::string& file, const std::string& out) {
+// Writes what can be kept of `file` to `out`; `damaged` is the other name of a log that is repaired in place.
+RepairResult Repair(const std::string& file, const std::string& out, const std::string& damaged) {
   const MappedFile contents(file);
   const int64_t size = static_cast<int64_t>(contents.size());
   RepairResult result;
+  result.damaged = damaged;
   result.verdict = ExamineLog(contents);
-  const std::vector<KeptEvent> sound = FindSoundEvents(contents, result.lost);
+  const ListedEvents listed(contents);
+  const std::vector<KeptEvent> sound = FindSoundEvents(contents, listed, result.lost);
   result.joined_at = JoinsOf(contents, sound);
-  VouchedEvents vouched = KeepVouched(contents, sound, result.lost);
+  VouchedEvents vouched = KeepVouched(contents, listed, sound, result.lost);
   std::vector<KeptEvent>& kept = vouched.messages;
-  DropUndecodable(contents, kept, result.lost);
-  DropStrangers(contents, kept, result.lost);
+  DropDoubtful(contents, result.joined_at, kept, result.lost);
   std::sort(result.lost.begin(), result.lost.end(),
             [](const LostBytes& a, const LostBytes& b) { return a.begin < b.begin; });
-  if (kept.empty() && vouched.check_events == 0 && size > 0) {
-    throw InputError(file + ": found no event in " + std::to_string(size) +
-                     " bytes; an LCM event log is needed");
-  }
+  if (kept.empty() && vouched.check_events == 0) RefuseWithoutEvents(file, contents);
   // A log without messages would look like a run in which nothing was sent. A whole log without messages has
   // nothing to mend.
   const bool whole = result.lost.empty() && vouched.lost_messages == 0 &&
@@ -182,8 +134,18 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   result.verdict.found_end = vouched.found_end;  // the verdict looks no further than the first damage
   result.verdict.ending = vouched.ending;
   if (!out.empty()) WriteKept(contents, kept, result, file, out);
+  result.written = out;
   return result;
 }
+
+}  // namespace
+
+bool RepairResult::mended() const {
+  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
+         verdict.completeness == Completeness::kIncomplete;
+}
+
+RepairResult RepairLog(const std::string& file, const std::string& out) { return Repair(file, out, ""); }
 
 namespace {
 
@@ -206,16 +168,15 @@ RepairResult RepairInPlace(const std::string& file) {
     throw InputError(file +
                      ": found it being written by another process; a log that is finished, or -o, is needed");
   }
-  RepairResult result = RepairLog(file, "");
+  RepairResult result = Repair(file, "", "");
   if (!result.mended()) return result;
-  result.damaged = KeepAsDamaged(file);
+  const std::string damaged = KeepAsDamaged(file);
   try {
-    RepairLog(file, file);
+    return Repair(file, file, damaged);
   } catch (...) {
-    unlink(result.damaged.c_str());
+    unlink(damaged.c_str());
     throw;
   }
-  return result;
 }
 
 namespace {
@@ -256,25 +217,29 @@ std::string DescribeJoined(const RepairResult& result, const std::string& file) 
 }
 
 std::string Describe(const RepairResult& result, const std::string& file) {
-  std::string text = file + ": kept " + std::to_string(result.kept_events) + " messages, " +
-                     std::to_string(result.kept_bytes) + " bytes\n";
+  // The places of what was lost are bytes of the log as it was found.
+  const std::string& found = result.damaged.empty() ? file : result.damaged;
+  const std::string& written = result.written.empty() ? file : result.written;
+  std::string text = written + ": kept " + std::to_string(result.kept_events) + " messages, " +
+                     std::to_string(result.kept_bytes) + " bytes" +
+                     (written == found ? "" : ", of " + found) + "\n";
   if (!result.damaged.empty()) text += file + ": as it was found it is now " + result.damaged + "\n";
   if (const std::string caution = Caution(result.verdict); !caution.empty())
-    text += file + ": was " + caution + "\n";
+    text += found + ": was " + caution + "\n";
   if (result.lost_messages > 0) {
-    text += file + ": lost " + std::to_string(result.lost_messages) +
+    text += found + ": lost " + std::to_string(result.lost_messages) +
             (result.lost_messages == 1 ? " message" : " messages") + ", as its check events tell\n";
   }
   if (result.unvouched > 0) {
-    text += file + ": no checksum covers " + std::to_string(result.unvouched) + " of the messages kept\n";
+    text += found + ": no checksum covers " + std::to_string(result.unvouched) + " of the messages kept\n";
   }
   constexpr size_t kMostLines = 20;
   for (const LostBytes& lost : result.lost) {
     if (&lost - result.lost.data() >= static_cast<std::ptrdiff_t>(kMostLines)) {
-      text += file + ": and " + std::to_string(result.lost.size() - kMostLines) + " more places\n";
+      text += found + ": and " + std::to_string(result.lost.size() - kMostLines) + " more places\n";
       break;
     }
-    text += file + ": lost bytes " + std::to_string(lost.begin) + " to " + std::to_string(lost.end - 1) +
+    text += found + ": lost bytes " + std::to_string(lost.begin) + " to " + std::to_string(lost.end - 1) +
             " (" + std::to_string(lost.end - lost.begin) + "): " + lost.reason + "\n";
   }
   return text;

@@ -21,6 +21,7 @@ struct RepairResult {
   std::vector<int64_t>
       joined_at;        // bytes at which another recording begins that was joined to the one before
   std::string damaged;  // the name under which RepairInPlace() left the log as it was found
+  std::string written;  // the log that was written; empty: none
 
   // Whether there was anything to mend: lost bytes, missing messages, or a missing mark of the end.
   bool mended() const;
@@ -30,12 +31,14 @@ struct RepairResult {
 // only the events that it touches:
 // - it drops bytes that are not an event, and events with a damaged length (sound_events.h);
 // - it drops events whose checksum differs from when they were written (vouched_events.h);
-// - it drops an incomplete message on a channel of this stack if others on that channel are complete.
+// - it drops messages that are not what their channel holds, and those for which no checksum vouches and
+// which
+//   damage has changed by all appearances (doubtful_events.h).
 //
-// Throws InputError when the file cannot be read, or has bytes but no event. Unless `out` is empty, writes
-// the events to that log, renumbered and with new checksums, whole or not at all; `out` may be the same file.
-// A mended log records that it was mended and what it lacks (LogVerdict::note). Throws InputError or
-// WriteError when that fails.
+// Throws InputError when the file cannot be read, has bytes but no event, or is of another kind. Unless `out`
+// is empty, writes the events to that log, renumbered and with new checksums, whole or not at all; `out` may
+// be the same file. A mended log records that it was mended and what it lacks (LogVerdict::note). Throws
+// InputError or WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
 // Repairs a log in place and keeps the original as FILE.damaged, or FILE.damaged1 and so on where an earlier
@@ -47,7 +50,8 @@ RepairResult RepairInPlace(const std::string& file);
 // extracts it; empty: the log is one recording. `file` holds the log as it was found.
 std::string DescribeJoined(const RepairResult& result, const std::string& file);
 
-// One line for what was kept, and one line for each place where something was lost.
+// One line for what was kept, and one line for each place where something was lost. `file` is the name by
+// which the log was given.
 std::string Describe(const RepairResult& result, const std::string& file);
 
 }  // namespace hydro::log

@@ -1,11 +1,10 @@
 #include "runs/log/sound_events.h"
 
-#include <cstring>
+#include <algorithm>
 #include <optional>
 
-#include "base/big_endian.h"
+#include "base/interruption.h"
 #include "runs/log/log_check.h"
-#include "runs/log/log_format.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/message_kinds.h"
 
@@ -14,11 +13,22 @@ namespace {
 
 class Scanner {
  public:
-  explicit Scanner(const MappedFile& file) : file_(file) { StoreBigEndian32(kLogSyncWord, sync_); }
+  Scanner(const MappedFile& file, const ListedEvents& listed)
+      : file_(file), listed_(listed), left_to_sum_(kMostSummed * (size() + 1)) {
+    for (int64_t offset = NextSyncWord(file_, 0); offset < size(); offset = NextSyncWord(file_, offset + 1)) {
+      Interruption::Check();
+      LogEvent event;
+      if (!Parses(offset, event)) continue;
+      const int64_t end = EndOf(event);
+      if (LogEventMayBeginAt(file_, end)) sound_.push_back({offset, end, event.number, IsCheck(event)});
+    }
+  }
 
   // The first event at or after `from` that can be kept.
-  std::optional<LogEvent> NextToKeep(int64_t from) const {
-    for (int64_t offset = NextSync(from); offset < size(); offset = NextSync(offset + 1)) {
+  std::optional<LogEvent> NextToKeep(int64_t from) {
+    for (int64_t offset = NextSyncWord(file_, from); offset < size();
+         offset = NextSyncWord(file_, offset + 1)) {
+      Interruption::Check();
       LogEvent event;
       if (Parses(offset, event) && MayKeep(event)) return event;
     }
@@ -26,51 +36,78 @@ class Scanner {
   }
 
  private:
-  int64_t size() const { return static_cast<int64_t>(file_.size()); }
+  // An event whose end may be the beginning of another event, or the end of the file.
+  struct Sound {
+    int64_t offset;
+    int64_t end;
+    int64_t number;
+    bool check;
+  };
 
-  int64_t NextSync(int64_t from) const {
-    if (from >= size()) return size();
-    const void* found =
-        memmem(file_.data() + from, file_.size() - static_cast<size_t>(from), sync_, sizeof sync_);
-    return found == nullptr ? size() : static_cast<const uint8_t*>(found) - file_.data();
-  }
+  // In a file made to be slow, events lie inside each other. No more checksums than these are computed, as a
+  // multiple of the file's size.
+  static constexpr int64_t kMostSummed = 16;
+
+  int64_t size() const { return static_cast<int64_t>(file_.size()); }
 
   bool Parses(int64_t offset, LogEvent& event) const {
     return offset < size() && ParseLogEvent(file_, offset, event).empty();
   }
 
-  // The first event in [from, to) whose end may be the beginning of another event, or the end of the file.
-  std::optional<LogEvent> NextSound(int64_t from, int64_t to) const {
-    for (int64_t offset = NextSync(from); offset < to; offset = NextSync(offset + 1)) {
-      LogEvent event;
-      if (Parses(offset, event) && LogEventMayBeginAt(file_, EndOf(event))) return event;
-    }
-    return std::nullopt;
+  // Whether an event of number `next` follows one of number `number`. In a damaged file they may be anything.
+  // A check event has the number of the next message.
+  static bool Follows(int64_t next, int64_t number, bool check) {
+    return static_cast<uint64_t>(next) == static_cast<uint64_t>(number) + (check ? 0 : 1);
   }
 
-  // Whether the numbers of the two events follow each other. In a damaged file they may be anything. A check
-  // event has the number of the next message.
-  static bool Follows(const LogEvent& next, const LogEvent& event) {
-    return static_cast<uint64_t>(next.number) ==
-           static_cast<uint64_t>(event.number) + (IsCheck(event) ? 0 : 1);
+  std::vector<Sound>::const_iterator FirstSound(int64_t from) const {
+    return std::lower_bound(sound_.begin(), sound_.end(), from,
+                            [](const Sound& sound, int64_t offset) { return sound.offset < offset; });
   }
 
-  bool MayKeep(const LogEvent& event) const {
+  // Whether a checksum says that this is an event as it was written.
+  bool IsListed(const LogEvent& event) {
+    const int64_t bytes = EndOf(event) - event.offset;
+    if (bytes > left_to_sum_) return false;
+    if (listed_.empty() && !IsCheck(event)) return false;
+    left_to_sum_ -= bytes;
+    if (const auto check = IsCheck(event) ? ParseCheck(event) : std::nullopt) return check->sound;
+    return listed_.Contains(event.number, ChecksumOf(event));
+  }
+
+  // Whether the last event inside this one ends where it does, and is the one that `next` follows: what was
+  // appended to a torn event may end by chance where that event would have.
+  bool MayBeTornAround(const LogEvent& event, const LogEvent& next) const {
+    const auto behind = FirstSound(next.offset);
+    if (behind == sound_.begin()) return false;
+    const Sound& last = *std::prev(behind);
+    return last.offset > event.offset && last.end == next.offset &&
+           Follows(next.number, last.number, last.check);
+  }
+
+  bool MayKeep(const LogEvent& event) {
     const int64_t end = EndOf(event);
     LogEvent next;
-    if (Parses(end, next) && Follows(next, event)) return true;
+    if (Parses(end, next) && Follows(next.number, event.number, IsCheck(event)) &&
+        !MayBeTornAround(event, next)) {
+      return true;
+    }
+    if (IsListed(event)) return true;
     // A torn event to which other events were appended contains these, and so does an event whose length is
     // too large.
-    if (NextSound(event.offset + 4, end).has_value()) return false;
+    const auto inside = FirstSound(event.offset + 4);
+    if (inside != sound_.end() && inside->offset < end) return false;
     if (LogEventMayBeginAt(file_, end)) return true;
     // Either only the bytes that follow are damaged, or this event's length is too small.
     if (const MessageKind* kind = KindOfChannel(event.channel)) return kind->decodes(event);
-    const std::optional<LogEvent> following = NextSound(end, size());
-    return !following.has_value() || !Follows(*following, event);
+    const auto following = FirstSound(end);
+    return following == sound_.end() || !Follows(following->number, event.number, IsCheck(event));
   }
 
   const MappedFile& file_;
-  uint8_t sync_[4];
+  const ListedEvents& listed_;
+  int64_t left_to_sum_;       // bytes
+  std::vector<Sound> sound_;  // in order of the file
 };
 
 std::string WhyNotKept(const MappedFile& file, int64_t begin) {
@@ -81,9 +118,10 @@ std::string WhyNotKept(const MappedFile& file, int64_t begin) {
 
 }  // namespace
 
-std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, std::vector<LostBytes>& lost) {
+std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, const ListedEvents& listed,
+                                       std::vector<LostBytes>& lost) {
   const int64_t size = static_cast<int64_t>(file.size());
-  const Scanner scanner(file);
+  Scanner scanner(file, listed);
   std::vector<KeptEvent> kept;
   int64_t offset = 0;
   while (offset < size) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/mapped_file.h"
+#include "runs/log/listed_events.h"
 
 namespace hydro::log {
 
@@ -25,7 +26,9 @@ struct KeptEvent {
 // The events of `file` that can be kept, in order, including check events. Appends the bytes between them to
 // `lost`.
 // - After bytes that are not an event, it looks for the next sync word that begins one.
-// - It drops an event with a damaged length, which the bytes after it or inside it reveal.
-std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, std::vector<LostBytes>& lost);
+// - It drops an event with a damaged length, which the bytes after it or inside it reveal, unless it is one
+//   of those that check events list.
+std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, const ListedEvents& listed,
+                                       std::vector<LostBytes>& lost);
 
 }  // namespace hydro::log

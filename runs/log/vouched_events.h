@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/mapped_file.h"
+#include "runs/log/listed_events.h"
 #include "runs/log/sound_events.h"
 
 namespace hydro::log {
@@ -20,10 +21,11 @@ struct VouchedEvents {
   int64_t lost_messages = 0;  // messages that were written but are not kept, as far as the check events tell
 };
 
-// Moves events whose checksum differs from when they were written from `events` to `lost`. Where a check
-// event is missing or unreadable, the messages for which it would vouch are kept and counted as `unvouched`.
-// A log without check events keeps all of them.
-VouchedEvents KeepVouched(const MappedFile& file, const std::vector<KeptEvent>& events,
-                          std::vector<LostBytes>& lost);
+// Moves events that differ from what was written from `events` to `lost`: those that stand before their check
+// event, but that no check event lists. Messages that no check event covers are kept and counted as
+// `unvouched`: where their check event is missing or unreadable, where the file was cut before it and another
+// log was joined to it. A log without check events keeps all of them.
+VouchedEvents KeepVouched(const MappedFile& file, const ListedEvents& listed,
+                          const std::vector<KeptEvent>& events, std::vector<LostBytes>& lost);
 
 }  // namespace hydro::log

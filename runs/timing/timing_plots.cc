@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "page/range.h"
+#include "page/plot.h"
 
 namespace hydro::timing {
 namespace {

@@ -16,6 +16,9 @@ std::string TimingJson(const std::vector<TimedProcess>& processes, const std::st
 // A table for a terminal, with several lines.
 std::string TimingText(const std::vector<TimedProcess>& processes);
 
+// Whether a loop that has skipped that many of its ticks is not the loop at its rate any more.
+bool ManySkipped(int64_t skipped, int64_t ticks);
+
 // Advice for a plant that slept through that many of its ticks; empty where these are few. `config` is the
 // configuration's name.
 std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string& config);

@@ -19,13 +19,20 @@ constexpr int64_t kVeryFewSkipped = 10;
 
 }  // namespace
 
+bool ManySkipped(int64_t skipped, int64_t ticks) {
+  return skipped >= kVeryFewSkipped &&
+         static_cast<double>(skipped) >= kFewSkipped * static_cast<double>(ticks);
+}
+
 std::string SkippedTicksAdvice(int64_t skipped, int64_t ticks, const std::string& config) {
+  if (!ManySkipped(skipped, ticks)) return "";
   const double share = static_cast<double>(skipped) / static_cast<double>(ticks);
-  if (skipped < kVeryFewSkipped || !(share >= kFewSkipped)) return "";
   return fmt::format(
       "{} of {} ticks ({:.0f} %) were skipped, because this machine woke the process too late: what was "
-      "recorded is not the loop at its rate. `hydro-launch doctor {}` examines its settings; other programs "
-      "may keep it busy; a lower plant.rate_hz asks less; with a simulated plant, --time lockstep skips "
+      "recorded is not the loop at its rate. `hydro-launch doctor {}` measures how it wakes now, and "
+      "examines "
+      "its settings; other programs may have kept it busy; a lower plant.rate_hz asks less; with a simulated "
+      "plant, --time lockstep skips "
       "nothing",
       skipped, ticks, 100 * share, config);
 }

@@ -8,6 +8,7 @@
 #include "base/saturating.h"
 #include "base/text_file.h"
 #include "base/utf8.h"
+#include "bus/output_left.h"
 #include "process/participant.h"
 #include "process/status.h"
 #include "runs/tuning_history.h"
@@ -114,7 +115,7 @@ void Intake::OnFault(const fault_t& fault) {
     active.erase(Shown(fault.code));
   }
   AddEvent(TimeOf(fault.tick), fault.active != 0 ? "fault" : "fault_end", fault.source, fault.code,
-           fault.text);
+           bus::ReasonText(fault.text));
 }
 
 // The list makes up for lost messages: a fault that it names and that is unknown here has begun, and a fault
@@ -151,7 +152,7 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
   const bool repeated = what == last_stop_ && SaturatingDifference(utime, last_stop_utime_) < kRepeated;
   last_stop_ = what;
   last_stop_utime_ = utime;
-  if (!repeated) AddEvent(TimeOf(stop.tick), "stop", stop.source, "", stop.reason);
+  if (!repeated) AddEvent(TimeOf(stop.tick), "stop", stop.source, "", bus::ReasonText(stop.reason));
 }
 
 // The plant sends this when it decides, with the tick at which the change acts, and again once a second.

@@ -6,6 +6,14 @@
 #include "runs/run_config.h"
 
 namespace hydro::scope {
+
+const Event& EventList::Add(Event event) {
+  event.n = ++last_;
+  events_.push_back(std::move(event));
+  if (events_.size() > kMost) events_.pop_front();
+  return events_.back();
+}
+
 namespace {
 
 std::optional<size_t> IndexOf(const std::vector<ChannelInfo>& channels, const std::string& id) {

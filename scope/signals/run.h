@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,12 +12,40 @@
 #include "hydro/run_description_t.hpp"
 #include "scope/signals/bins.h"
 #include "scope/signals/channel_list.h"
-#include "scope/signals/events.h"
 #include "scope/signals/history.h"
 #include "scope/signals/message_store.h"
 #include "settings/stack_config.h"
 
 namespace hydro::scope {
+
+// What happened in a run: faults, steps of the reference, stops, gaps. The numbers have no gaps, so that a
+// client can tell whether it has all events.
+struct Event {
+  uint64_t n = 0;
+  double t = 0;        // s, plant time
+  std::string kind;    // fault, fault_end, step, stop, rearm, tuning, gap, mark, restart
+  std::string source;  // role
+  std::string code;
+  std::string text;
+};
+
+class EventList {
+ public:
+  // A flood of forged events pushes out the oldest, never the newest.
+  static constexpr size_t kMost = 20000;
+
+  // Gives the event its number; the first is 1.
+  const Event& Add(Event event);
+
+  uint64_t last() const { return last_; }
+  uint64_t first() const { return last_ + 1 - events_.size(); }  // the oldest kept
+  // The event with number `n` in [first(), last()].
+  const Event& At(uint64_t n) const { return events_[n - first()]; }
+
+ private:
+  std::deque<Event> events_;
+  uint64_t last_ = 0;
+};
 
 // What is known about a process of a running stack.
 struct ProcessReport {

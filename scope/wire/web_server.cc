@@ -14,7 +14,7 @@
 
 #include "base/input_error.h"
 #include "base/utf8.h"
-#include "scope/wire/target.h"
+#include "scope/wire/access.h"
 
 namespace hydro::scope {
 

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 
 namespace hydro::settings {
 namespace {
 
 using Kind = TomlNode::Kind;
+
+constexpr size_t kLarge = 64;  // keys; fewer are found as fast one by one
 
 }  // namespace
 
@@ -161,8 +163,17 @@ void SectionReader::NoteStandard(const std::string& key, const std::string& stan
 
 const TomlNode* SectionReader::Take(const std::string& key) {
   Asked(key);
-  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
-  return table_->Find(key);
+  if (is_known_.insert(key).second) known_.push_back(key);
+  return Find(key);
+}
+
+const TomlNode* SectionReader::Find(const std::string& key) const {
+  if (table_->members.size() < kLarge) return table_->Find(key);
+  if (by_key_.empty()) {
+    for (const auto& [name, node] : table_->members) by_key_.emplace(name, &node);
+  }
+  const auto found = by_key_.find(key);
+  return found == by_key_.end() ? nullptr : found->second;
 }
 
 void SectionReader::Require(const std::string& key, const std::string& allowed) {
@@ -172,7 +183,7 @@ void SectionReader::Require(const std::string& key, const std::string& allowed) 
 
 void SectionReader::Finish() const {
   for (const auto& [key, node] : table_->members) {
-    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    if (is_known_.contains(key)) continue;
     const std::string where = path_.empty() ? Quoted(key) : path_ + ": " + Quoted(key);
     throw InputError(node.place + ": " + where + ": found an unknown key, allowed " + QuotedList(known_) +
                      DidYouMean(key, known_));
@@ -184,7 +195,7 @@ void SectionReader::Finish() const {
 
 InputError SectionReader::Error(const std::string& key, const std::string& found,
                                 const std::string& allowed) const {
-  const TomlNode* node = table_->Find(key);
+  const TomlNode* node = Find(key);
   return KeyError(node != nullptr ? node->place : table_->place, Dotted(key), found, allowed);
 }
 

@@ -6,6 +6,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -66,7 +69,7 @@ class SectionReader {
   // which this reader and those of its sections ask. Both the node and `asked` must outlive the reader.
   SectionReader(const TomlNode& table, std::string path, std::vector<AskedKey>* asked = nullptr);
 
-  bool Has(const std::string& key) const { return table_->Find(key) != nullptr; }
+  bool Has(const std::string& key) const { return Find(key) != nullptr; }
 
   // These return whether the key is present, and leave `out` unchanged if it is not. They throw InputError.
   bool Number(const std::string& key, double* out, const NumberRange& range = kAnyNumber);
@@ -105,10 +108,16 @@ class SectionReader {
   AskedKey* Asked(const std::string& key) const;
   void NoteStandard(const std::string& key, const std::string& standard) const;
 
+  // The key's node, as table_->Find() gives it. A file may have many keys, and then the reader may ask for
+  // each of them, so they are not searched one by one.
+  const TomlNode* Find(const std::string& key) const;
+
   const TomlNode* table_;
-  std::shared_ptr<const TomlNode> absent_;  // stands in for a missing section
+  mutable std::unordered_map<std::string_view, const TomlNode*> by_key_;  // of a large table, once asked for
+  std::shared_ptr<const TomlNode> absent_;                                // stands in for a missing section
   std::string path_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_;  // in the order in which they were asked for
+  std::unordered_set<std::string> is_known_;
   std::vector<std::pair<std::string, std::string>> required_;  // key, allowed
   std::vector<AskedKey>* asked_;                               // may be null
 };

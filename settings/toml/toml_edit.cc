@@ -89,7 +89,8 @@ std::string Joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-void Replace(Document* document, const Place& place, const std::string& value) {
+// `comment` replaces the old one unless it is empty.
+void Replace(Document* document, const Place& place, const std::string& value, const std::string& comment) {
   std::string behind = document->lines[place.last].substr(place.comment);
   if (!behind.empty()) {
     const std::string& old = document->lines[place.last];
@@ -99,15 +100,19 @@ void Replace(Document* document, const Place& place, const std::string& value) {
     const size_t length = place.first == place.last ? end - place.value : 0;
     if (value.size() < length) behind.insert(0, length - value.size(), ' ');
   }
+  if (!comment.empty())
+    behind = (behind.empty() ? "  " : behind.substr(0, behind.find('#'))) + "# " + comment;
   document->lines[place.first] = document->lines[place.first].substr(0, place.value) + value + behind;
   document->lines.erase(document->lines.begin() + static_cast<std::ptrdiff_t>(place.first) + 1,
                         document->lines.begin() + static_cast<std::ptrdiff_t>(place.last) + 1);
 }
 
-void Insert(Document* document, const std::string& dotted, const std::string& value) {
+void Insert(Document* document, const std::string& dotted, const std::string& value,
+            const std::string& comment) {
   const size_t dot = dotted.rfind('.');
   const std::string section = dot == std::string::npos ? "" : dotted.substr(0, dot);
-  const std::string line = dotted.substr(dot == std::string::npos ? 0 : dot + 1) + " = " + value;
+  const std::string line = dotted.substr(dot == std::string::npos ? 0 : dot + 1) + " = " + value +
+                           (comment.empty() ? "" : "  # " + comment);
   const auto end = document->section_ends.find(section);
   if (end != document->section_ends.end()) {
     document->lines.insert(document->lines.begin() + static_cast<std::ptrdiff_t>(end->second), line);
@@ -148,15 +153,18 @@ void CheckResult(const std::string& before, const std::string& after, const std:
 }  // namespace
 
 std::string EditToml(const std::string& text, const std::string& name, const std::vector<TomlEntry>& changed,
-                     const std::vector<std::string>& removed) {
+                     const std::vector<std::string>& removed,
+                     const std::map<std::string, std::string>& comments) {
   std::string edited = text;
   for (const auto& [key, value] : changed) {
+    const auto found = comments.find(key);
+    const std::string comment = found == comments.end() ? "" : found->second;
     Document document = Read(edited);
     const auto place = document.keys.find(key);
     if (place != document.keys.end()) {
-      Replace(&document, place->second, value);
+      Replace(&document, place->second, value, comment);
     } else {
-      Insert(&document, key, value);
+      Insert(&document, key, value, comment);
     }
     edited = Joined(document.lines);
   }

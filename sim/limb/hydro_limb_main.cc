@@ -1,7 +1,10 @@
 // hydro-limb CONFIG: runs the joints of a limb in one process.
+#include <spdlog/spdlog.h>
+
 #include "process/process_main.h"
 #include "process/supervision.h"
 #include "sim/limb/limb_app.h"
+#include "tune/design/fastest_motion.h"
 
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(
@@ -22,6 +25,7 @@ int main(int argc, char** argv) {
   return hydro::process::RunProcess(
       "hydro-limb", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig&) {
+        for (const std::string& remark : hydro::design::RemarksOn(config)) spdlog::warn("{}", remark);
         return hydro::limb::LimbApp(bus, clock, config, limb).Run();
       },
       [&](const std::string& file, const std::vector<std::string>& overrides) {

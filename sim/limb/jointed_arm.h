@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "plant/simulated_machine.h"
+#include "plant/simulated_rig.h"
 #include "settings/limb_config.h"
 
 namespace hydro::limb {

@@ -40,17 +40,6 @@ void CheckSimulated(const settings::JointConfig& joint) {
 
 }  // namespace
 
-run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program) {
-  run_description_t description{};
-  description.config_file = config.common.file;
-  description.config_text = config.common.text;
-  description.program = program;
-  description.version = HYDRO_VERSION;
-  description.rate_hz = config.common.plant.rate_hz;
-  description.seed = config.common.seed;
-  return description;
-}
-
 Limb::Limb(const settings::LimbConfig& config, const LimbOptions& options)
     : on_joint_fault_(config.limb.on_joint_fault), last_tick_(config.common.last_tick) {
   CheckWanted(config, options.joints);
@@ -76,7 +65,7 @@ bool Limb::Begin() {
     joint->StartClock();
   }
   for (auto& joint : joints_) {
-    if (!joint->plant().Safely([&] { joint->plant().Start(); })) over_ = true;
+    if (!joint->plant().Safely([&] { joint->plant().Start(joint->clock().Now()); })) over_ = true;
   }
   return !over_;
 }
@@ -95,7 +84,7 @@ bool Limb::StepLockstep() {
     if (joint->ended()) continue;
     if (!joint->plant().Safely([&] { joint->plant().AdvanceTo(tick_); })) continue;
     joint->Dispatch(joint->DueTime(tick_));
-    joint->plant().PublishState();
+    joint->plant().PublishState(joint->clock().Now());
   }
   NoteEnds();
   return !over_;

@@ -4,17 +4,45 @@
 
 #include <cstdint>
 #include <functional>
-#include <hydro/run_description_t.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bus/clock.h"
 #include "settings/limb_config.h"
 #include "sim/limb/joint.h"
-#include "sim/limb/tick_clock.h"
 
 namespace hydro::limb {
+
+// A clock that stands still within a tick. All joints of a limb get the same reading, and only one reading of
+// the real clock is needed.
+class TickClock : public bus::Clock {
+ public:
+  // `real` must outlive this object. The clock runs until it is stopped.
+  explicit TickClock(const bus::Clock& real) : real_(real) {}
+
+  void Stop() {
+    now_ = real_.Now();
+    utime_ = real_.Utime();
+    suspended_ = real_.Suspended();
+    stopped_ = true;
+  }
+  void Run() { stopped_ = false; }
+
+  int64_t Utime() const override { return stopped_ ? utime_ : real_.Utime(); }
+  Duration Suspended() const override { return stopped_ ? suspended_ : real_.Suspended(); }
+  bool simulated() const override { return real_.simulated(); }
+
+ private:
+  TimePoint Read() const override { return stopped_ ? now_ : real_.Now(); }
+
+  const bus::Clock& real_;
+  TimePoint now_{};
+  int64_t utime_ = 0;
+  Duration suspended_{};
+  bool stopped_ = false;
+};
 
 struct LimbOptions {
   std::vector<std::string> joints;  // joints of the configuration to run here; empty: all
@@ -23,9 +51,6 @@ struct LimbOptions {
   std::function<bool()> heartbeat = {};  // as in PlantApp
   int64_t session = 0;                   // of all joints, on simulated clocks
 };
-
-// The description that a log needs of the limb as a whole. Its sender adds its own identity and the time.
-run_description_t DescriptionOf(const settings::LimbConfig& config, const std::string& program);
 
 class Limb {
  public:

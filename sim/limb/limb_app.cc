@@ -22,12 +22,8 @@ using namespace std::chrono_literals;
 
 constexpr char kRole[] = "limb";
 constexpr char kProgram[] = "hydro-limb";
-constexpr auto kDescriptionPeriod = 1s;
 constexpr auto kFarewellPause = 500us;  // between the ends of two joints
 constexpr auto kWait = 50ms;            // after which a wait for others checks for signals
-// Lockstep: the number of ticks by which a limb of one joint may run ahead of a logger. It fills about half
-// of Linux's default receive buffer (208 KiB). A logger reports four times as often (logger_app.cc).
-constexpr int64_t kLoggerWindow = 64;
 // Real time: the share of a tick that may be spent on sending.
 constexpr double kSendingShare = 0.3;
 
@@ -61,7 +57,6 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
     : config_(config),
       options_(std::move(options)),
       participant_(bus, clock, bus::Channels(config.common.bus.channel_suffix), kRole, config.common.agreed),
-      roll_call_(plant::ExpectedRoles(options_.expected)),
       logger_watch_(participant_, {participant_.channels()},
                     bus::FromSeconds(std::max(config.common.limits.stale_logger_s, 1.0))),
       elsewhere_(participant_, JointsElsewhere(config_, options_.joints),
@@ -71,6 +66,12 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
                       [this] {
                         for (auto& joint : limb_.joints()) joint->plant().participant().RepeatFaults();
                       }}),
+      start_(participant_, elsewhere_,
+             {.roles = plant::ExpectedRoles(options_.expected),
+              .joints = plant::ExpectedJoints(options_.expected),
+              .loggers = {participant_.channels()},
+              .timeout_s = config.common.time.start_timeout_s,
+              .description = plant::DescriptionOf(config.common, kProgram)}),
       limb_(config_, {.joints = options_.joints,
                       .program = kProgram,
                       .clock = config.common.time.mode == settings::TimeMode::kLockstep ? nullptr : &clock,
@@ -78,14 +79,6 @@ LimbApp::LimbApp(bus::Bus& bus, bus::Clock& clock, const settings::LimbConfig& c
       telemetry_(bus, config.common.time.mode == settings::TimeMode::kLockstep
                           ? 1
                           : config.limb.telemetry_interval_ticks) {
-  const bus::Channels& channels = participant_.channels();
-  bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
-                                  [this](const process_status_t& status) { roll_call_.Observe(status); });
-  bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {
-    // Only loggers that were present when the run began count, so that a flood of forged ones is not kept.
-    const auto known = log_progress_.find(progress.session);
-    if (known != log_progress_.end()) known->second = progress.tick;
-  });
   const auto count = static_cast<int64_t>(limb_.joints().size());
   for (int64_t i = 0; i < count; ++i) {
     Joint& joint = *limb_.joints()[static_cast<size_t>(i)];
@@ -135,41 +128,22 @@ bool LimbApp::Ended() const {
 }
 
 bool LimbApp::Begin() {
-  description_ = DescriptionOf(config_, kProgram);
-  description_.session = participant_.session();
-  description_.host = participant_.host();
   participant_.Announce(process_status_t::READY);
   // Other processes of the limb wait for the joints here.
   for (auto& joint : limb_.joints()) joint->plant().participant().Announce(process_status_t::READY);
-  const auto deadline = participant_.clock().Now() + bus::FromSeconds(config_.common.time.start_timeout_s);
-  for (std::vector<std::string> missing; !(missing = Missing()).empty();) {
-    if (Ended()) return false;
-    if (participant_.clock().Now() >= deadline) {
-      participant_.RequestStop(fmt::format("not ready after {} s (time.start_timeout_s): {}",
-                                           config_.common.time.start_timeout_s, fmt::join(missing, ", ")),
-                               1);
-      return false;
-    }
-    participant_.bus().HandleUntil(std::min(participant_.clock().Now() + kWait, deadline));
-    for (auto& joint : limb_.joints()) {
-      joint->plant().participant().Poll(joint->clock().Now());
-      joint->Dispatch(joint->clock().Now());
-    }
-    Poll();
-  }
-  for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
-  participant_.Announce(process_status_t::RUNNING);
-  PublishDescription();  // once more, because a logger may have joined since
+  const bool begins = start_.Await([this] { return Ended(); },
+                                   [this](bus::Clock::TimePoint) {
+                                     for (auto& joint : limb_.joints()) {
+                                       joint->plant().participant().Poll(joint->clock().Now());
+                                       joint->Dispatch(joint->clock().Now());
+                                     }
+                                     Poll();
+                                   });
+  if (!begins) return false;
+  start_.Begin();
   const bool began = limb_.Begin();
   telemetry_.SendAll();
   return began;
-}
-
-std::vector<std::string> LimbApp::Missing() const {
-  std::vector<std::string> missing = roll_call_.Missing();
-  for (const std::string& joint : elsewhere_.Missing(plant::ExpectedJoints(options_.expected)))
-    missing.push_back(joint);
-  return missing;
 }
 
 void LimbApp::RunLockstep() {
@@ -183,11 +157,10 @@ void LimbApp::RunLockstep() {
   }
 }
 
+// The joints share what one rig may run ahead.
 bool LimbApp::LoggersKeepUp() const {
   const auto joints = static_cast<int64_t>(limb_.joint_count());
-  const int64_t window = kLoggerWindow / joints;
-  return std::all_of(log_progress_.begin(), log_progress_.end(),
-                     [&](const auto& logger) { return logger.second >= limb_.tick() - window; });
+  return start_.loggers().HasTaken(limb_.tick() - plant::LoggerWindow::kTicks / joints);
 }
 
 bool LimbApp::AwaitLoggers() {
@@ -195,9 +168,8 @@ bool LimbApp::AwaitLoggers() {
   const auto deadline = clock.Now() + bus::FromSeconds(config_.common.time.stall_timeout_s);
   while (!LoggersKeepUp()) {
     if (Ended()) return false;
-    if (!roll_call_.left().empty()) {
-      participant_.RequestStop(
-          fmt::format("{} has left the lockstep run at tick {}", roll_call_.left(), limb_.tick()), 1);
+    if (const std::string departure = start_.Departure(limb_.tick()); !departure.empty()) {
+      participant_.RequestStop(departure, 1);
       return false;
     }
     if (clock.Now() >= deadline) {
@@ -231,15 +203,9 @@ void LimbApp::RunRealtime() {
   }
 }
 
-void LimbApp::PublishDescription() {
-  next_description_ = participant_.clock().Now() + kDescriptionPeriod;
-  description_.utime = participant_.clock().Utime();
-  participant_.bus().Publish(participant_.channels().Of<run_description_t>(), description_);
-}
-
 void LimbApp::Poll() {
   participant_.Poll();
-  if (participant_.clock().Now() >= next_description_) PublishDescription();
+  start_.Poll(participant_.clock().Now());
 }
 
 // The end of the limb, or of one joint, ends all joints, and each announces it.

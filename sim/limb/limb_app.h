@@ -11,15 +11,12 @@
 
 #include <cstdint>
 #include <functional>
-#include <hydro/log_progress_t.hpp>
-#include <hydro/run_description_t.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "plant/logger_watch.h"
-#include "plant/roll_call.h"
+#include "plant/run_start.h"
 #include "plant/sibling_faults.h"
+#include "plant/watches.h"
 #include "process/participant.h"
 #include "settings/limb_config.h"
 #include "sim/limb/limb.h"
@@ -53,26 +50,21 @@ class LimbApp {
   bool Ended() const;
   bool LoggersKeepUp() const;
   bool AwaitLoggers();
-  std::vector<std::string> Missing() const;
   void AgreeOnTheEnd();
   void Forward(Joint& joint);
   template <class Message>
   void ForwardTo(Joint& joint);
-  void PublishDescription();
   void Poll();
 
   const settings::LimbConfig config_;
   const LimbAppOptions options_;
   process::Participant participant_;
-  plant::RollCall roll_call_;
   plant::LoggerWatch logger_watch_;
   plant::SiblingFaults elsewhere_;  // of the joints that run in other processes
+  plant::RunStart start_;
   int64_t heartbeats_ = 0;
   Limb limb_;
   Telemetry telemetry_;
-  std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers present when the run began
-  run_description_t description_;
-  bus::Clock::TimePoint next_description_;
 };
 
 }  // namespace hydro::limb

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/torture/schedule/injection.h"
+#include "sim/torture/schedule/schedule.h"
 #include "sim/torture/world.h"
 
 namespace hydro::torture {

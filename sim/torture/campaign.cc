@@ -15,7 +15,6 @@
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "process/stop_signal.h"
-#include "sim/torture/worker.h"
 
 namespace hydro::torture {
 namespace {

@@ -1,6 +1,8 @@
 // Many runs on several processors, each from a seed of its own.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -42,5 +44,19 @@ struct CampaignResult {
 // Runs the seeds from the first one on. A run that crashes this program, or does not end, also becomes a
 // finding. Throws InputError when the folder cannot be written.
 CampaignResult RunCampaign(const CampaignOptions& options);
+
+// The memory that a worker shares with the campaign.
+struct WorkerState {
+  uint64_t seed = 0;    // of the current run
+  double began_s = 0;   // start of that run, since the campaign began
+  bool failed = false;  // a run has failed
+};
+
+// One process of a campaign: runs every `jobs`-th seed until the time is over, and writes to `pipe`. `states`
+// are those of all workers. Returns the worker's exit code.
+int RunWorker(const CampaignOptions& options, int index, WorkerState* states, int pipe);
+
+// Adds the lines of a worker's report to `result`.
+void AddReport(const std::string& text, CampaignResult* result);
 
 }  // namespace hydro::torture

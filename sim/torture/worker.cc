@@ -1,5 +1,3 @@
-#include "sim/torture/worker.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -12,8 +10,8 @@
 #include "base/new_file.h"
 #include "process/stop_signal.h"
 #include "sim/torture/active_fault.h"
+#include "sim/torture/campaign.h"
 #include "sim/torture/run_schedule.h"
-#include "sim/torture/shrink.h"
 
 namespace hydro::torture {
 namespace {

@@ -10,7 +10,6 @@
 namespace hydro::torture {
 namespace {
 
-constexpr TrueTime kSecond = 1'000'000'000;
 // Control returns within this time after the last fault: another stack is forgotten after 2.5 s, and a stack
 // that has ended is started again and gathers its processes in 1 s.
 constexpr TrueTime kReturn = 5 * kSecond;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bus/seal/authenticated_channels.h"
+#include "bus/seal/authenticator.h"
 #include "sim/torture/active_fault.h"
 #include "sim/torture/programs.h"
 #include "sim/torture/world.h"

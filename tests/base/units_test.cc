@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/unit_spelling.h"
+#include "base/unit_system.h"
 
 namespace hydro {
 namespace {

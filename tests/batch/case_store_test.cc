@@ -1,7 +1,6 @@
 #include "batch/store/case_store.h"
 
-#include "batch/run/missing_cases.h"
-#include "batch/store/owner.h"
+#include "batch/run/case_count.h"
 #include "batch/store/small_file.h"
 #include "batch/store/study_lock.h"
 #include "tests/batch/study_folder.h"

@@ -1,8 +1,7 @@
-#include "batch/study/draw.h"
-
 #include <cmath>
 
-#include "model/terms/drawn_model.h"
+#include "batch/study/value.h"
+#include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
 #include "settings/model_file.h"
 #include "tests/batch/study_folder.h"

@@ -1,10 +1,9 @@
-#include "batch/finish.h"
-#include "batch/prepare.h"
 #include "batch/report/study_numbers.h"
 #include "batch/report/study_page.h"
 #include "batch/report/study_pictures.h"
 #include "batch/run/run_cases.h"
 #include "batch/store/small_file.h"
+#include "batch/study_folder.h"
 #include "tests/batch/study_folder.h"
 
 namespace hydro::batch {

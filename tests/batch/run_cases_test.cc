@@ -2,13 +2,11 @@
 
 #include <thread>
 
-#include "batch/finish.h"
-#include "batch/prepare.h"
 #include "batch/run/case_command.h"
-#include "batch/run/child.h"
 #include "batch/status.h"
 #include "batch/store/case_store.h"
 #include "batch/store/small_file.h"
+#include "batch/study_folder.h"
 #include "tests/batch/study_folder.h"
 
 namespace hydro::batch {

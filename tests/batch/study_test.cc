@@ -1,6 +1,5 @@
 #include "batch/study/study.h"
 
-#include "batch/study/study_difference.h"
 #include "tests/batch/study_folder.h"
 
 namespace hydro::batch {

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bus/seal/authenticated_channels.h"
-
 namespace hydro::bus {
 namespace {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/input_error.h"
-#include "bus/udpm/multicast_self_test.h"
 #include "bus/udpm/open_udpm_bus.h"
 #include "hydro/state_t.hpp"
 #include "tests/free_udp_port.h"

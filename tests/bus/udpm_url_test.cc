@@ -71,5 +71,13 @@ TEST(UdpmUrlTest, RefusesBadUrls) {
   }
 }
 
+// Tests that two ports that are held at once differ, and that a bus can use one that is held.
+TEST(ReservedPortTest, IsOneOfItsOwnAndCanBeUsed) {
+  const ReservedPort first, second;
+  EXPECT_NE(first.Url(), second.Url());
+  EXPECT_NE(first.Url().find("?ttl=0"), std::string::npos);
+}
+
 }  // namespace
+
 }  // namespace hydro::bus

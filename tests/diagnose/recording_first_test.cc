@@ -29,6 +29,17 @@ std::vector<runs::MeasuredRun> Bench(double voltage, double speed) {
   return runs;
 }
 
+// A run with the bypass open, whose speed is multiplied by this factor, and whose angle is not.
+runs::MeasuredRun SpeedAndAngle(double factor) {
+  testing::NoisyRig rig;
+  rig.model = {"Table 1", testing::Table1(), {}};
+  runs::MeasuredRun run = rig.Record("bench", model::Shaft::kClamped, 0.1, 4, true,
+                                     [](double t) { return std::fmod(t, 0.7) < 0.4 ? 3.0 : -4.0; })
+                              .measured;
+  for (double& value : run.motor_speed.values) value *= factor;
+  return run;
+}
+
 const model::ModelDescription kGiven = {"Table 1", testing::Table1(), {}};
 
 // Tests that a sound recording passes, and that limits are no faults.
@@ -75,6 +86,27 @@ TEST(RecordingFirst, JointsOfAnArm) {
   Diagnosis diagnosis;
   AddChecked(checked, &diagnosis);
   EXPECT_THAT(diagnosis.remarks, ::testing::Contains(HasSubstr(said)));
+}
+
+// Tests that a speed that contradicts its angle is said, and left out of what is searched, in the fitted and
+// the held-out runs alike.
+TEST(RecordingFirst, SpeedThatContradictsItsAngle) {
+  std::vector<runs::MeasuredRun> runs = {SpeedAndAngle(1.14)}, held_out = {SpeedAndAngle(1.14)};
+  const RecordingReport report = ReportOnRecordings(kGiven, runs, 1);
+  EXPECT_THAT(report.wrong,
+              ::testing::Contains(HasSubstr("the angle is believed, and the speed is left out")));
+  const CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &held_out);
+  EXPECT_FALSE(checked.mend_first);
+  ASSERT_EQ(checked.sensors.size(), 1u);
+  EXPECT_THAT(checked.sensors[0], StartsWith("every run: motor_speed is 1.1"));
+  for (const runs::MeasuredRun* run : std::vector<const runs::MeasuredRun*>{
+           &runs[0], &held_out[0], &checked.aligned[0].run, &checked.aligned[1].run}) {
+    EXPECT_FALSE(run->motor_speed.measured());
+    EXPECT_TRUE(run->motor_angle.measured());
+  }
+  std::vector<runs::MeasuredRun> sound = {SpeedAndAngle(1)}, none;
+  EXPECT_THAT(CheckFirst(kGiven, {}, 1, &sound, &none).sensors, IsEmpty());
+  EXPECT_TRUE(sound[0].motor_speed.measured());
 }
 
 // Tests that a wrong sign of the command ends the diagnosis before the search, and what it then says.

@@ -61,6 +61,26 @@ TEST(ReportHtml, Escapes) {
   EXPECT_EQ(UnbalancedTag(page), "");
 }
 
+// Tests that a value with an interval that shows nothing is said to be so, and which mean the verdict's gap
+// is and which the table's.
+TEST(ReportHtml, WhatIsNotShown) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  EXPECT_FALSE(Has(ReportHtml(diagnosis, false), "not shown by these runs"));
+  EXPECT_FALSE(TerminalSummary(diagnosis, "out", false).find("not shown by these runs") != std::string::npos);
+  diagnosis.effects[0].parameters[0].shown = false;
+  diagnosis.parameters[0].fitted.shown = false;
+  diagnosis.compared = {{15.7, 12, 9.3}, 0.4};
+  ASSERT_FALSE(diagnosis.horizons.empty());
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_TRUE(Has(page, "0.47 to 0.57: not shown by these runs"));
+  EXPECT_TRUE(Has(page, "0.0199 to 0.0207: not shown by these runs"));
+  EXPECT_TRUE(Has(page, "The held-out gap in the verdict, 15.7 to 9.3 over 0.4 s, is the typical one"));
+  const std::string text = TerminalSummary(diagnosis, "out", false);
+  EXPECT_NE(text.find("b 0.0203 [0.0199, 0.0207] in-lbf-s (not shown by these runs), was 0.01455"),
+            std::string::npos)
+      << text;
+}
+
 // Tests that the whole diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
 // ranking, the next experiment.
 TEST(ReportHtml, Complete) {
@@ -114,6 +134,27 @@ TEST(ReportHtml, AnswersFirst) {
                            "the gap at each horizon", "whole runs"}) {
     EXPECT_TRUE(Has(page, part)) << part;
   }
+}
+
+// Tests what paper needs: each heading begins a section that stays whole, the details begin on a page of
+// their own behind the answer, and nothing on the page has to be opened or clicked.
+TEST(ReportHtml, PrintsInSections) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(60), false);
+  const auto count = [&](const std::string& text) {
+    size_t number = 0;
+    for (size_t at = page.find(text); at != std::string::npos; at = page.find(text, at + 1)) ++number;
+    return number;
+  };
+  EXPECT_EQ(count("<h2>"), count("<section class=\"part"));
+  EXPECT_EQ(count("<section"), count("<section class=\"part\">\n<h2>") + 1);
+  EXPECT_EQ(count("<section class=\"part details\">\n<h2>The gap by signal"), 1U);
+  for (const char* rule : {".part { break-inside: avoid; }", ".details { break-before: page; }"}) {
+    const size_t at = page.find(rule);
+    ASSERT_NE(at, std::string::npos) << rule;
+    EXPECT_GT(at, page.find("@media print")) << "on screens there are no pages";
+  }
+  for (const char* leftover : {"<details", "<button", "<input", "<select", "<a "})
+    EXPECT_EQ(count(leftover), 0U) << leftover;
 }
 
 // Tests that the verdict's first sentence is the page's heading, that what follows it stands below, and that

@@ -132,6 +132,7 @@ class Relay:
         self.url = url
         self.peer = None
         self.cut = False
+        self.lie = None  # changes the fields of each sample on its way to the driver
         self.kept = []
         self.newest_command = b""
         self.ended = False
@@ -163,7 +164,15 @@ class Relay:
         data = self.device.recv(4096)
         self.kept.append(data)
         if self.peer and not self.cut:
-            self.driver.sendto(data, self.peer)
+            self.driver.sendto(self.lied(data) if self.lie else data, self.peer)
+
+    def lied(self, data):
+        told = b""
+        for kind, session, sequence, fields in wire.Receiver().take(data):
+            if kind == wire.SAMPLE:
+                self.lie(fields)
+            told += wire.encode(kind, session, sequence, fields)
+        return told
 
     def to_driver(self, data):
         self.driver.sendto(data, self.peer)

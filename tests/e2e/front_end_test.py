@@ -284,6 +284,61 @@ class LastLineTest(FrontEndCase):
         self.front.wait_until_driven()
 
 
+class LyingDeviceTest(FrontEndCase):
+    """A device whose samples say what cannot be: zero volts at the machine, one line that says what was found, and on again with the truth."""
+
+    LIES = (
+        (lambda s: s.update(state=99), "says that its state is 99, allowed are 1"),
+        (lambda s: s.update(source=7), "comes from source 7, allowed are 0"),
+        (lambda s: s.update(tick=4711), "clock (stands still at|runs backwards, from tick .* to) tick 4711"),
+        (lambda s: s.update(tick=2 ** 63 - s["tick"]), "clock runs backwards"),
+        (lambda s: s.update(p1=1e30), r"gives 1e\+30 psi for p1 .*driver.p1 allows no such reading"),
+        (lambda s: s.update(arm_speed=-1e30), "for arm_speed .*allows no such reading: at least"),
+        (lambda s: s.update(motor_count=s["motor_count"] ^ 0x40000000), "front end's motor_angle is .*, and its count of"),
+        (lambda s: s.update(trips=s["trips"] + s["tick"] % 2), r"by itself: it does not say why \(its faults_latched is 0\)"),
+        (lambda s: s.update(faults_present=0x8000), "reports: a fault that this version does not know"),
+        (lambda s: s.update(command_age=10 ** 6), "its watchdog must trip after 200"),
+    )
+
+    def test_lies(self):
+        front = front_end.FrontEnd(self)
+        relay = front.relay()
+        run = self.run_by_hand(relay.url)
+        for lie, said in self.LIES:
+            with self.subTest(said):
+                front.wait_until_driven()
+                relay.lie = lie
+                run["driver"].wait_for(said)
+                front.wait_until_zero()
+                relay.lie = None
+        front.wait_until_driven()
+        run["driver"].send(signal.SIGINT)
+        self.assertEqual(run["driver"].wait(), 0, run["driver"].report())
+
+    # Tests a device of another protocol: refused at once, by its number, with what to do.
+    def test_another_protocol(self):
+        device = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(device.close)
+        device.bind(("127.0.0.1", 0))
+        device.settimeout(0.1)
+        begin = time.monotonic()
+        driver = self.start("hydro-driver", stack.config(self.config), "--set", f"bus.url={self.new_url()}",
+                            *self.options("udp://127.0.0.1:%d" % device.getsockname()[1], "time.start_timeout_s=60"))
+        sequence = 0
+        while driver.child.poll() is None and time.monotonic() < begin + 30:
+            try:
+                _, peer = device.recvfrom(4096)
+            except socket.timeout:
+                continue
+            sequence += 1
+            device.sendto(wire.frame(wire.IDENTITY, 0, sequence, bytes(60), protocol=2), peer)
+        self.assertEqual(driver.wait(), 2, driver.report())
+        self.assertLess(time.monotonic() - begin, 20)
+        lines = [line for line in driver.stderr.splitlines() if "[info]" not in line]
+        self.assertEqual(len(lines), 1, driver.report())
+        self.assertRegex(lines[0], "driver.url: found a front end that speaks protocol 2, allowed protocol 1: give it the firmware")
+
+
 LOOP = ('driver.mode="loop_on_device"', processes("driver", "position-ctrl"))
 
 

@@ -62,6 +62,12 @@ def frame(kind, session, sequence, body=b"", protocol=1):
     return stuff(head + struct.pack("<I", zlib.crc32(head)))
 
 
+def encode(kind, session, sequence, fields):
+    """The frame with these fields, as Receiver gives them."""
+    form, names = BODIES[kind]
+    return frame(kind, session, sequence, struct.pack("<" + form, *(fields[name] for name in names)))
+
+
 def sensor(kind=0, channel=0, bits=0, scale=1.0, offset=0.0, share=1.0, low=-math.inf, high=math.inf):
     return SENSOR_ROW.pack(kind, channel, bits, scale, offset, share, low, high)
 

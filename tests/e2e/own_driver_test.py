@@ -325,6 +325,7 @@ class OwnDriverInputTest(OwnDriverCase):
     def test_new_driver(self):
         made = self.run_program("hydro-launch", "new-driver", "mine")
         self.assertIn("wrote mine/: mine.cc", made.stdout)
+        self.assertRegex(made.stdout, "(?m)^  cmake -S mine -B mine/build( -D(hydro_DIR|CMAKE_PREFIX_PATH)=/.*)? && cmake --build mine/build$")
         self.assertEqual(sorted(os.listdir(self.path("mine"))),
                          ["CMakeLists.txt", "frames.h", "mine.cc", "mine.toml", "simulated_device.cc"])
         with open(self.path("mine/mine.toml"), encoding="utf-8") as file:

@@ -9,10 +9,11 @@ import os
 import signal
 
 import event_log
+import launched_kills
 import outcome
 import stack
 
-ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
+ROLES = launched_kills.ROLES
 RATE = 1000  # Hz, of demo.toml
 RAMP = 200  # ticks, the default of limits.pressure_ramp_s
 # s, limits.stale_input_s. It is above the lateness of wake-ups here (up to 150 ms), so that only a dead
@@ -154,32 +155,15 @@ class RealtimeKillTest(stack.TestCase):
             self.assertIn(state.tick, commands)
 
 
-class LaunchedRealtimeKillTest(stack.TestCase):
-    def kill_under_launch(self, victim):
+class LaunchedRealtimeKillTest(launched_kills.LaunchedKills, stack.TestCase):
+    def start_launch(self):
         launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--log",
                              self.path("run.lcmlog"))
         log = stack.LiveLog(self, self.path("run.lcmlog"))
         log.wait_for_tick(100)
         pids = log.pids()
         self.assertEqual(set(pids), set(ROLES))
-        os.kill(pids[victim], signal.SIGKILL)
-        self.assertEqual(launch.wait(), 1, launch.report())
-        self.assertRegex(launch.stderr, f"{stack.PROGRAMS[victim]} was killed by signal 9")
-        self.assertEqual(stack.still_running(pids.values()), [])
-
-    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, and leaves no
-    # orphan.
-    def test_plant_killed(self):
-        self.kill_under_launch("plant")
-
-    def test_pressure_ctrl_killed(self):
-        self.kill_under_launch("pressure_ctrl")
-
-    def test_position_ctrl_killed(self):
-        self.kill_under_launch("position_ctrl")
-
-    def test_logger_killed(self):
-        self.kill_under_launch("logger")
+        return launch, pids
 
 
 if __name__ == "__main__":

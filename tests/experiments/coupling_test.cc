@@ -7,7 +7,7 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/studies/coupling_study.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {

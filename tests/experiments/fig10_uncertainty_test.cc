@@ -7,9 +7,9 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig10_runs.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/uncertain_spread.h"
-#include "model/terms/drawn_model.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/uncertain_machines.h"
+#include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::experiments {

@@ -6,7 +6,7 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {

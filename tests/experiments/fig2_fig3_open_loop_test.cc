@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/figures/catalogue.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {

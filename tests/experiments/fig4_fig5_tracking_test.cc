@@ -9,7 +9,7 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {

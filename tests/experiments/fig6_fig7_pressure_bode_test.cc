@@ -12,7 +12,7 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "tests/tune/design/wave_polynomial.h"
 

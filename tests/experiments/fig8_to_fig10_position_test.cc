@@ -6,9 +6,8 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/retuning.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/position_loop.h"
 #include "runs/step_response.h"
 
 namespace hydro::experiments {

@@ -8,9 +8,9 @@
 
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/leakage_fit.h"
-#include "plant/sensor_noise.h"
+#include "plant/simulated_rig.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {

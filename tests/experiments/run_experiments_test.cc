@@ -11,10 +11,9 @@
 #include <sstream>
 
 #include "base/input_error.h"
-#include "experiments/report/comparison_text.h"
 #include "experiments/report/experiment_files.h"
 #include "experiments/report/report.h"
-#include "experiments/studies/json_text.h"
+#include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/figures/catalogue.h"
-#include "experiments/studies/json_text.h"
-#include "experiments/studies/torque_driven.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/torque_runs.h"
 
 namespace hydro::experiments {
 namespace {

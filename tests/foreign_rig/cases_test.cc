@@ -15,33 +15,18 @@
 #include "runs/measured_run.h"
 #include "settings/model_file.h"
 #include "tests/foreign_rig/write.h"
+#include "tests/rig_folder.h"
 
 namespace foreign_rig {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ForeignCases : public ::testing::Test {
+class ForeignCases : public hydro::testing::RigFolder {
  protected:
-  ForeignCases()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("foreign_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-  }
-  ~ForeignCases() override { fs::remove_all(folder_); }
+  ForeignCases() : RigFolder("foreign_") {}
 
-  static Case CaseNamed(const std::string& name) {
-    for (const Case& c : AllCases()) {
-      if (c.name == name) return c;
-    }
-    throw std::runtime_error("no case " + name);
-  }
-  static std::string Text(const fs::path& file) {
-    std::ifstream in(file);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
+  static Case CaseNamed(const std::string& name) { return CaseIn(AllCases(), name); }
   Solved Write(const Case& c, const std::string& name) const {
     const Options options{0.5, 500};
     const Solved solved = Solve(c, options);
@@ -49,9 +34,6 @@ class ForeignCases : public ::testing::Test {
     WriteKey(c, solved, Folder(name) + ".json");
     return solved;
   }
-  std::string Folder(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
 };
 
 // Tests that the five runs and the three held out are read as measured runs of several kinds.

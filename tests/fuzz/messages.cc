@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "bus/seal/authenticated_channels.h"
 #include "bus/seal/authenticator.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"

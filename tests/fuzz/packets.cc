@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "bus/udpm/fragment_assembly.h"
 #include "bus/udpm/lcm_packet.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"

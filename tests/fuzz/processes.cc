@@ -11,7 +11,7 @@
 #include "bus/in_process_bus.h"
 #include "launch/logic/stack_watch.h"
 #include "logger/logger_app.h"
-#include "plant/roll_call.h"
+#include "plant/run_start.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"

@@ -5,7 +5,7 @@
 
 #include "scope/foxglove_conversation.h"
 #include "scope/live_conversation.h"
-#include "scope/wire/target.h"
+#include "scope/wire/access.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
 

@@ -17,41 +17,23 @@
 #include "tests/hidden_rig/line.h"
 #include "tests/hidden_rig/plans.h"
 #include "tests/hidden_rig/write_case.h"
+#include "tests/rig_folder.h"
 
 namespace hidden_rig {
 namespace {
 
 namespace fs = std::filesystem;
 
-class HiddenRig : public ::testing::Test {
+class HiddenRig : public hydro::testing::RigFolder {
  protected:
-  HiddenRig()
-      : folder_(fs::path(::testing::TempDir()) /
-                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    fs::remove_all(folder_);
-  }
-  ~HiddenRig() override { fs::remove_all(folder_); }
+  HiddenRig() : RigFolder("hidden_") {}
 
-  static Case CaseNamed(const std::string& name) {
-    for (const Case& c : AllCases()) {
-      if (c.name == name) return c;
-    }
-    throw std::runtime_error("no case " + name);
-  }
-  static std::string Text(const fs::path& file) {
-    std::ifstream in(file);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
+  static Case CaseNamed(const std::string& name) { return CaseIn(AllCases(), name); }
   static Options Short(double seconds) {
     Options options;
     options.seconds = seconds;
     return options;
   }
-  std::string Folder(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
 };
 
 // Tests that the runs are read as measured runs of the right kinds, with the stated noise.

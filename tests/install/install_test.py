@@ -96,6 +96,17 @@ class InstallTest(unittest.TestCase):
                                "--set", f"bus.url=udpm://239.255.76.67:{port}?ttl=0"], capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
 
+    def test_a_driver_builds_on_a_build(self):
+        """Tests that what `hydro-launch new-driver` prints in a build that is not installed builds the driver."""
+        folder = pathlib.Path(self.folder.name) / "uninstalled"
+        folder.mkdir()
+        made = subprocess.run([BUILD / "bin/hydro-launch", "new-driver", "mine"], cwd=folder, check=True, capture_output=True, text=True,
+                              timeout=60).stdout
+        command = re.search(r"^  (cmake -S mine .*-Dhydro_DIR=.*)$", made, re.MULTILINE)
+        self.assertTrue(command, made)
+        subprocess.run(["sh", "-c", command[1]], cwd=folder, check=True, capture_output=True)
+        self.assertIn("--check-sensors", run(folder / "mine/build/mine", "--help"))
+
     def test_headers_name_installed_headers(self):
         """Tests that no installed header includes one of the project's that is not installed, and none of the upper floors is."""
         include = self.prefix / "include/hydro"

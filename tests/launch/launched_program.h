@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/line_assembler.h"
+#include "launch/child_process.h"
 
 namespace hydro::launch {
 

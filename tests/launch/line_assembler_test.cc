@@ -1,9 +1,9 @@
-#include "launch/line_assembler.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
+
+#include "launch/child_process.h"
 
 namespace hydro::launch {
 namespace {

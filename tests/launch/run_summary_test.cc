@@ -170,6 +170,32 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   EXPECT_EQ(summary.FaultsLeft().size(), 1u);
 }
 
+// Tests that a limit that the plant and the pressure loop of a joint both see passed is listed once, with
+// what became of it in each, and that another joint's has a line of its own.
+TEST(RunSummaryTest, AFaultThatTwoSeeIsListedOnce) {
+  RunSummary summary;
+  const auto add = [&](const char* source, bool active, const char* text) {
+    fault_t fault{};
+    fault.code = "pressure_limit";
+    fault.source = source;
+    fault.active = active ? 1 : 0;
+    fault.text = text;
+    summary.Add(fault);
+  };
+  add("knee pressure_ctrl", true, "tick 43: p2 is 110.3 psi");
+  add("hip plant", true, "tick 44: p1 is 111 psi");
+  add("knee plant", true, "tick 43: p2 is 110.3 psi");
+  add("knee pressure_ctrl", false, "tick 43: p2 is 110.3 psi");
+  add("knee pressure_ctrl", true, "tick 52: p1 is 110.9 psi");
+  EXPECT_THAT(summary.Lines(), ::testing::ElementsAre(
+                                   "fault pressure_limit of knee pressure_ctrl, 2 times, still there at the "
+                                   "end, and of knee plant, once, still there at the end: tick 43: p2 is "
+                                   "110.3 psi",
+                                   "fault pressure_limit of hip plant, once, still there at the end: tick "
+                                   "44: p1 is 111 psi"));
+  EXPECT_EQ(summary.FaultsLeft().size(), 3U);
+}
+
 // Tests that a fault whose sender's name changed on the way ends with that sender's own report of its end,
 // and is no fault that stays; and that joints without sessions are told apart by their names.
 TEST(RunSummaryTest, ASenderIsItsSession) {
@@ -193,6 +219,26 @@ TEST(RunSummaryTest, ASenderIsItsSession) {
   fault.active = 0;
   summary.Add(fault);
   EXPECT_THAT(summary.FaultsLeft(), ::testing::ElementsAre("stale_state of hip plant"));
+}
+
+// Tests that no fault is without words, whatever its message lacks: forged, or of a program of the user's
+// own.
+TEST(RunSummaryTest, NoFaultWithoutWords) {
+  RunSummary summary;
+  fault_t fault{};
+  fault.active = true;
+  summary.Add(fault);
+  fault.session = 2;
+  fault.source = "driver";
+  fault.code = "device_fault";
+  fault.text = " \t\n";
+  summary.Add(fault);
+  EXPECT_THAT(
+      summary.Lines(),
+      testing::ElementsAre(
+          "fault without a name of an unnamed process, once, still there at the end: no reason is given",
+          "fault device_fault of driver, once, still there at the end: no reason is given"));
+  EXPECT_EQ(summary.FaultsLeft().front(), "a fault without a name of an unnamed process");
 }
 
 }  // namespace

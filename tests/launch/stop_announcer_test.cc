@@ -1,11 +1,11 @@
-#include "launch/logic/stop_announcer.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "launch/logic/stop_sequence.h"
 
 namespace hydro::launch {
 namespace {

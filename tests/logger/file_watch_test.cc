@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "logger/refused_quota.h"
+#include "logger/event_queue.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::logger {

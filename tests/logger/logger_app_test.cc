@@ -21,7 +21,7 @@
 
 #include "base/input_error.h"
 #include "bus/in_process_bus.h"
-#include "logger/log_files.h"
+#include "logger/recording.h"
 #include "tests/runs/log/log_fixture.h"
 #include "tests/stack_fixture.h"
 

@@ -1,12 +1,11 @@
 // Models drawn from what is known of one.
-#include "model/terms/drawn_model.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 #include <vector>
 
+#include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
 #include "tests/table1.h"
 

@@ -6,14 +6,11 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "page/curve_thinning.h"
-#include "page/drawing_template.h"
+#include "page/curves.h"
 #include "page/figure_svg.h"
 #include "page/html_page.h"
-#include "page/label_placement.h"
 #include "page/panel_geometry.h"
 #include "page/svg.h"
-#include "page/ticks.h"
 #include "page/typeset.h"
 
 namespace hydro::page {

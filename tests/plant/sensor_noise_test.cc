@@ -1,8 +1,8 @@
-#include "plant/sensor_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "plant/simulated_rig.h"
 
 namespace hydro::plant {
 namespace {

@@ -1,5 +1,3 @@
-#include "position_ctrl/law/braking_curve.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

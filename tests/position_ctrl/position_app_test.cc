@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
-#include "position_ctrl/law/reference_return.h"
+#include "position_ctrl/law/position_law.h"
 #include "tests/stack_fixture.h"
 #include "tune/live/tuned_values.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/in_process_bus.h"
+#include "tests/process/loop_fixture.h"
 
 namespace hydro::process {
 namespace {
@@ -49,26 +49,7 @@ class NotedLoop : public ControlLoop {
   void OnSilence(bus::Clock::Duration) override { notes.push_back("silence"); }
 };
 
-class ControlLoopTest : public ::testing::Test {
- protected:
-  void State(int64_t tick, int64_t sequence, int64_t session = 77) {
-    state_t state{};
-    state.tick = tick;
-    state.session = session;
-    state.sequence = sequence;
-    bus_.Publish("HYDRO_STATE", state);
-    Deliver();
-  }
-  void Deliver() {
-    clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(1));
-    while (bus_.HandleUntil(clock_.Now()) > 0) {
-    }
-  }
-
-  bus::SimulatedClock clock_;
-  bus::InProcessBus bus_{&clock_};
-  settings::StackConfig config_;
-};
+class ControlLoopTest : public LoopTest {};
 
 // Tests that each state is observed before its tick counts, and that those which are due are answered.
 TEST_F(ControlLoopTest, AnswersWhatIsDue) {

@@ -5,14 +5,14 @@
 
 #include <vector>
 
-#include "bus/in_process_bus.h"
+#include "tests/process/loop_fixture.h"
 
 namespace hydro::process {
 namespace {
 
 using ::testing::ElementsAre;
 
-class OwnPositionLoopTest : public ::testing::Test {
+class OwnPositionLoopTest : public LoopTest {
  protected:
   OwnPositionLoopTest() {
     config_.position_interval_ticks = 5;
@@ -24,24 +24,6 @@ class OwnPositionLoopTest : public ::testing::Test {
     });
   }
 
-  void State(int64_t tick, int64_t sequence) {
-    state_t state{};
-    state.tick = tick;
-    state.session = 77;
-    state.sequence = sequence;
-    state.arm_angle = 0.01 * static_cast<double>(tick);
-    bus_.Publish("HYDRO_STATE", state);
-    Deliver();
-  }
-  void Deliver() {
-    clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(1));
-    while (bus_.HandleUntil(clock_.Now()) > 0) {
-    }
-  }
-
-  bus::SimulatedClock clock_;
-  bus::InProcessBus bus_{&clock_};
-  settings::StackConfig config_;
   int asked_ = 0;
   std::vector<pressure_command_t> commands_;
   std::vector<int> states_;

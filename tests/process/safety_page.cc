@@ -52,32 +52,6 @@ std::string Injected(const SafetyRow& row) {
   return row.injected.empty() ? "not reached: " + std::string(row.not_injected) : Joined(Coded(row.injected));
 }
 
-const char* NameOf(SafeOutput output) {
-  switch (output) {
-    case SafeOutput::kZeroVolts:
-      return "zero_volts";
-    case SafeOutput::kReferenceRamped:
-      return "reference_ramped";
-    case SafeOutput::kNotObeyed:
-      return "not_obeyed";
-    case SafeOutput::kControlGoesOn:
-      return "control_goes_on";
-  }
-  return "";
-}
-
-const char* NameOf(Cleared cleared) {
-  switch (cleared) {
-    case Cleared::kByItself:
-      return "by_itself";
-    case Cleared::kByRearm:
-      return "by_rearm";
-    case Cleared::kRunEnds:
-      return "run_ends";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string SafetyMarkdown() {

@@ -11,6 +11,7 @@
 
 #include "base/input_error.h"
 #include "process/fault_codes.h"
+#include "settings/toml/toml_document.h"
 #include "tests/process/safety_page.h"
 
 namespace hydro::process {
@@ -46,6 +47,44 @@ TEST(SafetyTableTest, RowsAreWhole) {
   EXPECT_THROW(SafetyRowOf("sunshine"), std::invalid_argument);
   EXPECT_EQ(TicksWithin("stop"), 5);
   EXPECT_THROW(TicksWithin("disk_full"), std::invalid_argument);
+}
+
+// Tests that a row reads as it is written, and that a key or a name that does not exist is refused with its
+// line: a misspelt one would leave a row half empty.
+TEST(SafetyTableTest, ReadsRowsAndRefusesUnknownNames) {
+  const auto read = [](const std::string& text) {
+    return ReadSafetyTable(settings::ParseToml(text, "rows.toml"));
+  };
+  const settings::TomlNode document = settings::ParseToml(
+      "[a]\nfault = 'f'\nwithin = 'soon'\noutput = { not_obeyed = 'none' }\ncleared = { run_ends = 'never' "
+      "}\n"
+      "[b]\nwithin = { text = '5 ticks', ticks = 5, after = 'stale_input_s' }\n"
+      "cleared = { by_itself = 'later', explicit = 'by_rearm' }\n",
+      "rows.toml");
+  const std::vector<SafetyRow> rows = ReadSafetyTable(document);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].id, "a");
+  EXPECT_EQ(rows[0].fault, "f");
+  EXPECT_EQ(rows[0].within.text, "soon");
+  EXPECT_EQ(rows[0].within.ticks, std::nullopt);
+  EXPECT_EQ(rows[0].output, SafeOutput::kNotObeyed);
+  EXPECT_EQ(rows[0].output_text, "none");
+  EXPECT_EQ(rows[0].explicit_rearm, Cleared::kRunEnds);
+  EXPECT_EQ(rows[1].within.ticks, 5);
+  EXPECT_EQ(rows[1].within.after, "stale_input_s");
+  EXPECT_EQ(rows[1].restart, Cleared::kByItself);
+  EXPECT_EQ(rows[1].explicit_rearm, Cleared::kByRearm);
+  for (const std::string wrong :
+       {"falt = 'f'", "within = { tick = 5 }", "output = { zero_volt = '0 V' }",
+        "cleared = { by_hand = 'x' }", "cleared = { by_itself = 'x', explicit = 'never' }",
+        "cleared = { by_itself = 'x', implicit = 'y' }"}) {
+    try {
+      read("[a]\n" + wrong + "\n");
+      ADD_FAILURE() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("rows.toml:2: found '")) << wrong;
+    }
+  }
 }
 
 TEST(SafetyTableTest, WordsOfAList) {

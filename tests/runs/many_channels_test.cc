@@ -6,13 +6,16 @@
 
 #include "bus/channels.h"
 #include "hydro/process_status_t.hpp"
+#include "hydro/run_description_t.hpp"
 #include "hydro/state_t.hpp"
+#include "hydro/stop_t.hpp"
 #include "runs/channel_suffix.h"
 #include "runs/exports/export_runs.h"
 #include "runs/exports/selection.h"
 #include "runs/info.h"
 #include "runs/limb_info.h"
 #include "runs/run_log.h"
+#include "runs/senders.h"
 #include "scope/signals/log_run.h"
 #include "tests/runs/count_comparisons.h"
 #include "tests/runs/log/log_fixture.h"
@@ -61,6 +64,30 @@ const std::pair<const char*, Flood> kFloods[] = {
        for (int i = 0; i < channels / 2; ++i) {
          events->push_back(Status("_limb" + Number(i)));
          events->push_back(State("_limb" + Number(i) + "_hip"));
+       }
+     }},
+    {"states of many senders",
+     [](int channels, auto* events) {
+       state_t state{};
+       for (state.session = 1; state.session <= channels; ++state.session) {
+         state.tick = state.sequence = state.session;
+         events->push_back(EventOf(state, ""));
+       }
+     }},
+    {"stops, programs and descriptions",
+     [](int channels, auto* events) {
+       events->push_back(State(""));
+       for (int i = 0; i < channels; ++i) {
+         stop_t stop{};
+         stop.session = i + 1;
+         stop.reason = stop.source = "made up " + Number(i);
+         events->push_back(EventOf(stop, ""));
+         process_status_t status{};
+         status.role = status.host = status.version = Number(i);
+         events->push_back(EventOf(status, ""));
+         run_description_t description{};
+         description.program = description.version = Number(i);
+         events->push_back(EventOf(description, ""));
        }
      }},
     {"names with many parts",
@@ -128,6 +155,16 @@ TEST_F(ManyChannelsTest, TheCostGrowsWithTheirNumber) {
       EXPECT_LT(static_cast<double>(twice), 2.6 * static_cast<double>(once) + 1000)
           << name << ", " << kind << ": " << once << " and " << twice;
     }
+  }
+}
+
+// Tests that more runs than anybody joins are not shown one by one.
+TEST_F(ManyChannelsTest, MoreSendersThanAnyLogHas) {
+  for (const size_t senders : {kMostRuns, kMostRuns + 1}) {
+    const RunLog log = ReadRunLog(Write(static_cast<int>(senders), kFloods[5].second));
+    EXPECT_EQ(RunsIn(log.messages).size(), senders > kMostRuns ? 0 : senders);
+    EXPECT_THAT(InfoText(Summarise(log, false)),
+                HasSubstr(senders > kMostRuns ? "there are more than 100" : "run 100 of 100, by sender "));
   }
 }
 

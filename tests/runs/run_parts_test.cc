@@ -106,7 +106,7 @@ TEST_F(RunPartsTest, ACurrentCommands) {
               AllOf(HasSubstr("no unit of current"), HasSubstr("\"A\" or \"mA\"")));
 }
 
-// Tests the force on the arm and the oil's temperature, in any unit.
+// Tests the force on the arm, the oil's temperature and a differential transducer, in any unit.
 TEST_F(RunPartsTest, ForceAndTemperature) {
   const auto with = [&](const std::string& entry) {
     return Read("shaft = \"free\"", "voltage = \"u\"\n" + entry).front();
@@ -124,6 +124,10 @@ TEST_F(RunPartsTest, ForceAndTemperature) {
   EXPECT_DOUBLE_EQ(ReadMeasuredRun(Path("run.csv"), UnitSystem{"m", "N", true}).arm_force.values[2], 2000);
   EXPECT_THAT(log::InputErrorOf([&] { ReadMeasuredRun(Path("run.csv"), kSiUnits); }),
               HasSubstr("\"kN\", no unit of arm_force"));
+  WriteRun("shaft = \"free\"", "voltage = \"u\"\ndp = { column = \"f\", unit = \"kPa\" }");
+  EXPECT_NEAR(ReadMeasuredRun(Path("run.csv"), UnitSystem{"m", "N", true}).dp.values[2], 2000, 1e-9);
+  EXPECT_THAT(ErrorOf("shaft = \"free\"", "voltage = \"u\"\ndp = { column = \"f\", unit = \"A\" }"),
+              HasSubstr("no unit of dp"));
 }
 
 // Tests that each mistake is one line which says what is allowed.

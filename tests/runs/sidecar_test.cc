@@ -94,6 +94,21 @@ TEST_F(SidecarTest, WrongUnits) {
               HasSubstr("no unit of pressure_ref"));
 }
 
+// Tests that the refusal of an unknown key names every key that [columns] may have, with either command.
+TEST_F(SidecarTest, UnknownColumnNamesAllKeys) {
+  for (const char* command : {"voltage = \"u\"", "current = \"u\""}) {
+    log::WriteBytes(Path("run.csv"), "t,u\n0,1\n1,2\n");
+    log::WriteBytes(Path("run.toml"),
+                    "shaft = \"free\"\n[columns]\ntime = \"t\"\n" + std::string(command) + "\np9 = \"u\"\n");
+    const std::string error = log::InputErrorOf([&] { ReadMeasuredRun(Path("run.csv")); });
+    for (const char* key : {"time", "voltage", "current", "pressure_ref", "motor_speed", "motor_angle",
+                            "arm_angle", "arm_speed", "p1", "p2", "arm_force", "temperature", "bypass"}) {
+      EXPECT_THAT(error, HasSubstr("\"" + std::string(key) + "\"")) << command;
+    }
+    EXPECT_EQ(error.find("motor_voltage"), std::string::npos) << "it is no key";
+  }
+}
+
 // Tests that a command in another quantity is told to leave the unit out.
 TEST_F(SidecarTest, CommandThatIsNoVoltage) {
   log::WriteBytes(Path("run.csv"), kTable);

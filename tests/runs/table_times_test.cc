@@ -118,6 +118,15 @@ TEST_F(TableTimesTest, Clocks) {
       HasSubstr("found a unit or a scale for dates or times of day"));
 }
 
+// Tests the sidecar's word on dates that can be read in two ways, and its mistakes.
+TEST_F(TableTimesTest, OrderOfDates) {
+  const std::string rows = "1/2/2026 23:59:59,1,2\n2/2/2026 00:00:00,1,3\n2/2/2026 00:00:01,2,3\n";
+  EXPECT_THAT(ErrorOf(rows), HasSubstr("or time = { column = \"t\", date_order = \"dmy\" } in the sidecar"));
+  EXPECT_THAT(Read(rows, "{ column = \"t\", date_order = \"dmy\" }").time, ElementsAre(0, 1, 2));
+  EXPECT_THAT(ErrorOf(rows, "{ column = \"t\", date_order = \"ymd\" }"),
+              HasSubstr("columns.time.date_order: found \"ymd\", allowed \"dmy\" or \"mdy\""));
+}
+
 // Tests a date in a column of its own, and nanoseconds since 1970.
 TEST_F(TableTimesTest, DatesAndNanoseconds) {
   log::WriteBytes(Path("d.csv"), "day,t,u\n2026-01-31,23:59:59.5,1\n2026-02-01,00:00:00.5,2\n");

@@ -58,6 +58,32 @@ TEST(TrackingTest, SecondOrderStep) {
   EXPECT_EQ(tracking.at_target, true);
 }
 
+// Tests that what counts as being at the target is what a step's "within" says, of the step that led there:
+// 2 % of it, or 0.001 rad where that is more; and that the text states it and the time of the mean.
+TEST(TrackingTest, OneTolerance) {
+  using ::testing::HasSubstr;
+  for (const double size : {0.4, 0.02}) {
+    const double tolerance = std::max(0.02 * size, 0.001);
+    for (const double share : {0.9, 1.1}) {
+      // A step of 1 rad comes before, of which 2 % would be 0.02 rad.
+      const auto reference = [&](double t) { return t < 1 ? 0.0 : t < 2 ? 1.0 : 1.0 + size; };
+      const Tracking tracking = TrackArm(MakeRun(
+          4000, [&](double t) { return reference(t) - (t < 2 ? 0 : share * tolerance); }, reference));
+      ASSERT_EQ(tracking.steps.size(), 2u);
+      EXPECT_NEAR(tracking.tolerance_rad, tolerance, 1e-12);
+      EXPECT_NEAR(tracking.final_time_s, 0.1, 1e-9);
+      EXPECT_EQ(tracking.at_target, share < 1) << size;
+      EXPECT_EQ(tracking.steps[1].settling_time_s.has_value(), share < 1) << size;
+      RunLog none;
+      const std::string text = SummaryText(tracking, Summarise(none, false), false);
+      EXPECT_THAT(text, HasSubstr(size > 0.1 ? "(mean of the last 0.1 s; up to 0.0080 rad is at it)"
+                                             : "(mean of the last 0.1 s; up to 0.0010 rad is at it)"));
+      EXPECT_THAT(text, HasSubstr(std::string(share < 1 ? ", " : ", not ") +
+                                  (size > 0.1 ? "within 2 %" : "within 0.0010 rad")));
+    }
+  }
+}
+
 // Tests that an arm that stops short is not at its target, never settles, and has its error reported with its
 // sign.
 TEST(TrackingTest, StopsShort) {

@@ -1,5 +1,8 @@
 #include "settings/limb_config.h"
 
+#include <sys/inotify.h>
+#include <unistd.h>
+
 #include "settings/joint_documents.h"
 #include "settings/limb_processes.h"
 #include "tests/settings/texts.h"
@@ -284,6 +287,49 @@ TEST_F(LimbConfigTest, NumbersKeepTheirUnits) {
       }),
       refusal)
       << "the stack of one joint";
+}
+
+// Counts how often this process opens a file.
+class Openings {
+ public:
+  explicit Openings(const std::string& file) : queue_(inotify_init1(IN_NONBLOCK)) {
+    EXPECT_GE(inotify_add_watch(queue_, file.c_str(), IN_OPEN | IN_CLOSE), 0) << file;
+  }
+  ~Openings() { close(queue_); }
+  Openings(const Openings&) = delete;
+  Openings& operator=(const Openings&) = delete;
+
+  // Since the last call. Watches closings too, because the kernel merges equal events in a row.
+  int Count() {
+    alignas(inotify_event) char events[4096];
+    int count = 0;
+    for (ssize_t size = read(queue_, events, sizeof events); size > 0;
+         size = read(queue_, events, sizeof events))
+      count += static_cast<int>(size / static_cast<ssize_t>(sizeof(inotify_event)));
+    return count / 2;
+  }
+
+ private:
+  int queue_;
+};
+
+// Tests that a limb reads a model once, however many joints share it and whatever is asked of its units.
+TEST_F(LimbConfigTest, ReadsEachModelOnce) {
+  const std::string file = File(std::string(kConfigText) + kJoints);
+  Openings openings(Write("model.toml", kModelText));
+  EXPECT_EQ(LoadLimbConfig(file, {}).joints.size(), 2U);
+  EXPECT_EQ(openings.Count(), 1);
+  LoadStackConfig(file, {"joint=knee"});
+  EXPECT_EQ(openings.Count(), 1);
+  Write("other.toml", kModelText);
+  LoadLimbConfig(file, {"joint.knee.model.file=other.toml"});
+  EXPECT_EQ(openings.Count(), 1);
+  const std::string own =
+      Write("own.toml", std::string(kConfigText) + kJoints + "[joint.model]\nfile = \"other.toml\"\n");
+  Openings others((folder_ / "other.toml").string());
+  LoadLimbConfig(own, {});
+  EXPECT_EQ(openings.Count(), 1);
+  EXPECT_EQ(others.Count(), 1);
 }
 
 }  // namespace

@@ -44,6 +44,23 @@ TEST(EditToml, AddsAndRemoves) {
   EXPECT_EQ(edited, expected + "\n[limits]\npressure = 1500\n");
 }
 
+// Tests that a comment that is given takes the place of the former one, or stands beside a value that had
+// none.
+TEST(EditToml, ReplacesComments) {
+  std::string expected = Replaced(kText, "c1 = 6000.0   # stiffness", "c1 = 9000     # psi/rad, was 6000");
+  expected = Replaced(expected, "]  # all", "]  # all\nsigma = 3  # new");
+  expected = Replaced(expected, "kind = 'steps'\n", "kind = 'steps'  # as it was\n");
+  expected = Replaced(expected, "]  # all\nsigma = 3  # new\nkind = 'steps'  # as it was\n",
+                      "]  # all\nkind = 'steps'  # as it was\nsigma = 3  # new\n");
+  EXPECT_EQ(EditToml(kText, "x.toml",
+                     {{"position.c1", "9000"}, {"reference.kind", "'steps'"}, {"reference.sigma", "3"}}, {},
+                     {{"position.c1", "psi/rad, was 6000"},
+                      {"reference.kind", "as it was"},
+                      {"reference.sigma", "new"},
+                      {"position.c2", "not changed"}}),
+            expected);
+}
+
 TEST(EditToml, FindsDottedKeys) {
   EXPECT_EQ(EditToml("position.c1 = 1\nposition.c2 = 2\n", "x.toml", {{"position.c1", "5"}}, {}),
             "position.c1 = 5\nposition.c2 = 2\n");

@@ -5,7 +5,6 @@
 #include "base/input_error.h"
 #include "base/new_folder.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
 #include "runs/exports/export_runs.h"

@@ -6,7 +6,7 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "runs/compare.h"
@@ -145,7 +145,8 @@ class RepairVerb {
     if (!out_.empty()) CheckKeeps(out_, {log_});
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (!result.mended()) {
-      std::printf("%s: nothing to repair\n", Printable(log_).c_str());
+      const std::string copy = out_.empty() ? "" : "; " + out_ + " has the same messages";
+      std::printf("%s\n", Printable(log_ + ": nothing to repair" + copy).c_str());
     } else {
       std::fputs(PrintableLines(log::Describe(result, log_)).c_str(), stdout);
     }

@@ -14,7 +14,7 @@
 
 #include "bus/bus.h"
 #include "bus/clock.h"
-#include "bus/udpm/reserved_port.h"
+#include "bus/udpm/udpm_url.h"
 #include "process/process_end.h"
 #include "settings/stack_config.h"
 

@@ -7,7 +7,6 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
 #include "process/stop_signal.h"

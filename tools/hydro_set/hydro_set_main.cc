@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/remarks.h"
+#include "base/standard_output.h"
 #include "base/text_file.h"
 #include "bus/clock.h"
 #include "process/stack_bus.h"

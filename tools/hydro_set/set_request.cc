@@ -56,7 +56,7 @@ class Setter {
   bool Wait(bus::Clock::Duration longest, Until until) {
     const auto deadline = clock_.Now() + longest;
     while (!until()) {
-      if (clock_.Now() >= deadline || output_.interrupted()) return false;
+      if (clock_.Now() >= deadline || output_.interrupted() || !client_.ending().empty()) return false;
       bus_.HandleUntil(clock_.Now() + kTurn);
       client_.Poll();
     }
@@ -72,8 +72,17 @@ class Setter {
   }
 
   bool FindStack() {
-    const bool found =
-        Wait(kPresence, [&] { return client_.in_force() && client_.run() && !client_.plants().empty(); });
+    const bool found = Wait(kPresence, [&] {
+      const bool described = client_.in_force() && client_.run();
+      return described && !client_.plants().empty() && client_.ending().empty();
+    });
+    if (!client_.ending().empty()) {
+      Print(output_.err,
+            fmt::format("hydro-set: the stack on {} stops ({}) and takes no values any more; set them in its "
+                        "configuration, or start it again with hydro-launch and repeat this",
+                        url_, client_.ending()));
+      return false;
+    }
     if (client_.plants().size() > 1) {
       Print(output_.err,
             fmt::format("hydro-set: heard {} plants on {}, allowed is one", client_.plants().size(), url_));
@@ -113,6 +122,13 @@ class Setter {
       who += fmt::format("{}{} {}", who.empty() ? "" : ", ", role,
                          status.in_force == answer->version ? fmt::format("since tick {}", status.since)
                                                             : std::string("has not said so"));
+    }
+    if (!acts && !client_.ending().empty()) {
+      Print(output_.err,
+            fmt::format("hydro-set: the stack stops ({}); version {} was to act from tick {} on, and may not "
+                        "have",
+                        client_.ending(), answer->version, answer->acts_at));
+      return false;
     }
     Print(acts ? said_ : output_.err,
           fmt::format("acts from tick {} on ({:.3f} s): {}", answer->acts_at,

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "settings/stack_config.h"

@@ -18,30 +18,43 @@ using settings::ReferenceSignal;
 constexpr int kSamples = 400;  // of the return, and of the time after it
 constexpr size_t kMostBreaks = 100'000;
 
-// The quantity that a reference refers to, in words and in the model's units.
+// The quantity that a reference refers to, in words and in the model's units; and the largest value that it
+// has.
 struct Referred {
   const char* quantity;
   const char* words;
   std::string unit;
   double present;
+  double range;
 };
 
 Referred ReferredTo(const settings::StackConfig& config, const state_t& state) {
   const UnitSystem& units = config.model.description.units;
   const double pressure =
       model::LoadPressure(model::DifferencesOf(config.model.description).areas, state.p1, state.p2);
+  const model::Parameters& p = config.model.description.parameters;
+  const double most_pressure = p.T_pmax / p.D;  // what the motor can hold, eq. (3)
   switch (config.reference.signal) {
     case ReferenceSignal::kArmAngle:
-      return {"arm_angle", "the arm", units.UnitFor("rad", 1), state.arm_angle};
+      return {"arm_angle", "the arm", units.UnitFor("rad", 1), state.arm_angle, 2 * p.V_ms / p.c};
     case ReferenceSignal::kPressure:
-      return {"pressure", "the pressure p2 - p1", units.UnitFor("psi"), pressure};
+      return {"pressure", "the pressure p2 - p1", units.UnitFor("psi"), pressure, most_pressure};
     case ReferenceSignal::kTorque:
-      return {"torque", "the torque on the arm", units.UnitFor("in-lbf", -1),
-              pressure * config.model.description.parameters.k_2};
+      return {"torque", "the torque on the arm", units.UnitFor("in-lbf", -1), pressure * p.k_2,
+              most_pressure * p.k_2};
     case ReferenceSignal::kVoltage:
-      return {"voltage", "the voltage", "V", 0};
+      return {"voltage", "the voltage", "V", 0, p.T_pmax / p.k_1};
   }
   return {};
+}
+
+// What a forecast takes for no move: a count of the arm's encoder, or a millionth of the range.
+double ResolutionOf(const settings::StackConfig& config, const Referred& referred) {
+  constexpr double kShare = 1e-6;
+  const double share = std::isfinite(referred.range) ? kShare * std::fabs(referred.range) : 0;
+  const bool counts = config.driver && config.reference.signal == ReferenceSignal::kArmAngle &&
+                      config.driver->arm_angle.source == settings::SensorSection::Source::kCounter;
+  return counts ? std::max(share, std::fabs(config.driver->arm_angle.scale)) : share;
 }
 
 // The angle that a plan prescribes at a time (position_ctrl/plan_follower.cc: cubics between its points).
@@ -110,17 +123,18 @@ bool JumpsBetween(const Wanted& wanted, double begin, double end) {
 }
 
 // The return: a straight line from the current reference to the wanted one
-// (position_ctrl/law/reference_return.h).
+// (position_ctrl/law/position_law.h).
 void FollowTheReturn(const Wanted& wanted, double now, RearmForecast* forecast) {
   const double end = now + forecast->return_s;
   forecast->target = wanted.At(end);
   if (forecast->return_s == 0) {
-    forecast->jumps = forecast->target != forecast->present;
+    forecast->jumps = std::fabs(forecast->target - forecast->present) > forecast->resolution;
     return;
   }
   wanted.BreaksBetween(now, end, [&](double t, double before, double after) {
-    if (Differ(before, after))
-      forecast->steps.push_back({t - now, (t - now) / forecast->return_s * (after - before)});
+    const double by = (t - now) / forecast->return_s * (after - before);
+    if (Differ(before, after) && std::fabs(by) > forecast->resolution)
+      forecast->steps.push_back({t - now, by});
     return forecast->steps.size() < kMostSteps;
   });
   forecast->jumps = !forecast->steps.empty();
@@ -156,7 +170,7 @@ void FindTurns(const Wanted& wanted, double now, RearmForecast* forecast) {
     take(t - now, after);
     return ++breaks < kMostBreaks;
   });
-  const double least = kMaterial * (highest.at - lowest.at);
+  const double least = std::max(kMaterial * (highest.at - lowest.at), forecast->resolution);
   const auto [low, high] = std::minmax(forecast->present, forecast->target);
   if (low - lowest.at > least) forecast->turns.push_back(lowest);
   if (highest.at - high > least) forecast->turns.push_back(highest);
@@ -192,8 +206,11 @@ void FollowTheReference(const Wanted& wanted, double begin, RearmForecast* forec
 
 std::string ReturnText(const RearmForecast& f) {
   const double way = f.target - f.present;
+  const bool moves = std::fabs(way) > f.resolution;
+  if (!moves && f.turns.empty() && f.steps.empty()) return "the reference does not move";
   std::string text =
-      fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit);
+      moves ? fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit)
+            : "the reference ends where it is now";
   if (f.return_s == 0) return text + " at once";
   text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
   for (const ReferenceTurn& turn : f.turns) {
@@ -217,12 +234,13 @@ std::string MovesText(const RearmForecast& f) {
   constexpr double kMaterial = 0.1;
   const double way = f.target - f.present;
   const bool against = f.speed * (f.turns.empty() ? way : f.turns.front().at - f.present) <= 0;
-  const double least =
-      kMaterial * (f.return_s > 0 ? std::max(f.top_rate, std::fabs(way) / f.return_s) : std::fabs(way));
+  const double of_return =
+      f.return_s > 0 ? std::max(f.top_rate, std::fabs(way) / f.return_s) : std::fabs(way);
+  const double least = std::max(kMaterial * of_return, f.resolution);
   if (!std::isfinite(f.speed) || !against || std::fabs(f.speed) <= least) return "";
-  return fmt::format(
-      " and moves at {}{} {}/s, {}", f.speed > 0 ? "+" : "", ShortNumber(f.speed), f.unit,
-      way == 0 ? "in which it goes on at first" : "the other way, in which it goes on at first");
+  return fmt::format(" and moves at {}{} {}/s, {}", f.speed > 0 ? "+" : "", ShortNumber(f.speed), f.unit,
+                     std::fabs(way) <= f.resolution ? "in which it goes on at first"
+                                                    : "the other way, in which it goes on at first");
 }
 
 // What stands between the reference and the arm.
@@ -245,13 +263,15 @@ std::string LimitsText(const settings::StackConfig& config) {
 }
 
 std::string TextOf(const RearmForecast& f, const Referred& referred, const settings::StackConfig& config) {
-  const auto number = [&](double value) { return ShortNumber(value) + " " + f.unit; };
+  const auto number = [&](double value) {
+    return ShortNumber(std::fabs(value) <= f.resolution ? 0 : value) + " " + f.unit;
+  };
   const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
   std::string text =
       fmt::format("{} is at {}{}; its reference comes back to {}{}: {}", referred.words, number(f.present),
                   MovesText(f), number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
   const double spread = f.highest - f.lowest,
-               least = 1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest));
+               least = std::max(1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest)), f.resolution);
   if (spread > least) {
     text += fmt::format("; in the {} s after that it {} {} {} {}", ShortNumber(kForecast_s),
                         f.one_way ? "goes from" : "is between", number(f.one_way ? f.target : f.lowest),
@@ -306,6 +326,7 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
     forecast.quantity = referred.quantity;
     forecast.unit = referred.unit;
     forecast.present = referred.present;
+    forecast.resolution = ResolutionOf(config, referred);
     forecast.return_s = config.limits.return_s;
     forecast.speed = forecast.quantity == "arm_angle" ? heard.state->arm_speed : NAN;
     const Wanted wanted(config, heard);

@@ -31,15 +31,16 @@ struct ReferenceTurn {
 };
 
 struct RearmForecast {
-  bool held = true;      // the voltage is held at zero: otherwise a re-arm changes nothing
-  bool known = false;    // otherwise there is only `text`, which says why not
-  std::string quantity;  // what the reference refers to, "arm_angle", "pressure", "torque" or "voltage"
-  std::string unit;      // of the numbers that follow
-  double present = 0;    // where it is now
-  double target = 0;     // where the reference will have come back to
-  double return_s = 0;   // in which plant time; 0: at once
-  double top_rate = 0;   // per second, the fastest on that way, jumps of the reference left out
-  bool jumps = false;    // the reference jumps on that way
+  bool held = true;       // the voltage is held at zero: otherwise a re-arm changes nothing
+  bool known = false;     // otherwise there is only `text`, which says why not
+  std::string quantity;   // what the reference refers to, "arm_angle", "pressure", "torque" or "voltage"
+  std::string unit;       // of the numbers that follow
+  double resolution = 0;  // a smaller move is none: the sensor's resolution, or 1e-6 of the stroke
+  double present = 0;     // where it is now
+  double target = 0;      // where the reference will have come back to
+  double return_s = 0;    // in which plant time; 0: at once
+  double top_rate = 0;    // per second, the fastest on that way, jumps of the reference left out
+  bool jumps = false;     // the reference jumps on that way
   // Where that way leaves the range between its ends: it may begin in the other direction, or lead beyond its
   // end.
   std::vector<ReferenceTurn> turns;
@@ -72,7 +73,6 @@ struct HeardOfStack {
 RearmForecast ForecastRearm(const HeardOfStack& heard);
 
 // The configuration that a running stack uses. Throws InputError when the description is not one of this
-// version.
 // version.
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "base/did_you_mean.h"
+#include "base/word_list.h"
 #include "settings/quantity_keys.h"
 
 namespace hydro::tuning {

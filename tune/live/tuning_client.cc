@@ -1,9 +1,14 @@
 #include "tune/live/tuning_client.h"
 
+#include <hydro/process_status_t.hpp>
 #include <hydro/state_t.hpp>
+#include <hydro/stop_t.hpp>
 #include <utility>
 
+#include "bus/output_left.h"
 #include "bus/session.h"
+#include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::tuning {
 namespace {
@@ -26,6 +31,10 @@ TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Ch
   bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& state) {
     if (plants_.size() < kMostPlants) plants_.insert(state.session);  // limits a flood of made-up plants
     tick_ = state.tick;
+    plant_ = state.session;
+    if (ending_.empty()) return;
+    if (ended_plant_ == 0) ended_plant_ = plant_;
+    if (ended_plant_ != plant_) ending_.clear();  // the stack has been started again
   });
   bus.Subscribe<run_description_t>(channels.Of<run_description_t>(),
                                    [this](const run_description_t& run) { run_ = run; });
@@ -40,6 +49,24 @@ TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Ch
     answer_ = answer;
     asked_.reset();
   });
+  ListenForTheEnd();
+}
+
+void TuningClient::ListenForTheEnd() {
+  bus_.Subscribe<stop_t>(channels_.Of<stop_t>(),
+                         [this](const stop_t& stop) { OnEnd(stop.addressee, stop.source, stop.reason); });
+  bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
+    if (process::IsPlant(status.role) && process::HasLeft(status))
+      OnEnd(status.session, status.role, status.text);
+  });
+}
+
+// A stop for a plant, or for all, ends the run; one for another process does not.
+void TuningClient::OnEnd(int64_t plant, const std::string& who, const std::string& reason) {
+  if (plant != 0 && !plants_.contains(plant) && !plants_.empty()) return;
+  if (!ending_.empty()) return;
+  ended_plant_ = plant != 0 ? plant : plant_;
+  ending_ = bus::ReasonText(who, "an unnamed process") + ": " + bus::ReasonText(reason);
 }
 
 void TuningClient::Ask(int8_t kind, const std::string& changes) {
@@ -66,14 +93,15 @@ void TuningClient::Send() {
 void TuningClient::Poll() {
   if (!asked_) return;
   const auto now = clock_.Now();
-  if (now - first_sent_ > kLongestWait) {
+  if (now - first_sent_ > kLongestWait || !ending_.empty()) {
     answer_.emplace();
     answer_->request = asked_->request;
     answer_->accepted = false;
     answer_->acts_at = -1;
-    answer_->text =
-        "the plant or driver does not answer: it may not take part in tuning, another request keeps it busy, "
-        "or it refuses what comes without its key (bus.key_file)";
+    answer_->text = !ending_.empty() ? "the stack stops (" + ending_ + ") before it has answered"
+                                     : "the plant or driver does not answer: it may not take part in tuning, "
+                                       "another request keeps it busy, "
+                                       "or it refuses what comes without its key (bus.key_file)";
     asked_.reset();
   } else if (now >= next_repeat_) {
     Send();

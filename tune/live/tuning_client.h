@@ -30,6 +30,8 @@ class TuningClient {
   const std::optional<run_description_t>& run() const { return run_; }
   // The plants or drivers that are heard. A request works only if there is exactly one.
   const std::set<int64_t>& plants() const { return plants_; }
+  // Why the stack takes no values any more, once it is heard to end: "launch: Ctrl-C"; empty while it runs.
+  const std::string& ending() const { return ending_; }
   // The status of each controller, by role.
   const std::map<std::string, tuning_status_t>& controllers() const { return controllers_; }
 
@@ -52,6 +54,8 @@ class TuningClient {
   bool ActBy(int64_t version) const;
 
  private:
+  void ListenForTheEnd();
+  void OnEnd(int64_t plant, const std::string& who, const std::string& reason);
   void Ask(int8_t kind, const std::string& changes);
   void Send();
 
@@ -63,6 +67,9 @@ class TuningClient {
   std::optional<tuned_settings_t> in_force_;
   std::optional<run_description_t> run_;
   std::set<int64_t> plants_;
+  int64_t plant_ = 0;  // the newest; 0: none yet
+  std::string ending_;
+  int64_t ended_plant_ = 0;  // whose run ends; 0: the one that is heard next
   std::map<std::string, tuning_status_t> controllers_;
   int64_t tick_ = -1;
   int64_t requests_ = 0;

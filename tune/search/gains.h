@@ -17,7 +17,7 @@ struct Gains {
   double damping_ratio = 0;
   double c1 = 0;  // psi/rad
   double c2 = 0;  // psi s/rad
-  // rad/s^2, of the braking curve before eq. (17) (position_ctrl/law/braking_curve.h); infinity: eq. (17)
+  // rad/s^2, of the braking curve before eq. (17) (position_ctrl/law/position_law.h); infinity: eq. (17)
   // alone.
   double deceleration = std::numeric_limits<double>::infinity();
   bool as_configured = false;  // the configuration unchanged, regardless of the numbers above

@@ -8,6 +8,7 @@
 #include "runs/step_response.h"
 #include "tune/design/bang_bang.h"
 #include "tune/design/configured_laws.h"
+#include "tune/design/loop_margins.h"
 #include "tune/design/operating_cases.h"
 
 namespace hydro::tune {
@@ -77,6 +78,53 @@ double FrictionError(const settings::StackConfig& config, const Gains& gains) {
   const model::Parameters& p = config.model.description.parameters;
   const pressure_ctrl::PressureLawSettings law = design::PressureLawSettingsFor(With(config, gains));
   return p.T_s / (p.k_1 * (law.gains.k_p + law.reference_feedforward) * gains.c1);
+}
+
+namespace {
+
+std::string SettledIn(double ratio) {
+  if (ratio >= kStopped) return "pass a limit that ends the run";
+  return ratio >= kNeverSettled ? "never settle"
+                                : "settle within " + Number(ratio) + " times the shortest time";
+}
+
+// "settle within 1.57 times the shortest time (with what may be true instead of the model: never)"
+std::string SpeedText(const Tried& tried) {
+  return SettledIn(tried.steps.ratio) +
+         " (with what may be true instead of the model: " + SettledIn(tried.steps.uncertain_ratio) + ")";
+}
+
+std::string MarginText(const design::LoopCheck& check) {
+  if (!check.unjudged.empty() || !check.pressure || !check.position) return "unknown margins";
+  const design::LoopMargins least = design::WorstOf(check.pressure->worst, check.position->worst);
+  if (!least.stable) return "an unstable loop";
+  return "a gain margin of " + Number(least.gain) + " and a phase margin of " + Number(least.phase_deg) +
+         " deg";
+}
+
+}  // namespace
+
+std::string RefusalToPropose(const StepJudge& judge, const Goals& goals, const Tried& best,
+                             const Tried& configured) {
+  if (!Settles(best)) {
+    const StepCase& slowest = best.steps.slowest;
+    return fmt::format(
+        "no proposal: with no gains that keep the margins does the arm settle within {} times the shortest "
+        "time "
+        "after every step tried, with the best of them not after one of {} from {}; the configured gains {}; "
+        "--goal step=S tunes for one size of step, and a faster pressure loop (natural frequency here: {} "
+        "rad/s) "
+        "settles sooner",
+        Number(kNeverSettled), Arm(judge.config(), slowest.step), Arm(judge.config(), slowest.start),
+        SpeedText(configured), Number(best.gains.natural_frequency));
+  }
+  if (IsBetter(goals, best, configured)) return "";
+  std::string text = "no proposal: nothing better than the configured gains was found, which " +
+                     SpeedText(configured) + " and have " + MarginText(configured.check);
+  text += goals.any() ? "; they meet the goals" : "; the best that keep the margins " + SpeedText(best);
+  if (!KeepsMargins(configured.check))
+    text += "; with a --goal that is enough, slower gains with these margins are proposed";
+  return text;
 }
 
 std::string RefusalBySearch(const StepJudge& judge, const Goals& goals, const SearchResult& result) {

@@ -14,6 +14,11 @@ std::string RefusalByTheMotor(const StepJudge& judge, const Goals& goals);
 // After the search: empty when the best gains meet the goals.
 std::string RefusalBySearch(const StepJudge& judge, const Goals& goals, const SearchResult& result);
 
+// Why the best gains are no proposal: the arm does not settle with them, or they are no better than the
+// configured ones. Empty when they are a proposal.
+std::string RefusalToPropose(const StepJudge& judge, const Goals& goals, const Tried& best,
+                             const Tried& configured);
+
 // rad: how far from its target friction may hold the arm with these gains.
 double FrictionError(const settings::StackConfig& config, const Gains& gains);
 

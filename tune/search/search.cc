@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -56,7 +57,9 @@ class Searcher {
                                       judge.config().limits.motor_speed_rad_s)) {}
 
   SearchResult Run() {
-    TryAll(Grid(), 0, 0.7);
+    std::vector<Gains> all = Grid();
+    for (const Gains& gains : Configured()) all.push_back(gains);
+    TryAll(all, 0, 0.7);
     if (result_.tried.empty()) return std::move(result_);
     result_.found = true;
     Refine();
@@ -88,6 +91,27 @@ class Searcher {
       }
     }
     return grid;
+  }
+
+  // The configured gains are tried too, so that whatever is found is at least as good.
+  std::vector<Gains> Configured() const {
+    Gains gains = pressure_;
+    const Gains given = GainsOf(judge_.config());
+    gains.c1 = given.c1;
+    gains.c2 = given.c2;
+    gains.deceleration = std::numeric_limits<double>::infinity();
+    if (!braking_) return {gains};
+    const double braking = (drive_.torque + drive_.friction) / drive_.inertia;
+    std::vector<Gains> curves;
+    for (const double part : kDecelerationShares) {
+      gains.deceleration = part * braking;
+      curves.push_back(gains);
+    }
+    if (std::isfinite(given.deceleration)) {
+      gains.deceleration = given.deceleration;
+      curves.push_back(gains);
+    }
+    return curves;
   }
 
   // The c2 that has the least permitted gain margin at this c1/c2; 0 when no gain is stable.
@@ -210,6 +234,13 @@ double Misses(const Goals& goals, const Tried& tried) {
   }
   if (goals.settling_s) misses += std::max(0.0, tried.steps.settling / *goals.settling_s - 1);
   return misses;
+}
+
+bool Settles(const Tried& tried) { return tried.steps.ratio < kNeverSettled; }
+
+bool IsBetter(const Goals& goals, const Tried& found, const Tried& other) {
+  if (goals.any() && !KeepsMargins(other.check)) return true;
+  return Cost(goals, found) < Cost(goals, other);
 }
 
 Tried TryGains(const StepJudge& judge, const Gains& gains) {

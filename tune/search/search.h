@@ -48,4 +48,11 @@ bool KeepsMargins(const design::LoopCheck& check);
 // By how much gains miss the goals, relatively; 0: they meet all of them.
 double Misses(const Goals& goals, const Tried& tried);
 
+// Whether the arm settles with these gains in every case that was tried with the model as it is.
+bool Settles(const Tried& tried);
+
+// Whether the search rates `found` better than `other`, which need not keep the margins. Without a goal the
+// steps alone count: what keeps wider margins and settles later is slower, not better.
+bool IsBetter(const Goals& goals, const Tried& found, const Tried& other);
+
 }  // namespace hydro::tune

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <hydro/state_t.hpp>
 #include <memory>
@@ -54,7 +55,9 @@ StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   StepResult summary;
   summary.settled = measured.settling_time_s.has_value();
   summary.settling = measured.settling_time_s.value_or(time.back());
-  summary.ratio = summary.settling / step.shortest;
+  summary.ratio = summary.settled
+                      ? summary.settling / step.shortest
+                      : kNeverSettled + std::min(1.0, std::fabs(measured.final_error_rad / step.step));
   summary.overshoot_percent = measured.overshoot_percent;
   summary.error = to_target.final_error_rad;
   return summary;

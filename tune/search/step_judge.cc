@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "model/sides.h"
-#include "model/terms/drawn_model.h"
+#include "model/terms/description.h"
 #include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
-#include "plant/sensor_noise.h"
+#include "plant/simulated_rig.h"
 #include "runs/step_response.h"
 #include "tune/design/bang_bang.h"
 #include "tune/design/configured_laws.h"
@@ -19,6 +19,9 @@ namespace {
 
 constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
+// Gains with which fewer cases never settle are better, whatever the largest ratio is.
+constexpr double kUnsettled = 10;
+constexpr double kLastPart = 0.1;    // of a trial: how far the arm still swings there
 constexpr double kUsedTravel = 0.9;  // of the arm's range; steps start there, towards the middle
 constexpr int64_t kSampleSeed = 20261123;
 constexpr double kMostDeviations = 2;  // of a parameter in a sample
@@ -61,6 +64,14 @@ settings::NoiseSection UsualNoise(const settings::StackConfig& config) {
   return noise;
 }
 
+// The arm's largest distance from where it should rest, at the end of a trial.
+double LargestAtEnd(const std::vector<double>& angles, double rest) {
+  const auto from = static_cast<size_t>((1 - kLastPart) * static_cast<double>(angles.size()));
+  double largest = 0;
+  for (size_t i = from; i < angles.size(); ++i) largest = std::max(largest, std::fabs(angles[i] - rest));
+  return largest;
+}
+
 double LargestMotorSpeed(const settings::StackConfig& config) { return config.limits.motor_speed_rad_s; }
 
 }  // namespace
@@ -68,7 +79,8 @@ double LargestMotorSpeed(const settings::StackConfig& config) { return config.li
 // Below kAim, the shortest time with the model as its file says counts as nearly reached. What counts then is
 // how little is lost where the model is not quite true.
 double StepVerdict::score() const {
-  return 0.5 * (ratio + uncertain_ratio) + kUrge * std::max(0.0, ratio - kAim);
+  return 0.5 * (ratio + uncertain_ratio) + kUrge * std::max(0.0, ratio - kAim) +
+         kUnsettled * (unsettled + 0.5 * uncertain_unsettled);
 }
 
 StepJudge::StepJudge(settings::StackConfig config, const JudgeSettings& settings)
@@ -149,7 +161,7 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
   result.saturated = run.saturated;
   result.ratio = result.settled
                      ? result.settling / step.shortest
-                     : kNeverSettled + std::min(1.0, std::fabs(measured.final_error_rad / step.step));
+                     : kNeverSettled + std::min(1.0, LargestAtEnd(response.angle, to) / std::fabs(step.step));
   const bool stops = run.highest_pressure > config_.limits.pressure_psi ||
                      run.highest_speed > config_.limits.motor_speed_rad_s;
   if (step.model == 0 && stops) result.ratio += kStopped;
@@ -159,20 +171,21 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
 
 StepVerdict StepJudge::Judge(const Gains& gains) const {
   StepVerdict verdict;
-  double worst = 0;
+  double cases = 0, samples = 0;
   for (const StepCase& step : cases_) {
     const StepResult result = Try(gains, step);
+    (step.model == 0 ? cases : samples) += 1;
+    if (!result.settled) (step.model == 0 ? verdict.unsettled : verdict.uncertain_unsettled) += 1;
     double& ratio = step.model == 0 ? verdict.ratio : verdict.uncertain_ratio;
+    if (step.model == 0 && result.ratio > ratio) verdict.slowest = step;
     ratio = std::max(ratio, result.ratio);
     if (step.model == 0) {
       verdict.overshoot_percent = std::max(verdict.overshoot_percent, result.overshoot_percent);
       if (std::fabs(step.step) == goal_step_) verdict.settling = std::max(verdict.settling, result.settling);
     }
-    if (result.ratio > worst) {
-      worst = result.ratio;
-      verdict.worst = step;
-    }
   }
+  verdict.unsettled /= cases;
+  if (samples > 0) verdict.uncertain_unsettled /= samples;
   verdict.uncertain_ratio = std::max(verdict.uncertain_ratio, verdict.ratio);
   return verdict;
 }

@@ -37,12 +37,14 @@ struct StepResult {
 };
 
 struct StepVerdict {
-  double ratio = 0;              // the largest with the model as it is, over steps and travel
-  double uncertain_ratio = 0;    // the largest over the samples of the model
-  double overshoot_percent = 0;  // the largest with the model as it is
-  double settling = 0;           // s: the longest of the goal's step with the model as it is
-  StepCase worst;                // of all of them
-  double score() const;          // smaller is better
+  double ratio = 0;                // the largest with the model as it is, over steps and travel
+  double uncertain_ratio = 0;      // the largest over the samples of the model
+  double overshoot_percent = 0;    // the largest with the model as it is
+  double settling = 0;             // s: the longest of the goal's step with the model as it is
+  StepCase slowest;                // the case with the largest ratio of these
+  double unsettled = 0;            // share of the cases with the model as it is that never settle
+  double uncertain_unsettled = 0;  // and with the samples of the model
+  double score() const;            // smaller is better
 };
 
 struct JudgeSettings {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "model/actuator.h"
-#include "plant/sensor_noise.h"
+#include "plant/simulated_rig.h"
 #include "tune/design/configured_laws.h"
 
 namespace hydro::tune {

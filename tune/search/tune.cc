@@ -1,34 +1,28 @@
 #include "tune/search/tune.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "base/new_file.h"
 #include "base/number_text.h"
 #include "base/read_files.h"
-#include "base/remarks.h"
 #include "base/standard_output.h"
-#include "base/terminal_line.h"
 #include "base/text_file.h"
-#include "settings/limb_config.h"
-#include "settings/moved_paths.h"
-#include "settings/read_quantities.h"
 #include "settings/stack_config.h"
-#include "settings/toml/toml_document.h"
-#include "settings/toml/toml_edit.h"
-#include "settings/toml/toml_entries.h"
+#include "tune/design/fastest_motion.h"
 #include "tune/search/refusal.h"
 #include "tune/search/report.h"
 #include "tune/search/search.h"
 #include "tune/search/simulated_step.h"
+#include "tune/search/tuned_text.h"
 
 namespace hydro::tune {
 namespace {
-
-using Keys = std::vector<std::pair<std::string, std::string>>;
 
 void CheckRange(const char* option, int value, int least, int most) {
   if (value >= least && value <= most) return;
@@ -40,8 +34,10 @@ settings::StackConfig Load(const TuneRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.joint.empty()) overrides.push_back("joint=" + request.joint);
   if (request.interval) {
-    if (!ParseNumber(*request.interval)) {
-      throw InputError("--interval: found " + Quoted(*request.interval) + ", allowed a number of seconds");
+    const std::optional<double> seconds = ParseNumber(*request.interval);
+    if (!seconds || !(*seconds > 0) || !std::isfinite(*seconds)) {
+      throw InputError("--interval: found " + Quoted(*request.interval) +
+                       ", allowed a number of seconds above 0");
     }
     overrides.push_back("position.sample_interval_s=" + *request.interval);
   }
@@ -55,7 +51,7 @@ settings::StackConfig Load(const TuneRequest& request) {
   }
   if (config.model.shaft != model::Shaft::kFree) refuse("model.shaft", "a shaft that is held", "\"free\"");
   if (config.model.bypass) refuse("model.bypass", "true", "false");
-  if (const std::string remark = ArmRemark(config); !remark.empty()) Remark("hydro-tune: warning: " + remark);
+  for (const std::string& remark : design::RemarksOn(config)) Remark("hydro-tune: warning: " + remark);
   return config;
 }
 
@@ -90,53 +86,26 @@ Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
   return proposal;
 }
 
-// Adds the keys that --set changed to `changed` and `removed`, because the text of the file does not have
-// them.
-void AddOverrides(const settings::StackConfig& given, const std::vector<std::string>& overrides,
-                  std::map<std::string, std::string>* changed, std::vector<std::string>* removed) {
-  if (overrides.empty()) return;
-  const auto entries = [](const settings::StackConfig& config) {
-    const auto list = settings::TomlEntries(settings::ParseToml(config.text, config.file));
-    return std::map<std::string, std::string>(list.begin(), list.end());
-  };
-  const auto before = entries(settings::LoadStackConfig(given.file)), after = entries(given);
-  for (const auto& [key, value] : after) {
-    const auto was = before.find(key);
-    if (was == before.end() || was->second != value) (*changed)[key] = value;
+// Known before the search, which takes a while; leaves no folder behind.
+void CheckFolder(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path last = folder, first;  // the first that is not there yet
+  while (!last.empty() && !fs::exists(last, error) && !error) {
+    first = last;
+    last = last.parent_path();
   }
-  for (const auto& [key, value] : before) {
-    if (!after.contains(key)) removed->push_back(key);
+  error.clear();
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0) {
+    throw InputError("--out: found " + Quoted(folder) + ", a folder that cannot be written" +
+                     (error ? " (" + error.message() + ")" : "") + ", allowed a folder that can be written");
   }
-}
-
-// The given text with the changes by --set and the gains of `tuned`, for a file `output`. For a limb, the
-// text is the stack of this joint alone.
-std::string TunedText(const TuneRequest& request, const settings::StackConfig& given,
-                      const settings::StackConfig& tuned) {
-  const bool limb = settings::IsLimbFile(given.file);
-  const std::string before = limb ? given.text : ReadTextFile(given.file);
-  std::map<std::string, std::string> keys;
-  std::vector<std::string> removed;
-  if (!limb) AddOverrides(given, request.overrides, &keys, &removed);
-  for (const auto& [key, value] : settings::MovedPaths(given, request.output)) keys[key] = value;
-  const Keys old =
-      GainKeys(settings::ParseStackConfig(before, given.file, given.model.text, given.model.file));
-  for (const auto& key : GainKeys(tuned)) {
-    if (std::find(old.begin(), old.end(), key) == old.end()) keys[key.first] = key.second;
+  for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(folder + file);
+  for (fs::path made = folder; !first.empty(); made = made.parent_path()) {
+    fs::remove(made, error);
+    if (made == first) break;
   }
-  const std::vector<settings::TomlEntry> written(keys.begin(), keys.end());
-  for (std::string& name : settings::FormerNamesIn(settings::ParseToml(before, given.file), written))
-    removed.push_back(std::move(name));
-  return settings::EditToml(before, given.file, written, removed);
-}
-
-// Runs before the search, with gains that all differ from the given ones.
-void CheckCanBeChanged(const TuneRequest& request, const settings::StackConfig& config) {
-  Gains other = GainsOf(config);
-  other.as_configured = false;
-  for (double* gain : {&other.natural_frequency, &other.damping_ratio, &other.c1, &other.c2})
-    *gain = 1.5 * *gain + 1;
-  TunedText(request, config, With(config, other));
 }
 
 void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
@@ -155,6 +124,22 @@ void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
   }
 }
 
+// The better of both searches; eq. (17) alone where a braking curve gains nothing.
+const SearchResult& BetterOf(const Goals& goals, const SearchResult& fixed, const SearchResult& curve) {
+  return curve.found && (!fixed.found || IsBetter(goals, curve.best, fixed.best)) ? curve : fixed;
+}
+
+// The columns of the tables. The last one is proposed, or is the best that was found.
+std::vector<Proposal> Compared(const StepJudge& judge, const Tried& configured, const SearchResult& fixed,
+                               const SearchResult& chosen, bool proposed) {
+  std::vector<Proposal> proposals;
+  proposals.push_back(ProposalOf(judge, "as configured", configured));
+  if (fixed.found && &chosen != &fixed) proposals.push_back(ProposalOf(judge, "eq. (17) alone", fixed.best));
+  proposals.push_back(ProposalOf(judge, proposed ? "proposed" : "best found, not proposed", chosen.best));
+  if (proposed) RunOnTheStack(judge, &proposals.back());
+  return proposals;
+}
+
 // States what was written, and what to do next.
 std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& proposed) {
   std::vector<std::string> lines;
@@ -171,8 +156,7 @@ std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& propo
   }
   const bool printed = request.output == kStandardOutput;
   const std::string file = printed ? "TUNED.toml" : request.output;
-  lines.push_back("written: " + (printed ? "the configuration, for a file in this folder" : file) +
-                  " (comments beside the old gains are kept: see whether they still hold)");
+  lines.push_back("written: " + (printed ? "the configuration, for a file in this folder" : file));
   lines.push_back("next: hydro-sim " + file + " -o tuned.lcmlog; hydro-log summary tuned.lcmlog");
   return lines;
 }
@@ -190,9 +174,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const Goals goals = ParseGoals(request.goals, config.model.description.units.UnitFor("rad", 1));
   CheckKeeps(request.output);
   CheckCanBeWritten(request.output);
-  if (!request.folder.empty()) {
-    for (const char* file : {"/tune.svg", "/tune.html"}) CheckIsNew(request.folder + file);
-  }
+  if (!request.folder.empty()) CheckFolder(request.folder);
   if (!request.output.empty()) CheckCanBeChanged(request, config);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
@@ -209,22 +191,23 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
       line.Show(share + (1 - share) * done, "gains with a braking curve");
     });
   }
-  const SearchResult& chosen = curve.found ? curve : fixed;
+  const SearchResult& chosen = BetterOf(goals, fixed, curve);
   Refuse(config, RefusalBySearch(judge, goals, chosen));
 
+  const Tried configured = TryGains(judge, GainsOf(config));
+  const std::string refusal = RefusalToPropose(judge, goals, chosen.best, configured);
   TuningReport report;
   report.config = config.file;
   report.judge = &judge;
   report.noise = request.noise;
-  report.proposals.push_back(ProposalOf(judge, "as configured", TryGains(judge, GainsOf(config))));
-  if (curve.found && fixed.found) report.proposals.push_back(ProposalOf(judge, "eq. (17) alone", fixed.best));
-  report.proposals.push_back(ProposalOf(judge, "proposed", chosen.best));
-  RunOnTheStack(judge, &report.proposals.back());
+  report.proposals = Compared(judge, configured, fixed, chosen, refusal.empty());
   report.trade_offs = TradeOffs(chosen.tried);
   report.tried = chosen.tried;
   const std::string text = ReportText(report, request.si);
   std::FILE* const said = OutputBeside({request.output}, out, progress);
   std::fwrite(text.data(), 1, text.size(), said);
+  std::fflush(said);
+  Refuse(config, refusal);
   if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
   if (!request.output.empty()) {
     WriteTextFile(request.output, TunedText(request, config, With(config, chosen.best.gains)), out);

@@ -24,7 +24,8 @@ struct TuneRequest {
 };
 
 // Tables go to `out`, progress goes to `progress` (a bar on a terminal). Returns 0. Throws InputError for
-// wrong input, and std::runtime_error naming the limit for goals that cannot be met; then it writes nothing.
+// wrong input, and std::runtime_error, naming the limit, for goals that cannot be met, and where nothing
+// better than the configured gains is found; then it writes no file.
 int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal);
 
 }  // namespace hydro::tune

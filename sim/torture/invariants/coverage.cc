@@ -5,9 +5,69 @@
 #include <algorithm>
 
 #include "process/fault_codes.h"
-#include "sim/torture/invariants/reached_rows.h"
+#include "process/safety/safety_table.h"
 
 namespace hydro::torture {
+namespace {
+
+bool Hits(const Injection& injection, const NamedFault& named) {
+  if (injection.kind != named.kind) return false;
+  return !named.target || injection.target < 0 || injection.target == *named.target;
+}
+
+bool Injected(const process::SafetyRow& row, const std::vector<Injection>& injections) {
+  for (const std::string_view word : process::WordsOf(row.injected)) {
+    const std::optional<NamedFault> named = FaultNamed(word);
+    if (!named) continue;  // a test reports this
+    const auto hits = [&](const Injection& injection) { return Hits(injection, *named); };
+    if (std::any_of(injections.begin(), injections.end(), hits)) return true;
+  }
+  return false;
+}
+
+bool Occurred(const process::SafetyRow& row, const std::map<std::string, int64_t>& codes) {
+  const std::vector<std::string_view> own = process::WordsOf(row.codes);
+  return own.empty() || std::any_of(own.begin(), own.end(),
+                                    [&](std::string_view code) { return codes.contains(std::string(code)); });
+}
+
+}  // namespace
+
+std::optional<NamedFault> FaultNamed(std::string_view word) {
+  const size_t colon = std::min(word.find(':'), word.size());
+  const std::string_view name = word.substr(0, colon);
+  const auto kinds = FaultKinds();
+  const auto info = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
+  if (info == kinds.end()) return std::nullopt;
+  if (colon == word.size()) return NamedFault{info->kind, std::nullopt};
+  const std::string_view target = word.substr(colon + 1);
+  const std::string all = TargetsOf(*info);
+  const std::vector<std::string_view> allowed = process::WordsOf(all);
+  if (std::find(allowed.begin(), allowed.end(), target) == allowed.end()) return std::nullopt;
+  return NamedFault{info->kind, TargetNamed(target)};
+}
+
+std::set<std::string> ReachedRows(const std::vector<Injection>& injections,
+                                  const std::map<std::string, int64_t>& codes) {
+  std::set<std::string> reached;
+  for (const process::SafetyRow& row : process::SafetyTable()) {
+    if (Occurred(row, codes) && Injected(row, injections)) reached.emplace(row.id);
+  }
+  return reached;
+}
+
+std::string RowsReport(const std::set<std::string>& reached) {
+  const std::vector<process::SafetyRow>& table = process::SafetyTable();
+  std::string missing;
+  for (const process::SafetyRow& row : table) {
+    if (reached.contains(std::string(row.id))) continue;
+    missing += row.injected.empty()
+                   ? fmt::format("  {}: {}\n", row.id, row.not_injected)
+                   : fmt::format("  {}: not in these runs; it needs {}\n", row.id, row.injected);
+  }
+  return fmt::format("rows of docs/safety.md reached: {} of {}{}\n{}", reached.size(), table.size(),
+                     missing.empty() ? "" : "; not:", missing);
+}
 
 void Coverage::Add(const Coverage& other) {
   runs += other.runs;

@@ -16,7 +16,6 @@
 namespace hydro::torture {
 namespace {
 
-constexpr TrueTime kSecond = 1'000'000'000;
 // From docs/launch.md, "Ending": how long a stop may take to arrive after a child's end, how long children
 // may take to end by themselves, and after SIGTERM. The logger ends after the others.
 constexpr TrueTime kStopArrives = kSecond / 2;

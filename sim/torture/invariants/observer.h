@@ -14,8 +14,7 @@
 #include "settings/stack_config.h"
 #include "sim/torture/invariants/coverage.h"
 #include "sim/torture/invariants/limb_invariants.h"
-#include "sim/torture/invariants/loss_count.h"
-#include "sim/torture/invariants/plant_record.h"
+#include "sim/torture/invariants/records.h"
 #include "sim/torture/machines/network.h"
 #include "sim/torture/machines/simulated_process.h"
 

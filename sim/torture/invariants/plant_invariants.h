@@ -6,7 +6,7 @@
 
 #include "model/terms/measurement.h"
 #include "sim/torture/invariants/observer.h"
-#include "sim/torture/invariants/plant_record.h"
+#include "sim/torture/invariants/records.h"
 
 namespace hydro::torture {
 

@@ -10,6 +10,7 @@ namespace hydro::torture {
 
 // True time in ns since the start of the run. The simulator counts in it, and no process ever sees it.
 using TrueTime = int64_t;
+inline constexpr TrueTime kSecond = 1'000'000'000;
 
 // The clocks that all processes of one machine read.
 class Machine : public bus::Clock {

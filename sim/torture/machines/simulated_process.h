@@ -1,6 +1,7 @@
 // A process of the stack in the simulation: its real application on a fiber, with a bus and a machine.
 #pragma once
 
+#include <boost/context/fiber.hpp>
 #include <csignal>
 #include <cstdint>
 #include <functional>
@@ -11,11 +12,44 @@
 #include <utility>
 
 #include "bus/hosted_process.h"
-#include "sim/torture/machines/fiber.h"
 #include "sim/torture/machines/machine.h"
 #include "sim/torture/machines/network_bus.h"
 
 namespace hydro::torture {
+
+// A function with a stack of its own that can stop in the middle and continue later. It lets several blocking
+// loops (PlantApp::Run(), process::RunApp()) take turns on one thread.
+class Fiber {
+ public:
+  // `body` runs from the first Resume() on. It must not let an exception out.
+  explicit Fiber(std::function<void()> body);
+  // Unwinds the body if it has not returned. It is better to let the body end.
+  ~Fiber() = default;
+  Fiber(const Fiber&) = delete;
+  Fiber& operator=(const Fiber&) = delete;
+
+  // Runs the body until it calls Suspend() or returns. Called from outside.
+  void Resume();
+
+  // Returns to the caller of Resume(). Called by the body, also from within a catch block.
+  void Suspend();
+
+  bool done() const { return done_; }
+
+ private:
+  // The C++ runtime's record of the exceptions that a thread is handling. Each fiber has its own.
+  struct ExceptionState {
+    void* caught = nullptr;
+    unsigned int uncaught = 0;
+  };
+  static void Swap(ExceptionState* state);
+
+  std::function<void()> body_;
+  bool done_ = false;
+  ExceptionState exceptions_;
+  boost::context::fiber outside_;
+  boost::context::fiber inside_;
+};
 
 inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
 

@@ -2,34 +2,34 @@
 #include <array>
 
 #include "sim/torture/machines/simulated_process.h"
-#include "sim/torture/schedule/injection.h"
+#include "sim/torture/schedule/schedule.h"
 
 namespace hydro::torture {
 namespace {
 
 constexpr std::string_view kLoops = "plant pressure_ctrl position_ctrl logger";
-constexpr std::string_view kKnee = "knee_plant knee_pressure_ctrl knee_position_ctrl";
+constexpr std::string_view kKneeLoops = "knee_plant knee_pressure_ctrl knee_position_ctrl";
 constexpr std::string_view kLoopsOrAll = "all plant pressure_ctrl position_ctrl logger";
 
 constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKinds{{
     {FaultKind::kLoss, "loss", kLoopsOrAll, 0.005, 1.5, 0.01, 1, "probability, per packet that it sends",
-     kKnee},
+     kKneeLoops},
     {FaultKind::kDelay, "delay", kLoopsOrAll, 0.005, 1.5, 0.0002, 0.3, "s, of every packet that it sends",
-     kKnee},
+     kKneeLoops},
     {FaultKind::kRepeat, "repeat", kLoopsOrAll, 0.005, 1.5, 0.0005, 0.5, "s, at most until the repetition",
-     kKnee},
+     kKneeLoops},
     {FaultKind::kOvertake, "overtake", kLoopsOrAll, 0.005, 1.5, 0.0005, 0.3,
-     "s, at most that a packet is late", kKnee},
+     "s, at most that a packet is late", kKneeLoops},
     {FaultKind::kChange, "change", kLoopsOrAll, 0.005, 1.5, 0.001, 0.5, "probability that a bit is wrong",
-     kKnee},
-    {FaultKind::kPartition, "partition", kLoops, 0.005, 2, 0, 0, "", kKnee},
+     kKneeLoops},
+    {FaultKind::kPartition, "partition", kLoops, 0.005, 2, 0, 0, "", kKneeLoops},
     {FaultKind::kFlood, "flood", "all", 0.01, 0.5, 100, 20000, "messages a second"},
     {FaultKind::kDrift, "drift", kLoopsOrAll, 0.1, 3, -0.02, 0.02, "s per s"},
     {FaultKind::kWallClockJump, "wall_clock_jump", kLoopsOrAll, 0, 0, -4000, 4000, "s"},
     {FaultKind::kSuspend, "suspend", kLoopsOrAll, 0.001, 2, 0, 0, "", "knee_plant"},
-    {FaultKind::kCrash, "crash", kLoops, 0.02, 2, 0, 0, "", kKnee},
-    {FaultKind::kHang, "hang", kLoops, 0.002, 2, 0, 0, "", kKnee},
-    {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time", kKnee},
+    {FaultKind::kCrash, "crash", kLoops, 0.02, 2, 0, 0, "", kKneeLoops},
+    {FaultKind::kHang, "hang", kLoops, 0.002, 2, 0, 0, "", kKneeLoops},
+    {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time", kKneeLoops},
     {FaultKind::kOtherConfiguration, "other_configuration", "pressure_ctrl position_ctrl", 0.5, 6, 0, 0, ""},
     {FaultKind::kOtherVersion, "other_version", "pressure_ctrl position_ctrl logger", 0.5, 6, 0, 0, ""},
     {FaultKind::kLauncherHang, "launcher_hang", "plant", 0.2, 4, 0, 0, ""},
@@ -44,7 +44,7 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kSensorLie, "sensor_lie", "plant", 0.01, 1, 0, 6, "which sensor"},
     {FaultKind::kStop, "stop", "all", 0, 0, 0, 0, ""},
     {FaultKind::kRearm, "rearm", "plant", 0, 0, 0, 0, ""},
-    {FaultKind::kSignal, "signal", kLoops, 0, 0, 0, 0, "", kKnee},
+    {FaultKind::kSignal, "signal", kLoops, 0, 0, 0, 0, "", kKneeLoops},
     {FaultKind::kSet, "set", "all", 0, 0, 0, 7.999, "which values, and undo"},
     {FaultKind::kForeignStop, "foreign_stop", "all", 0, 0, 0, 0, ""},
     {FaultKind::kSecondPlant, "second_plant", "all", 0.01, 1, 0, 0, ""},

@@ -142,13 +142,45 @@ TEST_F(AskedColumnsTest, Times) {
       Read("day,t,u\n2026-01-01,23:59:59.5,7\n2026-01-02,00:00:00.0,8\n2026-01-02,00:00:00.5,9\n", with_date);
   ExpectTheTable(dated);
   EXPECT_EQ(Read("t,u\n10:00:00.25,7\n").Find("t")->values[0], 36000.25);
-  EXPECT_THAT(ErrorOf("t,u\n1/2/2026 10:30:25,7\n"),
+  EXPECT_THAT(ErrorOf("t,u\n1/2 10:30:25,7\n"),
               HasSubstr("allowed a number, or a date and a time like 2026-01-31T"));
   EXPECT_THAT(
       ErrorOf("t,u\n2026-01-01T10:30:25Z,7\n10:30:26,8\n"),
       HasSubstr("line 3, column t: found \"10:30:26\", allowed a time like the first, 2026-01-01T10:30:25Z"));
   EXPECT_THAT(ErrorOf("t,u\n0,2026-01-01T10:30:25Z\n"),
               HasSubstr("column u: found \"2026-01-01T10:30:25Z\""));
+}
+
+// Tests dates with slashes: a day above 12 in any row tells the order, of all rows, and one date alone needs
+// none. What can be read in two ways, or in no one way, is refused, with the sidecar's line that settles it.
+TEST_F(AskedColumnsTest, DatesWithSlashes) {
+  ExpectTheTable(Read("t,u\n26/11/2026 23:59:59.5,7\n27/11/2026 00:00:00,8\n27/11/2026 00:00:00.5,9\n"));
+  ExpectTheTable(Read("t,u\n11/30/2026 11:59:59.5 PM,7\n12/1/2026 12:00:00 AM,8\n12/1/2026 0:00:00.5,9\n"));
+  // The row that tells comes late.
+  EXPECT_THAT(Read("t,u\n12/11/2026 00:00:00,7\n13/11/2026 00:00:00,8\n").Find("t")->values,
+              ElementsAre(0, 86400));
+  EXPECT_THAT(Read("t,u\n1/12/2026 00:00:00,7\n1/13/2026 00:00:00,8\n").Find("t")->values,
+              ElementsAre(0, 86400));
+  ExpectTheTable(Read("t,u\n1/2/2026 10:30:25,7\n1/2/2026 10:30:25.5,8\n1/2/2026 10:30:26,9\n"));
+  const std::string two_ways = "t,u\n\n1/2/2026 23:59:59.5,7\n2/2/2026 00:00:00,8\n2/2/2026 00:00:00.5,9\n";
+  EXPECT_THAT(
+      ErrorOf(two_ways),
+      AllOf(HasSubstr("line 4, column t: found \"2/2/2026 00:00:00\", allowed dates of which one has a "
+                      "day above 12, or time = { column = \"t\", date_order = \"dmy\" } in the sidecar "
+                      "(\"mdy\" where the month comes first): these can be read in two ways")));
+  AskedColumns stated = kAsked;
+  stated.date_order = DateOrder::kDayFirst;
+  ExpectTheTable(Read(two_ways, stated));
+  stated.date_order = DateOrder::kMonthFirst;
+  EXPECT_EQ(Read(two_ways, stated).Find("t")->values[1], 30 * 86400 + 0.5);  // from 2 January to 2 February
+  EXPECT_THAT(ErrorOf("t,u\n13/1/2026 00:00:00,7\n1/14/2026 00:00:00,8\n"),
+              HasSubstr("line 3, column t: found \"1/14/2026 00:00:00\", allowed dates in one order: "
+                        "\"13/1/2026 00:00:00\" in line 2 has the day first"));
+  const AskedColumns with_date{.names = {"t", "u", "day"}, .time = "t", .date = "day"};
+  ExpectTheTable(
+      Read("day,t,u\n30/11/2026,23:59:59.5,7\n1/12/2026,0:00:00,8\n1/12/2026,0:00:00.5,9\n", with_date));
+  EXPECT_THAT(ErrorOf("day,t,u\n1/2/2026,23:59:59.5,7\n2/2/2026,0:00:00,8\n", with_date),
+              HasSubstr("time = { column = \"t\", date = \"day\", date_order = \"dmy\" }"));
 }
 
 // Tests what is a clock's text, and what is not.
@@ -162,8 +194,14 @@ TEST(ClockTextTest, Parses) {
   EXPECT_EQ(seconds("10:30:25"), 37825);
   EXPECT_EQ(ParseClock("10:30:25.1234567891")->nanoseconds, 123456789);
   EXPECT_FALSE(ParseClock("2026-01-01")->time);
-  for (const char* text :
-       {"", "10:30", "2026-13-01", "2026-02-30T00:00:00", "01/02/2026", "24:00:00", "10:30:25x", "2026"})
+  EXPECT_EQ(seconds("12:30:00 AM"), 1800);
+  EXPECT_EQ(seconds("12:30:00 pm"), 45000);
+  EXPECT_EQ(seconds("3:30:25.5PM"), 55825);
+  EXPECT_EQ(ParseClock("2/1/1970 00:00:01", DateOrder::kDayFirst)->seconds, 86401);
+  EXPECT_EQ(ParseClock("1/2/1970 00:00:01", DateOrder::kMonthFirst)->seconds, 86401);
+  EXPECT_FALSE(ParseClock("13/2/1970", DateOrder::kMonthFirst).has_value());
+  for (const char* text : {"", "10:30", "2026-13-01", "2026-02-30T00:00:00", "01/02/2026", "24:00:00",
+                           "10:30:25x", "2026", "13:00:00 PM", "0:00:00 AM"})
     EXPECT_FALSE(ParseClock(text).has_value()) << text;
 }
 

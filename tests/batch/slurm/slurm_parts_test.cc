@@ -1,9 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "batch/slurm/answered_command.h"
 #include "batch/slurm/array_folder.h"
-#include "batch/slurm/array_script.h"
 #include "batch/slurm/grouping.h"
 #include "batch/slurm/slurm_answers.h"
 #include "batch/slurm/slurm_cluster.h"

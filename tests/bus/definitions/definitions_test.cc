@@ -4,8 +4,6 @@
 #include <hydro/messages.hpp>
 
 #include "base/input_error.h"
-#include "bus/definitions/definition_parser.h"
-#include "bus/definitions/definition_texts.h"
 #include "bus/definitions/encoded_values.h"
 #include "bus/definitions/message_definition.h"
 #include "bus/messages.h"

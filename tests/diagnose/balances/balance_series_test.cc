@@ -7,7 +7,6 @@
 
 #include "diagnose/balances/masks.h"
 #include "model/terms/parameter_info.h"
-#include "model/unknown.h"
 #include "tests/diagnose/balances/clean_runs.h"
 
 namespace hydro::testing {

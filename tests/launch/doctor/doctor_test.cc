@@ -52,6 +52,8 @@ class DoctorTest : public ::testing::Test {
     facts_.realtime_kernel = true;
     facts_.clock = ClockState::kSynchronised;
     facts_.clock_error_us = 1500;
+    task_.rate_hz = 1000;
+    facts_.wake_ups = {.ticks = 1000, .skipped = 9, .latest_s = 0.003};
   }
 
   Finding Of(const std::string& check) const {
@@ -247,6 +249,48 @@ TEST_F(DoctorTest, Clock) {
   task_.several_hosts = false;
   task_.url.ttl = 0;
   EXPECT_TRUE(Of("clock").ok);
+}
+
+// Tests that ticks that this machine skips now are a problem where a run that skips as many is one, with what
+// was counted; and that few, and a stack without a loop here, are none.
+TEST_F(DoctorTest, WakeUps) {
+  EXPECT_EQ(Of("wake-ups").found, "9 of 1000 ticks skipped at 1000 Hz, the latest 3.0 ms late, now");
+  facts_.wake_ups = {.ticks = 1000, .skipped = 10, .latest_s = 0.0301};
+  Finding found = OnlyProblem("wake-ups");
+  EXPECT_THAT(
+      found.found,
+      StartsWith("10 of 1000 ticks skipped at 1000 Hz, the latest 30.1 ms late; allowed are less than 1 %"));
+  EXPECT_THAT(found.cure, HasSubstr("or priority = 80"));
+  task_.plant_priority = 80;
+  EXPECT_THAT(Of("wake-ups").cure, HasSubstr("or a lower plant.rate_hz"));
+  facts_.wake_ups = {};
+  EXPECT_TRUE(Of("wake-ups").ok);
+}
+
+// Tests the count: a wake-up that is late by less than a period skips nothing, one that is late by whole
+// periods skips as many ticks, and those beyond the end are not counted.
+TEST(WakeUpsTest, CountsAsALoopDoes) {
+  const auto count = [](double late_s, double at_s) {
+    return CountWakeUps(100, 1,
+                        [=](double due) { return due + (due >= at_s && due < at_s + 0.01 ? late_s : 1e-5); });
+  };
+  EXPECT_EQ(count(0, 0.5).ticks, 100);
+  EXPECT_EQ(count(0, 0.5).skipped, 0);
+  EXPECT_EQ(count(0.0099, 0.495).skipped, 0);
+  EXPECT_EQ(count(0.0101, 0.495).skipped, 1);
+  EXPECT_EQ(count(0.0351, 0.495).skipped, 3);
+  EXPECT_DOUBLE_EQ(count(0.0351, 0.495).latest_s, 0.0351);
+  EXPECT_EQ(count(0.0351, 0.495).ticks, 100);
+  EXPECT_EQ(count(5, 0.495).ticks, 100);
+  EXPECT_EQ(count(5, 0.495).skipped, 50);
+}
+
+// Tests the measurement itself on this machine, whatever it finds.
+TEST(WakeUpsTest, Measures) {
+  const WakeUps found = MeasureWakeUps(500, 0.1, 0, -1);
+  EXPECT_EQ(found.ticks, 50);
+  EXPECT_LT(found.skipped, 50);
+  EXPECT_GT(found.latest_s, 0);
 }
 
 }  // namespace

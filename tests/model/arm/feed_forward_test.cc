@@ -1,11 +1,10 @@
 // Tests that feed-forward tells a joint what its own model does not know, and nothing else.
-#include "model/arm/feed_forward.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "model/arm/arm_coupling.h"
 #include "tests/model/arm/arms.h"
 
 namespace hydro::model {

@@ -237,6 +237,43 @@ TEST_F(DeviceRigTest, LimitsInTheInputsUnit) {
   EXPECT_THAT(rig->faults()[1].text, HasSubstr("p2 reads 22 mA, an end of its input range"));
 }
 
+// Tests that an input without ends of its own, and a rate, have those of the machine: what none gives is a
+// fault of its sensor, and gives no signal.
+TEST_F(DeviceRigTest, ReadingsThatNoMachineGives) {
+  const auto rig = Open();
+  for (const double value : {1e30, -1e30, 3000.0}) {
+    device_->readings.inputs[3].value = value;  // motor_speed
+    EXPECT_TRUE(std::isnan(Read(*rig).motor_speed));
+    EXPECT_THAT(Codes(*rig), ElementsAre("sensor_motor_speed"));
+    EXPECT_THAT(rig->faults()[0].text, HasSubstr("rad/s, ten times T_pmax/b")) << value;
+    device_->readings.inputs[3].value = 100;
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(Read(*rig).motor_speed, 1000);
+    EXPECT_THAT(Codes(*rig), IsEmpty());
+  }
+}
+
+TEST_F(DeviceRigTest, PressuresThatNoMachineGives) {
+  config_.driver->p2.scale = 1e4;
+  const auto rig = Open();
+  EXPECT_TRUE(std::isnan(Read(*rig).p2));
+  EXPECT_THAT(rig->faults()[0].text,
+              HasSubstr("p2 is 10000 psi, which is not credible: allowed is at most 4000 "
+                        "psi, twice limits.pressure"));
+}
+
+TEST_F(DeviceRigTest, RatesThatNoMachineGives) {
+  config_.driver->motor_angle.source = Source::kCounter;
+  config_.driver->motor_angle.scale = 0.01;
+  config_.driver->motor_speed.source = Source::kDerivative;
+  const auto rig = Open();
+  Read(*rig);
+  device_->readings.inputs[2].value += 10;
+  EXPECT_NEAR(Read(*rig).motor_speed, 100, 1e-6);
+  device_->readings.inputs[2].value += 16000;  // less than a quarter of the counter's range
+  EXPECT_TRUE(std::isnan(Read(*rig).motor_speed));
+  EXPECT_THAT(Codes(*rig), ElementsAre("sensor_motor_speed"));
+}
+
 // Tests that what the device says is wrong with itself is a fault as long as it says so.
 TEST_F(DeviceRigTest, FaultOfTheDevice) {
   const auto rig = Open();

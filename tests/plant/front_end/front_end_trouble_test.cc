@@ -232,6 +232,11 @@ TEST(FrontEndTroubleTest, WrongDevice) {
             "stack.toml: driver.voltage.offset: found 30, allowed one with which zero volts are within the "
             "front end's output, -10 "
             "to 5 V at the terminal");
+  EXPECT_EQ(
+      Wrong(text, [](auto& facts) { facts.output_max_V = NAN; }),
+      "stack.toml: driver.url: found a front end whose output goes from -10 to nan V, as it says, allowed "
+      "one with a range of two numbers, the smaller one first: give its board's firmware the converter's "
+      "range");
   EXPECT_EQ(Wrong(changed("0.05", "0.0001")),
             "stack.toml: driver.watchdog_s: found 0.0001, allowed 0.0002 to 1: from one tick of the front "
             "end to a second");

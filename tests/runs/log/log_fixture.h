@@ -65,6 +65,11 @@ struct EventContents {
   bool operator==(const EventContents&) const = default;
 };
 
+inline void PrintTo(const EventContents& event, std::ostream* out) {
+  *out << event.channel << " at " << event.utime << " us: " << event.data.size() << " bytes, "
+       << event.data.substr(0, 20);
+}
+
 inline std::vector<EventContents> ReadEvents(const std::string& file) {
   LogReader reader(file);
   std::vector<EventContents> events;

@@ -176,7 +176,7 @@ TEST_F(LogVerdictTest, RepairedLogsSaySo) {
   WriteBytes(Path("log"), bytes);
   RepairInPlace(Path("log"));
   EXPECT_EQ(LogReader(Path("log")).verdict().note,
-            "repaired from log, which was damaged, 1 message lost, 47 bytes at 1 place left out");
+            "repaired from log.damaged, which was damaged, 1 message lost, 47 bytes at 1 place left out");
   std::filesystem::remove(Path("log.damaged"));
   WriteBytes(Path("log"), ReadBytes(Path("log")).substr(0, 20000));
   RepairInPlace(Path("log"));

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "runs/log/log_format.h"
 #include "tests/runs/log/log_fixture.h"
 
@@ -138,6 +140,9 @@ TEST_F(RepairTest, UndecodableMessages) {
   WritePlain(Path("log"), events);
   EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(whole, 1));
 
+  WriteEvents(Path("log"), events);  // recorded as it is: docs/troubleshooting.md sends users here
+  EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(whole, 1));
+
   for (EventContents& event : events) event.data[0] = '?';
   WritePlain(Path("log"), events);
   RepairResult result;
@@ -179,12 +184,46 @@ TEST_F(RepairTest, NothingToKeep) {
   }
 }
 
-// Tests that a file without any event is bad input, and that nothing is written then.
+// Tests that a file without any event is bad input, that the error says what the file is and who reads it,
+// and that nothing is written then.
 TEST_F(RepairTest, NoEventAtAll) {
-  WriteBytes(Path("text"), "this is not a log");
-  EXPECT_THAT(InputErrorOf([&] { RepairLog(Path("text"), Path("out")); }),
-              HasSubstr("found no event in 17 bytes"));
-  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  const std::pair<const char*, const char*> files[] = {
+      {"bytes", "found no event in 6 bytes"},
+      {"run.csv", "run.csv: found text, allowed an LCM event log; hydro-log import run.csv -o RUN.lcmlog"},
+      {"notes", "found text, allowed an LCM event log; hydro-log import makes one of a table"},
+      {"rig.toml", "found a model ([parameters]), allowed an LCM event log"}};
+  const std::map<std::string, std::string> contents = {{"bytes", {"\1\2\3\4\5\6", 6}},
+                                                       {"run.csv", "time_s,tick\n0,0\n"},
+                                                       {"notes", "this is not a log"},
+                                                       {"rig.toml", "[parameters]\nk_1 = 4.0\n"}};
+  std::filesystem::current_path(std::filesystem::path(Path("x")).parent_path());
+  for (const auto& [name, error] : files) {
+    WriteBytes(name, contents.at(name));
+    EXPECT_THAT(InputErrorOf([&] { RepairLog(name, "out"); }), HasSubstr(error));
+    EXPECT_THAT(InputErrorOf([&] { RepairInPlace(name); }), HasSubstr(error));
+    EXPECT_EQ(ReadBytes(name), contents.at(name));
+    EXPECT_FALSE(std::filesystem::exists("out"));
+    EXPECT_FALSE(std::filesystem::exists(std::string(name) + ".damaged"));
+  }
+  std::filesystem::current_path("/");
+}
+
+// Tests that what a repair says names the file that it is about: the new log, or the one as it was found.
+TEST_F(RepairTest, NamesTheRightFile) {
+  std::vector<EventContents> events;
+  std::vector<size_t> begins;
+  const std::string torn = Foreign(events, begins).substr(0, begins[4] - 1);
+  WriteBytes(Path("log"), torn);
+  const std::string beside = Describe(RepairLog(Path("log"), Path("new")), Path("log"));
+  EXPECT_THAT(beside, testing::StartsWith(Path("new") + ": kept 3 messages, "));
+  EXPECT_THAT(beside, HasSubstr(", of " + Path("log") + "\n"));
+  EXPECT_THAT(beside, HasSubstr("\n" + Path("log") + ": lost bytes "));
+  EXPECT_THAT(LogReader(Path("new")).verdict().note, testing::StartsWith("repaired from log, which was"));
+
+  const std::string in_place = Describe(RepairInPlace(Path("log")), Path("log"));
+  EXPECT_THAT(in_place, testing::StartsWith(Path("log") + ": kept 3 messages, "));
+  EXPECT_THAT(in_place, HasSubstr("\n" + Path("log.damaged") + ": lost bytes "));
+  EXPECT_THAT(LogReader(Path("log")).verdict().note, testing::StartsWith("repaired from log.damaged, which"));
 }
 
 // Tests that repair in place keeps the damaged log beside the new one under a name that it tells, and any

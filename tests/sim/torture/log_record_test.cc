@@ -1,12 +1,11 @@
 // What the simulator says of a log: true of whole, cut, changed and false ones.
-#include "sim/torture/invariants/log_record.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <string>
 
 #include "runs/log/log_writer.h"
+#include "sim/torture/invariants/records.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::torture {

@@ -1,9 +1,8 @@
-#include "sim/torture/invariants/reached_rows.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "process/safety/safety_table.h"
+#include "sim/torture/invariants/coverage.h"
 
 namespace hydro::torture {
 namespace {

@@ -1,8 +1,8 @@
-#include "sim/torture/shrink.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "sim/torture/run_schedule.h"
 
 namespace hydro::torture {
 namespace {

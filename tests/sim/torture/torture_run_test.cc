@@ -11,7 +11,7 @@
 #include "plant/voltage_guard.h"
 #include "process/safety/safety_table.h"
 #include "sim/torture/active_fault.h"
-#include "sim/torture/invariants/reached_rows.h"
+#include "sim/torture/invariants/coverage.h"
 #include "sim/torture/run_schedule.h"
 
 namespace hydro::torture {

@@ -16,6 +16,7 @@
 #include "sim/simulation.h"
 #include "tests/runs/log/log_fixture.h"
 #include "tests/settings/small_texts.h"
+#include "tests/tools/hydro_log/short_run.h"
 #include "tools/hydro_log/hydro_log.h"
 #include "tools/hydro_log/replay.h"
 
@@ -25,25 +26,7 @@ namespace {
 using log::Completeness;
 using testing::HasSubstr;
 
-const char* const kConfig = R"(
-[model]
-shaft = "free"
-[time]
-mode = "lockstep"
-duration_s = 0.5
-[plant]
-rate_hz = 1000
-[pressure]
-natural_frequency_rad_s = 150.0
-damping_ratio = 0.5
-[position]
-sample_interval_s = 0.005
-c1 = 1000.0
-c2 = 200.0
-[reference]
-kind = "steps"
-steps = [[0.05, 0.1]]
-)";
+const std::string kConfig = ShortRun("0.5");
 
 class DamageTest : public log::LogTest {
  protected:

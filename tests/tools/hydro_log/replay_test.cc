@@ -12,32 +12,15 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 #include "tests/settings/small_texts.h"
+#include "tests/tools/hydro_log/short_run.h"
 
 namespace hydro::hydro_log {
 namespace {
 
-const char* const kConfig = R"(
-[model]
-shaft = "free"
-[time]
-mode = "lockstep"
-duration_s = 0.3
-[plant]
-rate_hz = 1000
-[pressure]
-natural_frequency_rad_s = 150.0
-damping_ratio = 0.5
-[position]
-sample_interval_s = 0.005
-c1 = 1000.0
-c2 = 200.0
-[reference]
-kind = "steps"
-steps = [[0.05, 0.1]]
-[noise]
+const std::string kConfig = ShortRun("0.3", R"([noise]
 p1 = 1.0
 motor_speed = 0.1
-)";
+)");
 
 // A simulated run, recorded into a file and read back.
 runs::RunLog Recorded() {

@@ -1,5 +1,6 @@
 #include "tune/design/fastest_motion.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +12,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 settings::StackConfig With(double arm_inertia, double beta) {
   settings::StackConfig config = settings::Parsed(settings::kConfigText);
@@ -35,9 +37,27 @@ TEST(FastestMotion, IsThatOfTheEquations) {
 TEST(FastMotionRemark, SaysWhatTakesVeryLong) {
   EXPECT_EQ(FastMotionRemark(settings::Parsed(settings::kConfigText)), "");
   EXPECT_EQ(FastMotionRemark(With(23.3, 2.5e7)), "");
-  EXPECT_THAT(FastMotionRemark(With(1e-12, 2.47e5)),
+  EXPECT_THAT(FastMotionRemark(With(1e-8, 2.47e5)),
               AllOf(HasSubstr("model.toml: its fastest motion, "), HasSubstr("J_a"),
                     HasSubstr("in a tick of 0.001 s")));
+}
+
+// Tests that a machine which nothing can simulate is refused before the run, in one line that says what to
+// check: an arm without mass, a weight and a spring beyond all others.
+TEST(FastMotionRemark, RefusesWhatNoMachineDoes) {
+  const auto refusal = [](const settings::StackConfig& config) {
+    return settings::InputErrorOf([&] { FastMotionRemark(config); });
+  };
+  settings::StackConfig heavy = With(23.3, 2.47e5), sprung = heavy;
+  heavy.model.description.parameters.mgl = 9.2e18;
+  sprung.model.description.effects.push_back(
+      {.id = "load.spring", .parameters = {{"stiffness", 1e15}, {"rest", 1}}});
+  for (const settings::StackConfig& config : {With(1e-12, 2.47e5), heavy, sprung}) {
+    EXPECT_THAT(refusal(config), AllOf(HasSubstr("model.toml: parameters and effects: found a machine that "
+                                                 "oscillates at "),
+                                       HasSubstr(" Hz, allowed up to 1e+07 Hz; check J_a, J, V_ms, beta"),
+                                       Not(HasSubstr("\n"))));
+  }
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
 #include "experiments/runs/stack_run.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "settings/model_file.h"

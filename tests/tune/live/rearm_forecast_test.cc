@@ -307,6 +307,32 @@ TEST(RearmForecast, AnArmThatMoves) {
   }
 }
 
+// Tests that a way back that no sensor shows is called none, and that a position that differs from zero by
+// rounding is zero; and that the smallest way that a sensor does show is said.
+TEST(RearmForecast, NoMove) {
+  for (const double target : {0.0, 0.3}) {
+    const settings::StackConfig config = settings::LoadStackConfig(
+        HYDRO_TEST_CONFIG, {"reference.steps=[[0.1, " + std::to_string(target) + "]]"});
+    HeardOfStack heard;
+    heard.state.emplace();
+    heard.state->command_tick = -1;
+    heard.state->time = 2;
+    heard.state->arm_speed = 1e-8;
+    heard.run.emplace();
+    heard.run->rate_hz = kRate;
+    heard.run->config_text = config.text;
+    heard.run->model_text = config.model.text;
+    heard.state->arm_angle = target - 2.98e-9;
+    const std::string at = target == 0 ? "0 rad" : "0.3 rad";
+    EXPECT_THAT(ForecastRearm(heard).text,
+                StartsWith("the arm is at " + at + "; its reference comes back to " + at +
+                           ": the reference does not move; the arm follows"));
+    EXPECT_FALSE(ForecastRearm(heard).jumps);
+    heard.state->arm_angle = target - 1e-5;
+    EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("the reference moves by +1e-05 rad in 0.5 s"));
+  }
+}
+
 // Tests that nothing is called slow that is not.
 TEST_F(RearmForecastTest, AtOnce) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0"});

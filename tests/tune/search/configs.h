@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "experiments/runs/shipped_models.h"
-#include "experiments/runs/shipped_stacks.h"
 #include "settings/model_file.h"
 #include "settings/stack_config.h"
 

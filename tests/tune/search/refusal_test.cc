@@ -48,6 +48,52 @@ TEST(Refusal, NamesWhatTheBestGainsReach) {
               HasSubstr("overshoot by at least 19"));
 }
 
+// Gains with these ratios of the steps, with and without the model's uncertainty.
+Tried Rated(double ratio, double uncertain_ratio, double gain_margin) {
+  Tried tried;
+  tried.steps.ratio = ratio;
+  tried.steps.uncertain_ratio = uncertain_ratio;
+  tried.steps.unsettled = ratio >= kNeverSettled ? 0.1 : 0;
+  tried.steps.slowest.step = 0.3;
+  design::CheckedLoop loop;
+  loop.worst.stable = true;
+  loop.worst.gain = gain_margin;
+  loop.worst.phase_deg = 40;
+  tried.check.pressure = tried.check.position = loop;
+  return tried;
+}
+
+// Tests that only gains are proposed with which the arm settles, and that are better than the configured
+// ones: sooner where no goal is given, whatever the margins, and else with wider margins.
+TEST(Refusal, ProposesNothingThatIsNoBetter) {
+  const StepJudge judge(Retuned(), {.samples = 0});
+  const auto refused = [&](const Goals& goals, const Tried& best, const Tried& configured) {
+    return RefusalToPropose(judge, goals, best, configured);
+  };
+  EXPECT_EQ(refused({}, Rated(1.2, 1.3, 2), Rated(1.4, 1.5, 4)), "");
+  EXPECT_EQ(refused({}, Rated(1.2, 1.3, 2), Rated(kNeverSettled + 0.1, kNeverSettled + 0.1, 2)), "");
+  EXPECT_THAT(
+      refused({}, Rated(1.4, 1.5, 2), Rated(1.2, 1.3, 4)),
+      HasSubstr("no proposal: nothing better than the configured gains was found, which settle within "
+                "1.2 times the shortest time (with what may be true instead of the model: settle within "
+                "1.3 times the shortest time) and have a gain margin of 4 and a phase margin of 40 deg"));
+  EXPECT_THAT(refused({}, Rated(1.2, 1.3, 2), Rated(1.2, 1.3, 2)), HasSubstr("no proposal"));
+  EXPECT_THAT(refused({}, Rated(1.4, 1.5, 2), Rated(1.2, 1.3, 1.1)),
+              HasSubstr("with a --goal that is enough"));
+  const Tried never = Rated(kNeverSettled, kNeverSettled, 3);
+  EXPECT_THAT(
+      refused({}, never, Rated(kNeverSettled + 0.5, kNeverSettled + 0.5, 3)),
+      HasSubstr("no proposal: with no gains that keep the margins does the arm settle within 2.5 times the "
+                "shortest time after every step tried, with the best of them not after one of 0.3 rad from 0 "
+                "rad; the configured gains "
+                "never settle"));
+  // With a goal of settling time, margins decide.
+  const Goals goals = {.settling_s = 1};
+  EXPECT_EQ(refused(goals, Rated(1.4, 1.5, 5), Rated(1.2, 1.3, 4)), "");
+  EXPECT_THAT(refused(goals, Rated(1.2, 1.3, 3), Rated(1.4, 1.5, 4)), HasSubstr("they meet the goals"));
+  EXPECT_EQ(refused(goals, Rated(1.4, 1.5, 2), Rated(1.2, 1.3, 1.1)), "");
+}
+
 // Tests T_s/(k_1 k_p c_1), without the reference's feed-forward beside k_p.
 TEST(Refusal, KnowsWhatFrictionLeaves) {
   const settings::StackConfig config = Retuned({"pressure.reference_feedforward=false"});

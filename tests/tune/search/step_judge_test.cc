@@ -64,6 +64,23 @@ TEST(StepJudge, SamplesWhatTheModelDoesNotKnow) {
   EXPECT_EQ(again.models()[17].parameters.T_s, judge.models()[17].parameters.T_s);
 }
 
+// Tests that of two gains with which the arm never settles in some case, those are better that settle in
+// more.
+TEST(StepJudge, CountsTheStepsThatNeverSettle) {
+  const StepJudge judge(Retuned(), {.samples = 0});
+  Gains few = GainsOf(judge.config());
+  few.as_configured = false;
+  few.c2 = 400;  // swings after half of the steps
+  Gains all = few;
+  all.c2 = 150;
+  const StepVerdict some = judge.Judge(few), none = judge.Judge(all);
+  EXPECT_NEAR(some.unsettled, 0.5, 0.1);
+  EXPECT_EQ(none.unsettled, 1);
+  EXPECT_LT(some.score(), none.score());
+  EXPECT_GE(some.ratio, kNeverSettled);
+  EXPECT_EQ(judge.Judge(GainsOf(judge.config())).unsettled, 0);
+}
+
 TEST(StepJudge, MarksRunsThatALimitWouldEnd) {
   const StepJudge slow(Retuned({"limits.motor_speed=200"}), {.goals = {.step = 0.3}});
   EXPECT_GT(slow.Judge(GainsOf(slow.config())).ratio, kStopped);

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "base/text_file.h"
 #include "settings/stack_config.h"
@@ -77,6 +80,86 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
   EXPECT_EQ(Run(HYDRO_SIM, tuned).code, 0);
 }
 
+// Tests that what is written says what it is: each changed value has its unit and what it was, no comment of
+// the former value is left beside it, the first line names the gains, and a second search replaces it.
+TEST_F(TuneProgram, WritesCommentsThatFollowWhatIsWritten) {
+  const std::string given =
+      Write("given.toml",
+            settings::Replaced(
+                settings::Replaced(ReadTextFile(kRetuned), "c2 = 900.0                    # psi s/rad",
+                                   "c2 = 900.0  # the best of all"),
+                "models/table1.toml", std::string(HYDRO_CONFIG) + "/models/table1.toml"));
+  const std::string tuned = (folder_ / "tuned.toml").string(), again = (folder_ / "again.toml").string();
+  const std::string how = " --fixed-gains --goal step=0.1 --samples 0 --set pressure.damping_ratio=0.6 -o ";
+  ASSERT_EQ(Run(HYDRO_TUNE, given + how + tuned).code, 0);
+  const std::string text = ReadTextFile(tuned);
+  EXPECT_THAT(text, ::testing::StartsWith(
+                        "# Gains by hydro-tune --goal step=0.1, from given.toml: position.c1 and "
+                        "position.c2. Comments that speak of these were written for other values.\n"));
+  EXPECT_THAT(text, Not(HasSubstr("the best of all")));
+  EXPECT_THAT(text, ::testing::ContainsRegex("\nc2 = [0-9.]+ +# psi s/rad, by hydro-tune, was 900"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("\nc1 = [0-9.]+ +# psi/rad, by hydro-tune, was 10000"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("\ndamping_ratio = 0.6 +# by --set, was 0.5"));
+  EXPECT_THAT(text, HasSubstr("natural_frequency_rad_s = 150.0  # Figure 8\n"));
+  ASSERT_EQ(Run(HYDRO_TUNE, tuned + " --fixed-gains --goal step=0.2 --samples 0 -o " + again).code, 0);
+  const std::string second = ReadTextFile(again);
+  EXPECT_THAT(second, ::testing::StartsWith("# Gains by hydro-tune --goal step=0.2, from tuned.toml: "));
+  EXPECT_EQ(second.find("# Gains by", 1), std::string::npos);
+}
+
+// Tests that gains that are the best of all are not replaced by others, and that this is said with nothing
+// written: what the search found, tuned for again.
+TEST_F(TuneProgram, KeepsWhatItCannotBetter) {
+  const std::string tuned = (folder_ / "tuned.toml").string(), again = (folder_ / "again.toml").string();
+  const std::string report = (folder_ / "report").string(), how = " --goal step=0.1 --samples 0 --jobs 2 -o ";
+  ASSERT_EQ(Run(HYDRO_TUNE, kRetuned + how + tuned).code, 0);
+  const Outcome outcome = Run(HYDRO_TUNE, tuned + how + again + " --fixed-gains --out " + report);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("tuned.toml: no proposal: nothing better than the configured gains"));
+  EXPECT_THAT(outcome.out, HasSubstr("best found, not proposed: "));
+  EXPECT_FALSE(std::filesystem::exists(again));
+  EXPECT_FALSE(std::filesystem::exists(report));
+}
+
+// The ratios in the row "over the travel", of what is configured and of the last column.
+std::pair<double, double> OverTheTravel(const std::string& out) {
+  std::istringstream row(out.substr(out.find("over the travel") + 15));
+  std::vector<double> ratios;
+  for (std::string word; row >> word && word != "uncertain";) {
+    if (word != "|") ratios.push_back(word == "never" || word == "stops" ? HUGE_VAL : std::stod(word));
+  }
+  return {ratios.front(), ratios.back()};
+}
+
+// Tests that of every shipped configuration, the proposed gains settle every step that was tried, and are at
+// least as good as the configured ones by the tool's own measure; or that it proposes none.
+class ShippedStacks : public TuneProgram, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ShippedStacks, GetNoWorseGains) {
+  const std::string tuned = (folder_ / "tuned.toml").string();
+  const Outcome outcome =
+      Run(HYDRO_TUNE, std::string(HYDRO_CONFIG) + "/" + GetParam() + " --samples 0 -o " + tuned);
+  const auto [configured, proposed] = OverTheTravel(outcome.out);
+  EXPECT_EQ(std::filesystem::exists(tuned), outcome.code == 0);
+  if (outcome.code == 0) {
+    EXPECT_THAT(outcome.out, HasSubstr("\nproposed: "));
+    EXPECT_LE(proposed, configured) << outcome.out;
+    EXPECT_TRUE(std::isfinite(proposed)) << outcome.out;
+  } else {
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("no proposal: "));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedStacks,
+                         ::testing::Values("paper.toml", "demo.toml", "demo_si.toml", "front_end.toml",
+                                           "retuned.toml", "differential_cylinder.toml",
+                                           "limb.toml --joint knee"),
+                         [](const auto& stack) {
+                           std::string name = stack.param;
+                           return name.substr(0, name.find('.'));
+                         });
+
 // Tests the stack under eq. (17) alone: no key of the curve is written.
 TEST_F(TuneProgram, KeepsToFixedGainsWhenAsked) {
   const std::string tuned = (folder_ / "tuned.toml").string();
@@ -144,6 +227,11 @@ TEST_F(TuneProgram, AnswersWrongInputWithOneLine) {
       {kRetuned + " --jobs 0", "--jobs: found 0, allowed 1 to 64"},
       {kRetuned + " --samples 101", "--samples: found 101"},
       {kRetuned + " --interval x", "--interval: found \"x\""},
+      {kRetuned + " --interval -1", "--interval: found \"-1\", allowed a number of seconds above 0"},
+      {kRetuned + " --interval nan", "--interval: found \"nan\""},
+      {kRetuned + " --out /proc/none/deep",
+       "--out: found \"/proc/none/deep\", a folder that cannot be written"},
+      {kRetuned + " --out " + kRetuned + "/report", "a folder that cannot be written"},
       {kRetuned + " --interval 0.00013", "sample_interval_s"},
       {same + " -o " + same, "same.toml"},
       {inline_table + " -o " + (folder_ / "o.toml").string(), "a line of its own"},

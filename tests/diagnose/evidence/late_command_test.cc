@@ -1,0 +1,130 @@
+// Tests of commands that stand in the wrong row of their table.
+#include "diagnose/evidence/late_command.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include "runs/run_delays.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::NoisyRig;
+
+model::ModelDescription Given() {
+  model::ModelDescription given;
+  given.parameters = testing::Table1();
+  return given;
+}
+
+struct Bench {
+  double step = 1e-3;
+  uint64_t seed = 1;
+  std::vector<model::EffectDescription> lacking = {};  // effects of the machine that the model lacks
+  double b = 1;                                        // the machine's b in that of the model
+};
+
+// Two clamped runs, one of them with the bypass open, of a table whose command stands `rows` rows late.
+std::vector<runs::MeasuredRun> Recorded(const Bench& bench, int rows) {
+  NoisyRig rig;
+  rig.step = bench.step;
+  rig.seed = bench.seed;
+  rig.model.parameters = testing::Table1();
+  rig.model.parameters.b *= bench.b;
+  rig.model.effects = bench.lacking;
+  std::vector<runs::MeasuredRun> runs;
+  for (const bool bypass : {false, true}) {
+    const auto steps = [&](double t) {
+      constexpr double kLevels[] = {3, -2, 6, 0.8, -5, 4, -7, 1.5, -3, 8, -6, 2};
+      const auto level = static_cast<size_t>(t / 0.11) + bench.seed;
+      return kLevels[level % 12] + std::sin(2 * std::numbers::pi * 3 * t);
+    };
+    runs::MeasuredRun run =
+        rig.Record(bypass ? "open" : "steps", model::Shaft::kClamped, 0.1, 5, bypass, steps).measured;
+    run.sidecar = "bench/run.toml";
+    run.voltage.source.column = "u";
+    EXPECT_TRUE(runs::RemoveDelays({{&runs::MeasuredRun::voltage, -rows * bench.step}}, &run));
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+// The number that follows `before` in the only one of these lines; NaN: there is none.
+double NumberAfter(const std::string& before, const std::vector<std::string>& lines) {
+  if (lines.size() != 1) return std::nan("");
+  const size_t at = lines[0].find(before);
+  return at == std::string::npos ? std::nan("") : std::strtod(lines[0].c_str() + at + before.size(), nullptr);
+}
+
+// Tests that a command that is a row late or early is said with the line that mends it, at several rates, and
+// nothing is said where the command stands in its row.
+TEST(LateCommand, IsSaidWithTheLineThatMendsIt) {
+  for (const double step : {5e-4, 1e-3, 2e-3, 5e-3}) {
+    for (const uint64_t seed : {1, 2, 3}) {
+      SCOPED_TRACE(std::to_string(step) + " s, seed " + std::to_string(seed));
+      const Bench bench{step, seed};
+      const CommandRemarks none = RemarksOnCommands(Given(), Recorded(bench, 0), 1);
+      EXPECT_THAT(none.late, IsEmpty());
+      EXPECT_THAT(none.early, IsEmpty());
+      const CommandRemarks late = RemarksOnCommands(Given(), Recorded(bench, 1), 1);
+      EXPECT_NEAR(NumberAfter("the voltage is late by ", late.late), 1, 0.15);
+      EXPECT_NEAR(NumberAfter("in run.toml, under [columns], mends it: voltage = { column = \"u\", delay = ",
+                              late.late),
+                  step, 1e-9);
+      EXPECT_THAT(late.early, IsEmpty());
+      const CommandRemarks early = RemarksOnCommands(Given(), Recorded(bench, -1), 1);
+      EXPECT_THAT(early.late, IsEmpty());
+      EXPECT_NEAR(NumberAfter("the voltage is early by ", early.early), 1, 0.15);
+      EXPECT_NEAR(NumberAfter("delay = ", early.early), -step, 1e-9);
+    }
+  }
+}
+
+// Tests that other values and friction that the model lacks are not taken for rows of the
+// command, and do not hide them.
+TEST(LateCommand, IsNoMissingEffect) {
+  const model::EffectDescription stribeck{
+      .id = "pump.stribeck", .parameters = {{"static_excess", 0.5}, {"speed", 3}}, .names = {}};
+  const model::EffectDescription pressed{
+      .id = "pump.pressure_friction", .parameters = {{"f", 0.001}}, .names = {}};
+  const std::vector<model::EffectDescription> lacks[] = {{}, {stribeck}, {pressed}};
+  for (const auto& lacking : lacks) {
+    SCOPED_TRACE(lacking.empty() ? "b" : lacking.front().id);
+    const Bench bench{.step = 1e-3, .seed = 4, .lacking = lacking, .b = 1.5};
+    const CommandRemarks none = RemarksOnCommands(Given(), Recorded(bench, 0), 2);
+    EXPECT_THAT(none.late, IsEmpty());
+    EXPECT_THAT(none.early, IsEmpty());
+    EXPECT_THAT(RemarksOnCommands(Given(), Recorded(bench, 1), 2).late, ElementsAre(HasSubstr("is late by")));
+  }
+}
+
+// Tests that the estimate is in rows, with an error that holds the truth, for runs that are moved by several.
+TEST(LateCommand, IsMeasuredInRows) {
+  for (const int rows : {-2, -1, 0, 1, 2}) {
+    const LateCommand found = FindLateCommand(Given(), Recorded({.step = 1e-3, .seed = 6}, rows), 0, 1);
+    EXPECT_NEAR(found.rows, rows, 0.15 + 2 * found.error) << rows;
+    EXPECT_LT(found.error, 0.2) << rows;
+  }
+}
+
+// Tests that logs of a stack, and runs without the motor's motion, say nothing.
+TEST(LateCommand, IsLeftOutWhereNothingIsKnown) {
+  std::vector<runs::MeasuredRun> logs = Recorded({}, 1);
+  for (runs::MeasuredRun& run : logs) run.sidecar = "";
+  EXPECT_THAT(RemarksOnCommands(Given(), logs, 1).late, IsEmpty());
+  std::vector<runs::MeasuredRun> blind = Recorded({}, 1);
+  for (runs::MeasuredRun& run : blind) run.motor_speed = run.motor_angle = {};
+  EXPECT_THAT(RemarksOnCommands(Given(), blind, 1).late, IsEmpty());
+}
+
+}  // namespace
+}  // namespace hydro::diagnose

@@ -1,0 +1,229 @@
+// What a rig does with samples that cannot be true: values that nothing gives, fields that contradict each
+// other, a clock that does not go on.
+#include <gmock/gmock.h>
+
+#include "tests/plant/front_end/device_bench.h"
+
+namespace hydro::plant {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Falsify = std::function<void(hydro_sample& sample)>;
+
+// A device that drives with 3 V, and then lies for so many milliseconds.
+void Lied(DeviceBench* bench, const Falsify& lie, int ticks = 2) {
+  ASSERT_TRUE(bench->Connect());
+  bench->Ticks(150, 3);
+  ASSERT_TRUE(bench->rig->faults().empty());
+  ASSERT_EQ(bench->volts, -1.5F);
+  bench->lie = lie;
+  bench->Ticks(ticks, 3);
+}
+
+// Tests that without minimum_V and maximum_V a reading that no such machine gives is a fault of its sensor,
+// and is passed on to nobody; and that the ends are far from what a machine does.
+TEST(FrontEndLiesTest, ReadingsThatNoMachineGives) {
+  struct Case {
+    int sensor;
+    float value;
+    const char* allowed;  // null: it is credible
+  };
+  const Case cases[] = {
+      {HYDRO_P1, 1e30F, "at most 4000 psi, twice limits.pressure"},
+      {HYDRO_P2, -1e30F, "at least -214.7 psi, a vacuum less a tenth of limits.pressure"},
+      {HYDRO_P2, 4001, "at most 4000 psi"},
+      {HYDRO_P2, -215, "at least -214.7 psi"},
+      {HYDRO_P1, -200, nullptr},
+      {HYDRO_MOTOR_SPEED, 1e30F, "ten times T_pmax/b"},
+      {HYDRO_MOTOR_SPEED, -28000, "ten times T_pmax/b"},
+      {HYDRO_MOTOR_SPEED, -3000, nullptr},
+      {HYDRO_ARM_ANGLE, 1e30F, "twice limits.arm_angle"},
+      {HYDRO_ARM_ANGLE, -2, "twice limits.arm_angle"},
+      {HYDRO_ARM_ANGLE, 0.9F, nullptr},
+  };
+  for (const Case& each : cases) {
+    DeviceBench bench;
+    Lied(&bench, [&](hydro_sample& sample) { sample.value[each.sensor] = each.value; });
+    const double read[] = {bench.measured.p1,          bench.measured.p2,        bench.measured.motor_angle,
+                           bench.measured.motor_speed, bench.measured.arm_angle, bench.measured.arm_speed};
+    const double signal = read[each.sensor];
+    if (each.allowed == nullptr) {
+      EXPECT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+      EXPECT_EQ(signal, static_cast<double>(each.value));
+      continue;
+    }
+    const std::string code = std::vector<const char*>{
+        "sensor_p1",          "sensor_p2",        "sensor_motor_angle",
+        "sensor_motor_speed", "sensor_arm_angle", "sensor_arm_speed"}[static_cast<size_t>(each.sensor)];
+    EXPECT_THAT(bench.Fault(code), AllOf(HasSubstr("allows no such reading"), HasSubstr(each.allowed)));
+    EXPECT_TRUE(std::isnan(signal)) << code;
+    EXPECT_EQ(bench.volts, 0) << code;
+  }
+}
+
+// Tests that limits which are given narrow the ends, and that an input beyond any converter's is none.
+TEST(FrontEndLiesTest, EndsFollowLimits) {
+  DeviceBench slow(std::string(kFrontEndText) + "[limits]\nmotor_speed = 100\npressure = inf\n");
+  Lied(&slow, [](hydro_sample& sample) { sample.value[HYDRO_MOTOR_SPEED] = 201; });
+  EXPECT_THAT(slow.Fault("sensor_motor_speed"), HasSubstr("at most 200 rad/s, twice limits.motor_speed"));
+
+  DeviceBench open(std::string(kFrontEndText) + "[limits]\npressure = inf\n");
+  Lied(&open, [](hydro_sample& sample) { sample.value[HYDRO_P1] = 1e30F; });
+  EXPECT_THAT(open.Fault("sensor_p1"), HasSubstr("at most 50000 psi, 100 V at the input"));
+}
+
+// Tests that each field holds what it may hold, and that fields which contradict each other are a fault, with
+// zero volts.
+TEST(FrontEndLiesTest, FieldsThatCannotBe) {
+  struct Case {
+    Falsify lie;
+    const char* says;
+  };
+  const Case cases[] = {
+      {[](auto& sample) { sample.state = 99; }, "its state is 99, allowed are 1 (ready), 2 (armed)"},
+      {[](auto& sample) { sample.state = HYDRO_IDLE; }, "its state is 0"},
+      {[](auto& sample) { sample.source = 7; }, "comes from source 7, allowed are 0 (zero), 1 (VOLTAGE)"},
+      {[](auto& sample) { sample.saturated = 2; }, "says 2 for saturated"},
+      {[](auto& sample) { sample.sensor_faults = 0x80; }, "names sensors that it does not have"},
+      {[](auto& sample) { sample.state = HYDRO_READY; }, "acts by source 1 and that it is not armed"},
+      {[](auto& sample) {
+         sample.state = HYDRO_READY;
+         sample.source = HYDRO_SOURCE_ZERO;
+         sample.voltage = 0;
+         sample.command_age = UINT32_MAX;
+       },
+       "not armed any more, and counts no trip"},
+      {[](auto& sample) { sample.command_age = UINT32_MAX; }, "acts by a command and that it has none"},
+      {[](auto& sample) {
+         sample.source = HYDRO_SOURCE_ZERO;
+         sample.voltage = 0;
+       },
+       "has a command, and that it does not act by it"},
+      {[](auto& sample) { sample.command_age = 250; },
+       "its watchdog must trip after 250 (driver.watchdog_s)"},
+      {[](auto& sample) { sample.faults_present = HYDRO_FAULT_SENSOR; }, "a sensor that is not credible"},
+      {[](auto& sample) { sample.faults_present = 0x4000; }, "a fault that this version does not know"},
+  };
+  for (const Case& each : cases) {
+    DeviceBench bench;
+    Lied(&bench, each.lie);
+    EXPECT_THAT(bench.Fault("device_fault"), HasSubstr(each.says));
+    bench.Tick(3);
+    EXPECT_EQ(bench.volts, 0) << each.says;
+    bench.lie = nullptr;
+    bench.Ticks(200, 3);
+    EXPECT_TRUE(bench.rig->faults().empty()) << each.says << ": " << bench.rig->faults().front().text;
+  }
+}
+
+// Tests that a device's clock that stands still, runs backwards or jumps is a fault in the tick in which it
+// is seen, and ends with it.
+TEST(FrontEndLiesTest, ClockThatDoesNotGoOn) {
+  struct Case {
+    std::function<uint64_t(uint64_t)> tick;
+    const char* says;
+  };
+  const Case cases[] = {
+      {[](uint64_t) { return 1200; }, "clock stands still at tick 1200"},
+      {[](uint64_t tick) { return 1'000'000 - tick; }, "clock runs backwards, from tick 99"},
+      {[](uint64_t tick) { return tick * tick * tick; }, "clock jumps by"},
+      {[](uint64_t tick) { return UINT64_MAX - tick; }, "clock runs backwards"},
+      {[](uint64_t) { return 0; }, "clock stands still at tick 0"},
+  };
+  for (const Case& each : cases) {
+    DeviceBench bench;
+    Lied(
+        &bench, [&](hydro_sample& sample) { sample.tick = each.tick(sample.tick); }, 4);
+    EXPECT_THAT(bench.Fault("device_fault"), HasSubstr(each.says));
+    EXPECT_EQ(bench.volts, 0);
+    bench.lie = nullptr;
+    bench.Ticks(200, 3);
+    EXPECT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    EXPECT_EQ(bench.volts, -1.5F);
+  }
+}
+
+// Tests that a clock of another rate than the device states, as of a timer that was set up wrongly, is a
+// fault within a few seconds, and that one which differs as quartz clocks do, or more, is none.
+TEST(FrontEndLiesTest, ClockOfAnotherRate) {
+  for (const double rate : {0.25, 0.5, 0.8, 0.999, 1.0, 1.3, 2.0, 10.0}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    const uint64_t begin = bench.device.tick;
+    bench.lie = [&](hydro_sample& sample) {
+      sample.tick =
+          begin + static_cast<uint64_t>(std::llround(rate * static_cast<double>(sample.tick - begin)));
+    };
+    bool fault = false;
+    for (int i = 0; i < 4000 && !fault; ++i) {
+      bench.Tick(3);
+      fault = bench.Fault("device_fault").find("ticks in a second of this computer's") != std::string::npos;
+    }
+    EXPECT_EQ(fault, rate < 0.55 || rate > 1.8) << rate;
+    if (fault) {
+      bench.Tick(3);
+      EXPECT_EQ(bench.volts, 0);
+    }
+  }
+}
+
+// Tests that a count which is not that of its angle, or has moved faster than a motor can turn, is a fault of
+// its sensor, and that no process gets the angle.
+TEST(FrontEndLiesTest, CountsThatCannotBe) {
+  DeviceBench bench;
+  Lied(&bench, [](hydro_sample& sample) { sample.motor_count += 100000; });
+  EXPECT_THAT(bench.Fault("sensor_motor_angle"),
+              HasSubstr("motor_angle is 0, and its count of 100000 is 100"));
+  EXPECT_TRUE(std::isnan(bench.measured.motor_angle));
+  EXPECT_EQ(bench.volts, 0);
+
+  DeviceBench jump;
+  int by = 0;
+  Lied(&jump, [&](hydro_sample& sample) {
+    sample.motor_count += by;
+    sample.value[HYDRO_MOTOR_ANGLE] += 0.001F * static_cast<float>(by);
+  });
+  EXPECT_TRUE(jump.rig->faults().empty());
+  by = 40000;  // 40 rad in a millisecond
+  jump.Ticks(2, 3);
+  EXPECT_THAT(jump.Fault("sensor_motor_angle"),
+              HasSubstr("has moved by 40 within 0.001 s; its speed is at most"));
+  jump.Ticks(200, 3);
+  EXPECT_TRUE(jump.rig->faults().empty()) << "it stays there";
+}
+
+// Tests that a device which suddenly says that it has another output, without a reset, is not the device with
+// which the run began: it gets its settings anew.
+TEST(FrontEndLiesTest, AnotherDevice) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(150, 3);
+  bench.device.facts.output_max_V = 5;
+  std::string faults;
+  for (int i = 0; i < 300; ++i) {
+    bench.Tick(3, /*obeys=*/false);
+    if (i == 10) bench.rig->ZeroAtOnce();
+    faults += bench.Fault("device_fault");
+  }
+  EXPECT_THAT(faults, HasSubstr("has gone to zero volts: it was sent a ZERO, as anyone may do"));
+  EXPECT_THAT(faults, HasSubstr("has reset itself, or another one has taken its place"));
+  for (int i = 0; i < 200; ++i) bench.Tick(3, /*obeys=*/false);
+  EXPECT_TRUE(bench.rig->faults().empty());
+  bench.Ticks(50, 3);
+  EXPECT_EQ(bench.volts, -1.5F);
+}
+
+// Tests that a trip has words even where the device gives no reason for it.
+TEST(FrontEndLiesTest, TripWithoutAReason) {
+  DeviceBench bench;
+  Lied(
+      &bench, [](hydro_sample& sample) { ++sample.trips; }, 1);
+  bench.Tick(3);
+  EXPECT_THAT(bench.Fault("device_fault"),
+              HasSubstr("put out zero volts by itself: it does not say why (its faults_latched is 0)"));
+}
+
+}  // namespace
+}  // namespace hydro::plant
