@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/input_error.h"
-#include "base/maths/estimate.h"
+#include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/maths/estimate.h"
 #include "base/maths/linear_fit.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/sample_interval.h"
