@@ -108,8 +108,8 @@ std::string MendFirstSentence(const CheckedRecordings& checked) {
 std::vector<std::string> RemarksOn(const CheckedRecordings& checked) {
   std::vector<std::string> remarks = checked.mistakes;
   remarks.insert(remarks.end(), checked.factors.begin(), checked.factors.end());
-  for (const auto* some : {&checked.sensors, &checked.commands.late, &checked.commands.early, &checked.vacuum,
-                           &checked.nearly})
+  for (const auto* some :
+       {&checked.sensors, &checked.commands.late, &checked.commands.early, &checked.vacuum, &checked.nearly})
     remarks.insert(remarks.end(), some->begin(), some->end());
   if (!checked.load.empty()) remarks.push_back(checked.load);
   remarks.insert(remarks.end(), checked.ratios.begin(), checked.ratios.end());

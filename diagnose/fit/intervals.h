@@ -7,9 +7,9 @@
 
 namespace hydro::diagnose {
 
-// What is wrong with a model is alike in all rows of all runs, but evidence and fits take rows for independent.
-// A third of what they say counts: of a difference between scores (measured on 63 rigs), and of the
-// information about a number.
+// What is wrong with a model is alike in all rows of all runs, but evidence and fits take rows for
+// independent. A third of what they say counts: of a difference between scores (measured on 63 rigs), and of
+// the information about a number.
 inline constexpr double kTemperature = 3;
 
 struct Interval {
@@ -18,8 +18,8 @@ struct Interval {
 
 // 95 % intervals of the fit's free parameters, in the order of Free(). They come from the fit's information,
 // in which residuals count by what the model leaves of them and by how long that lasts, and from the scatter
-// between windows or runs, where there are at least three; both tempered (kTemperature). They allow for idealisations of the equations,
-// both in the equations' own form and in the numbers that are held.
+// between windows or runs, where there are at least three; both tempered (kTemperature). They allow for
+// idealisations of the equations, both in the equations' own form and in the numbers that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
 // Which of the fit's free numbers, in the order of Hypothesis::Free(), the runs do not show apart from
