@@ -69,12 +69,18 @@ std::vector<std::string> Texts(SectionReader& section, const std::string& key, c
 }
 constexpr char kStatements[] = "a statement as \"arm_torque -= stiffness * alpha\", or a list of them";
 
-// The names of the tables in a table.
+constexpr size_t kMostNames = 256;  // of parameters, states and so on; an effect has a few
+
+// The names of the tables in a table. Throws InputError where there are more than any effect has.
 std::vector<std::string> Keys(const TomlNode& table, const std::string& key) {
   std::vector<std::string> keys;
   const TomlNode* inner = table.Find(key);
   if (inner == nullptr || !inner->is(TomlNode::Kind::kTable))
     return keys;  // SectionReader reports what is wrong
+  const size_t count = inner->members.size();
+  if (count > kMostNames)
+    throw KeyError(inner->place, key, std::to_string(count) + " of them",
+                   "up to " + std::to_string(kMostNames));
   for (const TomlMember& member : inner->members) keys.push_back(member.first);
   return keys;
 }
