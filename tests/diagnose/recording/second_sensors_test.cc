@@ -19,17 +19,17 @@ using ::testing::IsEmpty;
 using Measured = runs::MeasuredRun;
 
 // How a second sensor reads.
-struct Reads {
+struct SensorReads {
   double factor = 1, offset = 0, late = 0;
 };
-struct Recording {
-  Reads speed, arm, dp;
+struct TwoSensors {
+  SensorReads speed, arm, dp;
   double step = 2e-3;
   uint64_t seed = 1;
 };
 
 // 20 s of a free arm whose motor and pressures swing, with noise and an encoder's steps.
-Measured Recorded(const Recording& how) {
+Measured SwingOf(const TwoSensors& how) {
   Measured run;
   run.name = "swing";
   run.shaft = model::Shaft::kFree;
@@ -40,7 +40,7 @@ Measured Recorded(const Recording& how) {
   const auto pressed = [](double t) { return 200 * std::sin(3 * t) + 50 * std::sin(11 * t); };
   const auto arm = [](double t) { return 0.3 * std::sin(1.3 * t); };
   const auto arm_speed = [](double t) { return 0.39 * std::cos(1.3 * t); };
-  const auto read = [&](const auto& of, double t, const Reads& by, double noise) {
+  const auto read = [&](const auto& of, double t, const SensorReads& by, double noise) {
     return by.factor * of(t - by.late) + by.offset + noise * normal(random);
   };
   for (int k = 0; how.step * k < 20; ++k) {
@@ -63,7 +63,7 @@ Measured Recorded(const Recording& how) {
 }
 
 // The value and half width behind `before` in "... 1.1403 +/- 0.0012 ...".
-std::pair<double, double> Interval(const std::string& text, const std::string& before) {
+std::pair<double, double> IntervalAfter(const std::string& text, const std::string& before) {
   std::smatch found;
   const std::regex number(before + R"(([-0-9.e]+) \+/- ([-0-9.e]+))");
   if (!std::regex_search(text, found, number)) return {0, 0};
@@ -74,8 +74,8 @@ std::pair<double, double> Interval(const std::string& text, const std::string& b
 TEST(SecondSensors, ThatAgreeSayNothing) {
   for (const double step : {5e-4, 2e-3, 1e-2}) {
     for (const uint64_t seed : {1, 2, 3, 4}) {
-      Recording how{{1.01, 0.3, 1e-3}, {0.99, 0, 1e-3}, {1.005, 1, 1e-3}, step, seed};
-      const ComparedSensors compared = CompareSensors({Recorded(how)});
+      TwoSensors how{{1.01, 0.3, 1e-3}, {0.99, 0, 1e-3}, {1.005, 1, 1e-3}, step, seed};
+      const ComparedSensors compared = CompareSensors({SwingOf(how)});
       EXPECT_THAT(compared.remarks, IsEmpty()) << step << ", seed " << seed;
       EXPECT_THAT(compared.unbelieved, IsEmpty());
     }
@@ -86,14 +86,14 @@ TEST(SecondSensors, ThatAgreeSayNothing) {
 // and that the line for the sidecar undoes it.
 TEST(SecondSensors, SpeedOfAnotherFactor) {
   for (const double factor : {1.14, 0.9, 3.0}) {
-    const Recording how{{factor, 0, 0}, {}, {}, 2e-3, 5};
-    std::vector<Measured> runs = {Recorded(how), Recorded(how)};
+    const TwoSensors how{{factor, 0, 0}, {}, {}, 2e-3, 5};
+    std::vector<Measured> runs = {SwingOf(how), SwingOf(how)};
     const ComparedSensors compared = CompareSensors(runs);
     ASSERT_EQ(compared.remarks.size(), 1u);
     const std::string& said = compared.remarks[0];
     EXPECT_THAT(said, AllOf(HasSubstr("every run: motor_speed is "),
                             HasSubstr("as fast as motor_angle turns: the angle is believed")));
-    const auto [value, half] = Interval(said, "motor_speed is ");
+    const auto [value, half] = IntervalAfter(said, "motor_speed is ");
     EXPECT_NEAR(value, factor, half) << said;
     EXPECT_LT(half, 0.01 * factor) << said;
     std::smatch line;
@@ -111,10 +111,10 @@ TEST(SecondSensors, SpeedOfAnotherFactor) {
 // Tests that of a late speed the time is said, with its interval, and that both sensors stay: the catalogue
 // has late sensors.
 TEST(SecondSensors, LateSpeed) {
-  const ComparedSensors compared = CompareSensors({Recorded({{1, 0, 0.012}, {}, {}, 2e-3, 3})});
+  const ComparedSensors compared = CompareSensors({SwingOf({{1, 0, 0.012}, {}, {}, 2e-3, 3})});
   ASSERT_EQ(compared.remarks.size(), 1u);
   EXPECT_THAT(compared.remarks[0], HasSubstr("s later than motor_angle: the angle is believed"));
-  const auto [value, half] = Interval(compared.remarks[0], "motor_speed is ");
+  const auto [value, half] = IntervalAfter(compared.remarks[0], "motor_speed is ");
   EXPECT_NEAR(value, 0.012, half + 5e-4);
   EXPECT_LT(half, 1e-3);
   EXPECT_THAT(compared.unbelieved, IsEmpty());
@@ -122,11 +122,11 @@ TEST(SecondSensors, LateSpeed) {
 
 // Tests that the arm's angle is believed before its speed.
 TEST(SecondSensors, ArmSpeedOfAnotherFactor) {
-  const ComparedSensors compared = CompareSensors({Recorded({{}, {0.8, 0, 0}, {}, 2e-3, 2})});
+  const ComparedSensors compared = CompareSensors({SwingOf({{}, {0.8, 0, 0}, {}, 2e-3, 2})});
   EXPECT_THAT(compared.remarks,
               ElementsAre(AllOf(HasSubstr("run swing: arm_speed is "), HasSubstr("arm_angle is believed"),
                                 HasSubstr("arm_speed = { column = \"v\", scale = 1.2"))));
-  const auto [value, half] = Interval(compared.remarks[0], "arm_speed is ");
+  const auto [value, half] = IntervalAfter(compared.remarks[0], "arm_speed is ");
   EXPECT_NEAR(value, 0.8, half);
   EXPECT_LT(half, 0.01);
   ASSERT_EQ(compared.unbelieved.size(), 1u);
@@ -135,13 +135,13 @@ TEST(SecondSensors, ArmSpeedOfAnotherFactor) {
 
 // Tests that a differential transducer is held against p1 and p2: its factor and its zero.
 TEST(SecondSensors, DifferentialTransducer) {
-  const ComparedSensors compared = CompareSensors({Recorded({{}, {}, {0.93, 12, 0}, 2e-3, 2})});
+  const ComparedSensors compared = CompareSensors({SwingOf({{}, {}, {0.93, 12, 0}, 2e-3, 2})});
   ASSERT_EQ(compared.remarks.size(), 1u);
   const std::string& said = compared.remarks[0];
   EXPECT_THAT(said, AllOf(HasSubstr("times p2 - p1 and 1"), HasSubstr("psi more: p1 and p2 are believed")));
-  const auto [factor, half] = Interval(said, "dp is ");
+  const auto [factor, half] = IntervalAfter(said, "dp is ");
   EXPECT_NEAR(factor, 0.93, half);
-  const auto [offset, offset_half] = Interval(said, "p2 - p1 and ");
+  const auto [offset, offset_half] = IntervalAfter(said, "p2 - p1 and ");
   EXPECT_NEAR(offset, 12, offset_half);
   EXPECT_THAT(compared.unbelieved, IsEmpty());
 }
@@ -149,13 +149,13 @@ TEST(SecondSensors, DifferentialTransducer) {
 // Tests that a wrong sign, a sensor that has nothing to do with the other one, and a motor at rest are left
 // to other checks.
 TEST(SecondSensors, LeavesTheRest) {
-  EXPECT_THAT(CompareSensors({Recorded({{-1, 0, 0}, {}, {}, 2e-3, 2})}).remarks, IsEmpty());
-  Measured noise = Recorded({});
+  EXPECT_THAT(CompareSensors({SwingOf({{-1, 0, 0}, {}, {}, 2e-3, 2})}).remarks, IsEmpty());
+  Measured noise = SwingOf({});
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (double& value : noise.motor_speed.values) value = 50 * normal(random);
   EXPECT_THAT(CompareSensors({noise}).remarks, IsEmpty());
-  Measured rest = Recorded({});
+  Measured rest = SwingOf({});
   for (double& value : rest.motor_angle.values) value = 3;
   for (double& value : rest.motor_speed.values) value = 0;
   EXPECT_THAT(CompareSensors({rest}).remarks, IsEmpty());
