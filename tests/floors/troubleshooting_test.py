@@ -8,6 +8,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Where messages come from: the rooms, and what runs beside them. Tests and pages only repeat them.
 NO_SOURCES = {"tests", "docs", "bench", "build", "out", "node_modules"}
+TABLES = {"safety_table.toml"}  # compiled into the programs
 ENDINGS = {".cc", ".h", ".py", ".js", ".lcm"}
 SHORTEST = 8  # characters of a fixed part; a shorter one would be found anywhere
 
@@ -20,7 +21,7 @@ def printed_text():
             continue
         files = [folder] if folder.is_file() else (path for path in folder.rglob("*") if not NO_SOURCES & set(path.relative_to(ROOT).parts))
         texts += [path.read_text(errors="replace") for path in files
-                  if path.is_file() and (path.suffix in ENDINGS or path.parent.name in ("scripts", "java") or path.name == "CMakeLists.txt")]
+                  if path.is_file() and (path.suffix in ENDINGS or path.name in TABLES or path.parent.name in ("scripts", "java") or path.name == "CMakeLists.txt")]
     return joined("\n".join(texts))
 
 
