@@ -1,5 +1,6 @@
 #include "tune/design/fastest_motion.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,6 +39,19 @@ TEST(FastMotionRemark, SaysWhatTakesVeryLong) {
   EXPECT_THAT(FastMotionRemark(With(1e-12, 2.47e5)),
               AllOf(HasSubstr("model.toml: its fastest motion, "), HasSubstr("J_a"),
                     HasSubstr("in a tick of 0.001 s")));
+}
+
+// Tests that a limb has the remarks of each joint's stack, with its name; under an [arm], whose loads are
+// others, none of them holds.
+TEST(RemarksOn, AreThoseOfEachJoint) {
+  const settings::StackConfig fast = With(1e-12, 2.47e5);
+  EXPECT_THAT(RemarksOn(fast), ::testing::ElementsAre(FastMotionRemark(fast)));
+  EXPECT_TRUE(RemarksOn(With(23.3, 2.5e7)).empty());
+  settings::LimbConfig limb;
+  limb.joints = {{"hip", With(23.3, 2.5e7)}, {"knee", fast}};
+  EXPECT_THAT(RemarksOn(limb), ::testing::ElementsAre("joint knee: " + FastMotionRemark(fast)));
+  limb.arm.emplace();
+  EXPECT_TRUE(RemarksOn(limb).empty());
 }
 
 }  // namespace
