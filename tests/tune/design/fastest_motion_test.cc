@@ -60,5 +60,18 @@ TEST(FastMotionRemark, RefusesWhatNoMachineDoes) {
   }
 }
 
+// Tests that a limb has the remarks of each joint's stack, with its name; under an [arm], whose loads are
+// others, none of them holds.
+TEST(RemarksOn, AreThoseOfEachJoint) {
+  const settings::StackConfig fast = With(1e-8, 2.47e5);
+  EXPECT_THAT(RemarksOn(fast), ::testing::ElementsAre(FastMotionRemark(fast)));
+  EXPECT_TRUE(RemarksOn(With(23.3, 2.5e7)).empty());
+  settings::LimbConfig limb;
+  limb.joints = {{"hip", With(23.3, 2.5e7)}, {"knee", fast}};
+  EXPECT_THAT(RemarksOn(limb), ::testing::ElementsAre("joint knee: " + FastMotionRemark(fast)));
+  limb.arm.emplace();
+  EXPECT_TRUE(RemarksOn(limb).empty());
+}
+
 }  // namespace
 }  // namespace hydro::design
