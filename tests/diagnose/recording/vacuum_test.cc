@@ -19,7 +19,7 @@ using testing::Table1Model;
 
 runs::MeasuredRun Swing() { return testing::Swing(model::Shaft::kFree, false); }
 
-std::string LineOf(const runs::MeasuredRun& run, const std::string& item, bool si = false) {
+std::string LineInChecklist(const runs::MeasuredRun& run, const std::string& item, bool si = false) {
   for (const ChecklistLine& line : Checklist(Table1Model(), run, si)) {
     if (line.item == item) return Written(line);
   }
@@ -52,13 +52,13 @@ TEST(Vacuum, FindsWhatNoFluidHas) {
 TEST(Vacuum, IsInTheChecklist) {
   runs::MeasuredRun run = Swing();
   run.p1.values[7] = -20;
-  EXPECT_THAT(LineOf(run, "p1"),
+  EXPECT_THAT(LineInChecklist(run, "p1"),
               AllOf(StartsWith("look "), HasSubstr("; 1 sample is below -14.7 psi, a vacuum, "
                                                    "down to -20 psi: noise")));
   EXPECT_THAT(
-      LineOf(run, "p1", true),
+      LineInChecklist(run, "p1", true),
       ::testing::ContainsRegex("below (-0.1013 M|-101.3 k)Pa, a vacuum, down to (-0.1379 M|-137.9 k)Pa"));
-  EXPECT_THAT(LineOf(run, "p2"), StartsWith("ok "));
+  EXPECT_THAT(LineInChecklist(run, "p2"), StartsWith("ok "));
 }
 
 // Tests that the remarks, which every use of the gap finder makes, have one line for each pressure, with the

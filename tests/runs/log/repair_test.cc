@@ -197,13 +197,14 @@ TEST_F(RepairTest, NoEventAtAll) {
                                                        {"notes", "this is not a log"},
                                                        {"rig.toml", "[parameters]\nk_1 = 4.0\n"}};
   std::filesystem::current_path(std::filesystem::path(Path("x")).parent_path());
-  for (const auto& [name, error] : files) {
+  for (const auto& [file, error] : files) {
+    const std::string name = file;
     WriteBytes(name, contents.at(name));
     EXPECT_THAT(InputErrorOf([&] { RepairLog(name, "out"); }), HasSubstr(error));
     EXPECT_THAT(InputErrorOf([&] { RepairInPlace(name); }), HasSubstr(error));
     EXPECT_EQ(ReadBytes(name), contents.at(name));
     EXPECT_FALSE(std::filesystem::exists("out"));
-    EXPECT_FALSE(std::filesystem::exists(std::string(name) + ".damaged"));
+    EXPECT_FALSE(std::filesystem::exists(name + ".damaged"));
   }
   std::filesystem::current_path("/");
 }
