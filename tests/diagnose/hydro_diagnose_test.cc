@@ -381,7 +381,7 @@ TEST(TerminalSummary, TenLines) {
   const std::string si = TerminalSummary(testing::ExampleDiagnosis(), "out", true);
   EXPECT_THAT(si, HasSubstr("p1 303.4 -> 11.03 kPa (noise 10.34)"));
   EXPECT_THAT(si, HasSubstr("b 0.002294 [0.002248, 0.002339] N m s, was 0.001644"));
-  EXPECT_THAT(text, HasSubstr("held out, 6 -> 1.02 over 0.1 s; 12 -> 1.04 over 0.4 s"));
+  EXPECT_THAT(text, HasSubstr("held out, root mean squares: 6 -> 1.02 over 0.1 s; 12 -> 1.04 over 0.4 s"));
   EXPECT_THAT(text, HasSubstr("weight 95 %, without it 86 % of the gap comes back"));
   EXPECT_THAT(
       text,

@@ -159,11 +159,11 @@ TEST(ExtremeModelsTest, Refusals) {
 // tick, state and the number that is likely the cause.
 TEST(ExtremeModelsTest, TooFast) {
   model::ModelDescription model{.name = "fast", .parameters = testing::Table1(), .effects = {}};
-  model.parameters.J_a = 1e-12;
+  model.parameters.J_a = 1e-9;
   EXPECT_THAT(OutcomeOf(model),
               AllOf(HasSubstr("too fast to simulate: more than 200000 steps within 0.01 s at t = "),
                     HasSubstr("motor_speed = "), HasSubstr(", before tick "),
-                    HasSubstr("; the cause may be J_a = 1e-12 lbf-in-s^2, where 23 is usual")));
+                    HasSubstr("; the cause may be J_a = 1e-09 lbf-in-s^2, where 23 is usual")));
 }
 
 }  // namespace

@@ -198,6 +198,7 @@ TEST_F(ComediRigTest, LowPassOfAChannel) {
 // sensors are not affected, and that the fault ends only after ten good readings in a row.
 TEST_F(ComediRigTest, SaturatedInput) {
   const auto rig = Open();
+  SetVolts(0, 1);
   for (const int64_t end : {int64_t{0}, SimulatedBoard::kMaxCode}) {
     board_->inputs[1] = end;
     const model::Measurement measured = Read(*rig);
@@ -226,6 +227,7 @@ TEST_F(ComediRigTest, PlausibleVolts) {
   config_.driver->p1.maximum = 20;
   config_.driver->p1.limit_suffix = "_V";
   const auto rig = Open();
+  SetVolts(1, 1);
   SetVolts(0, 0.3);
   EXPECT_TRUE(std::isnan(Read(*rig).p1));
   ASSERT_EQ(rig->faults().size(), 1u);

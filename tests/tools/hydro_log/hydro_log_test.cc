@@ -287,7 +287,7 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"import", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": line 3, column p1_psi: found \"x\""},
       {{"import", Path("log"), "-o", out}, Path("log")},
       {{"compare", Path("log"), Path("none")}, Path("none")},
-      {{"repair", Path("bad.csv"), "-o", out}, "found no event"},
+      {{"repair", Path("bad.csv"), "-o", out}, "found text, allowed an LCM event log"},
       {{"import", Path("good.csv"), "-o", Path("good.csv")},
        Path("good.csv") + ": found the name of a file that is read"},
       {{"export", Path("log.csv"), "-o", Path("log.csv")},
