@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/units.h"
 #include "runs/run_config.h"
@@ -139,18 +140,30 @@ auto NewestOf(const std::vector<Message>& messages) {
                           [](const Message& a, const Message& b) { return a.tick < b.tick; });
 }
 
-// Whether the voltage is held at zero at the end of a run that had begun. The plant may hold it, or the
-// pressure loop with its safe commands. A position loop in lockstep does not hear of those, and then does not
-// follow the arm.
+// Whether the voltage was held at zero within the last 0.1 s of a run that had begun: an arm that was let go
+// so lately has not had the time to reach a target. The plant may hold it, or the pressure loop with its safe
+// commands. A position loop in lockstep does not hear of those, and then does not follow the arm.
 bool IsHeldAtEnd(const RunMessages& messages, bool follow_arm) {
   const std::vector<state_t>& states = messages.Of<state_t>();
-  const bool begun =
-      std::any_of(states.begin(), states.end(), [](const state_t& state) { return state.command_tick >= 0; });
-  if (!begun) return false;
-  if (NewestOf(states)->command_tick < 0) return true;
+  int64_t begun = std::numeric_limits<int64_t>::max();  // the first tick with a command
+  for (const state_t& state : states) {
+    if (state.command_tick >= 0) begun = std::min(begun, state.tick);
+  }
+  if (begun == std::numeric_limits<int64_t>::max()) return false;
+  const double end = NewestOf(states)->time;
+  int64_t first = NewestOf(states)->tick;  // of the last 0.1 s
+  for (const state_t& state : states) {
+    if (state.tick < begun || !(end - state.time <= kFinalTime)) continue;
+    if (state.command_tick < 0) return true;
+    first = std::min(first, state.tick);
+  }
   std::vector<motor_command_t> commands = messages.Of<motor_command_t>();
   std::erase_if(commands, [](const auto& command) { return command.status == motor_command_t::STOPPED; });
-  return follow_arm && !commands.empty() && NewestOf(commands)->status == motor_command_t::SAFE;
+  if (!follow_arm || commands.empty()) return false;
+  return std::any_of(commands.begin(), commands.end(), [&](const motor_command_t& command) {
+    const bool late = command.tick >= std::min(first, NewestOf(commands)->tick);
+    return late && command.status == motor_command_t::SAFE;
+  });
 }
 
 }  // namespace

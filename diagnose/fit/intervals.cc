@@ -152,6 +152,10 @@ Interval Around(const FreeParameter& parameter, double variance, double sample) 
 
 }  // namespace
 
+double TemperatureAt(double squared_gap) {
+  return 1 + (kTemperature - 1) * (1 - 1 / std::max(1.0, squared_gap));
+}
+
 std::vector<bool> RestOnKnown(const Fitted& fitted) {
   constexpr double kMuchWider = 3;
   const std::vector<double> known = KnownVariances(fitted.hypothesis);
@@ -167,9 +171,10 @@ std::vector<bool> RestOnKnown(const Fitted& fitted) {
   return rest;
 }
 
-std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
+std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs,
+                                double temperature) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
-  const double discrepancy = kTemperature * DiscrepancyOf(fitted, runs, jobs);
+  const double discrepancy = temperature * DiscrepancyOf(fitted, runs, jobs);
   const double sample = MedianInterval(runs.front()->stimulus.time);
   Fitted all = WithHeld(fitted, runs, jobs);
   if (!all.ok()) all = fitted;
@@ -188,7 +193,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   if (runs.size() > 2) {
     const MatrixXd total =
         discrepancy * InformationOf(fitted, discrepancy, KnownVariances(fitted.hypothesis));
-    variance = variance.cwiseMax(kTemperature * ScatterOf(fitted, total));
+    variance = variance.cwiseMax(temperature * ScatterOf(fitted, total));
   }
   // The fit follows the held numbers to the extent that the runs cannot distinguish them from the free ones.
   const Map<const Eigen::VectorXd> off_by(off.data(), static_cast<Index>(off.size()));

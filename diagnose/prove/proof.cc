@@ -61,7 +61,9 @@ std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proo
   const size_t numbers = proof.Found().Free().size();
   if (numbers == 0) return {};
   if (!proof.told.ok()) return std::vector<Interval>(numbers, {kUnsaid, kUnsaid});
-  return Intervals(proof.told, proof.told_runs, context.jobs);
+  // The noise of windows is raised to what the model leaves of them, that of whole runs is the sensors'.
+  const double gap = proof.OnWindows() ? TypicalGap(proof.Best().near) : proof.told.squared_gap();
+  return Intervals(proof.told, proof.told_runs, context.jobs, TemperatureAt(gap));
 }
 
 std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {

@@ -60,7 +60,7 @@ class RunSummary {
     double latency_max_us = 0;
   };
   struct Fault {
-    fault_t first;
+    fault_t shown;  // as it came last
     int64_t times = 0;
     bool active = false;
   };

@@ -142,8 +142,11 @@ void Connection::OnIdentity(const hydro_frame& frame) {
   settings_ = settings_for_(identity);
   fingerprint_ = hydro_fingerprint(&settings_);
   sampled_ = false;
-  // After a cut link the device may still hold the settings, and may even be armed.
-  phase_ = identity.fingerprint == fingerprint_ ? Phase::kUp : Phase::kSettings;
+  // After a cut link the device may still hold the settings, and may even be armed. Those that it kept from
+  // another program or another start are compared first, all 192 bytes: a fingerprint is only its word.
+  const bool compared = compared_ && !another && identity.fingerprint == fingerprint_;
+  if (!compared) compared_ = false;
+  phase_ = compared ? Phase::kUp : Phase::kSettings;
   next_request_ = {};
 }
 
@@ -158,6 +161,7 @@ void Connection::OnHeld(const hydro_settings_held& held) {
                     held.fingerprint, fingerprint_),
         "one that keeps them: give it the firmware of this version");
   }
+  compared_ = true;
   phase_ = Phase::kUp;
 }
 

@@ -113,6 +113,7 @@ class Connection {
 
   hydro_identity identity_{};
   bool identified_ = false;
+  bool compared_ = false;  // the device has said that it holds the settings of `fingerprint_`
   hydro_settings settings_{};
   uint32_t fingerprint_ = 0;
   hydro_sample sample_{};

@@ -50,6 +50,19 @@ Computed ByEq16(const hydro_sample& sample, float pressure_ref, const hydro_gain
   return {static_cast<double>(hydro_law(&gains, &input) + sample.transfer), kRounding * (1 + terms)};
 }
 
+// By how much a change of gains may move eq. (16) for readings as large as those of the sample: the sum of
+// its terms, because they may cancel in one tick and not in the next.
+double SizeOfChange(const hydro_sample& sample, float pressure_ref, const hydro_gains& from,
+                    const hydro_gains& to) {
+  const auto size = [](double value) { return std::isfinite(value) ? std::fabs(value) : 0; };
+  const double dp = size(sample.value[HYDRO_P2] - sample.value[HYDRO_P1]);
+  const double motor = size(sample.value[HYDRO_MOTOR_SPEED]), arm = size(sample.value[HYDRO_ARM_SPEED]);
+  const double damping = to.k_p * to.k_v, damped = from.k_p * from.k_v;
+  return size(to.k_p - from.k_p) * (size(pressure_ref) + dp) + size(damping - damped) * motor +
+         size(damping * to.arm_speed_ratio - damped * from.arm_speed_ratio) * arm +
+         size(to.reference_feedforward - from.reference_feedforward) * size(pressure_ref);
+}
+
 }  // namespace
 
 OutputWatch::OutputWatch(const settings::DriverSection& driver, bus::Clock::Duration patience,
@@ -67,7 +80,14 @@ void OutputWatch::OnTold(uint32_t sequence, double voltage, int64_t command_tick
 
 void OutputWatch::OnTold(uint32_t sequence, float pressure_ref, const hydro_gains& gains,
                          bus::Clock::TimePoint now) {
-  if (gains_ && !hydro_same_gains(&*gains_, &gains)) gains_changed_at_ = now;
+  if (gains_ && !hydro_same_gains(&*gains_, &gains)) {
+    // While one change passes, another one begins at what is left of it.
+    const bool passes = gains_changed_at_ && now - *gains_changed_at_ <= transfer_ + patience_;
+    left_ = passes ? left_ + moved_ : 0;
+    moved_ = 0;
+    gains_changed_at_ = now;
+    former_gains_ = *gains_;
+  }
   gains_ = gains;
   Keep({sequence, 0, -1, now, ByLaw{pressure_ref, gains}});
 }
@@ -128,27 +148,38 @@ bool OutputWatch::IsOld(const hydro_sample& sample) const {
   return static_cast<int32_t>(sample.command_sequence - told_.front().sequence) < 0;
 }
 
+// The device holds its voltage when its gains change, and lets the difference pass. It knows the readings of
+// that very tick, which no sample may have; those of the samples about it are as large.
+double OutputWatch::MostTransfer(const hydro_sample& sample, const ByLaw& told, bus::Clock::TimePoint now) {
+  constexpr double kBetweenSamples = 2;  // times: readings swing from one tick to the next
+  if (!gains_changed_at_ || now - *gains_changed_at_ > transfer_ + patience_) return 0;
+  if (now - *gains_changed_at_ <= patience_)
+    moved_ = std::max(moved_, SizeOfChange(sample, told.pressure_ref, former_gains_, *gains_));
+  return kBetweenSamples * (left_ + moved_) + tolerance_;
+}
+
 // Holds for an arm that stands still as for one that moves: the sample has all that the law was computed
-// from. What a change of gains adds is the device's own word, and only believed while one passes.
+// from. What a change of gains adds is the device's own word, and only believed while one passes, and up to
+// what the change explains.
 void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
-                            bus::Clock::TimePoint now, std::vector<RigFault>* faults) const {
+                            bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
   const auto voltage = static_cast<double>(sample.voltage);
   const auto [law, rounding] = ByEq16(sample, told.pressure_ref, told.gains);
   const double expected = std::clamp(law, static_cast<double>(range.low), static_cast<double>(range.high));
-  const bool passes = gains_changed_at_ && now - *gains_changed_at_ <= transfer_ + patience_;
+  const double most = MostTransfer(sample, told, now);
   if (sample.pressure_ref != told.pressure_ref) {
     faults->push_back(
         {"output_differs",
          fmt::format("the front end says that it acts by a reference of {:.6g}; it was told {:.6g}",
                      sample.pressure_ref, told.pressure_ref),
          sample.pressure_ref, told.pressure_ref});
-  } else if (sample.transfer != 0 && !passes) {
+  } else if (std::fabs(sample.transfer) > most) {
     faults->push_back(
         {"output_differs",
-         fmt::format(
-             "the front end adds {:.4g} V to eq. (16) for a change of its gains; they have not changed",
-             sample.transfer),
-         sample.transfer, 0});
+         fmt::format("the front end adds {:.4g} V to eq. (16) for a change of its gains; {}", sample.transfer,
+                     most == 0 ? std::string("they have not changed")
+                               : fmt::format("theirs explains at most {:.4g} V", most)),
+         sample.transfer, most});
   } else if (!(std::fabs(voltage - expected) <= rounding) && !IsLess(sample, law)) {
     faults->push_back(
         {"output_differs",

@@ -69,7 +69,9 @@ class OutputWatch {
   const Told* Find(const hydro_sample& sample) const;
   void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
   void LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
-                 bus::Clock::TimePoint now, std::vector<RigFault>* faults) const;
+                 bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+  // The largest voltage that a change of gains may add to eq. (16) now.
+  double MostTransfer(const hydro_sample& sample, const ByLaw& told, bus::Clock::TimePoint now);
   void LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
                       std::vector<RigFault>* faults);
   bool Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now);
@@ -84,6 +86,9 @@ class OutputWatch {
   std::deque<Told> told_;             // within the patience, and the one before
   std::optional<hydro_gains> gains_;  // told last
   std::optional<bus::Clock::TimePoint> gains_changed_at_;
+  // The gains before the change, by how much it may move the voltage, and what changes before it have left.
+  hydro_gains former_gains_{};
+  double moved_ = 0, left_ = 0;        // V
   std::deque<PutOut> reported_;        // the same, by the device
   std::optional<uint64_t> last_tick_;  // of the sample before
   int differing_ = 0;  // readings in a row, among those for which the earlier voltage is known
