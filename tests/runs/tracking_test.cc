@@ -259,6 +259,20 @@ TEST(TrackingTest, AHeldVoltageHasNoTarget) {
   EXPECT_THAT(SummaryJson(tracking, Summarise(log, false)), ::testing::HasSubstr("\"at_target\": null"));
 }
 
+// Tests that an arm that was let go just before the end has no target yet: a hold that ended within the last
+// 0.1 s counts, one that ended earlier does not.
+TEST(TrackingTest, AHoldThatHasJustEnded) {
+  RunLog log = MakeRun(
+      500, [](double) { return 0.2; }, [](double) { return 0.2; });
+  const auto held_until = [&](int64_t tick) {
+    for (state_t& state : log.messages.Of<state_t>())
+      state.command_tick = state.tick < 100 || state.tick >= tick ? state.tick : -1;
+    return TrackArm(log).held;
+  };
+  EXPECT_TRUE(held_until(490));
+  EXPECT_FALSE(held_until(390));
+}
+
 // Tests that the same holds where the pressure loop holds the voltage at zero by its safe commands and the
 // position loop follows the arm; and that a safe command under a reference that goes its own way, as in
 // lockstep, leaves the target what it is.

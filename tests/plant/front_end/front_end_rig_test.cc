@@ -437,6 +437,25 @@ TEST(FrontEndRigTest, WrongFingerprint) {
   EXPECT_EQ(bench.device.state, HYDRO_READY);
 }
 
+// Tests that settings which a device says it has kept over a reset are sent and compared all the same: that
+// its fingerprint is the right one is only its word.
+TEST(FrontEndRigTest, SettingsKeptOverAReset) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(20, 3);
+  const uint32_t kept = bench.device.fingerprint;
+  hydro_settings other = bench.device.settings;
+  other.voltage_limit = 100;
+  bench.Reset();
+  bench.before_tick = [&](uint64_t) {
+    if (bench.device.settings.voltage_limit == 8) return;
+    bench.device.settings = other;
+    bench.device.fingerprint = kept;
+  };
+  for (int i = 0; i < 200; ++i) bench.Tick(3, /*obeys=*/false);
+  EXPECT_EQ(bench.device.settings.voltage_limit, 8);
+}
+
 // Tests the end of a run: the device says that its output is at zero, and is disarmed.
 TEST(FrontEndRigTest, Zero) {
   DeviceBench bench;

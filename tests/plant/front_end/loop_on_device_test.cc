@@ -187,6 +187,21 @@ TEST_F(LoopOnDeviceTest, ALawThatDoesNotEnd) {
   EXPECT_EQ(bench.rig->acting_command_tick(), -1);
 }
 
+// Tests that a change of gains explains no more than it can: 5 V for a hundredth of the gain is a lie, as
+// soon as it passes, also while another change passes.
+TEST_F(LoopOnDeviceTest, AChangeOfGainsExplainsLittle) {
+  for (const int changes : {1, 2}) {
+    bench.lie = nullptr;
+    for (int i = 0; i < 400; ++i) Follow(100, Law(0.02));
+    ASSERT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    for (int change = 0; change < changes; ++change) Follow(100, Law(change % 2 == 0 ? 0.0202 : 0.0204));
+    bench.lie = [](hydro_sample& s) { s.transfer = 5, s.voltage += 5; };
+    for (int i = 0; i < 2; ++i) Follow(100, Law(changes == 1 ? 0.0202 : 0.0204));
+    EXPECT_THAT(bench.Fault("output_differs"), ::testing::HasSubstr("theirs explains at most 0."));
+    EXPECT_EQ(bench.volts, 0);
+  }
+}
+
 // Tests that what a change of gains adds is no lie while it passes.
 TEST_F(LoopOnDeviceTest, AChangeOfGainsIsNoLie) {
   for (int i = 0; i < 20; ++i) Follow(100, Law(0.02));
