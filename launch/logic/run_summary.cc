@@ -49,7 +49,7 @@ bool SameSender(int64_t session, const std::string& name, int64_t other_session,
 
 void RunSummary::Add(const loop_statistics_t& report) {
   auto loop = std::find_if(loops_.begin(), loops_.end(),
-                           [&](const Loop& known) { return known.shown.session == report.session; });
+                           [&](const Loop& known) { return known.first.session == report.session; });
   if (loop == loops_.end()) {
     if (loops_.size() == kMostLoops) return;
     loop = loops_.insert(loops_.end(), Loop{});
@@ -69,15 +69,15 @@ void RunSummary::Add(const loop_statistics_t& report) {
 
 void RunSummary::Add(const fault_t& fault) {
   auto known = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& other) {
-    return other.shown.code == fault.code &&
-           SameSender(other.shown.session, other.shown.source, fault.session, fault.source);
+    return other.first.code == fault.code &&
+           SameSender(other.first.session, other.first.source, fault.session, fault.source);
   });
   if (known == faults_.end()) {
     if (faults_.size() == kMostFaults) return;
     known = faults_.insert(faults_.end(), Fault{});
-    known->shown = fault;
+    known->first = fault;
   }
-  if (fault.active) known->shown = fault;
+  if (fault.active) known->last = fault.text;
   known->times += fault.active ? 1 : 0;
   known->active = fault.active;
 }
@@ -121,21 +121,25 @@ std::vector<std::string> RunSummary::Lines() const {
 // words, has one line.
 void RunSummary::AppendFaults(std::vector<std::string>* lines) const {
   const auto is_same = [](const Fault& one, const Fault& other) {
-    return one.shown.code == other.shown.code && one.shown.text == other.shown.text;
+    return one.first.code == other.first.code && one.first.text == other.first.text;
   };
   for (auto fault = faults_.begin(); fault != faults_.end(); ++fault) {
     const auto same = [&](const Fault& other) { return is_same(*fault, other); };
     if (std::any_of(faults_.begin(), fault, same)) continue;
     std::string seen;
+    int senders = 0;
     for (auto other = fault; other != faults_.end(); ++other) {
       if (!same(*other)) continue;
+      ++senders;
       seen += fmt::format("{}of {}, {}{}", seen.empty() ? "" : ", and ",
-                          bus::ReasonText(other->shown.source, "an unnamed process"),
+                          bus::ReasonText(other->first.source, "an unnamed process"),
                           other->times == 1 ? "once" : fmt::format("{} times", other->times),
                           other->active ? ", still there at the end" : "");
     }
-    lines->push_back(fmt::format("fault {} {}: {}", bus::ReasonText(fault->shown.code, "without a name"),
-                                 seen, FirstBytes(bus::ReasonText(fault->shown.text), kLongestText)));
+    // One that is still there has the words in which it came last: others may have had another cause.
+    const std::string& text = senders == 1 && fault->active ? fault->last : fault->first.text;
+    lines->push_back(fmt::format("fault {} {}: {}", bus::ReasonText(fault->first.code, "without a name"),
+                                 seen, FirstBytes(bus::ReasonText(text), kLongestText)));
   }
 }
 
@@ -164,7 +168,7 @@ std::vector<ProcessStatus> RunSummary::Status() const {
                       .lost_messages = loop.lost_messages,
                       .fault = {}};
     for (const Fault& fault : faults_) {
-      if (fault.active && fault.shown.session == s.session && row.fault.empty()) row.fault = fault.shown.code;
+      if (fault.active && fault.first.session == s.session && row.fault.empty()) row.fault = fault.first.code;
     }
     rows.push_back(std::move(row));
   }
@@ -192,10 +196,10 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
 std::vector<std::string> RunSummary::FaultsLeft() const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
-    const std::string name = bus::ReasonText(fault.shown.code, "a fault without a name") + " of " +
-                             bus::ReasonText(fault.shown.source, "an unnamed process");
+    const std::string name = bus::ReasonText(fault.first.code, "a fault without a name") + " of " +
+                             bus::ReasonText(fault.first.source, "an unnamed process");
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
-    if (fault.active && !process::IsWarning(fault.shown.code) && !known) left.push_back(name);
+    if (fault.active && !process::IsWarning(fault.first.code) && !known) left.push_back(name);
   }
   return left;
 }

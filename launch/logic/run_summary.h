@@ -60,7 +60,8 @@ class RunSummary {
     double latency_max_us = 0;
   };
   struct Fault {
-    fault_t shown;  // as it came last
+    fault_t first;
+    std::string last;  // its text when it came last
     int64_t times = 0;
     bool active = false;
   };

@@ -214,7 +214,7 @@ class OwnDriverInputTest(OwnDriverCase):
             ((('kind = "own"', 'kind = "comedi"'),), 'driver: "own": found an unknown key'),
             ((('kind = "own"\n', ""),), 'driver: "own": found an unknown key'),
             ((('device = "udp', '# "'),), "driver.device: "),
-            ((('role = "driver"', 'role = "plant"'),), r'process.role: found "plant", allowed "position_ctrl", "pressure_ctrl", "driver"; '
+            ((('role = "driver"', 'role = "plant"'),), r'process.role: found "plant", allowed "position_ctrl", "pressure_ctrl" or "driver"; '
              "the plant is always hydro-plant; a machine of your own is a driver"),
             ((('input = "ai0"', 'input = 0'),), "driver.p1.input: found 0, allowed"),
             ((('minimum = 0.4', 'minimum_V = 0.4'),), 'driver.p1: "minimum_V": found an unknown key'),

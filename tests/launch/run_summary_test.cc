@@ -154,15 +154,17 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   for (const bool active : {true, false, true, false}) {
     fault.active = active;
     summary.Add(fault);
-    fault.text = "no state for 400 ms, allowed are 100 ms";  // told as it came last
   }
   fault.code = "pressure_limit";
   fault.active = true;
   summary.Add(fault);
+  fault.text = "another cause";
+  summary.Add(fault);
   const auto lines = summary.Lines();
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0], "fault stale_state of pressure_ctrl, 2 times: no state for 400 ms, allowed are 100 ms");
-  EXPECT_THAT(lines[1], HasSubstr("pressure_limit of pressure_ctrl, once, still there at the end"));
+  EXPECT_EQ(lines[0], "fault stale_state of pressure_ctrl, 2 times: no state for 120 ms, allowed are 100 ms");
+  EXPECT_THAT(lines[1],
+              HasSubstr("pressure_limit of pressure_ctrl, 2 times, still there at the end: another cause"));
   EXPECT_THAT(summary.FaultsLeft(), testing::ElementsAre("pressure_limit of pressure_ctrl"));
   fault.session = 2;  // another stack's pressure loop, say
   summary.Add(fault);

@@ -292,6 +292,8 @@ TEST(TrackingTest, SafeCommandsHoldToo) {
     log.messages.Of<motor_command_t>().push_back(command);
     EXPECT_EQ(TrackArm(log).held, follows) << "what ends a run ends no hold";
     log.messages.Of<motor_command_t>().back().status = motor_command_t::LAW;
+    EXPECT_EQ(TrackArm(log).held, follows) << "it has just ended";
+    log.messages.Of<motor_command_t>().front().tick = 300;
     EXPECT_FALSE(TrackArm(log).held);
   }
 }
