@@ -49,7 +49,7 @@ bool SameSender(int64_t session, const std::string& name, int64_t other_session,
 
 void RunSummary::Add(const loop_statistics_t& report) {
   auto loop = std::find_if(loops_.begin(), loops_.end(),
-                           [&](const Loop& known) { return known.first.session == report.session; });
+                           [&](const Loop& known) { return known.shown.session == report.session; });
   if (loop == loops_.end()) {
     if (loops_.size() == kMostLoops) return;
     loop = loops_.insert(loops_.end(), Loop{});
