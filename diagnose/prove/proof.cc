@@ -79,7 +79,9 @@ std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
     for (const model::ParameterInfo& parameter : info->parameters) {
       const auto is = [&](const FreeParameter& one) { return one.name == info->id + "." + parameter.name; };
       const auto fitted = std::find_if(free.begin(), free.end(), is);
-      if (!IsAmount(parameter) || fitted == free.end()) continue;
+      // Of a delay or lag, a time of 0 is none.
+      const bool counts = IsAmount(parameter) || parameter.role == model::Role::kTime;
+      if (!counts || fitted == free.end()) continue;
       const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
       ++amounts;
       if (interval.low <= 0 && interval.high >= 0) ++none;
