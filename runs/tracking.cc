@@ -157,13 +157,14 @@ bool IsHeldAtEnd(const RunMessages& messages, bool follow_arm) {
     if (state.command_tick < 0) return true;
     first = std::min(first, state.tick);
   }
-  std::vector<motor_command_t> commands = messages.Of<motor_command_t>();
-  std::erase_if(commands, [](const auto& command) { return command.status == motor_command_t::STOPPED; });
-  if (!follow_arm || commands.empty()) return false;
-  return std::any_of(commands.begin(), commands.end(), [&](const motor_command_t& command) {
-    const bool late = command.tick >= std::min(first, NewestOf(commands)->tick);
-    return late && command.status == motor_command_t::SAFE;
-  });
+  if (!follow_arm) return false;
+  int64_t newest = 0, safe = -1;  // the ticks of the newest command, and of the newest safe one
+  for (const motor_command_t& command : messages.Of<motor_command_t>()) {
+    if (command.status == motor_command_t::STOPPED) continue;
+    newest = std::max(newest, command.tick);
+    if (command.status == motor_command_t::SAFE) safe = std::max(safe, command.tick);
+  }
+  return safe >= std::min(first, newest);
 }
 
 }  // namespace
