@@ -120,11 +120,10 @@ std::vector<std::string> RunSummary::Lines() const {
 // A limit that the plant and the pressure loop both watch is passed once: what several see, in the same
 // words, has one line.
 void RunSummary::AppendFaults(std::vector<std::string>* lines) const {
-  const auto is_same = [](const Fault& one, const Fault& other) {
-    return one.first.code == other.first.code && one.first.text == other.first.text;
-  };
   for (auto fault = faults_.begin(); fault != faults_.end(); ++fault) {
-    const auto same = [&](const Fault& other) { return is_same(*fault, other); };
+    const auto same = [&](const Fault& other) {
+      return fault->first.code == other.first.code && fault->first.text == other.first.text;
+    };
     if (std::any_of(faults_.begin(), fault, same)) continue;
     std::string seen;
     int senders = 0;

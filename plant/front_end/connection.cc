@@ -144,9 +144,8 @@ void Connection::OnIdentity(const hydro_frame& frame) {
   sampled_ = false;
   // After a cut link the device may still hold the settings, and may even be armed. Those that it kept from
   // another program or another start are compared first, all 192 bytes: a fingerprint is only its word.
-  const bool compared = compared_ && !another && identity.fingerprint == fingerprint_;
-  if (!compared) compared_ = false;
-  phase_ = compared ? Phase::kUp : Phase::kSettings;
+  compared_ = compared_ && !another && identity.fingerprint == fingerprint_;
+  phase_ = compared_ ? Phase::kUp : Phase::kSettings;
   next_request_ = {};
 }
 

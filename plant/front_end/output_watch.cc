@@ -82,8 +82,7 @@ void OutputWatch::OnTold(uint32_t sequence, float pressure_ref, const hydro_gain
                          bus::Clock::TimePoint now) {
   if (gains_ && !hydro_same_gains(&*gains_, &gains)) {
     // While one change passes, another one begins at what is left of it.
-    const bool passes = gains_changed_at_ && now - *gains_changed_at_ <= transfer_ + patience_;
-    left_ = passes ? left_ + moved_ : 0;
+    left_ = AChangePasses(now) ? left_ + moved_ : 0;
     moved_ = 0;
     gains_changed_at_ = now;
     former_gains_ = *gains_;
@@ -148,11 +147,15 @@ bool OutputWatch::IsOld(const hydro_sample& sample) const {
   return static_cast<int32_t>(sample.command_sequence - told_.front().sequence) < 0;
 }
 
+bool OutputWatch::AChangePasses(bus::Clock::TimePoint now) const {
+  return gains_changed_at_ && now - *gains_changed_at_ <= transfer_ + patience_;
+}
+
 // The device holds its voltage when its gains change, and lets the difference pass. It knows the readings of
 // that very tick, which no sample may have; those of the samples about it are as large.
 double OutputWatch::MostTransfer(const hydro_sample& sample, const ByLaw& told, bus::Clock::TimePoint now) {
   constexpr double kBetweenSamples = 2;  // times: readings swing from one tick to the next
-  if (!gains_changed_at_ || now - *gains_changed_at_ > transfer_ + patience_) return 0;
+  if (!AChangePasses(now)) return 0;
   if (now - *gains_changed_at_ <= patience_)
     moved_ = std::max(moved_, SizeOfChange(sample, told.pressure_ref, former_gains_, *gains_));
   return kBetweenSamples * (left_ + moved_) + tolerance_;

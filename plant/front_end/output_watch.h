@@ -70,6 +70,8 @@ class OutputWatch {
   void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
   void LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
                  bus::Clock::TimePoint now, std::vector<RigFault>* faults);
+  // Whether a change of gains may still be passing.
+  bool AChangePasses(bus::Clock::TimePoint now) const;
   // The largest voltage that a change of gains may add to eq. (16) now.
   double MostTransfer(const hydro_sample& sample, const ByLaw& told, bus::Clock::TimePoint now);
   void LookAtReadBack(const hydro_sample& sample, uint32_t interval, bus::Clock::TimePoint now,
