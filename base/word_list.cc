@@ -31,6 +31,10 @@ std::string RunsNamed(const std::vector<std::string>& names) {
   return names.size() == 1 ? RunNamed(names[0]) : (say_it ? "" : "runs ") + Enumerated(names);
 }
 
+std::string RunsNamed(const std::vector<std::string>& names, size_t runs) {
+  return names.size() == runs && runs > 1 ? "every run" : RunsNamed(names);
+}
+
 namespace {
 
 // Levenshtein distance, ignoring case.

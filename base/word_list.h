@@ -16,6 +16,8 @@ std::string Enumerated(const std::vector<std::string>& parts);
 std::string RunNamed(const std::string& name);
 // "run a"; "runs a and b"; "run 5 and run 6"
 std::string RunsNamed(const std::vector<std::string>& names);
+// The same, or "every run" where `names` has all of several, of which there are `runs`.
+std::string RunsNamed(const std::vector<std::string>& names, size_t runs);
 
 // Finds the name that a misspelling probably meant.
 

@@ -58,6 +58,14 @@ RowsRead RowsToRead(const std::vector<const RunData*>& runs) {
   return read;
 }
 
+size_t StartOfBusiest(const std::vector<double>& happened, size_t count) {
+  size_t first = 0;
+  for (size_t k = 0; k + count < happened.size(); ++k) {
+    if (happened[k + count] - happened[k] > happened[first + count] - happened[first]) first = k;
+  }
+  return first;
+}
+
 RunMotion BusiestPart(RunMotion motion, double part) {
   const size_t n = motion.size();
   const auto count = static_cast<size_t>(std::lround(part * static_cast<double>(n)));
@@ -76,10 +84,7 @@ RunMotion BusiestPart(RunMotion motion, double part) {
       happened[k] += sum;
     }
   }
-  size_t first = 0;
-  for (size_t k = 0; k + count < n; ++k) {
-    if (happened[k + count] - happened[k] > happened[first + count] - happened[first]) first = k;
-  }
+  const size_t first = StartOfBusiest(happened, count);
   const auto keep = [&](auto* values) {
     if (values->size() != n) return;
     values->erase(values->begin() + static_cast<std::ptrdiff_t>(first + count), values->end());

@@ -20,6 +20,8 @@ struct RowsRead {
   double part = 1;
 };
 RowsRead RowsToRead(const std::vector<const RunData*>& runs);
+// Where the stretch of `count` steps begins in which most happens, by what has happened up to each instant.
+size_t StartOfBusiest(const std::vector<double>& happened, size_t count);
 // The stretch of this part of the motion in which command and motor change most.
 RunMotion BusiestPart(RunMotion motion, double part);
 

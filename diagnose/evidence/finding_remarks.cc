@@ -97,9 +97,9 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
     return a.finding->mistakes.size() > b.finding->mistakes.size();
   });
   std::vector<std::string> lines;
+  lines.reserve(remarks.size());
   for (const Remark& remark : remarks) {
-    const bool all = remark.names.size() == runs.size() && runs.size() > 1;
-    lines.push_back((all ? "every run" : RunsNamed(remark.names)) + ": " + Text(remark));
+    lines.push_back(RunsNamed(remark.names, runs.size()) + ": " + Text(remark));
   }
   return lines;
 }

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"
+#include "diagnose/balances/rows_to_read.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/evidence/set_evidence.h"
 #include "diagnose/recording/run_data.h"
@@ -68,10 +69,7 @@ Run BusiestStretch(Run run, size_t count) {
   std::vector<double> changed(run.samples(), 0.0);
   for (size_t i = 1; i < changed.size(); ++i)
     changed[i] = changed[i - 1] + std::abs(run.voltage.values[i] - run.voltage.values[i - 1]);
-  size_t first = 0;
-  for (size_t i = 0; i + count < changed.size(); ++i) {
-    if (changed[i + count] - changed[i] > changed[first + count] - changed[first]) first = i;
-  }
+  const size_t first = StartOfBusiest(changed, count);
   run.Keep(first, first + count);
   return run;
 }

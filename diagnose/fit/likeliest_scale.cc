@@ -54,9 +54,10 @@ Follower FollowerOf(double Parameters::*member, bool volume_moves) {
 std::vector<Follower> FollowersOf(const model::ModelDescription& given, const std::vector<size_t>& base,
                                   const std::vector<Change>& changes, const Parameters& values) {
   std::vector<Follower> followers;
+  const bool volume_moves = Has(base, "V_ms");
   for (const size_t place : base) {
     const model::BaseParameter& one = model::BaseParameters()[place];
-    Follower follower = FollowerOf(one.member, Has(base, "V_ms"));
+    Follower follower = FollowerOf(one.member, volume_moves);
     const double before = given.parameters.*one.member, now = values.*one.member;
     if (follower.member == nullptr || !(before > 0) || !(now > 0)) continue;
     const bool named = std::any_of(changes.begin(), changes.end(),
@@ -71,10 +72,7 @@ std::vector<Follower> FollowersOf(const model::ModelDescription& given, const st
 // Minus the logarithm of how likely the values are at the scale.
 double CostOf(const std::vector<Follower>& followers, const Scale& scale) {
   double cost = 0;
-  for (const Follower& one : followers) {
-    const double z = (one.moved + one.By(scale)) / one.deviation;
-    cost += std::log1p(z * z);
-  }
+  for (const Follower& one : followers) cost += CostOfLying((one.moved + one.By(scale)) / one.deviation);
   return cost;
 }
 
@@ -142,6 +140,10 @@ void MoveToLikeliestScale(const model::ModelDescription& given, const std::vecto
   const Scale scale = Likeliest(followers);
   for (const Follower& one : followers) model->parameters.*one.member *= std::exp(one.By(scale));
   if (scale.flows != 0) ScaleEffects(scale.flows, model);
+}
+
+void MoveToLikeliestScale(const model::ModelDescription& given, Hypothesis* hypothesis) {
+  MoveToLikeliestScale(given, hypothesis->base, hypothesis->changes, &hypothesis->model);
 }
 
 }  // namespace hydro::diagnose

@@ -23,5 +23,7 @@ namespace hydro::diagnose {
 // is known of the others is measured by k_1.
 void MoveToLikeliestScale(const model::ModelDescription& given, const std::vector<size_t>& base,
                           const std::vector<Change>& changes, model::ModelDescription* model);
+// The same for what a fit has found.
+void MoveToLikeliestScale(const model::ModelDescription& given, Hypothesis* hypothesis);
 
 }  // namespace hydro::diagnose

@@ -26,6 +26,8 @@ double VagueDeviation(const model::Parameters& given, const std::string& name) {
 
 }  // namespace
 
+double CostOfLying(double deviations) { return std::log1p(deviations * deviations); }
+
 double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given) {
   constexpr double kExpected = 2;    // standard deviations: 19 of 20 values lie closer
   constexpr double kNothing = 0.01;  // of a value: less counts as none
@@ -36,7 +38,7 @@ double OddsLostBy(const model::Parameters& values, const model::ModelDescription
     if (given.parameters.*member == 0 || !(deviation > 0)) continue;
     const double ratio = std::max(kNothing, values.*member / (given.parameters.*member));
     const double away = std::abs(std::log(ratio)) / deviation;
-    if (away > kExpected) lost += std::log1p(away * away) - std::log1p(kExpected * kExpected);
+    if (away > kExpected) lost += CostOfLying(away) - CostOfLying(kExpected);
   }
   return lost;
 }

@@ -25,10 +25,13 @@ struct Knowledge {
   double weight = 0;
 };
 
+// Minus the logarithm of how likely a value is that lies so many standard deviations from the given one, by
+// Cauchy's distribution: a data sheet that says 5 % is sometimes wrong altogether.
+double CostOfLying(double deviations);
+
 // The logarithm of the odds that base values lose by lying more than two standard deviations from their given
-// values, summed over the values. It follows the tail of Cauchy's distribution, because a data sheet that
-// says 5 % is sometimes wrong altogether. For smaller deviations only the balances count the distance;
-// otherwise the same knowledge would count twice. Values given as 0 lose nothing.
+// values, summed over the values. It follows CostOfLying(). For smaller deviations only the balances count
+// the distance; otherwise the same knowledge would count twice. Values given as 0 lose nothing.
 double OddsLostBy(const model::Parameters& values, const model::ModelDescription& given);
 
 // The prior for the hypothesis' free numbers. All weights are 0 where the hypothesis has no knowledge. For a

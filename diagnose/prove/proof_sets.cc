@@ -170,8 +170,7 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   }
   if (!fitted.ok()) return;
   whole.hypothesis = fitted.hypothesis;
-  MoveToLikeliestScale(context_.given, whole.hypothesis.base, whole.hypothesis.changes,
-                       &whole.hypothesis.model);
+  MoveToLikeliestScale(context_.given, &whole.hypothesis);
   JudgeSet(windows_, context_.jobs, &whole);
   if (!whole.tested()) return;
   JudgeFar(windows_, context_.jobs, set);

@@ -96,12 +96,10 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
     const double before = at.sum;
     at = Fit(from, fitted, StartsOf(at), options);
     if (!at.ok() || !(at.sum < before)) return;
+    MoveToLikeliestScale(context.given, &at.hypothesis);
     ProvedSet refined = *set;
     refined.hypothesis = at.hypothesis;
     refined.without.clear();
-    MoveToLikeliestScale(context.given, refined.hypothesis.base, refined.hypothesis.changes,
-                         &refined.hypothesis.model);
-    at.hypothesis.model = refined.hypothesis.model;
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;

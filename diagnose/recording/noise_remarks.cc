@@ -69,7 +69,7 @@ void Join(const Group& more, Group* group) {
   }
 }
 
-std::string RemarkOn(const Group& group, bool all) {
+std::string RemarkOn(const Group& group, size_t runs) {
   std::vector<std::string> found, lines;
   for (const Unlike& signal : group.signals) {
     const double stated = maths::Median(signal.stated), shown = maths::Median(signal.shown);
@@ -78,7 +78,7 @@ std::string RemarkOn(const Group& group, bool all) {
                     ", " + ShortNumber(shown / stated, 2) + " times the stated " + ShortNumber(stated, 3));
     lines.push_back(name + " = " + ShortNumber(shown, 3));
   }
-  return (all ? "every run" : RunsNamed(group.runs)) +
+  return RunsNamed(group.runs, runs) +
          ": the samples show another noise than is stated, and the stated one counts: " +
          Joined(found, "; ") +
          (group.sidecar
@@ -106,8 +106,7 @@ std::vector<std::string> NoiseRemarks(const std::vector<const RunData*>& runs) {
   }
   std::vector<std::string> remarks;
   remarks.reserve(groups.size());
-  for (const Group& group : groups)
-    remarks.push_back(RemarkOn(group, runs.size() > 1 && group.runs.size() == runs.size()));
+  for (const Group& group : groups) remarks.push_back(RemarkOn(group, runs.size()));
   return remarks;
 }
 

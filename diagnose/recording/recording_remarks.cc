@@ -91,10 +91,6 @@ void Add(const SignalData& signal, MotorTurns* turned) {
   }
 }
 
-std::string WhichRuns(const std::vector<std::string>& names, size_t runs) {
-  return names.size() == runs && runs > 1 ? "every run" : RunsNamed(names);
-}
-
 // The fewest samples per time constant of the pump on the oil of both sides for which its motion shows.
 constexpr double kFewestInMotion = 5;
 
@@ -125,7 +121,7 @@ void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>&
                      std::vector<std::string>* remarks) {
   if (names.empty()) return;
   const std::string side = missing.substr(1);
-  remarks->push_back(WhichRuns(names, runs) + ": " + missing +
+  remarks->push_back(RunsNamed(names, runs) + ": " + missing +
                      " was not recorded: what leaks or opens on side " + side +
                      ", and how the sides differ, cannot be judged");
 }
@@ -214,11 +210,11 @@ std::vector<std::string> MotionRemarks(const std::vector<const RunData*>& runs) 
   }
   std::vector<std::string> remarks;
   if (turned.known && turned.hardly) {
-    remarks.push_back(WhichRuns(names, runs.size()) +
+    remarks.push_back(RunsNamed(names, runs.size()) +
                       ": the motor hardly turns: friction and inertia cannot be identified");
   } else if (turned.OneWay()) {
     remarks.push_back(
-        WhichRuns(names, runs.size()) +
+        RunsNamed(names, runs.size()) +
         ": the motor turns one way only: friction, its asymmetry and a constant torque cannot be told apart");
   }
   if (pressure && most_pressure < 2 * kHardlyMoves) {

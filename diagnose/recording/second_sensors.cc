@@ -206,8 +206,7 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
         if (differ == SensorsDiffer::kInSize && pair.set_aside)
           compared.unbelieved.push_back({r, pair.second});
       }
-      const bool all = names.size() == runs.size() && runs.size() > 1;
-      compared.remarks.push_back((all ? "every run" : RunsNamed(names)) + ": " +
+      compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " +
                                  Text(pair, runs[recorder.runs.front()], *second, size, differ));
     }
   }

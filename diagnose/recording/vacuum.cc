@@ -65,10 +65,8 @@ void AddVacuumRemarks(const model::ModelDescription& model, const std::vector<ru
       all.lasting = all.lasting || below->lasting;
     }
     if (names.empty()) continue;
-    const bool every = names.size() == runs.size() && runs.size() > 1;
     (all.lasting ? lasting : brief)
-        ->push_back((every ? "every run" : RunsNamed(names)) + ": " + NameOf(side) + ": " +
-                    Text(all, 1, unit));
+        ->push_back(RunsNamed(names, runs.size()) + ": " + NameOf(side) + ": " + Text(all, 1, unit));
   }
 }
 

@@ -7,12 +7,13 @@
 #include <cmath>
 
 #include "base/number_text.h"
-#include "tests/diagnose/recording/swing.h"
+#include "tests/diagnose/recording/line_in_checklist.h"
 
 namespace hydro::diagnose {
 namespace {
 
 using State = ChecklistLine::State;
+using testing::LineInChecklist;
 using testing::Table1Model;
 
 // A recording without what can be worked out from the rest.
@@ -20,13 +21,6 @@ runs::MeasuredRun PlainSwing(model::Shaft shaft, bool bypass = false) {
   runs::MeasuredRun run = testing::Swing(shaft, bypass);
   run.motor_angle = run.arm_speed = {};
   return run;
-}
-
-std::string LineOf(const runs::MeasuredRun& run, const std::string& item, bool si = false) {
-  for (const ChecklistLine& line : Checklist(Table1Model(), run, si)) {
-    if (line.item == item) return Written(line);
-  }
-  return "no line";
 }
 
 void Negate(runs::MeasuredSignal* signal) {
@@ -48,9 +42,9 @@ TEST(ChecklistTest, GoodRuns) {
 // Tests --si: ranges and pressures in the units that a reader of SI expects, one unit in a line.
 TEST(ChecklistTest, Si) {
   const runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
-  EXPECT_THAT(LineOf(run, "p1"), ::testing::EndsWith(" psi"));
-  EXPECT_THAT(LineOf(run, "p1", true), ::testing::ContainsRegex(" [kM]Pa$"));
-  const std::string charge = LineOf(run, "charge pressure", true);
+  EXPECT_THAT(LineInChecklist(run, "p1"), ::testing::EndsWith(" psi"));
+  EXPECT_THAT(LineInChecklist(run, "p1", true), ::testing::ContainsRegex(" [kM]Pa$"));
+  const std::string charge = LineInChecklist(run, "charge pressure", true);
   EXPECT_THAT(charge, ::testing::HasSubstr("kPa, the model's p_3 is " + ShortNumber(100 * 6.894757293168361) +
                                            " kPa"));
   EXPECT_THAT(charge, ::testing::Not(::testing::HasSubstr("psi")));
@@ -59,9 +53,9 @@ TEST(ChecklistTest, Si) {
 // Tests that one side whose scale is wrong is worth a look, though the other side is at the charge pressure.
 TEST(ChecklistTest, SidesDiffer) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("ok"));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"), ::testing::StartsWith("ok"));
   for (double& p1 : run.p1.values) p1 *= 2.5;
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::StartsWith("look"));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"), ::testing::StartsWith("look"));
 }
 
 // Tests that raw currents of sensors are seen, and still when somebody has called them a pressure.
@@ -70,9 +64,10 @@ TEST(ChecklistTest, Currents) {
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value = 145.0377 * (4 + 16 * value / 5000);
   }
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::Not(::testing::HasSubstr("mA")));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"), ::testing::Not(::testing::HasSubstr("mA")));
   run.p1.source.scale = run.p2.source.scale = 145.0377;
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*currents of 4 to 20 mA"));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"),
+              ::testing::ContainsRegex("^look .*currents of 4 to 20 mA"));
 }
 
 // Tests that pressures which a sidecar states in bar, and whose numbers are between 4 and 20 as those of
@@ -90,21 +85,23 @@ TEST(ChecklistTest, PressuresInBarAreNoCurrents) {
   }
   ASSERT_GT(low / 14.5038, 3.8);
   ASSERT_LT(low / 14.5038, 8);
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^ok "));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"), ::testing::ContainsRegex("^ok "));
 }
 
 // Tests that each turned sign is seen where it shows.
 TEST(ChecklistTest, TurnedSigns) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
   Negate(&run.voltage);
-  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("look"));
+  EXPECT_THAT(LineInChecklist(run, "sign of the command"), ::testing::StartsWith("look"));
   run = PlainSwing(model::Shaft::kFree);
   Negate(&run.arm_angle);
-  EXPECT_THAT(LineOf(run, "sign of the arm"), ::testing::ContainsRegex("^look .*the arm moves down while"));
-  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("ok"));
+  EXPECT_THAT(LineInChecklist(run, "sign of the arm"),
+              ::testing::ContainsRegex("^look .*the arm moves down while"));
+  EXPECT_THAT(LineInChecklist(run, "sign of the command"), ::testing::StartsWith("ok"));
   run = PlainSwing(model::Shaft::kClamped);
   std::swap(run.p1, run.p2);
-  EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
+  EXPECT_THAT(LineInChecklist(run, "sign of the pressures"),
+              ::testing::ContainsRegex("^look .*exchange p1 and p2"));
 }
 
 // Tests that of pressures that are exchanged nothing good is said, however the shaft is held, and of others
@@ -112,11 +109,13 @@ TEST(ChecklistTest, TurnedSigns) {
 TEST(ChecklistTest, ExchangedPressures) {
   for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
     runs::MeasuredRun run = PlainSwing(shaft);
-    EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::ContainsRegex("^ok .*raises p2 over p1"));
+    EXPECT_THAT(LineInChecklist(run, "sign of the command"),
+                ::testing::ContainsRegex("^ok .*raises p2 over p1"));
     std::swap(run.p1, run.p2);
-    EXPECT_THAT(LineOf(run, "sign of the command"),
+    EXPECT_THAT(LineInChecklist(run, "sign of the command"),
                 ::testing::Not(::testing::HasSubstr("raises p2 over p1")));
-    EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
+    EXPECT_THAT(LineInChecklist(run, "sign of the pressures"),
+                ::testing::ContainsRegex("^look .*exchange p1 and p2"));
   }
 }
 
@@ -126,20 +125,22 @@ TEST(ChecklistTest, UnitsShaftAndTime) {
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value /= 14.5038;
   }
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*: p1 and p2 are in bar"));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"),
+              ::testing::ContainsRegex("^look .*: p1 and p2 are in bar"));
   run = PlainSwing(model::Shaft::kFree);
   const double fifth = 0.2 * *std::min_element(run.p1.values.begin(), run.p1.values.end());
   for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
     for (double& value : signal->values) value -= fifth;
   }
-  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*gauge against absolute"));
+  EXPECT_THAT(LineInChecklist(run, "charge pressure"),
+              ::testing::ContainsRegex("^look .*gauge against absolute"));
   run = PlainSwing(model::Shaft::kFree);
   run.shaft = model::Shaft::kClamped;
   for (double& angle : run.arm_angle.values) angle *= 20;
-  EXPECT_THAT(LineOf(run, "shaft"), ::testing::ContainsRegex("^look .*clamped, as is said"));
+  EXPECT_THAT(LineInChecklist(run, "shaft"), ::testing::ContainsRegex("^look .*clamped, as is said"));
   run = PlainSwing(model::Shaft::kFree);
   for (size_t i = 500; i < run.time.size(); ++i) run.time[i] += 0.05;
-  EXPECT_THAT(LineOf(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
+  EXPECT_THAT(LineInChecklist(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
 }
 
 // Tests that pressures in any other unit than the sidecar says have it named by the charge alone: of both,
@@ -161,7 +162,7 @@ TEST(ChecklistTest, UnitsOfPressures) {
         if (signal == &run.p2 && !both) continue;
         for (double& value : signal->values) value *= one.said_size / one.is_size;
       }
-      EXPECT_THAT(LineOf(run, "charge pressure"),
+      EXPECT_THAT(LineInChecklist(run, "charge pressure"),
                   ::testing::HasSubstr(std::string(both ? ": p1 and p2 are in " : ": p1 is in ") + one.is +
                                        ", not in " + one.said))
           << one.said << " for " << one.is;
@@ -172,12 +173,12 @@ TEST(ChecklistTest, UnitsOfPressures) {
 // Tests that what is not recorded is absent, and that a run that rests says nothing of signs.
 TEST(ChecklistTest, AbsentAndStill) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);
-  EXPECT_THAT(LineOf(run, "motor_angle"), ::testing::StartsWith("absent"));
+  EXPECT_THAT(LineInChecklist(run, "motor_angle"), ::testing::StartsWith("absent"));
   for (runs::MeasuredSignal* signal : {&run.voltage, &run.motor_speed, &run.p1, &run.p2, &run.arm_angle}) {
     std::fill(signal->values.begin(), signal->values.end(), signal->values.front());
   }
-  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::HasSubstr("moves too little to tell"));
-  EXPECT_THAT(LineOf(run, "motor_speed"), ::testing::HasSubstr("it never changes"));
+  EXPECT_THAT(LineInChecklist(run, "sign of the command"), ::testing::HasSubstr("moves too little to tell"));
+  EXPECT_THAT(LineInChecklist(run, "motor_speed"), ::testing::HasSubstr("it never changes"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/recording_remarks.h"
 #include "runs/run_delays.h"
-#include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/small_runs.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
@@ -20,15 +20,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::NoisyRig;
+using testing::Table1With;
 using ::testing::UnorderedElementsAre;
 
 constexpr double kStep = 0.005;
-
-model::ModelDescription Given() {
-  model::ModelDescription given;
-  given.parameters = testing::Table1();
-  return given;
-}
 
 // A recorded run: a clamped actuator at 200 Hz whose command never repeats.
 runs::MeasuredRun Recorded(double friction_per_psi = 0) {
@@ -64,7 +59,7 @@ TEST(Alignment, FindsALateClock) {
   runs::MeasuredRun run = Late(whole, {{&runs::MeasuredRun::voltage, 0.1},
                                        {&runs::MeasuredRun::motor_speed, 0.12},
                                        {&runs::MeasuredRun::motor_angle, 0.12}});
-  const std::vector<ClockDelay> clocks = AlignClocks(Given(), &run);
+  const std::vector<ClockDelay> clocks = AlignClocks(Table1With(), &run);
   ASSERT_EQ(clocks.size(), 2u);
   const ClockDelay* const command = Of(clocks, "voltage");
   const ClockDelay* const motor = Of(clocks, "motor_speed");
@@ -83,7 +78,7 @@ TEST(Alignment, FindsALateClock) {
 
 void ExpectLeftAlone(const runs::MeasuredRun& recorded, const char* what) {
   runs::MeasuredRun run = recorded;
-  EXPECT_THAT(AlignClocks(Given(), &run), IsEmpty()) << what;
+  EXPECT_THAT(AlignClocks(Table1With(), &run), IsEmpty()) << what;
   EXPECT_EQ(run.time, recorded.time) << what;
   EXPECT_EQ(run.voltage.values, recorded.voltage.values) << what;
   EXPECT_EQ(run.motor_speed.values, recorded.motor_speed.values) << what;
@@ -106,7 +101,7 @@ TEST(Alignment, LeavesTheRestToTheSearch) {
 }
 
 RunData Prepared(const runs::MeasuredRun& run, std::vector<ClockDelay>* clocks) {
-  return PrepareAligned(run, AlignedRuns(Given(), {run}, 1).front(), Given().parameters, clocks);
+  return PrepareAligned(run, AlignedRuns(Table1With(), {run}, 1).front(), Table1With().parameters, clocks);
 }
 
 // Tests that pieces put on one clock claim no more certainty than that allows.

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "runs/run_delays.h"
-#include "tests/diagnose/noisy_rig.h"
+#include "tests/diagnose/small_runs.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
@@ -19,12 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::NoisyRig;
-
-model::ModelDescription Given() {
-  model::ModelDescription given;
-  given.parameters = testing::Table1();
-  return given;
-}
+using testing::Table1With;
 
 struct Bench {
   double step = 1e-3;
@@ -72,16 +67,16 @@ TEST(LateCommand, IsSaidWithTheLineThatMendsIt) {
     for (const uint64_t seed : {1, 2, 3}) {
       SCOPED_TRACE(std::to_string(step) + " s, seed " + std::to_string(seed));
       const Bench bench{step, seed};
-      const CommandRemarks none = RemarksOnCommands(Given(), Recorded(bench, 0), 1);
+      const CommandRemarks none = RemarksOnCommands(Table1With(), Recorded(bench, 0), 1);
       EXPECT_THAT(none.late, IsEmpty());
       EXPECT_THAT(none.early, IsEmpty());
-      const CommandRemarks late = RemarksOnCommands(Given(), Recorded(bench, 1), 1);
+      const CommandRemarks late = RemarksOnCommands(Table1With(), Recorded(bench, 1), 1);
       EXPECT_NEAR(NumberAfter("the voltage is late by ", late.late), 1, 0.15);
       EXPECT_NEAR(NumberAfter("in run.toml, under [columns], mends it: voltage = { column = \"u\", delay = ",
                               late.late),
                   step, 1e-9);
       EXPECT_THAT(late.early, IsEmpty());
-      const CommandRemarks early = RemarksOnCommands(Given(), Recorded(bench, -1), 1);
+      const CommandRemarks early = RemarksOnCommands(Table1With(), Recorded(bench, -1), 1);
       EXPECT_THAT(early.late, IsEmpty());
       EXPECT_NEAR(NumberAfter("the voltage is early by ", early.early), 1, 0.15);
       EXPECT_NEAR(NumberAfter("delay = ", early.early), -step, 1e-9);
@@ -100,17 +95,18 @@ TEST(LateCommand, IsNoMissingEffect) {
   for (const auto& lacking : lacks) {
     SCOPED_TRACE(lacking.empty() ? "b" : lacking.front().id);
     const Bench bench{.step = 1e-3, .seed = 4, .lacking = lacking, .b = 1.5};
-    const CommandRemarks none = RemarksOnCommands(Given(), Recorded(bench, 0), 2);
+    const CommandRemarks none = RemarksOnCommands(Table1With(), Recorded(bench, 0), 2);
     EXPECT_THAT(none.late, IsEmpty());
     EXPECT_THAT(none.early, IsEmpty());
-    EXPECT_THAT(RemarksOnCommands(Given(), Recorded(bench, 1), 2).late, ElementsAre(HasSubstr("is late by")));
+    EXPECT_THAT(RemarksOnCommands(Table1With(), Recorded(bench, 1), 2).late,
+                ElementsAre(HasSubstr("is late by")));
   }
 }
 
 // Tests that the estimate is in rows, with an error that holds the truth, for runs that are moved by several.
 TEST(LateCommand, IsMeasuredInRows) {
   for (const int rows : {-2, -1, 0, 1, 2}) {
-    const LateCommand found = FindLateCommand(Given(), Recorded({.step = 1e-3, .seed = 6}, rows), 0, 1);
+    const LateCommand found = FindLateCommand(Table1With(), Recorded({.step = 1e-3, .seed = 6}, rows), 0, 1);
     EXPECT_NEAR(found.rows, rows, 0.15 + 2 * found.error) << rows;
     EXPECT_LT(found.error, 0.2) << rows;
   }
@@ -120,10 +116,10 @@ TEST(LateCommand, IsMeasuredInRows) {
 TEST(LateCommand, IsLeftOutWhereNothingIsKnown) {
   std::vector<runs::MeasuredRun> logs = Recorded({}, 1);
   for (runs::MeasuredRun& run : logs) run.sidecar = "";
-  EXPECT_THAT(RemarksOnCommands(Given(), logs, 1).late, IsEmpty());
+  EXPECT_THAT(RemarksOnCommands(Table1With(), logs, 1).late, IsEmpty());
   std::vector<runs::MeasuredRun> blind = Recorded({}, 1);
   for (runs::MeasuredRun& run : blind) run.motor_speed = run.motor_angle = {};
-  EXPECT_THAT(RemarksOnCommands(Given(), blind, 1).late, IsEmpty());
+  EXPECT_THAT(RemarksOnCommands(Table1With(), blind, 1).late, IsEmpty());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "diagnose/evidence/checklist.h"
-#include "tests/diagnose/recording/swing.h"
+#include "tests/diagnose/recording/line_in_checklist.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -14,17 +14,11 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::LineInChecklist;
 using ::testing::StartsWith;
 using testing::Table1Model;
 
 runs::MeasuredRun Swing() { return testing::Swing(model::Shaft::kFree, false); }
-
-std::string LineInChecklist(const runs::MeasuredRun& run, const std::string& item, bool si = false) {
-  for (const ChecklistLine& line : Checklist(Table1Model(), run, si)) {
-    if (line.item == item) return Written(line);
-  }
-  return "no line";
-}
 
 // Tests that readings down to a vacuum are pressures, and lower ones are not: one sample of noise, and a
 // sensor whose zero is low.
