@@ -112,13 +112,16 @@ std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<co
   return variants;
 }
 
+bool HaveOil(const std::vector<const RunData*>& runs) {
+  return IsMeasured("p1", runs) || IsMeasured("p2", runs) ||
+         std::any_of(runs.begin(), runs.end(), [](const RunData* run) { return !run->stimulus.bypass; });
+}
+
 // The effects that may be named, each with every name that it can take in these runs.
 std::vector<Change> EffectChanges(const model::ModelDescription& given,
                                   const std::vector<std::string>& allowed,
                                   const std::vector<const RunData*>& runs) {
-  const bool oil =
-      IsMeasured("p1", runs) || IsMeasured("p2", runs) ||
-      std::any_of(runs.begin(), runs.end(), [](const RunData* run) { return !run->stimulus.bypass; });
+  const bool oil = HaveOil(runs);
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if ((info.needs_oil && !oil) || IsOfTheCommand(info, runs)) continue;
@@ -138,12 +141,15 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   return changes;
 }
 
-std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names) {
+// The base values that may be refitted. In a bare motor every torque is measured by k_1, so no run shows it.
+std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names,
+                                bool oil) {
   std::vector<size_t> allowed;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const model::BaseParameter& base = model::BaseParameters()[i];
     const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
-    const bool otherwise = given.parameters.*base.member != 0 || !IsTermOfAnEffect(base);
+    const bool shown = oil || base.member != &model::Parameters::k_1;
+    const bool otherwise = shown && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
     if (names.empty() ? otherwise : asked) allowed.push_back(i);
   }
   return allowed;
@@ -223,9 +229,9 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   CheckedRecordings checked =
       CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
-  const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared =
       Prepare(model, options.jobs, std::move(runs), std::move(held_out), std::move(checked.aligned));
+  const std::vector<size_t> allowed = AllowedBase(model, options.free, HaveOil(PointersTo(prepared.fitted)));
   ProofContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 

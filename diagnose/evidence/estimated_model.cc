@@ -35,10 +35,19 @@ bool Acts(const Rows& rows, int column) {
 // Runs show a value if they shrink its interval at least to this part of its former width.
 constexpr double kShown = 0.9;
 
-// The sum of the amounts of all columns of a base parameter that hold for all runs, for the parameters that
-// the runs show.
-std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, const SetFit& fit) {
-  std::map<size_t, double> sums;
+// The sum of the amounts of all columns of a base parameter that hold for all runs.
+struct ValueMove {
+  double amount = 0;
+  Eigen::VectorXd columns;  // of the fit: 1 for those that are summed
+
+  double Deviation(const SetFit& fit) const {
+    return std::sqrt(std::max(0.0, columns.dot(fit.covariance * columns)));
+  }
+};
+
+// For the parameters that the runs show.
+std::map<size_t, ValueMove> MovesOf(const ScanRuns& runs, const Rows& rows, const SetFit& fit) {
+  std::map<size_t, ValueMove> moves;
   for (size_t i = 0; i < fit.columns.size(); ++i) {
     const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[i])];
     if (meaning.kind != MeaningKind::kBase || meaning.run >= 0) continue;
@@ -46,10 +55,15 @@ std::map<size_t, double> Deviations(const ScanRuns& runs, const Rows& rows, cons
     if (!Acts(rows, fit.columns[i])) continue;
     const double before = rows.prior(fit.columns[i], fit.columns[i]);
     if (fit.covariance(place, place) < kShown * kShown * before ||
-        !rows.columns[static_cast<size_t>(fit.columns[i])].set.empty())
-      sums[meaning.base] += fit.amounts[place] * meaning.unit;
+        !rows.columns[static_cast<size_t>(fit.columns[i])].set.empty()) {
+      ValueMove& move =
+          moves.try_emplace(meaning.base, ValueMove{0, Eigen::VectorXd::Zero(fit.amounts.size())})
+              .first->second;
+      move.amount += fit.amounts[place] * meaning.unit;
+      move.columns[place] = meaning.unit;
+    }
   }
-  return sums;
+  return moves;
 }
 
 // Whether any balance of the runs has a column of this value: a held arm shows nothing about its area.
@@ -75,13 +89,14 @@ void ScaleFlows(const ScanRuns& runs, const Rows& rows, double by, Parameters* p
 void SetBase(const ScanRuns& runs, const Rows& rows, const SetFit& fit, EstimatedModel* estimated) {
   Parameters& p = estimated->model.parameters;
   const Parameters given = p;
-  for (const auto& [base, amount] : Deviations(runs, rows, fit)) {
+  for (const auto& [base, move] : MovesOf(runs, rows, fit)) {
     const model::BaseParameter& parameter = model::BaseParameters()[base];
     const double before = given.*parameter.member;
-    double value = before != 0 ? before * std::max(kLeastPart, 1 + amount) : amount;
+    double value = before != 0 ? before * std::max(kLeastPart, 1 + move.amount) : move.amount;
     value = std::clamp(value, parameter.info.min, parameter.info.max);
     p.*parameter.member = value;
     estimated->base.push_back(base);
+    estimated->deviation[base] = move.Deviation(fit);
   }
   const double displacement = given.D != 0 ? p.D / given.D : 1;
   if (displacement != 1) ScaleFlows(runs, rows, displacement, &p);

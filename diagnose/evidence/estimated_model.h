@@ -2,6 +2,7 @@
 // effects.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct EstimatedModel {
   model::ModelDescription model;
   std::vector<Change> changes;  // effects, including closures, and values that are far off
   std::vector<size_t> base;     // base parameters that the estimate moves, as in BaseParameters()
+  // Of each of these: the standard deviation of its logarithm, or of the value where 0 was given.
+  std::map<size_t, double> deviation;
 };
 
 // `fit` is the fit of `set`. Each value keeps to its physical bounds. The result is empty where the set has a

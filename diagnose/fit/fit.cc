@@ -231,7 +231,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   ParallelFor(runs.size(), options.jobs,
               [&](size_t r) { starts[r] = AtBestTurn(hypothesis.model, *runs[r], from[r]); });
   FitProblem problem(hypothesis, runs, starts, options.jobs);
-  if (hypothesis.known != nullptr) problem.AddPrior(KnownBefore(hypothesis));
+  if (hypothesis.known != nullptr) problem.AddPrior(KnownToAFit(hypothesis));
   if (problem.Solve(options)) return problem.Result();
   Fitted failed;
   failed.hypothesis = hypothesis;

@@ -65,6 +65,8 @@ struct Hypothesis {
   std::vector<std::string> effects;  // ids whose parameters are free
   // What is known of the free base parameters before a fit; null: nothing.
   std::shared_ptr<const Knowledge> known = {};
+  // By the balances, for this set of changes; null: nothing.
+  std::shared_ptr<const MeasuredValues> measured = {};
   std::shared_ptr<const ValueReach> reach = {};  // null: only physics limits the values
   // Hz, the highest frequency that runs sampled this way can show. Beyond half their sampling rate, a
   // resonance fits any stiffness or resistance.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "diagnose/fit/hypothesis.h"
+#include "diagnose/fit/intervals.h"
 
 namespace hydro::diagnose {
 
@@ -60,6 +61,26 @@ Prior KnownBefore(const Hypothesis& hypothesis) {
     if (!(deviation > 0)) continue;
     prior.centre.back() = parameter.ToFitted(given);
     prior.weight.back() = known->weight / (deviation * deviation);
+  }
+  return prior;
+}
+
+Prior KnownToAFit(const Hypothesis& hypothesis) {
+  Prior prior = KnownBefore(hypothesis);
+  const MeasuredValues* measured = hypothesis.measured.get();
+  if (measured == nullptr || hypothesis.known == nullptr) return prior;
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  for (size_t i = 0; i < free.size(); ++i) {
+    const auto sure = measured->deviation.find(free[i].unknown.index);
+    if (free[i].unknown.kind != model::Unknown::Kind::kBase || sure == measured->deviation.end()) continue;
+    const auto member = model::BaseParameters()[sure->first].member;
+    const double given = hypothesis.known->given.parameters.*member, value = measured->values.*member;
+    const double deviation = sure->second * (free[i].logarithmic || given == 0 ? 1 : std::abs(given));
+    if (!(deviation > 0) || (free[i].logarithmic && value <= 0)) continue;
+    const double weight = hypothesis.known->weight / (kTemperature * deviation * deviation);
+    const double both = prior.weight[i] + weight;
+    prior.centre[i] = (prior.weight[i] * prior.centre[i] + weight * free[i].ToFitted(value)) / both;
+    prior.weight[i] = both;
   }
   return prior;
 }

@@ -1,6 +1,8 @@
 // What is known of free numbers before the runs are seen.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <vector>
 
 #include "model/terms/description.h"
@@ -25,6 +27,14 @@ struct Knowledge {
   double weight = 0;
 };
 
+// What the balances of the fitted runs say of base values.
+struct MeasuredValues {
+  model::Parameters values;
+  // By places in BaseParameters(): the standard deviation of the value's logarithm, or of the value where 0
+  // was given. Values without an entry were not measured.
+  std::map<size_t, double> deviation;
+};
+
 // Minus the logarithm of how likely a value is that lies so many standard deviations from the given one, by
 // Cauchy's distribution: a data sheet that says 5 % is sometimes wrong altogether.
 double CostOfLying(double deviations);
@@ -37,5 +47,10 @@ double OddsLostBy(const model::Parameters& values, const model::ModelDescription
 // The prior for the hypothesis' free numbers. All weights are 0 where the hypothesis has no knowledge. For a
 // base parameter that is given as 0, only the order of magnitude is known.
 Prior KnownBefore(const Hypothesis& hypothesis);
+
+// The same for a fit to windows, with what the balances measured. They saw all of the runs, a fit sees few
+// windows, and where a model lacks something, a window is hardly a measurement of any value. What is wrong
+// with a model is alike in all rows, so the balances' squares count by a kTemperature-th only.
+Prior KnownToAFit(const Hypothesis& hypothesis);
 
 }  // namespace hydro::diagnose

@@ -59,6 +59,7 @@ ProvedSet RacedFrom(const ProofContext& context, const std::vector<const RunData
   }
   ProvedSet raced;
   raced.hypothesis = starts.front();
+  raced.hypothesis.measured = nullptr;  // without the change
   if (best == nullptr) return raced;
   raced.hypothesis.model = best->hypothesis.model;
   JudgeSet(windows, context.jobs, &raced);

@@ -66,6 +66,8 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   // balances know better.
   hypothesis.reach =
       std::make_shared<const ValueReach>(ReachOf(context_.given.parameters, proposal.model.parameters));
+  hypothesis.measured =
+      std::make_shared<const MeasuredValues>(MeasuredValues{proposal.model.parameters, proposal.deviation});
   // Estimates hold one number of each balance, which scales all others. A fit moves that number instead of
   // the others.
   for (const size_t place : allowed_) {
@@ -195,6 +197,7 @@ size_t ProofSets::Without(size_t with, const Change& change) {
   made_.push_back(made);
   ProvedSet less;
   less.hypothesis = diagnose::Without(sets_[with].hypothesis, change, context_.given);
+  less.hypothesis.measured = nullptr;  // with the change
   for (model::ModelDescription without : sets_[with].without) {
     std::erase_if(without.effects, [&](const auto& effect) { return effect.id == change.effect; });
     less.without.push_back(std::move(without));

@@ -20,6 +20,7 @@ struct Proposal {
   model::ModelDescription model;
   // Base parameters (BaseParameters()) whose values the estimate has moved. A refinement may move these too.
   std::vector<size_t> base;
+  std::map<size_t, double> deviation;  // how surely each of these is known (EstimatedModel)
   // When runs are held out in turn: the same model estimated without each of the context's runs, in their
   // order. Empty: `model` predicts all runs, although it has seen them.
   std::vector<model::ModelDescription> without;

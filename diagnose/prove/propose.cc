@@ -323,6 +323,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
     Proposal proposal{estimated->changes,
                       estimated->model,
                       estimated->base,
+                      estimated->deviation,
                       {},
                       fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
                       WeightOf(proposed.weights, set)};

@@ -8,6 +8,7 @@
 
 #include "base/number_text.h"
 #include "diagnose/evidence/run_values.h"
+#include "diagnose/fit/intervals.h"
 #include "diagnose/prove/proved_set.h"
 #include "diagnose/recording/windows.h"
 
@@ -15,9 +16,9 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Every fourth window of a run judges, and the balances do not see it. With eight of each run, a difference
+// Every third window of a run judges, and the balances do not see it. With eight of each run, a difference
 // of 5 % shows in a few runs.
-constexpr size_t kEach = 4, kJudgingOfARun = 8;
+constexpr size_t kEach = 3, kJudgingOfARun = 8;
 
 // The run without everything that was measured during the windows.
 RunData WithoutWindows(const RunData& run, const std::vector<const RunData*>& windows) {
@@ -48,11 +49,22 @@ struct CutRuns {
 
   explicit CutRuns(const ProofContext& context) : runs(context.runs) {
     runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
-    judging.seconds = ProofWindowsOf(context).near.seconds;
+    // A start that is corrected hides a value's error over a short window. Over a long one values show most.
+    const ProofWindows proof = ProofWindowsOf(context);
+    for (const double seconds : {proof.far.seconds, proof.near.seconds}) {
+      if (!possible) Cut(context.given.parameters, seconds);
+    }
+  }
+
+ private:
+  void Cut(const model::Parameters& given, double seconds) {
+    windows.clear();
+    rest.clear();
+    judging = {seconds, {}, {}};
     possible = runs.size() > 1;
     std::vector<std::pair<size_t, size_t>> chosen;  // places among `windows`, and their runs
     for (size_t r = 0; r < runs.size(); ++r) {
-      std::vector<RunData> all = WindowsOf(*runs[r], judging.seconds, context.given.parameters);
+      std::vector<RunData> all = WindowsOf(*runs[r], seconds, given);
       const std::vector<const RunData*> judge = EvenlySpread(all, kJudgingOfARun, 1, kEach);
       possible = possible && !judge.empty();
       rest.push_back(WithoutWindows(*runs[r], judge));
@@ -77,18 +89,25 @@ ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, cons
   value.unit = base.info.UnitIn(model.units);
   model::ModelDescription shared = model;
   shared.parameters.*base.member = of.common;
+  const auto gaps_with = [&](const model::ModelDescription& one) {
+    return GapsOfWindows([&](size_t) -> const model::ModelDescription& { return one; }, cut.judging, jobs);
+  };
   std::vector<model::ModelDescription> own(cut.runs.size(), model);
   for (size_t r = 0; r < own.size(); ++r) {
     own[r].parameters.*base.member = of.value[r];
     value.values.push_back({cut.runs[r]->name, of.value[r], of.low[r], of.high[r], "", true});
   }
-  const std::vector<WindowGap> before =
-      GapsOfWindows([&](size_t) -> const model::ModelDescription& { return shared; }, cut.judging, jobs);
+  // The value that was found, or one that suits all runs as these were cut, whichever predicts better.
+  std::vector<WindowGap> before = gaps_with(shared), found = gaps_with(model);
+  if (FallOf(before, found).logarithm > 0) before = std::move(found);
   const std::vector<WindowGap> after = GapsOfWindows(
       [&](size_t run) -> const model::ModelDescription& { return own[run]; }, cut.judging, jobs);
   value.before = std::sqrt(TypicalGap(before));
   value.after = std::sqrt(TypicalGap(after));
-  value.differs = of.gain > 0 && FallOf(before, after).Exceeds(kPartOfValues);
+  // Balances and windows are two witnesses, as of effects: where the balances are sure, windows only have to
+  // agree.
+  const double weight = 1 / (1 + std::exp(-of.gain / kTemperature));
+  value.differs = of.gain > 0 && FallOf(before, after).logarithm > std::max(0.0, PriceOf(weight));
   return value;
 }
 
@@ -127,12 +146,12 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
     for (const RunValues& one : all) values.push_back(Judged(cut, model, one, context.jobs));
     return values;
   }
-  const auto likeliest = std::max_element(all.begin(), all.end(), [](const RunValues& a, const RunValues& b) {
-    return a.log_evidence < b.log_evidence;
-  });
-  if (likeliest == all.end() || !(likeliest->gain > 0)) return values;
-  ValueByRun value = Judged(cut, model, *likeliest, context.jobs);
-  if (value.differs) values.push_back(std::move(value));
+  for (const RunValues& one : all) {
+    if (!(one.gain > 0)) continue;
+    ValueByRun value = Judged(cut, model, one, context.jobs);
+    if (!value.differs || (!values.empty() && value.after >= values.front().after)) continue;
+    values = {std::move(value)};
+  }
   return values;
 }
 

@@ -10,8 +10,8 @@
 namespace hydro::diagnose {
 
 // The base parameters of `model` whose values differ from run to run, as the balances estimate them: those in
-// `asked`. If it is empty, the parameter that the balances most clearly say differs, provided that its own
-// value for each run predicts windows that the balances did not see better than one value for all does.
+// `asked`. If it is empty, of those that the balances say differ, the one whose own value for each run most
+// improves the prediction of windows that the balances did not see, if it improves it.
 // `allowed` has those that may differ from the model, as in BaseParameters(). Held-out runs have a value too.
 // Parameters in which balances are measured (k_1, k_2) are excluded.
 std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::ModelDescription& model,
