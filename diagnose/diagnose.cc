@@ -141,15 +141,26 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   return changes;
 }
 
-// The base values that may be refitted. In a bare motor every torque is measured by k_1, so no run shows it.
+bool AreDriven(const std::vector<const RunData*>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunData* run) {
+    const std::vector<double>& command = run->stimulus.voltage;
+    return std::any_of(command.begin(), command.end(), [](double v) { return v != 0; });
+  });
+}
+
+// The base values that may be refitted: not what all torques are measured by, which no run shows. That is k_1
+// in a bare motor, and the inertia where nothing is ever commanded.
 std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names,
-                                bool oil) {
+                                const std::vector<const RunData*>& runs) {
+  const bool oil = HaveOil(runs), driven = AreDriven(runs);
   std::vector<size_t> allowed;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const model::BaseParameter& base = model::BaseParameters()[i];
     const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
-    const bool shown = oil || base.member != &model::Parameters::k_1;
-    const bool otherwise = shown && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
+    const bool measures = base.member == &model::Parameters::k_1
+                              ? !oil || !driven
+                              : base.member == &model::Parameters::J && !driven;
+    const bool otherwise = !measures && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
     if (names.empty() ? otherwise : asked) allowed.push_back(i);
   }
   return allowed;
@@ -231,7 +242,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   PreparedRuns prepared =
       Prepare(model, options.jobs, std::move(runs), std::move(held_out), std::move(checked.aligned));
-  const std::vector<size_t> allowed = AllowedBase(model, options.free, HaveOil(PointersTo(prepared.fitted)));
+  const std::vector<size_t> allowed = AllowedBase(model, options.free, PointersTo(prepared.fitted));
   ProofContext context = MakeContext(model, prepared, allowed, options, report_progress);
   context.time_is_up = [&limit] { return limit.IsUp(); };
 

@@ -1,6 +1,7 @@
 // Columns of the catalogue's effects, from their own equations.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/maths/range.h"
 #include "diagnose/balances/column_maker.h"
@@ -38,6 +39,10 @@ model::EffectDescription AtAmount(const EffectVariant& variant, const std::strin
                                   double others) {
   model::EffectDescription effect = variant.at;
   for (const std::string& one : variant.amounts) effect.parameters[one] = one == parameter ? amount : others;
+  if (parameter == variant.phase) {
+    effect.parameters[variant.amounts.front()] = amount;
+    effect.parameters[variant.phase] = std::numbers::pi / 2;
+  }
   return effect;
 }
 
@@ -102,9 +107,14 @@ void PutTogether(ColumnMaker* maker, const Together& together, size_t run) {
   std::vector<Place> wanted;
   for (const size_t v : together.variants) {
     const EffectVariant& variant = maker->setup->variants[v];
-    for (const std::string& amount : variant.amounts)
-      wanted.push_back({variant.at.id, amount, model.effects.size()});
+    const size_t own = model.effects.size();
     model.effects.push_back(variant.at);
+    for (const std::string& amount : variant.amounts) {
+      const bool cosine = amount == variant.phase;
+      wanted.push_back(
+          {variant.at.id, cosine ? variant.amounts.front() : amount, cosine ? model.effects.size() : own});
+      if (cosine) model.effects.push_back(AtAmount(variant, amount, 0, 0));
+    }
   }
   const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   std::vector<model::Unknown> unknowns;

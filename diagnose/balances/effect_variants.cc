@@ -116,6 +116,7 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
                                    [](const ParameterInfo& one) { return one.role == Role::kChannel; });
   for (const ParameterInfo& parameter : info.parameters) {
     if (IsWave(parameter)) variant.kind = EffectVariant::Kind::kWave;
+    if (parameter.role == Role::kPhase) variant.phase = parameter.name;
     // The error of a late channel, or of what its sensor does over time, grows with the time.
     const bool time = parameter.role == Role::kTime && (channel || change.effect.starts_with("sensor."));
     if (!IsSize(parameter) && !time) continue;
@@ -125,6 +126,13 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
   }
   if (variant.kind != EffectVariant::Kind::kWave && variant.amounts.empty())
     variant.kind = EffectVariant::Kind::kWhole;
+  if (variant.kind == EffectVariant::Kind::kAmounts && variant.amounts.size() == 1 &&
+      !variant.phase.empty()) {
+    variant.amounts.push_back(variant.phase);
+    variant.at.parameters[variant.phase] = 0;
+  } else {
+    variant.phase.clear();
+  }
   return variant;
 }
 

@@ -201,6 +201,13 @@ void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, 
   if (!v) return;
   const EffectVariant& variant = runs.setup().variants[*v];
   model::EffectDescription effect = variant.at;
+  if (!variant.phase.empty()) {
+    double& sine = amounts[variant.amounts.front()];
+    double& cosine = amounts[variant.phase];
+    const double phase = std::atan2(cosine, sine);
+    sine = std::hypot(sine, cosine);
+    cosine = phase;
+  }
   for (const auto& [parameter, amount] : amounts)
     effect.parameters[parameter] = Bounded(ParameterOf(effect.id, parameter), amount);
   // What was moved is part of the whole, so it is relatively larger when there is less of the whole.

@@ -82,12 +82,29 @@ void SetEvidence::SolveNull() {
   VectorXd noise = none.NoiseSquares(null.amounts);
   if (!noise.size() || noise.maxCoeff() <= 0) noise = numbers_.cwiseProduct(floor_);
   const auto left = (null.squares + 2 * kVarianceShape * floor_).array();
-  inertia_numbers_ =
-      (numbers_.array() * inertia_share_.array() * (1 - noise.array() / left).max(0.0).min(1.0)).sum();
+  // What is left moves the shaft only as far as J w' reaches it: where a controller answers a disturbance, or
+  // where the command itself was measured with noise, the shaft does not.
+  const Eigen::ArrayXd moves = (InertiaSquares().array() / left).min(1.0);
+  const Eigen::ArrayXd disturbs = (1 - noise.array() / left).max(0.0).min(1.0);
+  inertia_numbers_ = (numbers_.array() * inertia_share_.array() * disturbs * moves).sum();
   if (inertia_numbers_ > 0) null = Solve({}, start, kMostFromNothing);
   null_noise_ = none.NoiseSquares(null.amounts);
   null_squares_ = null.squares.cwiseMax(null_noise_) + 2 * kVarianceShape * floor_;
   start_weights_ = null.next;
+}
+
+// The squares of J w' in each group, by the model as given.
+VectorXd SetEvidence::InertiaSquares() const {
+  VectorXd squares = VectorXd::Zero(numbers_.size());
+  for (const PlacedBlock& block : blocks_) {
+    for (size_t i = 0; i < block.grams->always.size(); ++i) {
+      if (!std::count(grams_->inertia.begin(), grams_->inertia.end(), block.grams->always[i])) continue;
+      const auto place = static_cast<Index>(i);
+      squares.segment(block.first_group, static_cast<Index>(block.grams->groups())) +=
+          block.grams->products.col(PairAt(place, place));
+    }
+  }
+  return squares;
 }
 
 std::vector<int> SetEvidence::ColumnsOf(const ChangeSet& set) const {

@@ -67,6 +67,7 @@ class SetEvidence {
   void PlaceBlocks();
   void FindNames();
   void SolveNull();
+  Eigen::VectorXd InertiaSquares() const;
 
   std::vector<int> ColumnsOf(const ChangeSet& set) const;
   Solution SolveFor(const ChangeSet& set) const;

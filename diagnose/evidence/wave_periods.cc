@@ -117,10 +117,10 @@ int FewestPeriods(const std::vector<RunMotion>& runs) {
 
 std::vector<int> LikelyPeriods(const ScanRuns& runs, const Rows& rows, const SetEvidence& evidence,
                                int jobs) {
+  const int fewest = FewestPeriods(runs.motions());
+  if (fewest > kMostPeriods) return {};
   std::vector<int> all;
-  for (int periods = FewestPeriods(runs.motions()); periods <= kMostPeriods; ++periods)
-    all.push_back(periods);
-  if (all.empty()) return {};
+  for (int periods = kFirstPeriod; periods <= kMostPeriods; ++periods) all.push_back(periods);
   const Rows waves = runs.MakeWaveRows(all);
   if (waves.columns.empty()) return {};
   const SetFit null = evidence.Fit({});
@@ -139,6 +139,9 @@ std::vector<int> LikelyPeriods(const ScanRuns& runs, const Rows& rows, const Set
   std::set<int> kept;
   for (auto& [effect, gains] : by_effect) {
     std::sort(gains.rbegin(), gains.rend());
+    // Something slower, which was not seen to repeat, leaves a trace in its neighbours.
+    if (gains.front().second < fewest) continue;
+    std::erase_if(gains, [fewest](const auto& one) { return one.second < fewest; });
     for (size_t i = 0; i < std::min(kKept, gains.size()); ++i) kept.insert(gains[i].second);
   }
   return {kept.begin(), kept.end()};

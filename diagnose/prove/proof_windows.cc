@@ -16,8 +16,9 @@ namespace {
 // Limits of a proof's work. With 20 judging windows, a difference of 10 % shows even if single windows
 // scatter by 40 %.
 constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 32, kMostFar = 6;
-// The number of windows added for each extreme.
-constexpr size_t kMostOfAnExtreme = 1;
+// The number of windows added for each extreme. A valve that opens now and then shows in few windows of a
+// long run: one of each extreme tells a fit that it opens, three judge beyond one window's scatter.
+constexpr size_t kToFitOfAnExtreme = 1, kToJudgeOfAnExtreme = 3;
 constexpr double kFarTimes = 4;
 constexpr double kFewestSamplesOfAWindow = 60;
 constexpr size_t kFewestOfAThinned = 200;
@@ -42,8 +43,8 @@ WindowPool ByHeight(const WindowPool& pool, model::Channel channel, double sign)
   return sorted;
 }
 
-// At most `most` windows of the pool, evenly spread, and the extremes.
-WindowPool Chosen(const WindowPool& pool, size_t most) {
+// At most `most` windows of the pool, evenly spread, and so many of each extreme.
+WindowPool Chosen(const WindowPool& pool, size_t most, size_t of_an_extreme) {
   std::vector<bool> taken(pool.size());
   const size_t spread = std::min(most, pool.size());
   for (size_t k = 0; k < spread; ++k) taken[k * pool.size() / spread] = true;
@@ -53,7 +54,7 @@ WindowPool Chosen(const WindowPool& pool, size_t most) {
       // A side's lowest pressure is mostly that of its valve.
       if (sign < 0 && channel != model::Channel::kMotorSpeed) continue;
       const WindowPool highest = ByHeight(pool, channel, sign);
-      for (size_t k = 0; k < std::min(highest.size(), kMostOfAnExtreme); ++k) {
+      for (size_t k = 0; k < std::min(highest.size(), of_an_extreme); ++k) {
         taken[static_cast<size_t>(std::find(pool.begin(), pool.end(), highest[k]) - pool.begin())] = true;
       }
     }
@@ -121,12 +122,13 @@ ProofWindows ProofWindowsOf(const ProofContext& context) {
 
   const bool in_turn = context.held_out.empty();
   const std::vector<RunData>& kept = *proof.all;
-  proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted);
-  proof.told = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostTold);
+  proof.fitted = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostFitted, kToFitOfAnExtreme);
+  proof.told = Chosen(PoolOf(kept, 0, of_fitted, 0, in_turn ? 2 : 1), kMostTold, kToFitOfAnExtreme);
   const WindowPool near =
       in_turn ? PoolOf(kept, 0, of_fitted, 1, 2) : PoolOf(kept, of_fitted, near_end, 0, 1);
-  SetJudging(predicted, Chosen(near, kMostNear), &proof.near);
-  SetJudging(predicted, Chosen(PoolOf(kept, near_end, far_end, 0, 1), kMostFar), &proof.far);
+  SetJudging(predicted, Chosen(near, kMostNear, kToJudgeOfAnExtreme), &proof.near);
+  SetJudging(predicted, Chosen(PoolOf(kept, near_end, far_end, 0, 1), kMostFar, kToFitOfAnExtreme),
+             &proof.far);
   return proof;
 }
 

@@ -106,6 +106,8 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
     const double after = one.last < values.size() ? values[one.last] : value;
     const bool apart = std::abs(before - value) > 20 * noise && std::abs(after - value) > 20 * noise;
     if ((value == range.low || value == range.high) && !apart) continue;
+    // So does that of a speed which is 0: the machine stands still.
+    if (value == 0 && !apart) continue;
     // The first value is a measurement, unless it is far from the value before it.
     const bool own = !(std::abs(before - value) > 20 * noise);
     held.push_back({one.first + (own ? 1 : 0), one.last});

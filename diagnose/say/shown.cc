@@ -1,6 +1,7 @@
 #include "diagnose/say/shown.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "base/number_text.h"
 #include "diagnose/fit/hypothesis.h"
@@ -21,7 +22,7 @@ void JudgeInterval(const model::ParameterInfo& info, Estimated* estimated) {
   if (!std::isfinite(low) && !std::isfinite(high)) return;
   const bool fills_range = std::isfinite(info.max - info.min) && high - low >= info.max - info.min;
   if (info.role == model::Role::kPhase) {
-    estimated->shown = !fills_range;
+    estimated->shown = high - low < 2 * std::numbers::pi;  // a whole turn is any phase
     return;
   }
   const double size = std::abs(estimated->value);

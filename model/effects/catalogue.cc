@@ -58,9 +58,9 @@ std::string FaultIn(const CatalogueEntry& entry) {
   }
   const int waves = Count(info, Role::kTorqueWave) + Count(info, Role::kDisplacementWave);
   const int periods = Count(info, Role::kPeriods), phases = Count(info, Role::kPhase);
-  if (waves != periods || periods > 1 || phases > periods) {
-    return "needs one parameter with Role::kPeriods, one with Role::kTorqueWave or Role::kDisplacementWave, "
-           "and at most one with Role::kPhase, or none of these";
+  if (waves != periods || periods > 1 || phases > 1) {
+    return "needs one parameter with Role::kPeriods and one with Role::kTorqueWave or "
+           "Role::kDisplacementWave, or neither, and at most one with Role::kPhase";
   }
   return "";
 }

@@ -38,6 +38,7 @@ struct ShaftWeight {
                               .min = -kUnbounded,
                               .meaning = "angle of the weight from hanging down at theta = 0",
                               .starts = {0, std::numbers::pi / 2},
+                              .role = Role::kPhase,
                               .example = 0.4}},
               // With oil, the weight is the arm's (mgl), and a torque once a turn comes from an eccentric
               // shaft.

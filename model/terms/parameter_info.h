@@ -47,7 +47,8 @@ enum class Role {
   kPeriods,
   kTorqueWave,        // amplitude in: torque of the motor -= amplitude sin(periods theta + phase)
   kDisplacementWave,  // amplitude in: D (1 + amplitude cos(periods theta + phase))
-  kPhase,             // of either wave, rad; optional
+  // Of either wave, rad; optional. Without a wave: of the sine that the effect's only size is multiplied by.
+  kPhase,
   // The name of a measured channel. The gap finder tries each channel that the runs have.
   kChannel,
 };
