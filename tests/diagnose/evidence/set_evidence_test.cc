@@ -192,6 +192,24 @@ TEST(SetEvidenceTest, ADisturbanceDoesNotShrinkTheInertia) {
   EXPECT_NEAR(AmountOf(rows, SetEvidence(rows).Fit({}), "J"), 0, 0.12);
 }
 
+// Tests that what is left does not inflate the inertia where it does not reach the shaft: where a controller
+// answers a disturbance, or the torque was measured with noise.
+TEST(SetEvidenceTest, WhatDoesNotMoveTheShaftDoesNotRaiseTheInertia) {
+  Rows rows = MakeRows({.runs = 2, .rows = 400});
+  for (RowBlock& block : rows.blocks) {
+    const VectorXd torque = Draw(block.y.size(), 1.0, 10 + block.run);
+    const VectorXd noise = Draw(block.y.size(), 3.0, 20 + block.run);
+    block.X.setZero();
+    block.X.col(0) = -torque;
+    block.y = torque + noise;
+  }
+  rows.prior(0, 0) = 1;
+  const double plain = AmountOf(rows, SetEvidence(rows).Fit({}), "J");
+  rows.inertia = {0};
+  EXPECT_NEAR(plain, 1, 0.25);
+  EXPECT_NEAR(AmountOf(rows, SetEvidence(rows).Fit({}), "J"), plain, 0.6);
+}
+
 // Tests that the order of rows and blocks and the numbers of runs change nothing.
 TEST(SetEvidenceTest, OrderDoesNotMatter) {
   const Rows rows = MakeRows({.truth = {{"pump.drag:k", 0.1}}});

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <numbers>
+#include <utility>
 
 #include "tests/diagnose/evidence/scanned.h"
 
@@ -33,6 +35,27 @@ TEST(WavePeriods, OfTheFlow) {
   const model::EffectDescription ripple = {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}};
   const Scanned scanned(ClampedPair(Table1With({ripple}), 2, 22), {"motor.cogging", "pump.flow_ripple"});
   EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::Contains(9));
+}
+
+// Tests that what is slower than what was seen to repeat is no faster wave: of a shaft that turns by less
+// than a turn, two periods a turn are no wave of four or five.
+TEST(WavePeriods, NoneOfWhatIsSlower) {
+  const model::EffectDescription slow = {
+      "motor.cogging", {{"amplitude", 3}, {"periods", 2}, {"phase", 0.4}}, {}};
+  std::vector<diagnose::RunData> runs;
+  for (const int which : {0, 1}) {
+    NoisyRig rig;
+    rig.model = Table1With({slow});
+    rig.seed = 31 + static_cast<uint64_t>(which);
+    runs.push_back(rig.Record("short", model::Shaft::kClamped, 0, 2, true, [which](double t) {
+      return (2.2 + 0.2 * which) * std::sin(2 * std::numbers::pi * 4 * t);
+    }));
+  }
+  const Scanned scanned(std::move(runs), {"motor.cogging"});
+  const int fewest = diagnose::FewestPeriods(scanned.runs.motions());
+  ASSERT_GT(fewest, 2);
+  ASSERT_LT(fewest, 10);
+  EXPECT_THAT(PeriodsOf(scanned, 1), ::testing::IsEmpty());
 }
 
 // Tests that there are none where no effect that may be missing repeats with the shaft.

@@ -53,6 +53,26 @@ TEST(OddsLostBy, CountsDeviations) {
   EXPECT_EQ(diagnose::OddsLostBy(values, given), 0);
 }
 
+// Tests that a fit weighs what the balances measured beside what was known, a third of it for what is wrong
+// in all rows; that what they did not measure keeps its prior; and that nothing is added without a
+// measurement.
+TEST(KnownToAFit, WeighsWhatBalancesMeasured) {
+  diagnose::Hypothesis hypothesis = Known(2);
+  const diagnose::Prior before = diagnose::KnownBefore(hypothesis);
+  EXPECT_EQ(diagnose::KnownToAFit(hypothesis).weight, before.weight);
+  diagnose::MeasuredValues measured{Table1(), {{model::BasePlace("J"), 0.05}}};
+  measured.values.J *= 1.2;
+  hypothesis.measured = std::make_shared<const diagnose::MeasuredValues>(measured);
+  const diagnose::Prior prior = diagnose::KnownToAFit(hypothesis);
+  // Known to 5 % before, and measured to 5 %: one part and a third of one.
+  EXPECT_NEAR(prior.weight[0], before.weight[0] * 4 / 3, 1e-9);
+  EXPECT_NEAR(prior.centre[0], std::log(Table1().J) + std::log(1.2) / 4, 1e-12);
+  EXPECT_EQ(prior.weight[1], before.weight[1]);
+  EXPECT_EQ(prior.centre[1], before.centre[1]);
+  hypothesis.known = nullptr;
+  EXPECT_EQ(diagnose::KnownToAFit(hypothesis).weight, (std::vector<double>{0, 0}));
+}
+
 // Tests that only its order of magnitude is known of a value that is given as 0, and nothing without
 // knowledge.
 TEST(KnownBefore, LittleOfZero) {

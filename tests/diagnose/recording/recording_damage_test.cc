@@ -88,7 +88,10 @@ TEST(RecordingDamage, WhatIsNone) {
   }
   runs::MeasuredRun slow = Bench();
   for (size_t i = 0; i < 2000; ++i) slow.p2.values[i] = slow.p2.values[i - i % 10];
-  std::vector<runs::MeasuredRun> runs = {saturated, encoder, slow};
+  runs::MeasuredRun rests = Bench();  // and its speed reads 0
+  for (size_t i = 1047; i < 1130; ++i) rests.motor_speed.values[i] = 0;
+  for (const size_t i : {1046, 1130}) rests.motor_speed.values[i] = 0.5;
+  std::vector<runs::MeasuredRun> runs = {saturated, encoder, slow, rests};
   EXPECT_THAT(LinesOf(&runs), IsEmpty());
 }
 

@@ -187,6 +187,10 @@ TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   runs.push_back(
       exact.Record("exact", model::Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
   EXPECT_TRUE(diagnose::ExactSensors(PointersTo(runs)));
+  exact.encoder_bits = 14;  // steps that show
+  runs.push_back(
+      exact.Record("steps", model::Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
+  EXPECT_FALSE(diagnose::ExactSensors(PointersTo(runs)));
 }
 
 }  // namespace

@@ -51,6 +51,10 @@ TEST(ShownTest, RangesAndSigns) {
   phase.role = model::Role::kPhase;
   EXPECT_TRUE(Shown(0.01, -0.5, 0.5, phase));
   EXPECT_FALSE(Shown(0.01, -3.2, 3.2, phase));
+  phase = Info(-model::kUnbounded);
+  phase.role = model::Role::kPhase;
+  EXPECT_TRUE(Shown(0.01, -0.5, 0.5, phase));
+  EXPECT_FALSE(Shown(1.2, -1.9e6, 1.9e6, phase)) << "of a gear motor";
 }
 
 std::string Why(double given, double value, double low, double high, const model::ParameterInfo& info) {

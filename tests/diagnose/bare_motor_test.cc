@@ -1,0 +1,97 @@
+// The whole gap finder on a motor without oil, as most machines on a bench are: all torques are measured by
+// the motor's own, and nothing but the shaft moves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "diagnose/diagnose.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+using ::testing::IsEmpty;
+
+model::ModelDescription Bare() {
+  model::ModelDescription bare = Table1With();
+  bare.parameters.D = 1e-9;
+  bare.parameters.c_I = bare.parameters.c_E = bare.parameters.f = 0;
+  return bare;
+}
+
+// Runs under a voltage that sweeps up and down, from 0 or from `from` s on.
+std::vector<runs::MeasuredRun> RunsOf(const model::ModelDescription& truth, double amplitude, int runs,
+                                      double from = 0) {
+  std::vector<runs::MeasuredRun> all;
+  for (int i = 0; i < runs; ++i) {
+    NoisyRig rig;
+    rig.model = truth;
+    rig.speed_noise = 0.05;
+    rig.seed = 40 + static_cast<uint64_t>(i);
+    rig.step = 4e-3;
+    const auto voltage = [&](double t) {
+      if (from > 0) return t < from ? amplitude * (1 + 0.2 * i) : 0.0;
+      return amplitude * std::sin(2 * std::numbers::pi * (0.35 + 0.1 * i) * t) +
+             0.3 * amplitude * std::sin(9 * t);
+    };
+    runs::MeasuredRun run = std::move(
+        rig.Record("run " + std::to_string(i), model::Shaft::kClamped, 0, 8, true, voltage).measured);
+    run.p1.values.clear();
+    run.p2.values.clear();
+    if (from > 0) run.Keep(static_cast<size_t>(std::lround(from / rig.step)) + 1, run.samples());
+    all.push_back(std::move(run));
+  }
+  return all;
+}
+
+double Fitted(const diagnose::Diagnosis& d, double model::Parameters::*member) {
+  return d.model.parameters.*member;
+}
+
+// Tests that a weight at the shaft is named wherever its lowest point is, with its torque and its phase.
+TEST(BareMotor, AWeightAtAnyPhase) {
+  for (const double phase : {0.0, 1.2, -1.66}) {
+    model::ModelDescription truth = Bare();
+    truth.effects = {{"load.gravity", {{"torque", 6}, {"phase", phase}}, {}}};
+    const diagnose::Diagnosis d = diagnose::Diagnose(Bare(), RunsOf(truth, 4, 3), {}, {}, {});
+    ASSERT_EQ(d.effects.size(), 1u) << phase << ": " << d.sentence;
+    EXPECT_EQ(d.effects[0].id, "load.gravity");
+    const model::EffectDescription& found = d.model.effects.front();
+    const double torque = found.parameters.at("torque"), at = found.parameters.at("phase");
+    EXPECT_NEAR(torque * std::cos(at), 6 * std::cos(phase), 0.6) << phase;
+    EXPECT_NEAR(torque * std::sin(at), 6 * std::sin(phase), 0.6) << phase;
+  }
+}
+
+// Tests that the motor's torque, which measures all others, stays as given, and other friction is found.
+TEST(BareMotor, FrictionIsMeasuredByTheMotorsTorque) {
+  model::ModelDescription truth = Bare();
+  truth.parameters.b *= 1.6;
+  truth.parameters.T_s *= 0.7;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Bare(), RunsOf(truth, 8, 3), {}, {}, {});
+  EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
+  EXPECT_EQ(Fitted(d, &model::Parameters::k_1), truth.parameters.k_1);
+  EXPECT_NEAR(Fitted(d, &model::Parameters::b), truth.parameters.b, 0.05 * truth.parameters.b);
+  EXPECT_NEAR(Fitted(d, &model::Parameters::T_s), truth.parameters.T_s, 0.05 * truth.parameters.T_s);
+}
+
+// Tests that a motor which only coasts shows its friction by its inertia, which stays as given.
+TEST(BareMotor, CoastingIsMeasuredByTheInertia) {
+  model::ModelDescription truth = Bare();
+  truth.parameters.J *= 20;  // it coasts for seconds
+  truth.parameters.T_s *= 0.3;
+  model::ModelDescription given = truth;
+  given.parameters.b *= 0.6;
+  given.parameters.T_s *= 0.6;
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, RunsOf(truth, 10, 3, 2), {}, {}, {});
+  EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
+  EXPECT_EQ(Fitted(d, &model::Parameters::J), truth.parameters.J);
+  EXPECT_NEAR(Fitted(d, &model::Parameters::b), truth.parameters.b, 0.1 * truth.parameters.b);
+  EXPECT_NEAR(Fitted(d, &model::Parameters::T_s), truth.parameters.T_s, 0.1 * truth.parameters.T_s);
+}
+
+}  // namespace
+}  // namespace hydro::testing
