@@ -42,8 +42,8 @@ struct RowBlock {
   Eigen::VectorXd frequency;        // of the test function, Hz
   Eigen::VectorXd sensor_variance;  // of e, due to the sensors' noise
   std::vector<int> band;            // of the frequency: rows of one band share a variance
-  // The column whose size says how much signal there is: J, beta or J_a. It is -1 where this does not matter
-  // (level).
+  // The column whose size says how much signal there is: J, beta or J_a. It is -1 where that may not move,
+  // and in levels.
   int main_column = -1;
 };
 

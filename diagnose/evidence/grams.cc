@@ -74,7 +74,9 @@ class BlockOfGrams {
   }
 
  private:
-  bool IsLevel() const { return block_.main_column < 0; }
+  bool IsLevel() const {
+    return block_.balance == BalanceKind::kLevel1 || block_.balance == BalanceKind::kLevel2;
+  }
 
   // The position of a column among those of the block, or -1.
   Index Place(int column) const {
@@ -87,9 +89,15 @@ class BlockOfGrams {
     return at < 0 ? 0.0 : MeanSquare(block_.X.col(at), group);
   }
 
+  double LargestBase(const std::vector<Index>& group) const {
+    double largest = 0;
+    for (const int column : rows_.base) largest = std::max(largest, SizeOf(column, group));
+    return largest;
+  }
+
   bool Teaches(const std::vector<Index>& group) const {
     if (IsLevel()) return true;
-    double signal = SizeOf(block_.main_column, group);
+    double signal = block_.main_column < 0 ? LargestBase(group) : SizeOf(block_.main_column, group);
     // An arm that hardly accelerates shows its load instead.
     if (block_.balance == BalanceKind::kArm) signal = std::max(signal, MeanSquare(block_.y, group));
     return group.size() >= kLeastRows && signal > kLeastSignalToNoise * block_.sensor_variance(group).mean();
@@ -100,8 +108,7 @@ class BlockOfGrams {
   VectorXd FloorOf(const std::vector<Index>& group) const {
     VectorXd floor = block_.sensor_variance(group);
     if (IsLevel()) return floor;
-    double largest = 0;
-    for (const int column : rows_.base) largest = std::max(largest, SizeOf(column, group));
+    const double largest = LargestBase(group);
     const VectorXd late = 2 * std::numbers::pi * rows_.clock * block_.frequency(group);
     floor.array() += (kPartNotModelled * kPartNotModelled + late.array().square()) * largest;
     return floor;

@@ -307,6 +307,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
   proposed.said.unlikely = UnlikelyEffects(proposed.scores);
+  // What does as another value does is no finding of whole runs either.
+  for (const auto& [effect, value] : runs.doubles()) proposed.said.unlikely.push_back(EffectOf(effect));
   proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
   const std::set<std::string> oil = runs.OilOnly();
   for (const ChangeSet& set :

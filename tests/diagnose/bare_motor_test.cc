@@ -82,7 +82,7 @@ TEST(BareMotor, FrictionIsMeasuredByTheMotorsTorque) {
 TEST(BareMotor, CoastingIsMeasuredByTheInertia) {
   model::ModelDescription truth = Bare();
   truth.parameters.J *= 20;  // it coasts for seconds
-  truth.parameters.T_s *= 0.3;
+  truth.parameters.b *= 20;
   model::ModelDescription given = truth;
   given.parameters.b *= 0.6;
   given.parameters.T_s *= 0.6;

@@ -48,7 +48,7 @@ TEST(WavePeriods, NoneOfWhatIsSlower) {
     rig.model = Table1With({slow});
     rig.seed = 31 + static_cast<uint64_t>(which);
     runs.push_back(rig.Record("short", model::Shaft::kClamped, 0, 2, true, [which](double t) {
-      return (2.2 + 0.2 * which) * std::sin(2 * std::numbers::pi * 4 * t);
+      return (2.6 + 0.2 * which) * std::sin(2 * std::numbers::pi * 3 * t);
     }));
   }
   const Scanned scanned(std::move(runs), {"motor.cogging"});
