@@ -9,6 +9,7 @@
 #include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "runs/measured_signals.h"
@@ -20,8 +21,8 @@ using Run = runs::MeasuredRun;
 
 // Relative: scales of two sensors agree better than this.
 constexpr double kSensorFactor = 0.02;
-// Samples and s: a filter's delay.
-constexpr double kSensorLateSamples = 2, kSensorLateSeconds = 2e-3;
+// s: a filter's delay.
+constexpr double kSensorLate = 2e-3;
 // s: means over this time replace derivatives of noisy signals.
 constexpr double kSensorBlock = 0.1;
 constexpr size_t kFewestStepsOfABlock = 4, kFewestBlocksCompared = 20;
@@ -186,8 +187,7 @@ std::vector<SameSensors> SensorsOf(const SensorPair& pair, const std::vector<Run
 SensorsDiffer HowTheyDiffer(const SecondSensor& second, double size, double step) {
   if (std::abs(second.factor - 1) > kSensorFactor + second.factor_half) return SensorsDiffer::kInSize;
   if (std::abs(second.offset) > kSensorFactor * size + second.offset_half) return SensorsDiffer::kInSize;
-  const bool late =
-      std::abs(second.late) > std::max(kSensorLateSamples * step, kSensorLateSeconds) + second.late_half;
+  const bool late = std::abs(second.late) > std::max(kRecorderSamples * step, kSensorLate) + second.late_half;
   return late ? SensorsDiffer::kInTime : SensorsDiffer::kNot;
 }
 
