@@ -14,8 +14,6 @@ using model::Parameters;
 
 // A value given as 0 may contribute up to a tenth of its balance.
 constexpr double kFromNothing = 0.1;
-// For "one value is far off": a deviation of a half.
-constexpr double kValueFarOff = 0.5;
 // For "one value differs by run": this many times the deviation that each run may have in every hypothesis.
 constexpr double kDiffersByRun = 6;
 
@@ -86,7 +84,7 @@ void AddAskedRuns(ColumnMaker* maker, int of) {
   for (size_t r = 0; r < maker->runs->size(); ++r) {
     meaning.run = static_cast<int>(r);
     maker->AddAlias({"run." + column.name + "[" + std::to_string(r) + "]", "run." + column.name,
-                     std::max(kValueFarOff, column.sd), false},
+                     std::max(kFarOff, column.sd), false},
                     meaning, of, meaning.run);
   }
 }
@@ -105,8 +103,8 @@ void AddBaseColumns(ColumnMaker* maker) {
     const model::BaseParameter& base = BaseParameters()[i];
     if (IsFixed(base.member)) continue;
     const double value = given.parameters.*base.member;
-    ScanColumn column{base.info.name, "", value != 0 ? model::UncertaintyOf(given, i) : kFromNothing / 0.15,
-                      false};
+    ScanColumn column{base.info.name, "",
+                      value != 0 ? model::UncertaintyOf(given, i) : kFromNothing / kUsualPart, false};
     ColumnMeaning meaning{.kind = ColumnMeaning::Kind::kBase, .base = i, .unit = value != 0 ? 1.0 : 0.0};
     const int place = maker->Add(column, meaning);
     if (base.member == &Parameters::T_pmax) {
@@ -141,11 +139,11 @@ void AddValueColumns(ColumnMaker* maker) {
     AddAskedRuns(maker, static_cast<int>(i));
     if (meaning.kind == ColumnMeaning::Kind::kGiven)
       maker->AddAlias(
-          {"wide." + column.name, "value." + column.name, std::max(kValueFarOff, 3 * column.sd), false},
-          meaning, static_cast<int>(i), -1);
+          {"wide." + column.name, "value." + column.name, std::max(kFarOff, 3 * column.sd), false}, meaning,
+          static_cast<int>(i), -1);
     if (meaning.kind == ColumnMeaning::Kind::kBase && meaning.run < 0) {
       const bool zero = maker->given().*BaseParameters()[meaning.base].member == 0;
-      const double wide = std::max(kValueFarOff, 3 * column.sd) * (zero ? 3 : 1);
+      const double wide = std::max(kFarOff, 3 * column.sd) * (zero ? 3 : 1);
       maker->AddAlias({"wide." + column.name, "value." + column.name, wide, false}, meaning,
                       static_cast<int>(i), -1);
     }

@@ -19,9 +19,8 @@ constexpr int kSpeedSines = 10, kOtherSines = 8;
 constexpr double kSmooth = 0.15;
 // The amount of the first sine, in usual parts of the balance.
 constexpr double kFirst = 1.5;
-constexpr double kUsual = 0.15;
 // How far curves reach beyond the range that was seen.
-constexpr double kBeyond = 1.15, kBeyondArm = 0.1, kBelowCharge = 0.1, kFastArm = 4;
+constexpr double kBeyond = 1.15, kALittle = 0.1, kFastArm = 4;
 
 double SpreadOf(int sine) { return kFirst * std::exp(-0.5 * std::pow(kSmooth * std::numbers::pi * sine, 2)); }
 
@@ -61,7 +60,7 @@ void AddElement(ColumnMaker* maker, const ClosureElement& element) {
 }
 
 double UsualOf(const BalanceSizes& sizes, BalanceKind balance) {
-  return kUsual * sizes.of[static_cast<size_t>(balance)];
+  return kUsualPart * sizes.of[static_cast<size_t>(balance)];
 }
 
 ClosureElement Odd(const std::string& set, int sines, double unit, double reach,
@@ -90,10 +89,10 @@ void AddOilElements(const ColumnSetup& setup, bool moves, std::vector<ClosureEle
                        .parts = {{BalanceKind::kFlow1, 1, "closure.flow_1", "p1"},
                                  {BalanceKind::kFlow2, 1, "closure.flow_2", "p2"}},
                        .unit = flow,
-                       .low = p_3 - kBelowCharge * reach,
-                       .high = p_3 + (1 + kBelowCharge) * reach});
+                       .low = p_3 - kALittle * reach,
+                       .high = p_3 + (1 + kALittle) * reach});
   if (!moves) return;
-  const double beyond = kBeyondArm * (sizes.arm_high - sizes.arm_low);
+  const double beyond = kALittle * (sizes.arm_high - sizes.arm_low);
   elements->push_back({.set = "closure.cross_flow(arm_angle)",
                        .sines = kOtherSines,
                        .parts = {{BalanceKind::kFlow1, -1, "closure.flow_1", "arm_angle"},
@@ -108,7 +107,7 @@ void AddArmElements(const ColumnSetup& setup, std::vector<ClosureElement>* eleme
   const BalanceSizes& sizes = setup.sizes;
   const double torque = UsualOf(sizes, BalanceKind::kArm),
                fast = kFastArm * std::max(sizes.arm_speed, 1e-300);
-  const double beyond = kBeyondArm * (sizes.arm_high - sizes.arm_low);
+  const double beyond = kALittle * (sizes.arm_high - sizes.arm_low);
   elements->push_back({.set = "closure.arm_torque(arm_angle)",
                        .sines = kOtherSines,
                        .parts = {{BalanceKind::kArm, 1, "closure.arm_torque", "arm_angle"}},

@@ -9,6 +9,13 @@
 
 namespace hydro::diagnose {
 
+// The usual size of an effect, as a fraction of the balance's main term. One ten times as small or as large
+// costs little.
+inline constexpr double kUsualPart = 0.15;
+
+// For "one value is far off", and for a parameter of an effect without a grid: either may be wrong by a half.
+inline constexpr double kFarOff = 0.5;
+
 // Work on one run that fills the series of some columns. Different works fill different columns.
 using ColumnWork = std::function<void(size_t run)>;
 

@@ -16,9 +16,6 @@ namespace {
 constexpr double kTopQuantile = 0.995;
 // The quantile that counts as the largest pressure.
 constexpr double kTopPressureQuantile = 0.998;
-// The usual size of an effect, as a fraction of the balance's main term. One ten times as small or as large
-// costs little.
-constexpr double kUsualPart = 0.15;
 // A whole effect is next to nothing if it would take this many times its size to make the usual part.
 constexpr double kNextToNothing = 1e3;
 // A column that seldom acts is measured where it acts: by the root of sum x^4 over sum x^2.

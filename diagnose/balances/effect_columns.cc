@@ -16,8 +16,6 @@ using VariantKind = EffectVariant::Kind;
 constexpr double kReadingPart = 0.02;
 // s: filters and buses of recorders add a few milliseconds.
 constexpr double kReadingTime = 3e-3;
-// A parameter without a grid may well be wrong by a half.
-constexpr double kMovedBy = 0.5;
 // The step over which derivatives by such parameters are taken.
 constexpr double kMovedStep = 0.05;
 // As a fraction of a balance's size: a difference with an amount that causes such a small change is as good
@@ -252,7 +250,7 @@ void AddEffectColumns(ColumnMaker* maker) {
       meaning.kind = ColumnMeaning::Kind::kMoved;
       for (const std::string& moved : variant.moved) {
         meaning.parameter = moved;
-        columns.push_back(maker->Add({variant.set + ":" + moved, variant.set, kMovedBy, false}, meaning));
+        columns.push_back(maker->Add({variant.set + ":" + moved, variant.set, kFarOff, false}, meaning));
       }
       if (maker->again != nullptr &&
           DependsOnCommandAlone(With(maker->setup->given, variant.at), maker->Motion(0), (*maker->base)[0])) {

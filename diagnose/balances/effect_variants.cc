@@ -20,9 +20,6 @@ constexpr double kShortestTime = 5e-4, kTimeRatio = 1.4142135623730951;
 constexpr int kTimes = 13;
 // As a fraction of a sample: a shorter time does not show.
 constexpr double kLeastTime = 0.2;
-// Neighbours on a grid of one shape differ by no more than this factor, so that one of them approximates a
-// term between them to a few per cent.
-constexpr double kGridRatio = 2;
 
 bool IsWave(const ParameterInfo& parameter) {
   return parameter.role == Role::kTorqueWave || parameter.role == Role::kDisplacementWave;

@@ -10,6 +10,10 @@
 
 namespace hydro::diagnose {
 
+// Neighbours on a grid of one shape differ by no more than this factor, so that one of them approximates a
+// term between them to a few per cent, and no estimate moves an effect further from its grid point.
+inline constexpr double kGridRatio = 2;
+
 struct EffectVariant {
   enum class Kind {
     kAmounts,  // linear in `amounts` from 0 on

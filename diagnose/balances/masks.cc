@@ -5,19 +5,16 @@
 #include <utility>
 
 #include "base/maths/median.h"
+#include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
-// The pump is at rest where its speed stays within this many standard deviations of its noise for kStillTime,
-// s. A shorter rest is a reversal.
-constexpr double kStill = 3;
+// s: the pump is at rest where noise hides its speed for this long. A shorter rest is a reversal.
 constexpr double kStillTime = 0.008;
 // s: smoothing spreads the rest this far.
 constexpr double kStillSpread = 0.003;
-// s: a valve closes this much later than its side's pressure leaves the level.
-constexpr double kValveSpread = 0.004;
 // Values below this part of the range of pressures may belong to a held side.
 constexpr double kLowPart = 0.15;
 constexpr size_t kEnoughLow = 200;
@@ -43,7 +40,7 @@ size_t Samples(double seconds, const RunMotion& run) {
 
 std::vector<uint8_t> AtRest(const RunMotion& run) {
   std::vector<uint8_t> rest(run.size(), 0);
-  const double limit = kStill * run.speed_noise;
+  const double limit = kHides * run.speed_noise;
   const size_t shortest = std::max<size_t>(2, Samples(kStillTime, run));
   for (size_t i = 0; i < run.size();) {
     size_t end = i;
@@ -63,7 +60,7 @@ std::vector<uint8_t> Gaps(const RunMotion& run, const std::vector<GridChannel>& 
     const std::vector<uint8_t>& gap = run.Of(signal).gap;
     for (size_t k = 0; k < gap.size(); ++k) mask[k] |= gap[k];
   }
-  Widen(Samples(kValveSpread, run), &mask);
+  Widen(Samples(kSpread, run), &mask);
   return mask;
 }
 
@@ -230,7 +227,7 @@ std::array<std::vector<uint8_t>, kBalanceKinds> MasksOf(const RunMotion& run, co
     std::vector<uint8_t> low(run.size());
     for (size_t k = 0; k < run.size(); ++k) low[k] = run.at[k].*pressure < held.at + held.margin ? 1 : 0;
     const std::vector<uint8_t> only_low = EachStride(low, run.stride);
-    Widen(Samples(kValveSpread, run), &low);
+    Widen(Samples(kSpread, run), &low);
     masks[place(flow)] = EachStride(Either(low, gaps), run.stride);
     masks[place(level)] =
         Either(Held(run, only_low, left[place(flow)], given.D), EachStride(gaps, run.stride));

@@ -17,16 +17,15 @@ constexpr double kLate = 2.5e-4;
 constexpr double kCreepTimes[] = {0.03, 0.15};
 constexpr double kCreep = 0.04;
 constexpr double kMuchCreep = 0.3;
-// Part of the arm's torque: the centre of mass lies off the line through the zero of the angle.
-constexpr double kOffCentre = 0.03;
 // Friction differs by this part between runs, and over a turn.
 constexpr double kFrictionByRun = 0.02;
 constexpr double kLeastFriction = 0.05;  // of the motor's torque, for a pump given without friction
 // As a fraction of the largest pressure: the zeros of transducers drift by a thousandth of their range, and
 // the charge pressure changes with the temperature.
 constexpr double kPressureByRun = 1e-3;
-// As a fraction of the arm's torque: the load may differ by run.
-constexpr double kLoadByRun = 0.03;
+// As a fraction of the arm's torque: the load may differ by run, and its centre lies off the line through the
+// zero of the angle.
+constexpr double kLoad = 0.03;
 
 std::string OfRun(const std::string& name, size_t run) { return name + "[" + std::to_string(run) + "]"; }
 
@@ -200,7 +199,7 @@ void AddStarts(ColumnMaker* maker) {
 
 void AddLoads(ColumnMaker* maker) {
   const double torque = maker->Size(BalanceKind::kArm);
-  const int off = maker->Add({"gravity.sin", "", kOffCentre * torque, false});
+  const int off = maker->Add({"gravity.sin", "", kLoad * torque, false});
   maker->works.back().push_back([maker, off](size_t run) {
     const RunMotion& motion = maker->Motion(run);
     if (!CanForm(motion, BalanceKind::kArm)) return;
@@ -217,8 +216,7 @@ void AddLoads(ColumnMaker* maker) {
     ColumnMeaning meaning = maker->table.meaning[static_cast<size_t>(*load)];
     meaning.run = static_cast<int>(r);
     meaning.unit = 1;
-    maker->AddAlias({OfRun("mgl", r), "", kLoadByRun * torque / unit, false}, meaning, *load,
-                    static_cast<int>(r));
+    maker->AddAlias({OfRun("mgl", r), "", kLoad * torque / unit, false}, meaning, *load, static_cast<int>(r));
   }
 }
 

@@ -20,7 +20,6 @@ constexpr double kReach = 4;
 // The arm's direction is certain once it has moved by this part of its range since it turned, or by more than
 // noise hides.
 constexpr double kTurnPart = 1e-3;
-constexpr double kTurnNoise = 3;
 
 constexpr model::Channel kChannelOf[kGridChannels] = {model::Channel::kMotorSpeed,
                                                       model::Channel::kMotorAngle, model::Channel::kArmAngle,
@@ -121,7 +120,7 @@ std::vector<model::Surroundings> AroundOnGrid(const model::Stimulus& run, double
 // The arm's direction; where the arm stands, the last one.
 std::vector<double> Directions(const std::vector<double>& angle, double noise) {
   const maths::Range range = maths::RangeOf(angle);
-  const double reach = std::max({kTurnPart * range.size(), kTurnNoise * noise, 1e-300});
+  const double reach = std::max({kTurnPart * range.size(), kHides * noise, 1e-300});
   std::vector<double> direction(angle.size());
   double bent = 0;
   for (size_t i = 0; i < angle.size(); ++i) {

@@ -13,13 +13,8 @@ using std::numbers::pi;
 
 // s: a shorter piece holds no test function that is smooth at both ends and slow enough to be trusted.
 constexpr double kShortestPiece = 0.04;
-// s, rise time of a test function at the end of a piece: slower than the spread from the smoothing of
-// signals.
-constexpr double kRise = 0.008;
 // The overlap of neighbours, as a fraction of a tile.
 constexpr double kOverlap = 0.45;
-// s: smoothing and derivatives spread a masked sample this far.
-constexpr double kSpread = 0.004;
 // Hz: the mains frequencies, and how far their hum reaches.
 constexpr double kMains[] = {50, 60};
 constexpr double kHum = 5;

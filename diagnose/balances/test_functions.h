@@ -18,6 +18,13 @@ struct TestFunctions {
 // faster motion.
 inline constexpr double kOfTheRate = 0.2;
 
+// s: smoothing and derivatives spread a masked sample this far, and a valve closes this much later than its
+// side's pressure leaves the level.
+inline constexpr double kSpread = 0.004;
+// s, rise time of a test function at the end of a piece: slower than the spread from the smoothing of
+// signals.
+inline constexpr double kRise = 0.008;
+
 // s, the length of the tiles into which pieces are cut. `duration` is that of a typical run.
 double TileLength(double duration);
 

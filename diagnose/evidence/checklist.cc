@@ -23,9 +23,8 @@ using State = ChecklistLine::State;
 using runs::MeasuredRun;
 using runs::MeasuredSignal;
 
-// A clear gain of the log evidence: ten to one.
-const double kClearSign = std::log(10.0);
-constexpr double kFarOff = 6;  // standard deviations of the noise, beyond the lowest of thousands of samples
+// Standard deviations of the noise, beyond the lowest of thousands of samples.
+constexpr double kBelowLowest = 6;
 
 using maths::Range;
 using maths::RangeOf;
@@ -141,8 +140,8 @@ class RunChecklist {
   // of 5 bar read a fifth less than that. The factors convert each pressure from another unit.
   ChargeFit FitOf(double low1, double low2, double factor1, double factor2) const {
     const double first = low1 * factor1, second = low2 * factor2, low = std::min(first, second);
-    const double noise =
-        kFarOff * std::max(factor1 * EstimateNoise(run_.p1.values), factor2 * EstimateNoise(run_.p2.values));
+    const double noise = kBelowLowest * std::max(factor1 * EstimateNoise(run_.p1.values),
+                                                 factor2 * EstimateNoise(run_.p2.values));
     return {.near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise,
             .same = std::max(first, second) < 1.5 * low + noise};
   }
@@ -213,7 +212,7 @@ class RunChecklist {
     const std::optional<double> gain = GainOf(is_mistake);
     if (!gain.has_value()) return;
     const std::string number = " (log odds " + ShortNumber(*gain, 2) + ")";
-    if (std::abs(*gain) < kClearSign) {
+    if (std::abs(*gain) < ClearGain()) {
       Add(State::kLook, item,
           *gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
     } else {
@@ -232,7 +231,7 @@ class RunChecklist {
     AddSign(
         "sign of the command",
         [](const RecordingMistake& one) { return IsSignOf(one, &MeasuredRun::voltage); },
-        pressures && exchanged < -kClearSign
+        pressures && exchanged < -ClearGain()
             ? "a positive command turns the motor forward and raises p2 over p1"
             : "a positive command turns the motor forward",
         pressures ? "a positive command goes with a falling speed or p2 - p1: turn its sign, the speed's, or "
@@ -240,7 +239,7 @@ class RunChecklist {
                   : "a positive command goes with a falling speed: turn the sign of one of them");
     if (run_.bypass) return;
     const bool clamped = run_.shaft == model::Shaft::kClamped;
-    if (pressures && (clamped || exchanged > kClearSign)) {
+    if (pressures && (clamped || exchanged > ClearGain())) {
       AddSign("sign of the pressures", are_exchanged, "p2 - p1 rises while the motor turns forward",
               std::string(clamped ? "p2 - p1 falls while the motor turns forward"
                                   : "p1 and p2 go far better with the motor the other way round") +

@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "base/parallel.h"
 #include "diagnose/evidence/late_signals.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "runs/run_delays.h"
 #include "runs/slow_samples.h"
@@ -18,15 +19,14 @@ namespace {
 using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal Run::*;
 
-// s and samples: shorter delays have names among the catalogue's effects of amplifier and sensors.
-constexpr double kLeastDelay = 0.02, kLeastSamples = 2;
-// s: a shorter run does not fill a tile of test functions.
-constexpr double kShortest = 2;
+// s: shorter delays have names among the catalogue's effects of amplifier and sensors.
+constexpr double kLeastDelay = 0.02;
 
 bool CanBeAligned(const Run& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&
-         run.time.back() - run.time.front() >= kShortest && MedianInterval(run.time) <= runs::kSlowestSamples;
+         run.time.back() - run.time.front() >= kClockTile &&
+         MedianInterval(run.time) <= runs::kSlowestSamples;
 }
 
 // The signals of a device, by name.
@@ -38,7 +38,9 @@ const std::vector<std::pair<const char*, Signal>>& SignalsOf(Late late) {
   return kOf[static_cast<size_t>(late)];
 }
 
-double LeastDelay(const Run& run) { return std::max(kLeastDelay, kLeastSamples * MedianInterval(run.time)); }
+double LeastDelay(const Run& run) {
+  return std::max(kLeastDelay, kRecorderSamples * MedianInterval(run.time));
+}
 
 // Whether command and motor are late enough to belong to another clock.
 bool AreLate(const LateSignals& found, const Run& run) {

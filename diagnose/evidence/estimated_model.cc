@@ -18,8 +18,7 @@ using MeaningKind = ColumnMeaning::Kind;
 
 // No value is estimated below this part of the given value: that would be another machine.
 constexpr double kLeastPart = 0.05;
-// A whole effect is moved along its shape by no more than the distance between neighbours on the grid.
-constexpr double kMostMove = 2;
+// The step along a whole effect's shape by which its size is seen to change.
 constexpr double kMoveStep = 0.1;
 
 // Whether any balance of the runs has the column. A column that no balance has may still seem to move,
@@ -157,7 +156,7 @@ void MoveWhole(const ScanRuns& runs, const EffectVariant& variant, double amount
   const bool is_time = ParameterOf(effect->id, shape).role == model::Role::kTime;
   const double slope = is_time ? 1 : std::log(there / here) / std::log(1 + kMoveStep);
   if (std::abs(slope) < kMoveStep) return;
-  const double move = std::clamp(std::pow(amount, 1 / slope), 1 / kMostMove, kMostMove);
+  const double move = std::clamp(std::pow(amount, 1 / slope), 1 / kGridRatio, kGridRatio);
   effect->parameters[shape] = Bounded(ParameterOf(effect->id, shape), at * move);
 }
 
@@ -213,7 +212,7 @@ void AddEffect(const ScanRuns& runs, const Rows& rows, const std::string& name, 
   // What was moved is part of the whole, so it is relatively larger when there is less of the whole.
   for (const auto& [parameter, amount] : moved) {
     const double by = std::exp(
-        std::clamp(amount / std::max(whole, 1 / kMostMove), -std::log(kMostMove), std::log(kMostMove)));
+        std::clamp(amount / std::max(whole, 1 / kGridRatio), -std::log(kGridRatio), std::log(kGridRatio)));
     effect.parameters[parameter] =
         Bounded(ParameterOf(effect.id, parameter), effect.parameters[parameter] * by);
   }

@@ -23,9 +23,6 @@ constexpr double kLeastSignalToNoise = 10;
 constexpr size_t kLeastRows = 3;
 // The equations themselves hold to one part in a hundred: geometry, temperature, play.
 constexpr double kPartNotModelled = 0.01;
-// Test functions overlap, so that two rows are one independent number. Of all constants here, this one
-// affects the answers most, and more than a half is never right.
-constexpr double kIndependentShare = 0.5;
 
 using RowsOfGroups = std::map<int, std::vector<Index>>;  // by band
 

@@ -31,8 +31,6 @@ constexpr double kMostDelay = 1, kMostOfTheRun = 0.02;
 // Hz: a delay is a small change of a motion up to this frequency, once the rows below have determined most of
 // it.
 constexpr double kHighest[] = {0.25, 0.5, 1, 2};
-// s: a tile whose first test function is at 0.125 Hz.
-constexpr double kTile = 2;
 // s: rows up to 2 Hz need no more samples, and the delays that are sought are at least twice as long.
 constexpr double kStep = 1e-2;
 // Relative to the given values: with a deviation of a factor of two or more, nothing relies on them.
@@ -142,7 +140,7 @@ class ClockSteps {
     for (size_t i = 0; i < model::BaseParameters().size(); ++i) options.allowed.push_back(i);
     options.only_always = true;
     options.highest = highest;
-    options.tile = kTile;
+    options.tile = kClockTile;
     ScanRuns runs(given_, {&data}, options);
     Rows rows = runs.MakeRows({});
     FreeBaseValues(&rows);

@@ -11,6 +11,9 @@
 
 namespace hydro::diagnose {
 
+// s: a tile whose first test function is at 0.125 Hz. A shorter run does not fill it.
+inline constexpr double kClockTile = 2;
+
 // What may be late: a device with all of its signals, both pressures, or p2 beyond both.
 enum class Late { kCommand, kMotor, kArm, kPressures, kP2 };
 inline constexpr size_t kLates = 5;

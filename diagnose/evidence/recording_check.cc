@@ -15,8 +15,6 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
-// A clear gain of the log evidence, in addition to the odds: ten to one, after a thousand to one.
-const double kClear = std::log(10.0);
 // Two sets closer to each other than this explain a run alike.
 constexpr double kAlikeMistakes = 2;
 // A squared share of a balance's terms: a model that leaves more of every balance predicts nothing.
@@ -79,7 +77,7 @@ class Recorder {
                            own->Merit() <= shared->gain;
       if (follows) {
         findings.push_back({r, shared->mistakes, shared->gain, TiedWith(r, *common)});
-      } else if (own != nullptr && own->Merit() > kClear) {
+      } else if (own != nullptr && own->Merit() > ClearGain()) {
         findings.push_back({r, own->mistakes, own->gain});
       }
     }
@@ -129,7 +127,7 @@ class Recorder {
   // mistake: its odds count once, and runs that do not have the mistake say nothing.
   static std::optional<size_t> ClearBest(const std::vector<std::vector<MistakeTrial>>& trials) {
     std::optional<size_t> best;
-    double most = kClear;
+    double most = ClearGain();
     for (size_t s = 0; !trials.empty() && s < trials[0].size(); ++s) {
       double merit = -OddsAgainstMistake() * static_cast<double>(LargestOf(trials, s)), alone = 0;
       for (const std::vector<MistakeTrial>& run : trials) {

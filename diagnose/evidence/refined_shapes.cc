@@ -17,9 +17,6 @@ constexpr int kHalvings = 3;
 // The number of Gauss-Newton steps for a whole effect, and the change of its numbers that counts as none.
 constexpr int kMostStepsOfAWhole = 4;
 constexpr double kSettledShape = 0.01;
-// The range where a grid has only one point, and the limit of a whole effect's move from its grid point:
-// neighbours are no further apart.
-constexpr double kMostShapeMove = 2;
 
 bool IsOf(const ScanColumn& column, const ChangeSet& set) {
   return std::find(set.begin(), set.end(), column.set) != set.end();
@@ -126,7 +123,7 @@ double Apart(const std::vector<EffectVariant>& variants, const EffectVariant& va
     }
     apart = std::max(apart, nearest);
   }
-  return apart > 0 ? std::min(apart, std::log(kMostShapeMove)) : std::log(kMostShapeMove);
+  return apart > 0 ? std::min(apart, std::log(kGridRatio)) : std::log(kGridRatio);
 }
 
 // The top of a parabola through three points that are `width` apart, from the middle one.
@@ -230,8 +227,7 @@ void RefinedShapes::MoveWhole(size_t variant, const ChangeSet& set) {
       for (auto& [name, value] : at.parameters) {
         const double first = start.at.parameters.at(name);
         if (!(first > 0) || !(value > 0)) continue;
-        const double next =
-            std::clamp(effect.parameters.at(name), first / kMostShapeMove, first * kMostShapeMove);
+        const double next = std::clamp(effect.parameters.at(name), first / kGridRatio, first * kGridRatio);
         change = std::max(change, std::abs(std::log(next / value)));
         value = next;
       }

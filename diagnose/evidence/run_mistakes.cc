@@ -46,6 +46,7 @@ bool NeedsAnotherReading(const RecordingMistake& one) {
 }  // namespace
 
 double OddsAgainstMistake() { return std::log(1000.0); }
+double ClearGain() { return std::log(10.0); }
 
 RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
     : model_(model), run_(std::move(run)), possible_(PossibleMistakes(run_)) {

@@ -15,6 +15,8 @@ namespace hydro::diagnose {
 
 // The logarithm of the odds against one mistake: about one sidecar line in a thousand is wrong.
 double OddsAgainstMistake();
+// A clear gain of the log evidence, beside any odds: ten to one.
+double ClearGain();
 
 struct MistakeTrial {
   std::vector<RecordingMistake> mistakes;

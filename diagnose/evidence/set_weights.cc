@@ -26,7 +26,7 @@ constexpr double kPriceOfAChange = 0.05;
 // Additions worth less than this share of the whole gain were true in 2 of 15 cases.
 constexpr double kLeastShareOfGain = 0.1;
 // Large enough to include the truth.
-constexpr size_t kBestSets = 25, kBestNamed = 25, kSubsetsOf = 3, kBestValues = 2;
+constexpr size_t kFinalists = 25, kSubsetsOf = 3, kBestValues = 2;
 
 // Those changes of a set that are missing terms, without variants.
 ChangeSet NamedBy(const ChangeSet& set) {
@@ -59,10 +59,10 @@ std::vector<ScoredSet> Finalists(SetScores* scores, bool curves) {
   std::map<std::string, size_t> singles;
   for (size_t i = 0; i < tried.size(); ++i) {
     const ChangeSet& set = tried[i].set;
-    if (i < kBestSets) chosen.insert(set);
+    if (i < kFinalists) chosen.insert(set);
     if (i < kSubsetsOf)
       for (ChangeSet& subset : SubsetsOf(set)) chosen.insert(std::move(subset));
-    if (named.size() < kBestNamed && named.insert(NamedBy(set)).second) chosen.insert(set);
+    if (named.size() < kFinalists && named.insert(NamedBy(set)).second) chosen.insert(set);
     if (set.size() == 1 && !IsMissingTerm(set.front()) &&
         singles[set.front().substr(0, set.front().find('.'))]++ < kBestValues)
       chosen.insert(set);

@@ -19,8 +19,6 @@ constexpr int kFirstPeriod = 2;
 constexpr double kSeen = 2;
 // How many periods of each effect are kept: the true one and its strongest neighbour.
 constexpr size_t kKept = 2;
-// Rows overlap, so two count as one (as in the evidence).
-constexpr double kIndependent = 0.5;
 
 using Gains = std::map<std::string, double>;  // by set
 
@@ -60,7 +58,7 @@ Gains GainsIn(size_t run, const Rows& waves, const Rows& rows, const SetFit& nul
       for (const GroupFit& group : null.groups) {
         if (group.run == run && group.balance == wave.balance &&
             group.band == block->band[static_cast<size_t>(i)])
-          root[i] = std::sqrt(kIndependent * group.weight);
+          root[i] = std::sqrt(kIndependentShare * group.weight);
       }
     }
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(block->X.rows(), count);

@@ -85,8 +85,7 @@ std::string ClosureSentence(const std::vector<Closure>& closures) {
                      ")");
   }
   const Closure& first = closures.front();
-  std::string sentence = std::string(" The model") + (first.on_refit ? " with its own values refitted" : "") +
-                         " and " + Enumerated(curves) + " predict held-out runs over " +
+  std::string sentence = " The model and " + Enumerated(curves) + " predict held-out runs over " +
                          ShortNumber(first.seconds, 2) + " s";
   if (!std::isfinite(first.before) || !(first.before > 0)) return sentence + ", which it cannot without.";
   const double taken = 1 - std::pow(first.after / first.before, 2);

@@ -85,9 +85,6 @@ struct Closure {
   // Typical error of held-out predictions over `seconds`, in noise units; over windows, the geometric mean.
   double before = 0, after = 0;
   double seconds = 0;
-  // The model's values differ from those that were found: they were fitted with the same effects and predict
-  // windows better.
-  bool on_refit = false;
   std::string resembles;  // "grows as the square root of |p2 - p1|"
 };
 

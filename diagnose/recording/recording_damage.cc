@@ -24,8 +24,6 @@ constexpr double kSpike = 8;               // noise units beyond all neighbours
 constexpr double kSpreadOfNeighbours = 2;  // and this many times the neighbours' spread
 constexpr double kChange = 5;              // and this many times the change that 19 of 20 do not reach
 constexpr size_t kNeighbours = 3;          // neighbours on each side
-constexpr double kGap = 5;                 // median sample intervals without a row
-constexpr double kStepOfDamage = 0.05;     // of the command's range: a larger change counts as a step
 
 struct Stretch {
   size_t first, last;  // [first, last)
@@ -180,10 +178,10 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
 std::vector<Stretch> LostSteps(const Run& run, const std::vector<size_t>& held_there, size_t sensors) {
   const double usual = MedianInterval(run.time);
   const std::vector<double>& voltage = run.voltage.values;
-  const double least = kStepOfDamage * maths::RangeOf(voltage).size();
+  const double least = kStepOfCommand * maths::RangeOf(voltage).size();
   std::vector<Stretch> lost;
   for (size_t i = 0; i + 1 < run.samples(); ++i) {
-    if (run.time[i + 1] - run.time[i] > kGap * usual && std::abs(voltage[i + 1] - voltage[i]) > least) {
+    if (run.time[i + 1] - run.time[i] > kGapInTime * usual && std::abs(voltage[i + 1] - voltage[i]) > least) {
       lost.push_back({i + 1, i + 1});
     }
   }

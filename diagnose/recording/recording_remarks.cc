@@ -18,7 +18,6 @@ namespace {
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
 constexpr double kMostMissing = 0.05;    // of a signal that is usually present
 constexpr double kSlowerSensor = 0.5;    // if more is missing, it is a slower sensor
-constexpr double kGapTold = 5;           // median sample intervals
 constexpr double kCoarseStep = 2;        // resolution, in standard deviations of the noise
 
 std::string InPercent(double share) { return ShortNumber(100 * share, 3) + " %"; }
@@ -30,7 +29,7 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   double longest = 0;
   for (size_t i = 0; i + 1 < time.size(); ++i) {
     const double interval = time[i + 1] - time[i];
-    if (interval <= kGapTold * usual) continue;
+    if (interval <= kGapInTime * usual) continue;
     if (gaps++ == 0) first = i;
     longest = std::max(longest, interval);
   }

@@ -102,6 +102,17 @@ void SetStart(const model::Parameters& model, RunData* data);
 // In standard deviations of its noise: a signal that moves up and down by no more than this hardly moves.
 inline constexpr double kHardlyMoves = 5;
 
+// Median sample intervals: rows that are further apart lack some between them.
+inline constexpr double kGapInTime = 5;
+// A part of the command's range: a larger change from one sample to the next is a step.
+inline constexpr double kStepOfCommand = 0.05;
+
+// Samples: filters of recorders and means over a sample delay a signal by so many.
+inline constexpr double kRecorderSamples = 2;
+
+// Standard deviations: noise hides what is smaller.
+inline constexpr double kHides = 3;
+
 // Makes the runs' names unique.
 void MakeNamesUnique(std::vector<RunData>* runs);
 

@@ -21,8 +21,7 @@ using StartLines = std::array<StartLine, model::kChannels>;
 
 // Takes a speed for 0 when the samples cannot distinguish it from 0. A motion that should begin at rest but
 // gets a small speed slips where friction or cogging would hold it, and the fit then stays one tooth off.
-constexpr double kAtRest = 3;  // standard errors
-double Rest(double speed, double error) { return std::abs(speed) < kAtRest * error ? 0 : speed; }
+double Rest(double speed, double error) { return std::abs(speed) < kHides * error ? 0 : speed; }
 
 StartLine FirstLine(const std::vector<double>& time, const SignalData& signal) {
   std::vector<size_t> rows;
@@ -70,8 +69,7 @@ StartLines FirstLines(const RunData& data) {
 // by `scale`, and a sensor that is late. NaN without a line.
 double ErrorOf(const StartLine& line, double scale) {
   constexpr double kLate = 0.005;  // s
-  constexpr double kNoises = 3;
-  return kNoises * line.noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
+  return kHides * line.noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
 }
 
 // The same for a speed that is known from the angle alone.

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
-#include "base/maths/linear_fit.h"
-#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/recording/block_means.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "runs/measured_signals.h"
@@ -20,26 +19,14 @@ using Run = runs::MeasuredRun;
 
 // Relative: scales of two sensors agree better than this.
 constexpr double kSensorFactor = 0.02;
-// Samples and s: a filter's delay.
-constexpr double kSensorLateSamples = 2, kSensorLateSeconds = 2e-3;
-// s: means over this time replace derivatives of noisy signals.
-constexpr double kSensorBlock = 0.1;
-constexpr size_t kFewestStepsOfABlock = 4, kFewestBlocksCompared = 20;
-// As a share of the variance: two sensors that have less in common do not measure one quantity.
-constexpr double kNotInCommon = 0.2;
+// s: a filter's delay.
+constexpr double kSensorLate = 2e-3;
 
 // What two sensors say of one quantity, and of how fast it changes, in consecutive blocks.
 struct SensorBlocks {
   std::vector<double> second, first, rate;
   double step = 0;
 };
-
-double MeanBetween(const Run& run, const std::vector<double>& values, size_t from, size_t to) {
-  double sum = 0;
-  for (size_t i = from; i < to; ++i)
-    sum += 0.5 * (values[i] + values[i + 1]) * (run.time[i + 1] - run.time[i]);
-  return sum / (run.time[to] - run.time[from]);
-}
 
 // A pair of sensors.
 struct SensorPair {
@@ -54,10 +41,10 @@ struct SensorPair {
     return (run.*second).measured() &&
            std::all_of(first.begin(), first.end(), [&](SignalOfRun one) { return (run.*one).measured(); });
   }
-  double First(const Run& run, size_t from, size_t to) const {
-    const std::vector<double>& values = (run.*first[0]).values;
-    if (first.size() == 1) return (values[to] - values[from]) / (run.time[to] - run.time[from]);
-    return MeanBetween(run, (run.*first[1]).values, from, to) - MeanBetween(run, values, from, to);
+  double First(const RunBlock& block) const {
+    const Run& run = *block.run;
+    return first.size() == 1 ? block.Rate(run.*first[0])
+                             : block.Mean(run.*first[1]) - block.Mean(run.*first[0]);
   }
 };
 
@@ -80,23 +67,18 @@ const std::vector<SensorPair>& SensorPairs() {
 }
 
 void AddSensorBlocks(const SensorPair& pair, const Run& run, SensorBlocks* blocks) {
-  const double step = MedianInterval(run.time);
-  const auto steps = std::max(kFewestStepsOfABlock, static_cast<size_t>(std::lround(kSensorBlock / step)));
-  const size_t quarter = steps / 4;
-  for (size_t from = quarter; from + steps + quarter < run.samples(); from += steps) {
-    const size_t to = from + steps;
-    const double time = run.time[to] - run.time[from];
-    if (time > 2 * static_cast<double>(steps) * step) continue;  // rows are missing
-    const double second = MeanBetween(run, (run.*pair.second).values, from, to);
-    const double first = pair.First(run, from, to);
-    const double change =
-        pair.First(run, to - quarter, to + quarter) - pair.First(run, from - quarter, from + quarter);
+  blocks->step = std::max(blocks->step, MedianInterval(run.time));
+  for (const RunBlock& block : RunBlocksOf(run)) {
+    const size_t quarter = (block.last - block.first) / 4;
+    if (block.first < quarter || block.last + quarter >= run.samples()) continue;
+    const double second = block.Mean(run.*pair.second), first = pair.First(block);
+    const double change = pair.First({&run, block.last - quarter, block.last + quarter}) -
+                          pair.First({&run, block.first - quarter, block.first + quarter});
     if (!std::isfinite(second) || !std::isfinite(first) || !std::isfinite(change)) continue;
     blocks->second.push_back(second);
     blocks->first.push_back(first);
-    blocks->rate.push_back(-change / time);
+    blocks->rate.push_back(-change / block.seconds());
   }
-  blocks->step = std::max(blocks->step, step);
 }
 
 double RootMeanSquare(const std::vector<double>& values) {
@@ -106,33 +88,21 @@ double RootMeanSquare(const std::vector<double>& values) {
 }
 
 std::optional<SecondSensor> Compared(const SensorBlocks& blocks) {
-  if (blocks.first.size() < kFewestBlocksCompared) return std::nullopt;
-  try {
-    const maths::LinearFit fit = maths::FitLinear(
-        {blocks.first, std::vector<double>(blocks.first.size(), 1.0), blocks.rate}, blocks.second);
-    if (!(fit.residual_deviation < std::sqrt(kNotInCommon) * RootMeanSquare(blocks.second)))
-      return std::nullopt;
-    const double factor = fit.coefficients[0];
-    if (!(factor > 0)) return std::nullopt;
-    return SecondSensor{.factor = factor,
-                        .factor_half = fit.HalfWidth95({1, 0, 0}),
-                        .offset = fit.coefficients[1],
-                        .offset_half = fit.HalfWidth95({0, 1, 0}),
-                        .late = fit.coefficients[2] / factor,
-                        .late_half = fit.HalfWidth95({0, 0, 1}) / factor};
-  } catch (const std::invalid_argument&) {  // at rest, or at one speed
-    return std::nullopt;
-  }
+  const std::optional<FittedBlocks> fit =
+      FitBlocks({blocks.first, std::vector<double>(blocks.first.size(), 1.0), blocks.rate}, blocks.second);
+  if (!fit.has_value() || !(fit->value[0] > 0)) return std::nullopt;
+  const double factor = fit->value[0];
+  return SecondSensor{.factor = factor,
+                      .factor_half = fit->half[0],
+                      .offset = fit->value[1],
+                      .offset_half = fit->half[1],
+                      .late = fit->value[2] / factor,
+                      .late_half = fit->half[2] / factor};
 }
 
 const runs::SignalName& NameOfSignal(SignalOfRun signal) {
   return *std::find_if(runs::kSignals.begin(), runs::kSignals.end(),
                        [&](const runs::SignalName& one) { return one.signal == signal; });
-}
-
-std::string OffBy(double value, double half) {
-  half = std::max(half, 1e-3 * std::abs(value));
-  return maths::PlusMinus({value, value - half, value + half});
 }
 
 // `size` is the root mean square of the quantity. An offset that is small beside it is not worth a word.
@@ -141,13 +111,13 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
   const runs::SignalName& name = NameOfSignal(pair.second);
   std::string text = name.ours;
   if (differ == SensorsDiffer::kInTime)
-    return text + " is " + OffBy(std::abs(second.late), second.late_half) + " s " +
+    return text + " is " + WithHalfWidth(std::abs(second.late), second.late_half) + " s " +
            (second.late > 0 ? "later" : "earlier") + " than " + pair.first_name + ": " + pair.believed;
-  text += " is " + OffBy(second.factor, second.factor_half) + " times " + pair.what;
+  text += " is " + WithHalfWidth(second.factor, second.factor_half) + " times " + pair.what;
   const bool off = std::abs(second.offset) > std::max(second.offset_half, kSensorFactor / 2 * size);
   if (off) {
-    text += " and " + OffBy(std::abs(second.offset), second.offset_half) + " " + runs::UnitIn(run, name) +
-            (second.offset > 0 ? " more" : " less");
+    text += " and " + WithHalfWidth(std::abs(second.offset), second.offset_half) + " " +
+            runs::UnitIn(run, name) + (second.offset > 0 ? " more" : " less");
   }
   text += std::string(": ") + pair.believed;
   text += pair.set_aside ? ", and the speed is left out" : ", and dp is only compared with them";
@@ -186,8 +156,7 @@ std::vector<SameSensors> SensorsOf(const SensorPair& pair, const std::vector<Run
 SensorsDiffer HowTheyDiffer(const SecondSensor& second, double size, double step) {
   if (std::abs(second.factor - 1) > kSensorFactor + second.factor_half) return SensorsDiffer::kInSize;
   if (std::abs(second.offset) > kSensorFactor * size + second.offset_half) return SensorsDiffer::kInSize;
-  const bool late =
-      std::abs(second.late) > std::max(kSensorLateSamples * step, kSensorLateSeconds) + second.late_half;
+  const bool late = std::abs(second.late) > std::max(kRecorderSamples * step, kSensorLate) + second.late_half;
   return late ? SensorsDiffer::kInTime : SensorsDiffer::kNot;
 }
 

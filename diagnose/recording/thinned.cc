@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kFinest = 1e-3;        // s between samples
 constexpr size_t kFewestOfARun = 1000;  // samples
-constexpr double kJump = 0.05;          // of the command's range
 
 }  // namespace
 
@@ -24,7 +23,7 @@ void Thin(size_t fewest, RunData* run) {
   const size_t step = std::min(by_time, samples / std::max<size_t>(fewest, 1));
   if (step < 2) return;
   const maths::Range range = maths::RangeOf(stimulus.voltage);
-  const double jump = kJump * range.size();
+  const double jump = kStepOfCommand * range.size();
   size_t kept = 0;
   for (size_t i = 0; i < samples; ++kept) {
     double sum = stimulus.voltage[i];

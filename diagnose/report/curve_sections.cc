@@ -37,11 +37,10 @@ std::string Label(const Closure& closure) {
 
 std::string GapText(const Closure& closure) {
   const double taken = 1 - std::pow(closure.after / closure.before, 2);
-  return "<p>Added to the model" +
-         std::string(closure.on_refit ? " with its own values refitted" : " with what was found") +
-         ", it predicts held-out runs over " + ShortNumber(closure.seconds, 2) + " s with " +
-         ShortNumber(closure.after, 3) + " noise units instead of " + ShortNumber(closure.before, 3) +
-         ": it takes " + ShortNumber(100 * taken, 2) +
+  return "<p>Added to the model with what was found, it predicts held-out runs over " +
+         ShortNumber(closure.seconds, 2) + " s with " + ShortNumber(closure.after, 3) +
+         " noise units instead of " + ShortNumber(closure.before, 3) + ": it takes " +
+         ShortNumber(100 * taken, 2) +
          " % of the squared gap. It names no cause. Its values are in report.json.</p>\n";
 }
 

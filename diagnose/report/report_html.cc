@@ -98,8 +98,7 @@ std::string GapTable(const Diagnosis& diagnosis, bool si) {
          "noise floor.</p>\n" +
          Table({"signal", "unit", "#noise", "#fitted: before", "#refitted", "#after", "#held out: before",
                 "#refitted", "#after"},
-               rows) +
-         page::HtmlFigure(GapFigure(diagnosis), "the gap before and after");
+               rows);
 }
 
 std::string Runs(const Diagnosis& diagnosis, bool si) {

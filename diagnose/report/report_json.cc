@@ -76,7 +76,6 @@ Json ClosureJson(const Closure& closure) {
           {"ci95", ByKnots(closure, band)},
           {"held_out", {{"before", closure.before}, {"after", closure.after}}},
           {"seconds", closure.seconds},
-          {"on", closure.on_refit ? "refit" : "found"},
           {"resembles", closure.resembles}};
 }
 

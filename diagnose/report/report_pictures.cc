@@ -56,52 +56,6 @@ page::Figure CurveFigure(const MeasuredCurve& curve, const std::string& what) {
   return {.caption = "", .panels = {panel}, .width = 480, .panel_height = 180};
 }
 
-page::Figure GapFigure(const Diagnosis& diagnosis) {
-  std::vector<std::pair<std::string, BeforeAfter>> rows = {{"all signals, held out", diagnosis.held_out},
-                                                           {"all signals, fitted", diagnosis.fit}};
-  for (const SignalGap& signal : diagnosis.signals) {
-    const BeforeAfter& gap = signal.held_out;
-    if (!(signal.noise > 0)) continue;
-    rows.push_back({WithBlanks(ChannelName(signal.channel)) + ", held out",
-                    {gap.before / signal.noise, gap.refit_only / signal.noise, gap.after / signal.noise}});
-  }
-  page::Panel panel;
-  panel.x = {
-      .label = "root-mean-square residual in noise standard deviations", .logarithmic = true, .min = 0.5};
-  panel.y.min = 0.4 - static_cast<double>(rows.size());
-  panel.y.max = 0.6;
-  // The line from before to after.
-  page::Curve way = page::Line("", {}, {}, kRefit);
-  page::Curve before = page::Line(kBeforeLabel, {}, {}, kBefore, page::Stroke::kPoints);
-  page::Curve refit = page::Line("its own parameters refitted", {}, {}, kRefit, page::Stroke::kPoints);
-  page::Curve after = page::Line(kAfterLabel, {}, {}, kAfter, page::Stroke::kPoints);
-  double highest = 10;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const double y = -static_cast<double>(i);
-    panel.y.ticks.push_back({y, rows[i].first});
-    const BeforeAfter& gap = rows[i].second;
-    // Values below the axis are shown at its end.
-    const auto shown = [](double value) { return std::isfinite(value) ? std::max(value, 0.5) : value; };
-    for (auto [curve, value] :
-         {std::pair{&before, gap.before}, {&refit, gap.refit_only}, {&after, gap.after}}) {
-      curve->x.push_back(shown(value));
-      curve->y.push_back(y);
-      if (std::isfinite(value)) highest = std::max(highest, value);
-    }
-    way.x.insert(way.x.end(), {shown(gap.before), shown(gap.after), std::nan("")});
-    way.y.insert(way.y.end(), {y, y, std::nan("")});
-  }
-  way.weight = page::Weight::kFaint;
-  for (page::Curve* curve : {&before, &refit, &after}) curve->weight = page::Weight::kStrong;
-  panel.x.max = 1.15 * highest;
-  panel.rules = {{"noise floor", true, 1}};
-  panel.curves = {way, before, refit, after};
-  return {.caption = "",
-          .panels = {panel},
-          .width = 760,
-          .panel_height = 25 * static_cast<double>(rows.size()) + 5};
-}
-
 page::Figure HorizonFigure(const Diagnosis& diagnosis) {
   struct Kind {
     const char* label;

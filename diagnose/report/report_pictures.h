@@ -1,5 +1,5 @@
 // The pictures of report.html, of three kinds: a curve over the variable that it depends on, signals over
-// time, and the gap by signal or horizon.
+// time, and the gap by horizon.
 #pragma once
 
 #include <optional>
@@ -25,9 +25,6 @@ std::string Label(const std::string& name, const std::string& unit);
 // picture is as high as the curves need; a wide interval at an end with few samples does not stretch it.
 // `what` replaces the name of what is measured.
 page::Figure CurveFigure(const MeasuredCurve& curve, const std::string& what = "");
-
-// The gap in noise units, overall and for each signal: before, with refitted parameters, and after.
-page::Figure GapFigure(const Diagnosis& diagnosis);
 
 // The gap at each horizon before, refitted and after, for held-out and fitted runs.
 page::Figure HorizonFigure(const Diagnosis& diagnosis);

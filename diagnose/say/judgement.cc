@@ -8,6 +8,7 @@
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/prove/blind_changes.h"
+#include "diagnose/recording/run_data.h"
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
@@ -110,18 +111,18 @@ bool HasOneWitness(const Diagnosis& d, const std::vector<ScoredSet>& scores) {
 // signals late, or the command early. The balances allow for that and a simulation does not, so if only
 // simulation speaks for such a time, the recorder causes it.
 bool IsTheRecorders(const Diagnosis& d, double sample) {
-  constexpr double kSamples = 2;
   return std::all_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& effect) {
     const model::EffectInfo* info = model::FindEffect(effect.id);
     return info != nullptr && !effect.id.starts_with("sensor.") &&
-           std::any_of(
-               info->parameters.begin(), info->parameters.end(), [&](const model::ParameterInfo& parameter) {
-                 return parameter.role == model::Role::kTime &&
-                        std::any_of(
-                            effect.parameters.begin(), effect.parameters.end(), [&](const Estimated& one) {
-                              return one.name == parameter.name && std::abs(one.value) <= kSamples * sample;
-                            });
-               });
+           std::any_of(info->parameters.begin(), info->parameters.end(),
+                       [&](const model::ParameterInfo& parameter) {
+                         return parameter.role == model::Role::kTime &&
+                                std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                                            [&](const Estimated& one) {
+                                              return one.name == parameter.name &&
+                                                     std::abs(one.value) <= kRecorderSamples * sample;
+                                            });
+                       });
   });
 }
 

@@ -3,6 +3,7 @@
 #include "base/maths/median.h"
 #include "base/parallel.h"
 #include "diagnose/balances/masks.h"
+#include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {
 
@@ -13,8 +14,6 @@ constexpr std::array<const char*, kBalanceKinds> kBalanceNames = {"pump_torque",
 constexpr uint64_t kDrawSeed = 11;
 // A certain direction, on a scale of -1 to 1: three standard deviations of the speed's noise.
 constexpr double kSure = 0.997;
-// s: as smooth as the motion that a balance sees.
-constexpr double kMaskRise = 0.008;
 constexpr size_t kNearBlocks = 16;  // on either side, over which a block's noise is averaged
 
 LackingRun LackingIn(const model::ModelDescription& model, const RunData& run, size_t which,
@@ -42,9 +41,9 @@ void MaskReversals(LackingRun* run) {
   }
 }
 
-// From 0 where masked to 1 at kMaskRise from there.
+// From 0 where masked to 1 at kRise from there, as smooth as test functions are.
 Eigen::VectorXd WeightsOf(const std::vector<uint8_t>& mask, double interval) {
-  const double rise = std::max(1.0, kMaskRise / interval);
+  const double rise = std::max(1.0, kRise / interval);
   Eigen::VectorXd weights(static_cast<Eigen::Index>(mask.size()));
   double away = 0;
   for (size_t i = 0; i < mask.size(); ++i) {

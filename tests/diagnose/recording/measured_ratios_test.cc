@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "diagnose/recording/block_means.h"
+
 namespace hydro::diagnose {
 namespace {
 
@@ -41,6 +43,36 @@ runs::MeasuredRun Moved(double out, double back) {
     run.voltage.values.push_back(1);
   }
   return run;
+}
+
+// Tests that blocks are as long as is said, and that none reaches over missing rows.
+TEST(BlockMeans, Blocks) {
+  runs::MeasuredRun run = Moved(100, 100);
+  const std::vector<RunBlock> blocks = RunBlocksOf(run);
+  ASSERT_EQ(blocks.size(), 200u);
+  EXPECT_NEAR(blocks[7].seconds(), 0.1, 1e-9);
+  EXPECT_NEAR(blocks[7].Mean(run.p1), 1e6, 1);
+  EXPECT_NEAR(blocks[7].Rate(run.arm_angle), 0.1 * std::cos(0.75), 1e-4);
+  EXPECT_TRUE(std::isnan(blocks[7].Mean(run.motor_speed)));
+  for (size_t i = 1000; i < run.samples(); ++i) run.time[i] += 1;
+  EXPECT_EQ(RunBlocksOf(run).size(), 199u);
+}
+
+// Tests that a fit finds its coefficients, and that too few values, or what it leaves, say nothing.
+TEST(BlockMeans, Fits) {
+  std::vector<double> x, y, other;
+  for (int i = 0; i < 30; ++i) {
+    x.push_back(i);
+    y.push_back(2 * i);
+    other.push_back(i % 2 == 0 ? 1 : -1);
+  }
+  const std::optional<FittedBlocks> fit = FitBlocks({x, std::vector<double>(30, 0.0)}, y);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->value[0], 2, 1e-9);
+  EXPECT_EQ(fit->value[1], 0);
+  EXPECT_FALSE(FitBlocks({x}, other).has_value());
+  x.resize(19), y.resize(19);
+  EXPECT_FALSE(FitBlocks({x}, y).has_value());
 }
 
 // Tests that c/D is said where it is not the model's, with what it may come from, and nothing where it is.

@@ -28,7 +28,6 @@ Closure Curve() {
           .before = 9,
           .after = 3,
           .seconds = 0.4,
-          .on_refit = true,
           .resembles = "is proportional to motor_speed, against it"};
 }
 
@@ -62,14 +61,12 @@ TEST(ClosureReport, InJson) {
   EXPECT_EQ(closure["ci95"][2], Json({-2.1, -1.9}));
   EXPECT_EQ(closure["held_out"], Json({{"before", 9.0}, {"after", 3.0}}));
   EXPECT_EQ(closure["seconds"], 0.4);
-  EXPECT_EQ(closure["on"], "refit");
   EXPECT_EQ(closure["resembles"], "is proportional to motor_speed, against it");
   ASSERT_EQ(closure["also"].size(), 1u);
   const Json surface = closure["also"][0];
   EXPECT_EQ(surface["at"][1], Json({-500.0, 0.0, 500.0}));
   EXPECT_EQ(surface["value"][1], Json({2.0, 0.0, -2.0}));
   EXPECT_EQ(surface["ci95"][0][2], Json({-2.0, 0.0}));
-  EXPECT_EQ(surface["on"], "found");
 }
 
 // Tests that the page shows the curve, the cuts of a surface, and the gap before and after.

@@ -100,25 +100,6 @@ TEST(TermFigure, InSi) {
   EXPECT_EQ(after.at, before.at) << "rad/s stays";
 }
 
-// Tests one row for each gap, with the values before, refitted and after on it, and nothing left of the axis.
-TEST(GapFigure, HasARowForEachGap) {
-  diagnose::Diagnosis diagnosis = ExampleDiagnosis(kSamples);
-  diagnosis.fit.after = 0.01;
-  const page::Figure figure = diagnose::GapFigure(diagnosis);
-  ASSERT_EQ(figure.panels.size(), 1u);
-  const page::Panel& panel = figure.panels[0];
-  ASSERT_EQ(panel.y.ticks.size(), 5u);  // all held out, all fitted, and three signals
-  EXPECT_EQ(panel.y.ticks[2].text, "motor speed, held out");
-  ASSERT_EQ(panel.curves.size(), 4u);  // the way, then the three points
-  EXPECT_EQ(panel.curves[1].label, "model as given");
-  EXPECT_EQ(panel.curves[1].x[0], 23.9);
-  EXPECT_EQ(panel.curves[2].x[0], 19.5);
-  EXPECT_EQ(panel.curves[3].x[0], 1.06);
-  EXPECT_EQ(panel.curves[3].x[1], panel.x.min);
-  EXPECT_DOUBLE_EQ(panel.curves[1].x[3], 44.0 / 1.5);  // p1, in noise units
-  EXPECT_GT(panel.x.max, 44.0 / 1.5);
-}
-
 // Tests that each horizon is a point of each of the three curves, held out and fitted, and ticks are seconds.
 TEST(HorizonFigure, HasAPointForEachHorizon) {
   const page::Figure figure = diagnose::HorizonFigure(ExampleDiagnosis(60));
