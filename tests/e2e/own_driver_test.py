@@ -117,6 +117,9 @@ class OwnDriverTest(OwnDriverCase):
                 self.run_program("hydro-log", "summary", log_file, "--json", self.path("summary.json"), "--force")
                 with open(self.path("summary.json"), encoding="utf-8") as file:
                     tracking = json.load(file)["tracking"]
+                skipped = re.search(r"\d+ of \d+ ticks \(.*\) were skipped", launch.stderr)
+                if skipped and not tracking["at_target"]:
+                    self.skipTest(f"this computer is too busy for a loop: {skipped[0]}")
                 self.assertTrue(tracking["at_target"], tracking)
                 self.assertEqual(log.descriptions[0].program, example)
                 self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
