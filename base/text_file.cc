@@ -1,6 +1,7 @@
 #include "base/text_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -17,7 +18,10 @@ std::string ReadTextFile(const std::string& file) {
   CheckIsFile(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  if (!stream) {
+    throw InputError(file + ": cannot be read: " + std::strerror(errno) +
+                     (errno == EMFILE ? "; a larger limit (ulimit -n) is needed" : ""));
+  }
   std::string text;
   char block[65536];
   while (stream.read(block, sizeof block), stream.gcount() > 0) {

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,7 +53,7 @@ struct Pipe {
     int fds[2];
     const int failed =
         kind == Kind::kPipe ? pipe2(fds, O_CLOEXEC) : socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, fds);
-    if (failed != 0) throw StartError(std::string("cannot create a pipe for a child: ") + strerror(errno));
+    if (failed != 0) throw StartError("cannot create a pipe for a child: " + process::ReasonOf(errno));
     read = fds[0];
     write = fds[1];
   }

@@ -61,6 +61,7 @@ class StackLaunch {
   void OnEnded(const Ended& ended);
   void OnStopHeard();
   void CheckReady();
+  bool AwaitsDriver(const std::vector<std::string>& missing) const;
   void AskWhoIsThere();
   void CheckPlantIsHeard();
   void CheckEarlyEnd();

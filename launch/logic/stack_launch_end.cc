@@ -15,7 +15,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kPlantMargin_s = 1;      // the plant's own launch may have begun this much later
+// The plant's own launch may have begun this much later. A driver waits for its device as long as this launch
+// does for the driver, from its own start on, and then says what is missing and what to do: that line says
+// more than this launch knows.
+constexpr double kPlantMargin_s = 1;
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
 
 constexpr auto kUnreadTime = 2s;  // how long a reader may take nothing once the launcher has been told to end
@@ -128,7 +131,7 @@ void StackLaunch::CheckReady() {
     const std::size_t n = plan_.children.size();
     Print(fmt::format("{} ready after {:.2f} s", n == 1 ? "1 process" : fmt::format("all {} processes", n),
                       elapsed));
-  } else if (elapsed > config_.time.start_timeout_s) {
+  } else if (elapsed > config_.time.start_timeout_s + (AwaitsDriver(missing) ? kPlantMargin_s : 0)) {
     Fail(fmt::format("not ready within {:.3g} s (time.start_timeout_s): {}", elapsed,
                      fmt::join(missing, ", ")),
          1);
@@ -137,6 +140,13 @@ void StackLaunch::CheckReady() {
     asked_ = clock_.Now();
     AskWhoIsThere();
   }
+}
+
+bool StackLaunch::AwaitsDriver(const std::vector<std::string>& missing) const {
+  return std::any_of(plan_.children.begin(), plan_.children.end(), [&](const ChildSpec& child) {
+    return child.role() == "driver" &&
+           std::find(missing.begin(), missing.end(), child.program()) != missing.end();
+  });
 }
 
 void StackLaunch::AskWhoIsThere() {

@@ -15,6 +15,16 @@ namespace {
 
 constexpr int kFirstTries = 100;  // about 1 ms each, for the first readings of all inputs
 
+// In the run, what a driver takes for an error of the configuration is one of the device, which has changed.
+template <class Step>
+void InTheRun(const Step& step) {
+  try {
+    step();
+  } catch (const InputError& error) {
+    throw DeviceError(error.what());
+  }
+}
+
 }  // namespace
 
 DeviceRig::DeviceRig(const settings::StackConfig& config, const bus::Clock& clock,
@@ -69,11 +79,7 @@ void DeviceRig::AwaitReadings() {
 }
 
 model::Measurement DeviceRig::Read(int64_t /*tick*/) {
-  if (std::exchange(begun_, true)) {
-    device_->Read(readings_);
-  } else {
-    AwaitReadings();
-  }
+  InTheRun([&] { std::exchange(begun_, true) ? device_->Read(readings_) : AwaitReadings(); });
   faults_.clear();
   const bus::Clock::TimePoint now = clock_.Now();
   const bool silent = watch_.Look(readings_, now, &faults_);
@@ -99,7 +105,7 @@ double DeviceRig::Drive(double voltage) {
   guardian_->Require();
   const double output = Terminal(voltage);
   watch_.OnDriven(output, clock_.Now());
-  device_->Drive(output);
+  InTheRun([&] { device_->Drive(output); });
   return voltage;
 }
 

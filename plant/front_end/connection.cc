@@ -20,6 +20,10 @@ constexpr auto kOpenPeriod = 100ms;
 constexpr auto kKeepAlivePeriod = 100ms;  // the device gives up on a session after 250 ms
 constexpr size_t kChunk = 4096;
 constexpr int kMostChunks = 64;  // in one call: a flood on the link must not stop the loop
+// Of the frames that a device can have sent within a time: its clock may be faster, and a second may have
+// been on its way.
+constexpr double kFaster = 2, kOnTheWay_s = 1;
+constexpr auto kAnewAfter = 250ms;  // without a newer frame: a late one is not that late
 
 bool SameSettings(const hydro_settings& a, const hydro_settings& b) {
   std::array<uint8_t, HYDRO_WIRE_MAX> wires[2] = {};
@@ -100,8 +104,8 @@ void Connection::Take(const hydro_frame& frame, TimePoint now) {
     ++echoes_;
     return;
   }
-  if (frame.kind == HYDRO_IDENTITY) return OnIdentity(frame);
-  if (frame.session != session_ || !IsNewer(frame)) {
+  if (frame.kind == HYDRO_IDENTITY) return OnIdentity(frame, now);
+  if (frame.session != session_ || !IsNewer(frame, now)) {
     ++counts_.refused;
     return;
   }
@@ -109,29 +113,64 @@ void Connection::Take(const hydro_frame& frame, TimePoint now) {
   if (frame.kind == HYDRO_SAMPLE) OnSample(frame.body.sample, now);
 }
 
-// Frames that are not newer count for nothing, not even as a sign of life.
-bool Connection::IsNewer(const hydro_frame& frame) {
+// Frames that are not newer count for nothing, not even as a sign of life. Nor does a single one with a
+// number that the device cannot have reached, or nothing would be newer for a long time: only another one
+// that goes on from there shows that the device does.
+bool Connection::IsNewer(const hydro_frame& frame, TimePoint now) {
   if (heard_ && !hydro_is_newer(frame.sequence, newest_)) return false;
-  if (heard_) counts_.lost += frame.sequence - newest_ - 1;
+  const uint32_t missing = heard_ ? frame.sequence - newest_ - 1 : 0;
+  const double most = MostSentSince(newest_at_, now);
+  if (missing > 0 && missing > most) {
+    const bool goes_on = far_ && hydro_is_newer(frame.sequence, *far_) && frame.sequence - *far_ - 1 <= most;
+    far_ = frame.sequence;
+    if (!goes_on) return false;
+    ++counts_.jumps;
+    jump_ = {newest_, frame.sequence};
+  } else {
+    counts_.lost += missing;
+  }
   heard_ = true;
   newest_ = frame.sequence;
+  newest_at_ = now;
+  old_.reset();
+  far_.reset();
   return true;
 }
 
-void Connection::OnIdentity(const hydro_frame& frame) {
+// Samples, and answers to what is asked.
+double Connection::MostSentSince(TimePoint before, TimePoint now) const {
+  const double samples_per_s =
+      static_cast<double>(identity_.tick_rate_hz) / std::max<int>(settings_.sample_interval_ticks, 1);
+  const double answers_per_s = 2 / bus::ToSeconds(kRequestPeriod);
+  return (samples_per_s + answers_per_s) * (kFaster * bus::ToSeconds(now - before) + kOnTheWay_s);
+}
+
+// Whether the device numbers its frames anew though it says that it is the same: nothing newer comes, and its
+// answers rise from a lower number.
+bool Connection::BeganAnew(const hydro_frame& frame, TimePoint now) {
+  if (!heard_ || hydro_is_newer(frame.sequence, newest_) || now - newest_at_ < kAnewAfter) return false;
+  const bool rises = old_ && hydro_is_newer(frame.sequence, *old_);
+  old_ = frame.sequence;
+  return rises;
+}
+
+void Connection::OnIdentity(const hydro_frame& frame, TimePoint now) {
   if (frame.protocol != HYDRO_PROTOCOL) {
     other_protocol_ = frame.protocol;
     return;
   }
   const hydro_identity& identity = frame.body.identity;
-  const bool another = !identified_ || !SameDevice(identity, identity_);
+  const bool another = !identified_ || !SameDevice(identity, identity_) || BeganAnew(frame, now);
   if (another) heard_ = false;  // the device's sequence begins anew
-  if (!IsNewer(frame)) {
+  if (!IsNewer(frame, now)) {
     ++counts_.refused;
     return;
   }
   other_protocol_ = 0;
-  if (another && identified_ && was_up_) ++resets_;
+  if (another && identified_ && was_up_) {
+    ++resets_;
+    change_ = DescribeChange(identity_, identity);
+  }
   identified_ = true;
   identity_ = identity;
   if (identity.session_in_charge != session_) {
@@ -139,9 +178,8 @@ void Connection::OnIdentity(const hydro_frame& frame) {
     return;
   }
   if (phase_ == Phase::kUp && !another && identity.fingerprint == fingerprint_) return;
-  settings_ = settings_for_(identity);
-  fingerprint_ = hydro_fingerprint(&settings_);
   sampled_ = false;
+  if (!TakeSettingsFor(identity)) return;
   // After a cut link the device may still hold the settings, and may even be armed. Those that it kept from
   // another program or another start are compared first, all 192 bytes: a fingerprint is only its word.
   compared_ = compared_ && !another && identity.fingerprint == fingerprint_;
@@ -149,17 +187,42 @@ void Connection::OnIdentity(const hydro_frame& frame) {
   next_request_ = {};
 }
 
+// In the run, a device that does not fit the configuration is no error of the configuration, to which an
+// earlier one did fit.
+bool Connection::TakeSettingsFor(const hydro_identity& identity) {
+  try {
+    settings_ = settings_for_(identity);
+  } catch (const InputError&) {
+    if (!was_up_) throw;
+    unfit_ = "is not the one with which the run began: " + DescribeChange(fitting_, identity);
+    phase_ = Phase::kHello;
+    return false;
+  }
+  unfit_.clear();
+  fitting_ = identity;
+  fingerprint_ = hydro_fingerprint(&settings_);
+  return true;
+}
+
 void Connection::OnHeld(const hydro_settings_held& held) {
   if (phase_ != Phase::kSettings) return;
+  if (held.refused != HYDRO_TAKEN && was_up_) {
+    unfit_ = "refuses the settings that it had taken when the run began: " + DescribeRefusal(held);
+    return;
+  }
   if (held.refused != HYDRO_TAKEN) throw RefusalError(file_, held);
   if (held.fingerprint != fingerprint_ || !SameSettings(held.settings, settings_)) {
-    throw settings::KeyError(
-        file_, "driver.url",
-        fmt::format("a front end that holds other settings (fingerprint {:08x}) than those that it "
-                    "was sent ({:08x})",
-                    held.fingerprint, fingerprint_),
-        "one that keeps them: give it the firmware of this version");
+    const std::string found =
+        fmt::format("holds other settings (fingerprint {:08x}) than those that it was sent ({:08x})",
+                    held.fingerprint, fingerprint_);
+    if (was_up_) {
+      unfit_ = found;
+      return;
+    }
+    throw settings::KeyError(file_, "driver.url", "a front end that " + found,
+                             "one that keeps them: give it the firmware of this version");
   }
+  unfit_.clear();
   compared_ = true;
   phase_ = Phase::kUp;
 }

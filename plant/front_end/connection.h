@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "bus/clock.h"
 #include "firmware/frames.h"
@@ -18,6 +20,7 @@ namespace hydro::plant {
 struct FrameCounts {
   int64_t samples = 0;         // taken
   int64_t lost = 0;            // of the device's frames, by gaps in their sequence
+  int64_t jumps = 0;           // of that sequence, farther than the device can have sent meanwhile
   int64_t damaged = 0;         // that arrived here
   int64_t refused = 0;         // intact, but of another session, old or repeated
   int64_t left_out = 0;        // commands for which the link was too slow
@@ -36,8 +39,8 @@ class Connection {
   Connection(std::string file, std::unique_ptr<Link> link, uint32_t session, SettingsFor settings_for);
 
   // Takes everything that has come, and goes on with the handshake where one is due, also after the link was
-  // cut or the device has reset itself. Throws InputError like SettingsFor, or when the device refuses its
-  // settings.
+  // cut or the device has reset itself. Until is_up() was true for the first time, it throws InputError like
+  // SettingsFor, or when the device refuses its settings; later, unfit() says so.
   void Poll(TimePoint now);
 
   // Whether the device holds the settings and has sent a sample since.
@@ -52,6 +55,17 @@ class Connection {
 
   // How often the device has restarted while this connection was up.
   int64_t resets() const { return resets_; }
+
+  // What the device says of itself since its last restart that it had said differently before; empty:
+  // nothing.
+  const std::string& change() const { return change_; }
+
+  // In what the device that answers now differs from the one with which the run began, so that it cannot be
+  // driven; empty: in nothing. It may still hear AskForZero().
+  const std::string& unfit() const { return unfit_; }
+
+  // Of the newest jump of the device's sequence: the number before it and the one after.
+  std::pair<uint32_t, uint32_t> jump() const { return jump_; }
   const FrameCounts& counts() const { return counts_; }
   const Link& link() const { return *link_; }
 
@@ -80,8 +94,11 @@ class Connection {
   void Reopen(TimePoint now);
   void Receive(TimePoint now);
   void Take(const hydro_frame& frame, TimePoint now);
-  bool IsNewer(const hydro_frame& frame);
-  void OnIdentity(const hydro_frame& frame);
+  bool IsNewer(const hydro_frame& frame, TimePoint now);
+  double MostSentSince(TimePoint before, TimePoint now) const;
+  bool BeganAnew(const hydro_frame& frame, TimePoint now);
+  void OnIdentity(const hydro_frame& frame, TimePoint now);
+  bool TakeSettingsFor(const hydro_identity& identity);
   void OnHeld(const hydro_settings_held& held);
   void OnSample(const hydro_sample& sample, TimePoint now);
   void CountOfDevice(const hydro_sample& sample);
@@ -104,14 +121,21 @@ class Connection {
   TimePoint next_zero_{};
   uint32_t sent_ = 0;  // sequence of the newest frame sent
   hydro_receiver receiver_{};
-  int64_t damaged_before_ = 0;  // by receivers before
-  bool heard_ = false;          // whether a frame of this device came; the next is judged by its sequence
-  uint32_t newest_ = 0;         // its sequence
+  int64_t damaged_before_ = 0;   // by receivers before
+  bool heard_ = false;           // whether a frame of this device came; the next is judged by its sequence
+  uint32_t newest_ = 0;          // its sequence
+  TimePoint newest_at_{};        // when that came
+  std::optional<uint32_t> old_;  // sequence of an IDENTITY that came later and was not newer
+  std::optional<uint32_t>
+      far_;  // of a frame that came later, with a number that the device cannot have reached
+  std::pair<uint32_t, uint32_t> jump_{};
   int64_t bytes_ = 0;
   int64_t echoes_ = 0;          // our own frames that came back
   uint8_t other_protocol_ = 0;  // of the device that answers; 0: it is ours
 
   hydro_identity identity_{};
+  hydro_identity fitting_{};  // the newest for which there are settings
+  std::string unfit_, change_;
   bool identified_ = false;
   bool compared_ = false;  // the device has said that it holds the settings of `fingerprint_`
   hydro_settings settings_{};

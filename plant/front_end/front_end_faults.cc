@@ -45,16 +45,22 @@ bool FrontEndRig::FindSilence() {
         allowed);
     return true;
   }
+  if (!connection_.unfit().empty()) {
+    Add("device_fault",
+        fmt::format("the front end at {} {}; it was sent a ZERO; allowed is the one with which the "
+                    "run began, as it was then",
+                    url, connection_.unfit()));
+    ForgetDevice();
+    return true;
+  }
   if (resets_ != connection_.resets()) {
     Add("device_fault",
         fmt::format(
-            "the front end at {} has reset itself, or another one has taken its place; allowed is one "
+            "the front end at {} has reset itself, or another one has taken its place{}; allowed is one "
             "that keeps its supply: it gets its settings anew",
-            url));
+            url, connection_.change().empty() ? "" : ": " + connection_.change()));
     if (connection_.is_up()) resets_ = connection_.resets();
-    trips_.reset();
-    motor_count_.Forget();
-    arm_count_.Forget();
+    ForgetDevice();
     return true;
   }
   if (connection_.is_up() && now_ - connection_.sampled_at() <= stale_time_) return false;
@@ -65,6 +71,13 @@ bool FrontEndRig::FindSilence() {
                   1e3 * silence, 1e3 * allowed, instead),
       silence, allowed);
   return true;
+}
+
+// What it has counted so far tells nothing of what it counts from now on.
+void FrontEndRig::ForgetDevice() {
+  trips_.reset();
+  motor_count_.Forget();
+  arm_count_.Forget();
 }
 
 // A signal that is not a number is missing, whatever the device reports. A rate that is missing is a fault of
@@ -105,6 +118,17 @@ void FrontEndRig::FindContradictions() {
   if (watch_.ArmCountIsWrong()) read_.value[HYDRO_ARM_ANGLE] = std::numeric_limits<float>::quiet_NaN();
 }
 
+void FrontEndRig::FindJumps() {
+  if (jumps_ == connection_.counts().jumps) return;
+  jumps_ = connection_.counts().jumps;
+  const auto [before, after] = connection_.jump();
+  Add("device_fault",
+      fmt::format("the numbers of the front end's frames jump from {} to {}, and it cannot have sent so many "
+                  "meanwhile; allowed is one more in each: has it reset itself, or is its memory damaged?",
+                  before, after),
+      after, before);
+}
+
 void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   if ((sample.faults_present & HYDRO_FAULT_READ_BACK) == 0) {
     output_.Look(sample, Range(), connection_.settings().sample_interval_ticks, now_, &faults_);
@@ -114,8 +138,10 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
             ? fmt::format("the front end's output is not the {:.4g} V that it was set to; it does not say "
                           "what it reads back",
                           sample.voltage)
-            : fmt::format("the front end's output reads back {:.4g} V, and was set to {:.4g} V",
-                          sample.read_back, sample.voltage),
+            : fmt::format(
+                  "the front end says that its output is not what it was set to: it reads back {:.4g} "
+                  "V, and {:.4g} V are put out now",
+                  sample.read_back, sample.voltage),
         sample.read_back, sample.voltage);
   }
   const bool tripped = trips_ && *trips_ != sample.trips;

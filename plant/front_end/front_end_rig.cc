@@ -67,11 +67,12 @@ FrontEndRig::~FrontEndRig() {
   const FrameCounts& counts = connection_.counts();
   if (counts.samples == 0) return;
   spdlog::info(
-      "{}: {} samples; of its frames {} were lost, {} damaged, {} repeated or late; of ours it found {} "
+      "{}: {} samples; of its frames {} were lost, {} damaged, {} repeated or late{}; of ours it found {} "
       "damaged and refused {}, "
       "and {} were left out",
-      Describe(), counts.samples, counts.lost, counts.damaged, counts.refused, counts.device_damaged,
-      counts.device_refused, counts.left_out);
+      Describe(), counts.samples, counts.lost, counts.damaged, counts.refused,
+      counts.jumps > 0 ? fmt::format(", and their numbers jumped {} times", counts.jumps) : "",
+      counts.device_damaged, counts.device_refused, counts.left_out);
 }
 
 std::string FrontEndRig::Describe() const {
@@ -145,6 +146,7 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   has_read_back_ |= !std::isnan(read_.read_back);
   FindSensorFaults(read_);
   FindContradictions();
+  FindJumps();
   FindDeviceFaults(read_);
   FindUnaskedArming(read_);
   FindOldCommands(read_);
@@ -152,13 +154,10 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   return Measured();
 }
 
-// Takes a turn within the run, when another device is no longer an error of the configuration.
+// Takes a turn within the run. What cannot be driven shall be at zero volts, whatever it is.
 void FrontEndRig::TakeTurn() {
-  try {
-    Poll();
-  } catch (const InputError& error) {
-    throw RigError("board_error", error.what());
-  }
+  Poll();
+  if (!connection_.unfit().empty()) connection_.AskForZero(now_);
   if (beside_) beside_();
 }
 
@@ -308,7 +307,7 @@ OutputLeft FrontEndRig::Zero() noexcept {
       }
       if (!connection_.link_is_open()) return left;
     } while (!clock_.simulated() && clock_.Now() < asked + kZeroTimeout);
-  } catch (const std::exception&) {  // another device has taken the place of the first
+  } catch (const std::exception&) {  // no memory: of the output, nothing is known
   }
   return left;
 }

@@ -59,8 +59,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void set_beside(std::function<void()> beside) { beside_ = std::move(beside); }
 
   std::string role() const override { return "driver"; }
-  // The newest sample. Throws RigError "board_error" when another device has taken the place of the one with
-  // which the run began.
+  // The newest sample.
   model::Measurement Read(int64_t tick) override;
   // "device_silent", "device_fault", "output_differs", "sensor_NAME". Faults that tripped the device are
   // listed in at least one reading.
@@ -121,6 +120,8 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void TakeTurn();
   void FindSensorFaults(const hydro_sample& sample);
   void FindContradictions();
+  void FindJumps();
+  void ForgetDevice();
   void FindDeviceFaults(const hydro_sample& sample);
   void FindUnaskedArming(const hydro_sample& sample);
   void FindOldCommands(const hydro_sample& sample);
@@ -150,7 +151,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<bus::Clock::TimePoint> arming_since_;
   std::optional<bus::Clock::TimePoint> asked_to_arm_at_;  // of late; while it is armed, when that was
   std::optional<uint32_t> trips_;                         // of the device, at the last reading
-  int64_t resets_ = 0;                                    // at the last reading
+  int64_t resets_ = 0, jumps_ = 0;                        // at the last reading
   bool has_read_back_ = false;                            // a sample has said what the output holds
   DeviceCount motor_count_, arm_count_;
 };

@@ -19,6 +19,7 @@
 
 #include "base/text_file.h"
 #include "plant/front_end/link.h"
+#include "process/spawn.h"
 
 namespace hydro::plant {
 namespace {
@@ -26,7 +27,12 @@ namespace {
 constexpr int kPriority = 6;  // priority of packets, above all others that leave this machine
 
 std::string Found(const std::string& what, int error) {
-  return Quoted(what) + " (" + std::strerror(error) + ")";
+  return Quoted(what) + " (" + process::ReasonOf(error) + ")";
+}
+
+// What is allowed when a link cannot be opened: `usual`, unless the reason lies in this process.
+std::string AllowedAfter(int error, const std::string& usual) {
+  return error == EMFILE || error == ENFILE ? "room for one more open file in this process" : usual;
 }
 
 // Sets raw bytes in both directions, no modem lines, and the speed if one is asked for.
@@ -120,7 +126,7 @@ class SerialLink : public Link {
     } else if (error == EISDIR) {
       allowed = "the port of the front end, not a folder";
     }
-    return Trouble(Found(path_, error), allowed);
+    return Trouble(Found(path_, error), AllowedAfter(error, allowed));
   }
 
   std::string AtItsSpeed() const { return baud_ == 0 ? "" : " at " + std::to_string(baud_) + " baud"; }
@@ -146,8 +152,9 @@ class UdpLink : public Link {
     if (opened < 0 || connect(opened, addresses_->ai_addr, addresses_->ai_addrlen) != 0) {
       const int error = errno;
       if (opened >= 0) close(opened);
-      return Trouble(Found(host_ + ":" + port_, error),
-                     "an address that this machine has a route to; ip route get " + host_);
+      return Trouble(
+          Found(host_ + ":" + port_, error),
+          AllowedAfter(error, "an address that this machine has a route to; ip route get " + host_));
     }
     setsockopt(opened, SOL_SOCKET, SO_PRIORITY, &kPriority, sizeof kPriority);
     return opened;
@@ -188,7 +195,7 @@ class UnixLink : public Link {
     if (error == EACCES || error == EPERM) allowed = "a socket that you may write to: ls -l " + path_;
     if (error == EAGAIN) allowed = "a front end that takes a connection: another program has it";
     if (error == EPROTOTYPE) allowed = "a stream socket";
-    return Trouble(Found(path_, error), allowed);
+    return Trouble(Found(path_, error), AllowedAfter(error, allowed));
   }
 
   // What the device has not read yet, with what the kernel adds to it: nothing, or more than a frame.

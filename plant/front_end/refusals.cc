@@ -3,7 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
+#include <cstring>
 
+#include "base/text_file.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::plant {
@@ -55,6 +57,18 @@ Refusal RefusalOf(uint8_t refused) {
   }
 }
 
+std::string BoardOf(const hydro_identity& identity) {
+  return "\"" + Printable({identity.board, strnlen(identity.board, HYDRO_BOARD_NAME_BYTES)}) + "\"";
+}
+
+std::string FirmwareOf(const hydro_identity& identity) {
+  return fmt::format("firmware {}.{}.{}", identity.firmware[0], identity.firmware[1], identity.firmware[2]);
+}
+
+std::string OutputOf(const hydro_identity& identity) {
+  return fmt::format("an output from {:.6g} to {:.6g} V", identity.output_min_V, identity.output_max_V);
+}
+
 }  // namespace
 
 const char* SensorName(int index) { return kSensorNames[static_cast<size_t>(index)]; }
@@ -67,6 +81,26 @@ InputError RefusalError(const std::string& file, const hydro_settings_held& held
   return settings::KeyError(file, "driver." + key,
                             fmt::format("settings that the front end refuses (its number {})", held.refused),
                             std::string("those that it takes: ") + refusal.why);
+}
+
+std::string DescribeRefusal(const hydro_settings_held& held) {
+  return fmt::format("{} (its number {})", RefusalOf(held.refused).why, held.refused);
+}
+
+std::string DescribeChange(const hydro_identity& before, const hydro_identity& now) {
+  std::string list;
+  const auto compare = [&](const std::string& was, const std::string& is) {
+    if (was != is) list += fmt::format("{}{} ({} before)", list.empty() ? "" : ", ", is, was);
+  };
+  compare("board " + BoardOf(before), "board " + BoardOf(now));
+  compare(FirmwareOf(before), FirmwareOf(now));
+  compare(fmt::format("modes {}", before.modes), fmt::format("modes {}", now.modes));
+  compare(fmt::format("{} ticks/s", before.tick_rate_hz), fmt::format("{} ticks/s", now.tick_rate_hz));
+  compare(fmt::format("{} analog inputs", before.analog_inputs),
+          fmt::format("{} analog inputs", now.analog_inputs));
+  compare(fmt::format("{} counters", before.counters), fmt::format("{} counters", now.counters));
+  compare(OutputOf(before), OutputOf(now));
+  return list;
 }
 
 std::string DescribeDeviceFaults(uint16_t faults) {

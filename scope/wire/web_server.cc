@@ -1,5 +1,7 @@
 #include "scope/wire/web_server.h"
 
+#include <unistd.h>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -8,9 +10,11 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cstdio>
+#include <list>
 #include <optional>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "base/input_error.h"
 #include "base/utf8.h"
@@ -52,6 +56,7 @@ Response ErrorResponse(int status, const std::string& text) {
   return response;
 }
 
+class HttpSession;
 class SocketSession;
 
 class WebServer::Impl {
@@ -69,9 +74,12 @@ class WebServer::Impl {
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
     if (error) {
+      const bool files = error == boost::system::errc::too_many_files_open;
       throw InputError("cannot listen on " + options.address + ":" + std::to_string(options.port) + ": " +
-                       error.message() + "; --port 0 takes any free port");
+                       error.message() +
+                       (files ? "; a larger limit (ulimit -n) is needed" : "; --port 0 takes any free port"));
     }
+    CheckRoom();
     port = acceptor_.local_endpoint().port();
   }
 
@@ -87,6 +95,10 @@ class WebServer::Impl {
   void Remove(SocketSession* session) { sockets.erase(session); }
   int conversations() const { return static_cast<int>(sockets.size()); }
 
+  // Connections that have shown no right to stay, the oldest first. Once the limit is reached, the oldest
+  // gives way to a new one: whoever holds connections and says nothing must not keep out those who speak.
+  std::list<HttpSession*> strangers;
+
   WebServerOptions options;
   Site* site = nullptr;
   std::optional<Access> access;
@@ -97,6 +109,7 @@ class WebServer::Impl {
   asio::io_context io{1};  // last of these, because the sessions that end with it count themselves out
 
  private:
+  void CheckRoom();
   void Accept();
   void Turn();
 
@@ -216,14 +229,32 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(WebServer::Impl& server, tcp::socket socket)
-      : server_(server), counted_(&server.connections), stream_(std::move(socket)) {}
+      : server_(server), counted_(std::in_place, &server.connections), stream_(std::move(socket)) {
+    place_ = server_.strangers.insert(server_.strangers.end(), this);
+  }
+  ~HttpSession() { BeKnown(); }
+  HttpSession(const HttpSession&) = delete;
+  HttpSession& operator=(const HttpSession&) = delete;
 
   void Start(bool full) {
     full_ = full;
     ReadHeader();
   }
 
+  // Ends now, and counts no more. What waits on the socket learns of it soon.
+  void GiveWay() {
+    BeKnown();
+    counted_.reset();
+    stream_.close();
+  }
+
  private:
+  // From now on, this connection gives way to no other.
+  void BeKnown() {
+    if (place_) server_.strangers.erase(*place_);
+    place_.reset();
+  }
+
   using HeaderParser = http::request_parser<http::empty_body>;
 
   void ReadHeader() {
@@ -281,6 +312,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                       "the token is missing or wrong; open the address that hydro-scope printed when it "
                       "started");
       }
+      BeKnown();
     }
     now_.query.erase("token");
     if (socket) return Upgrade();
@@ -297,7 +329,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                              " for that subprotocol; there is /live with "
                              "hydro.scope.v1, and any path with foxglove.websocket.v1 or foxglove.sdk.v1");
     }
-    const auto session = std::make_shared<SocketSession>(server_, std::move(counted_), std::move(stream_),
+    const auto session = std::make_shared<SocketSession>(server_, std::move(*counted_), std::move(stream_),
                                                          std::move(conversation));
     session->Accept(header_->get(), chosen);
   }
@@ -449,7 +481,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   WebServer::Impl& server_;
-  Counted counted_;
+  std::optional<Counted> counted_;
+  std::optional<std::list<HttpSession*>::iterator> place_;  // among the strangers
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMostHeader + kMostMessage};
   std::optional<HeaderParser> header_;
@@ -459,10 +492,27 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   bool full_ = false;
 };
 
+// A program that can open no file serves nobody, and says nothing of it.
+void WebServer::Impl::CheckRoom() {
+  constexpr size_t kNeeded = 8;  // a page opens six connections at once
+  std::vector<int> opened;
+  while (opened.size() < kNeeded) {
+    const int next = dup(acceptor_.native_handle());
+    if (next < 0) break;
+    opened.push_back(next);
+  }
+  for (const int each : opened) close(each);
+  if (opened.size() == kNeeded) return;
+  throw InputError("found room for " + std::to_string(opened.size()) +
+                   " open files more in this process, allowed " + std::to_string(kNeeded) +
+                   " or more for the connections of pages; a larger limit (ulimit -n) is needed");
+}
+
 void WebServer::Impl::Accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (ended_ || error == asio::error::operation_aborted) return;
     if (error) {  // out of file descriptors: waiting is better than a busy loop
+      if (!strangers.empty()) strangers.front()->GiveWay();
       pause_.expires_after(std::chrono::milliseconds(100));
       pause_.async_wait([this](error_code) {
         if (!ended_) Accept();
@@ -471,6 +521,7 @@ void WebServer::Impl::Accept() {
     }
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
+    if (connections >= options.most_connections && !strangers.empty()) strangers.front()->GiveWay();
     const bool full = connections >= options.most_connections;
     // Beyond twice the limit, the client does not even get an answer.
     if (connections < 2 * options.most_connections) {
@@ -498,7 +549,11 @@ void WebServer::Impl::Turn() {
   });
 }
 
-WebServer::WebServer(const WebServerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+WebServer::WebServer(const WebServerOptions& options) try : impl_(std::make_unique<Impl>(options)) {
+} catch (const boost::system::system_error& error) {  // no room for what the library opens for itself
+  throw InputError(std::string("cannot serve pages: ") + error.what() +
+                   "; a larger limit (ulimit -n) is needed");
+}
 WebServer::~WebServer() = default;
 int WebServer::port() const { return impl_->port; }
 void WebServer::Open(Access access, Site* site) {

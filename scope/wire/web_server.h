@@ -1,7 +1,8 @@
 // HTTP and web sockets on one port, on one thread, for a few clients that may be slow, stuck or hostile.
 //
 // - A request must pass the checks of Access. Its header must end within 10 s and 8 KiB. A body or an answer
-//   that makes no progress for 20 s ends the connection. More than 64 connections at a time are turned away.
+//   that makes no progress for 20 s ends the connection. There are 64 connections at a time: for one more,
+//   the oldest that has shown no token gives way; when all have, the new one is turned away.
 // - A web socket's messages have at most 64 KiB. A client that is silent for 30 s is asked whether it is
 //   there, and its connection is closed when it does not answer.
 #pragma once

@@ -1,6 +1,7 @@
 """Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
 
 import os
+import resource
 import shutil
 import subprocess
 
@@ -256,6 +257,38 @@ class BadInputTest(stack.TestCase):
                 self.assertIn("--full", process.stderr if code else process.stdout)
                 self.assertEqual(process.stderr.count("\n"), code // 2)
 
+
+
+class FileLimitTest(stack.TestCase):
+    # Tests that programs which open sockets, ports and pipes say in one line that their limit of open files is too small, or run.
+    def test_too_few_open_files(self):
+        demo = [stack.config("demo.toml"), "--set", f"bus.url={self.url}"]
+        driver = [stack.config("front_end.toml"), "--set", f"bus.url={self.url}", "--set", "time.start_timeout_s=0.2", "--set"]
+        cases = {"hydro-plant": [*demo, "--set", "time.start_timeout_s=0.2"],
+                 "hydro-driver udp": [*driver, 'driver.url="udp://127.0.0.1:9"'],
+                 "hydro-driver serial": [*driver, 'driver.url="serial:/dev/ptmx"'],
+                 "hydro-scope": [*demo, "--port", "0"],
+                 "hydro-launch": [*demo, "--duration", "0.1"]}
+        for name, arguments in cases.items():
+            met = 0
+            for limit in range(4, 12):
+                with self.subTest(name, limit=limit):
+                    child = subprocess.Popen([stack.program(name.split()[0]), *arguments], cwd=self.folder, text=True, stdout=subprocess.DEVNULL,
+                                             stderr=subprocess.PIPE,
+                                             preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (limit, limit)))
+                    try:
+                        _, said = child.communicate(timeout=5)
+                    except subprocess.TimeoutExpired:  # it serves
+                        child.terminate()
+                        _, said = child.communicate(timeout=stack.PATIENCE)
+                    if "error while loading shared libraries" in said or "open files" not in said:
+                        continue
+                    met += 1
+                    self.assertIn(child.returncode, (1, 2), said)
+                    self.assertEqual(said.count("\n"), 1, said)
+                    self.assertRegex(said, "ulimit -n")
+                    self.assertNotRegex(said, "ip route get|any free port|plugged in")
+            self.assertGreater(met, 0, name)
 
 
 class ResultsStayTest(stack.TestCase):

@@ -20,6 +20,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using namespace std::chrono_literals;
 
 class FakeReport : public LaunchReport {
@@ -334,6 +335,34 @@ TEST_F(StackLaunchTest, NotReady) {
   EXPECT_EQ(StackLaunch(bus_, clock_, children_, report_, config_, plan_, {}).Run(), 1);
   EXPECT_THAT(report_.errors,
               Contains(HasSubstr("(time.start_timeout_s): hydro-pressure-ctrl, hydro-logger")));
+}
+
+class DriverLaunchTest : public StackLaunchTest {
+ protected:
+  DriverLaunchTest() {
+    config_.time.start_timeout_s = 2;
+    plan_.children = {{"driver", {"hydro-driver"}, false}, {"pressure_ctrl", {"hydro-pressure-ctrl"}, false}};
+  }
+};
+
+// Tests that a driver which has not found its device has the time to say what is missing and what to do.
+TEST_F(DriverLaunchTest, SaysWhatIsMissing) {
+  const auto start = clock_.Now();
+  children_.on_wait = [&] {
+    if (clock_.Now() - start > 2700ms && children_.pids.contains("hydro-driver"))
+      children_.End("hydro-driver", {2, 0});
+  };
+  EXPECT_EQ(StackLaunch(bus_, clock_, children_, report_, config_, plan_, {}).Run(), 2);
+  EXPECT_THAT(report_.errors, Not(Contains(HasSubstr("not ready"))));
+}
+
+// Tests that a driver which says nothing for that long is named.
+TEST_F(DriverLaunchTest, SaysNothing) {
+  const auto start = clock_.Now();
+  EXPECT_EQ(StackLaunch(bus_, clock_, children_, report_, config_, plan_, {}).Run(), 1);
+  EXPECT_THAT(report_.errors,
+              Contains(HasSubstr("(time.start_timeout_s): hydro-driver, hydro-pressure-ctrl")));
+  EXPECT_GE(clock_.Now() - start, 3s);
 }
 
 class FaultAtTheEndTest : public StackLaunchTest, public ::testing::WithParamInterface<bool> {};

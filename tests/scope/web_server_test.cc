@@ -123,7 +123,7 @@ class WebServerTest : public ::testing::Test {
     options.idle_time = 2000ms;
     return options;
   }
-  WebServerTest() {
+  explicit WebServerTest(const WebServerOptions& options = Options()) : server_(options) {
     server_.Open(Access(kToken, server_.port(), {}, {}), &site_);
     thread_ = std::thread([this] {
       server_.Run([this] {
@@ -162,7 +162,7 @@ class WebServerTest : public ::testing::Test {
   }
 
   TestSite site_;
-  WebServer server_{Options()};
+  WebServer server_;
   std::atomic<bool> end_ = false;
   std::atomic<int> connections_ = 0;
   std::atomic<int64_t> turns_ = 0;
@@ -249,6 +249,42 @@ TEST_F(WebServerTest, LimitsConnections) {
   EXPECT_EQ(Ask(Head("GET /")), "HTTP/1.1 503");
   clients.pop_back();
   EXPECT_TRUE(Eventually([&] { return Ask(Head("GET /", "Connection: close\r\n")) == "HTTP/1.1 200"; }));
+}
+
+// Has all the time for a header.
+class PatientWebServerTest : public WebServerTest {
+ protected:
+  static WebServerOptions Patient() {
+    WebServerOptions options = Options();
+    options.header_time = options.stall_time = std::chrono::minutes(10);
+    return options;
+  }
+  PatientWebServerTest() : WebServerTest(Patient()) {}
+};
+
+// Tests that connections which say nothing, half a header, or one request without the token and then nothing,
+// give way to those who speak, the oldest first, and that a connection with the token gives way to nobody.
+TEST_F(PatientWebServerTest, SilentConnectionsGiveWay) {
+  const std::string bearer = std::string("Authorization: Bearer ") + kToken + "\r\n";
+  const Client known(server_.port());
+  known.Send(Head("GET /api", bearer));
+  EXPECT_EQ(known.ReadUntil("GET /api ").substr(0, 12), "HTTP/1.1 200");
+  const Client live(server_.port());
+  live.Send(Upgrade(std::string("/live?token=") + kToken));
+  EXPECT_EQ(live.ReadUntil("\r\n\r\n").substr(0, 12), "HTTP/1.1 101");
+  std::vector<std::unique_ptr<Client>> silent;
+  for (int i = 0; i < 40; ++i) {
+    silent.push_back(std::make_unique<Client>(server_.port()));
+    if (i % 3 == 1) silent.back()->Send("GET / HTTP/1.1\r\nHo");
+    if (i % 3 == 2) silent.back()->Send(Head("GET /"));
+  }
+  EXPECT_EQ(Ask(Head("GET /api", bearer + "Connection: close\r\n")), "HTTP/1.1 200");
+  EXPECT_EQ(silent.front()->ReadAll(), "");
+  EXPECT_TRUE(Eventually([&] { return connections_ <= 12; }));
+  known.Send(Head("GET /api", bearer));
+  EXPECT_EQ(known.ReadUntil("GET /api ").substr(0, 12), "HTTP/1.1 200");
+  live.Send(Frame("go"));
+  EXPECT_TRUE(Eventually([&] { return site_.made > 0; }));
 }
 
 // Tests that for a client that does not read, nothing more is made than the kernel's buffers take, and that

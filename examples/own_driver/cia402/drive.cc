@@ -120,16 +120,21 @@ void CanDrive::Read(hydro::plant::DeviceReadings& readings) {
   readings.inputs[4] = {0.001 * said_.inputs[2], input3_at_};
   if (said_.statusword) readings.output = {static_cast<double>(said_.torque), motion_at_};
   const bool fault = said_.statusword && StateOf(*said_.statusword) == State::kFault;
-  readings.fault = said_.emergency != 0 ? "emergency " + Hex(said_.emergency)
-                   : fault              ? "the state fault (statusword " + Hex(*said_.statusword) + ")"
-                                        : "";
+  readings.fault = said_.restarted
+                       ? "that it has started anew, and may be in another mode: start the run again"
+                   : said_.emergency != 0 ? "emergency " + Hex(said_.emergency)
+                   : fault                ? "the state fault (statusword " + Hex(*said_.statusword) + ")"
+                                          : "";
 }
 
 void CanDrive::Drive(double output) {
   const State state = StateOf(said_.statusword.value_or(0));
-  const auto torque = static_cast<int16_t>(std::lround(state == State::kEnabled ? output : 0));
+  const bool drives = state == State::kEnabled && !said_.restarted;
+  const auto torque = static_cast<int16_t>(std::lround(drives ? output : 0));
   asked_ = clock_.Now();
-  const bool sent = Send(Torque(node_, Towards(state), torque)) &&
+  // In another mode than torque, "enabled" would hold a speed or a position.
+  const uint16_t control = said_.restarted ? uint16_t{kShutdown} : Towards(state);
+  const bool sent = Send(Torque(node_, control, torque)) &&
                     (ticks_++ % kHeartbeatTicks != 0 || Send(Heartbeat())) && Send(Sync());
   // A full queue is a bus on which nobody answers: the readings grow old then.
   if (!sent && errno != ENOBUFS && errno != EAGAIN) {

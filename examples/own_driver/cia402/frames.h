@@ -101,9 +101,10 @@ struct Said {
   int32_t velocity = 0;    // counts/s
   int16_t inputs[3] = {};  // mV
   uint16_t emergency = 0;  // the code of the newest emergency; 0: none, or it is over
+  bool restarted = false;  // its boot-up: it was off, or reset, and may be in another mode now
 };
 
-enum class Part { kNone, kMotion, kInputs12, kInput3, kEmergency };
+enum class Part { kNone, kMotion, kInputs12, kInput3, kEmergency, kBootUp };
 
 // Takes what a frame says of that node. Other nodes' frames, and frames of other lengths, say nothing.
 inline Part Take(const can_frame& frame, uint8_t node, Said* said) {
@@ -127,6 +128,10 @@ inline Part Take(const can_frame& frame, uint8_t node, Said* said) {
   if (id == 0x080u + node && frame.can_dlc == 8) {
     said->emergency = Get<uint16_t>(frame, 0);
     return Part::kEmergency;
+  }
+  if (id == 0x700u + node && frame.can_dlc == 1 && frame.data[0] == 0) {
+    said->restarted = true;
+    return Part::kBootUp;
   }
   return Part::kNone;
 }

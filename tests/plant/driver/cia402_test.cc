@@ -141,6 +141,24 @@ TEST_F(Cia402Test, Fault) {
   EXPECT_EQ(Read(*drive).fault, "");
 }
 
+// Tests that a drive which has started anew in the run, and so may be in another mode than torque, is a fault
+// that stays, and is never enabled again.
+TEST_F(Cia402Test, StartsAnew) {
+  const auto drive = Open();
+  Status(0x0227);
+  Say(Frame(0x700u + kNode + 1, uint8_t{0}));  // another node
+  Say(Frame(0x700u + kNode, uint8_t{5}));      // a heartbeat
+  EXPECT_EQ(Read(*drive).fault, "");
+  Say(Frame(0x700u + kNode, uint8_t{0}));
+  for (const uint16_t statusword : {0x0240, 0x0221, 0x0223, 0x0227}) {
+    Status(statusword);
+    EXPECT_THAT(Read(*drive).fault, HasSubstr("it has started anew"));
+    Heard();
+    drive->Drive(0);
+    EXPECT_THAT(Bytes(Heard().at(0)), ElementsAre(0x06, 0, 0, 0));
+  }
+}
+
 // Tests every value of the frames, signs included, that the newest counts, and that others' frames say
 // nothing.
 TEST_F(Cia402Test, Readings) {

@@ -47,6 +47,7 @@ class FakeDevice : public Device {
             .output = {.unit = "mA", .low = -20, .high = 20, .tolerance = 0.1}};
   }
   void Read(DeviceReadings& into) override {
+    if (!unfit.empty()) throw InputError(unfit);
     if (!silent && (!answers_when_driven || driven_)) {
       for (Reading& reading : readings.inputs) reading.at = clock_.Now();
     }
@@ -67,6 +68,7 @@ class FakeDevice : public Device {
 
   DeviceReadings readings;
   bool silent = false;
+  std::string unfit;
   bool answers_when_driven = false;
   bool tells_output = false;
   std::optional<double> lies;
@@ -284,6 +286,21 @@ TEST_F(DeviceRigTest, FaultOfTheDevice) {
   device_->readings.fault.clear();
   Read(*rig);
   EXPECT_THAT(Codes(*rig), IsEmpty());
+}
+
+// Tests that what a driver takes in the run for an error of the configuration, as a device that says
+// something else of itself than at the start, ends the run as an error of the device, and is no bad input.
+TEST_F(DeviceRigTest, DeviceThatFitsNoMore) {
+  const auto rig = Open();
+  Read(*rig);
+  device_->unfit = "rig.toml: driver.own.node: found 7, allowed 5";
+  try {
+    Read(*rig);
+    ADD_FAILURE() << "no error";
+  } catch (const RigError& error) {
+    EXPECT_EQ(error.code(), "board_error");
+    EXPECT_STREQ(error.what(), device_->unfit.c_str());
+  }
 }
 
 // Tests that an output that reads back other than anything put out lately is a fault; that one which follows

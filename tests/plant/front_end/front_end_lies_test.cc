@@ -2,6 +2,9 @@
 // other, a clock that does not go on.
 #include <gmock/gmock.h>
 
+#include <cstring>
+#include <utility>
+
 #include "tests/plant/front_end/device_bench.h"
 
 namespace hydro::plant {
@@ -208,11 +211,154 @@ TEST(FrontEndLiesTest, AnotherDevice) {
     faults += bench.Fault("device_fault");
   }
   EXPECT_THAT(faults, HasSubstr("has gone to zero volts: it was sent a ZERO, as anyone may do"));
-  EXPECT_THAT(faults, HasSubstr("has reset itself, or another one has taken its place"));
+  EXPECT_THAT(faults,
+              HasSubstr("has reset itself, or another one has taken its place: an output from -10 to 5 V "
+                        "(an output from -10 to 10 V before); allowed is"));
   for (int i = 0; i < 200; ++i) bench.Tick(3, /*obeys=*/false);
   EXPECT_TRUE(bench.rig->faults().empty());
   bench.Ticks(50, 3);
   EXPECT_EQ(bench.volts, -1.5F);
+}
+
+// Until the rig has no fault, driven with 3 V; how many ticks that took, and the texts of its device_fault.
+std::pair<int, std::string> UntilWell(DeviceBench* bench, int most = 2000) {
+  std::string faults;
+  int ticks = 0;
+  do {
+    bench->Tick(3);
+    faults += bench->Fault("device_fault");
+  } while (!bench->rig->faults().empty() && ++ticks < most);
+  return {ticks, faults};
+}
+
+// Tests that a device which says in the run that it is one which does not fit the configuration is a fault
+// that names what has changed, with zero volts even where it drives, and that the first one may come back.
+TEST(FrontEndLiesTest, DeviceThatFitsNoMore) {
+  struct Case {
+    std::function<void(hydro_identity& identity)> change;
+    const char* says;
+  };
+  const Case cases[] = {
+      {[](auto& identity) { identity.tick_rate_hz = 4500; }, "4500 ticks/s (5000 ticks/s before)"},
+      {[](auto& identity) { identity.modes = 2; }, "modes 2 (modes 3 before)"},
+      {[](auto& identity) { identity.analog_inputs = 1; }, "1 analog inputs (8 analog inputs before)"},
+      {[](auto& identity) {
+         identity.counters = 0;
+         std::strncpy(identity.board, "other\n", sizeof identity.board);
+       },
+       "board \"other\\x0a\" (board \"bench\" before), 0 counters (2 counters before)"},
+      {[](auto& identity) { identity.output_max_V = NAN; },
+       "an output from -10 to nan V (an output from -10 to 10 V before)"},
+  };
+  for (const Case& each : cases) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    ASSERT_EQ(bench.volts, -1.5F);
+    hydro_frame frame{};
+    frame.kind = HYDRO_IDENTITY;
+    frame.session = 0x1234;
+    frame.sequence = 1;
+    frame.body.identity = bench.rig->connection().identity();
+    frame.body.identity.session_in_charge = 0x1234;
+    each.change(frame.body.identity);
+    uint8_t wire[HYDRO_WIRE_MAX];
+    const size_t count = hydro_encode(&frame, wire);
+    bench.SendToComputer(Bytes(wire, wire + count));
+    bench.Tick(3);
+    EXPECT_THAT(bench.Fault("device_fault"),
+                AllOf(HasSubstr("is not the one with which the run began: "), HasSubstr(each.says)));
+    EXPECT_EQ(bench.volts, 0) << each.says;
+    EXPECT_NE(bench.device.state, HYDRO_ARMED) << each.says;
+    const auto [ticks, faults] = UntilWell(&bench);
+    EXPECT_LT(ticks, 300) << faults;
+    EXPECT_THAT(faults, HasSubstr("has reset itself, or another one has taken its place: "));
+    bench.Ticks(100, 3);
+    EXPECT_EQ(bench.volts, -1.5F) << each.says;
+  }
+}
+
+// Tests that a device which stays unfit stays at zero volts, with the fault, and ends no run.
+TEST(FrontEndLiesTest, UnfitDeviceStays) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(150, 3);
+  bench.facts.tick_rate_hz = 4500;
+  bench.Reset();
+  bench.Ticks(500, 3);
+  for (int i = 0; i < 500; ++i) {
+    bench.Tick(3);
+    ASSERT_THAT(bench.Fault("device_fault"),
+                HasSubstr("4500 ticks/s (5000 ticks/s before); it was sent a ZERO"));
+    ASSERT_EQ(bench.volts, 0);
+  }
+  EXPECT_FALSE(bench.rig->Zero().accepted) << "nobody knows what its output holds";
+}
+
+// Tests that a jump of the device's numbers that no loss explains is a fault of its own and no loss, that one
+// which a loss explains is a loss, and that numbers which begin anew are a reset.
+TEST(FrontEndLiesTest, NumbersThatJump) {
+  for (const uint32_t by : {1000U, 5000U, 1'000'000U, 0x7ffffff0U}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    const int64_t lost = bench.rig->connection().counts().lost;
+    bench.device.sent += by;
+    bench.Ticks(3, 3);
+    const FrameCounts& counts = bench.rig->connection().counts();
+    const bool jump = by > 1000;  // a second of samples may have been lost on the way
+    EXPECT_EQ(counts.jumps, jump ? 1 : 0) << by;
+    EXPECT_EQ(counts.lost - lost, jump ? 0 : by);
+    if (jump) {
+      EXPECT_THAT(bench.Fault("device_fault"),
+                  AllOf(HasSubstr("the numbers of the front end's frames jump from"),
+                        HasSubstr("it cannot have sent so many meanwhile")));
+      EXPECT_EQ(bench.volts, 0);
+    }
+    bench.Ticks(100, 3);
+    EXPECT_TRUE(bench.rig->faults().empty()) << by;
+    EXPECT_EQ(bench.volts, -1.5F) << by;
+  }
+  for (const uint32_t back : {200U, 0x80000000U, 0xc0000000U}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    bench.device.sent -= back;
+    bench.Ticks(120, 3);
+    EXPECT_NE(bench.Fault("device_silent"), "") << back;
+    const auto [ticks, faults] = UntilWell(&bench);
+    EXPECT_LT(ticks, 400) << back;
+    EXPECT_EQ(bench.rig->connection().counts().lost, 0) << back;
+    if (back == 200) continue;  // two hundred numbers later it goes on as before
+    EXPECT_THAT(faults, HasSubstr("has reset itself")) << back;
+  }
+}
+
+// Tests that one frame with a number that the device has not reached is refused, and deafens nobody.
+TEST(FrontEndLiesTest, OneFarNumber) {
+  for (const uint32_t ahead : {5000U, 0x7fffffffU}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    const FrameCounts before = bench.rig->connection().counts();
+    hydro_frame frame{};
+    frame.kind = HYDRO_SAMPLE;
+    frame.session = 0x1234;
+    frame.sequence = bench.device.sent + ahead;
+    frame.body.sample = bench.rig->connection().sample();
+    uint8_t wire[HYDRO_WIRE_MAX];
+    const size_t count = hydro_encode(&frame, wire);
+    bench.SendToComputer(Bytes(wire, wire + count));
+    for (int i = 0; i < 500; ++i) {
+      bench.Tick(3);
+      ASSERT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    }
+    const FrameCounts& after = bench.rig->connection().counts();
+    EXPECT_EQ(after.refused - before.refused, 1);
+    EXPECT_EQ(after.lost, before.lost);
+    EXPECT_EQ(after.jumps, 0);
+    EXPECT_EQ(bench.volts, -1.5F);
+  }
 }
 
 // Tests that a trip has words even where the device gives no reason for it.
