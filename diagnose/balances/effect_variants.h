@@ -25,7 +25,8 @@ struct EffectVariant {
   model::EffectDescription at;  // at its grid point, amounts at 0
   Kind kind = Kind::kAmounts;
   std::vector<std::string> amounts;  // kAmounts: linear from 0 on
-  // kAmounts: a sine's phase, or "". The sine's size has the amount of the sine, the phase that of the cosine.
+  // kAmounts: a sine's phase, or "". The sine's size has the amount of the sine, the phase that of the
+  // cosine.
   std::string phase;
   // kWhole: parameters without a grid of their own. The derivatives by their logarithms stand beside the
   // whole.
