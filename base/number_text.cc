@@ -1,6 +1,7 @@
 #include "base/number_text.h"
 
 #include <charconv>
+#include <chrono>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -59,6 +60,23 @@ std::string ShortNumber(double value, int digits) {
   if (size >= 1 && size < 1e7 && shown.find('e') != std::string::npos)
     shown = written(std::chars_format::fixed, 0);
   return shown;
+}
+
+std::string StampText(int64_t utime) {
+  // us, in 2001 and at the end of 9999: no simulation runs that long, and nobody records after that.
+  constexpr int64_t kFirstDate = 1'000'000'000'000'000, kLastDate = 253'402'300'799'999'999;
+  if (utime < kFirstDate || utime > kLastDate) return NumberText(static_cast<double>(utime) * 1e-6) + " s";
+  using std::chrono::floor;
+  const std::chrono::sys_time<std::chrono::microseconds> stamp{std::chrono::microseconds(utime)};
+  const auto day = floor<std::chrono::days>(stamp);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(stamp - day);
+  char text[64];
+  std::snprintf(text, sizeof text, "%d-%02u-%02u %02d:%02d:%02d.%06d UTC", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(time.hours().count()), static_cast<int>(time.minutes().count()),
+                static_cast<int>(time.seconds().count()), static_cast<int>(time.subseconds().count()));
+  return text;
 }
 
 std::string HexNumber(uint64_t value, int digits) {

@@ -22,6 +22,10 @@ std::string ShortestNumber(double value);
 // 2.6e-05. "-" when it is not finite.
 std::string ShortNumber(double value, int digits = 4);
 
+// A stamp in us since 1970, for people: "2026-11-26 17:33:14.123456 UTC", and as "12.5 s" what is no date of
+// a recording, because a simulated clock begins at 0.
+std::string StampText(int64_t utime);
+
 // "0x001f", with at least this many digits.
 std::string HexNumber(uint64_t value, int digits);
 

@@ -287,10 +287,10 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   if (!report.judged) {
     std::fputs("whether these recordings are right cannot be told before the model predicts them\n", out);
   } else if (report.wrong.empty()) {
-    std::fputs(
-        "nothing wrong was found in the recordings, as far as the model as given predicts them: a rig that "
-        "differs much from it can hide a mistake\n",
-        out);
+    std::fprintf(out,
+                 "nothing %swrong was found in the recordings, as far as the model as given predicts them: a "
+                 "rig that differs much from it can hide a mistake\n",
+                 report.doubtful ? "that is surely " : "");
   }
   return report.wrong.empty() && report.judged ? 0 : 1;
 }

@@ -229,6 +229,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   report.wrong.insert(report.wrong.end(), checked.sensors.begin(), checked.sensors.end());
   report.wrong.insert(report.wrong.end(), checked.commands.late.begin(), checked.commands.late.end());
   report.limits.insert(report.limits.end(), checked.commands.early.begin(), checked.commands.early.end());
+  report.doubtful = !checked.commands.early.empty();
   if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.limits.insert(report.limits.end(), checked.ratios.begin(), checked.ratios.end());
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());

@@ -59,7 +59,8 @@ struct RecordingReport {
   std::vector<std::string> wrong;  // one line each
   // How tables were read, and what these runs cannot show although nothing is wrong with them.
   std::vector<std::string> limits;
-  bool judged = true;  // false: a limit names runs that the given model does not predict at all
+  bool judged = true;     // false: a limit names runs that the given model does not predict at all
+  bool doubtful = false;  // a limit names what may be wrong with the recording, or be the machine
 };
 // Throws InputError for data that cannot be used, unless a mistake explains it.
 RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,

@@ -36,6 +36,16 @@ Json ListOf(const OperatorResult& result) {
     json["speed"] = f.known && std::isfinite(f.speed) ? Json(f.speed) : Json();
     json["lowest"] = number(f.lowest);
     json["highest"] = number(f.highest);
+    const tuning::RearmMotion& motion = f.motion;
+    const bool foreseen = f.known && motion.unforeseen.empty();
+    const auto limit = [&](const std::string& name) {
+      return foreseen && !name.empty() ? Json(Printable(name)) : Json();
+    };
+    json["reaches"] = foreseen ? Json(motion.reaches) : Json();
+    json["reaches_after_s"] = foreseen ? Json(motion.seconds) : Json();
+    json["ended_by"] = limit(motion.ended_by);
+    json["held_by"] = limit(motion.held_by);
+    json["unforeseen"] = foreseen ? Json() : Json(Printable(f.known ? motion.unforeseen : f.text));
     list.push_back(std::move(json));
   }
   return list;

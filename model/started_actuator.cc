@@ -14,6 +14,18 @@ ActuatorOptions At(ActuatorOptions options, const StartState& start) {
 
 }  // namespace
 
+StartState StartOf(const Measurement& measured, Shaft shaft) {
+  const bool free = shaft == Shaft::kFree;
+  StartState start{};
+  start[kMotorAngle] = measured.motor_angle;
+  start[kMotorSpeed] = measured.motor_speed;
+  start[kP1] = measured.p1;
+  start[kP2] = measured.p2;
+  start[kArmAngle] = free ? measured.arm_angle : 0;
+  start[kArmSpeed] = free ? measured.arm_speed : 0;
+  return start;
+}
+
 class StartedActuator::Impl {
  public:
   Impl(const ModelDescription& description, const ActuatorOptions& options, const StartState& start,

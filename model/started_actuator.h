@@ -9,6 +9,10 @@
 
 namespace hydro::model {
 
+// The start that a reading of the sensors gives; what was not measured is NaN. An arm that is not free has
+// its motion from elsewhere.
+StartState StartOf(const Measurement& measured, Shaft shaft);
+
 class StartedActuator {
  public:
   // Begins at `time` (s) in the state `start`, as Respond does; the effects' t counts from options.begin. The

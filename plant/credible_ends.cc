@@ -6,14 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "base/units.h"
-
 namespace hydro::plant {
 namespace {
 
 using Source = settings::SensorSection::Source;
 
-constexpr double kAtmosphere_psi = 14.7;
 constexpr double kBelowVacuum = 0.1;  // of the pressure limit: the offset of a poor transducer
 constexpr double kWidestConverter_V = 100;
 constexpr double kFarBeyond = 10;
@@ -26,13 +23,12 @@ void Narrow(CredibleEnds* ends, double low, double high, const std::string& from
 CredibleEnds PressureEnds(const settings::StackConfig& config) {
   const model::ModelDescription& model = config.model.description;
   const std::string unit = model.units.UnitFor("psi");
-  const double atmosphere = kAtmosphere_psi * kPsi / ParseUnit(unit)->size;
   const double limit = config.limits.pressure_psi;
   if (!std::isfinite(limit)) {
     const double most = kFarBeyond * model.parameters.beta;
     return {{-most, "ten times beta"}, {most, "ten times beta"}, unit};
   }
-  return {{-(atmosphere + kBelowVacuum * limit), "a vacuum less a tenth of limits.pressure"},
+  return {{-(model::AtmosphereOf(model) + kBelowVacuum * limit), "a vacuum less a tenth of limits.pressure"},
           {2 * limit, "twice limits.pressure"},
           unit};
 }

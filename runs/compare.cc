@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "bus/channels.h"
 #include "runs/message_order.h"
+#include "runs/run_config.h"
 
 namespace hydro::runs {
 namespace {
@@ -64,6 +65,33 @@ void CompareChannel(const std::string& channel, const std::vector<Message>& all_
   if (!first.has_value() || difference.tick < first->tick) first = std::move(difference);
 }
 
+// The units of the run's model; nothing where it does not describe itself.
+std::optional<UnitSystem> UnitsOf(const RunLog& log, const std::string& name) {
+  const std::vector<run_description_t>& runs = log.messages.Of<run_description_t>();
+  if (runs.empty() || runs.front().model_text.empty()) return std::nullopt;
+  try {
+    return ModelUnits(runs.front(), name);
+  } catch (const InputError&) {  // a model of another version: its messages are compared as they are
+    return std::nullopt;
+  }
+}
+
+std::string Described(const UnitSystem& units) {
+  return std::string(units.length) + ", " + std::string(units.force) + " and " + units.UnitFor("psi") +
+         (units.linear_arm ? ", of an arm in " + units.UnitFor("rad", 1) : "");
+}
+
+// The numbers of two runs in other units differ from the first one on, which says nothing of the runs.
+void RequireSameUnits(const RunLog& a, const std::string& name_a, const RunLog& b,
+                      const std::string& name_b) {
+  const std::optional<UnitSystem> of_a = UnitsOf(a, name_a), of_b = UnitsOf(b, name_b);
+  if (!of_a || !of_b || *of_a == *of_b) return;
+  throw InputError(name_b + ": found a run in " + Described(*of_b) + ", allowed one in the units of " +
+                   name_a + ", " + Described(*of_a) +
+                   ", because runs are compared bit by bit; hydro-log export --si writes tables of both in "
+                   "the same units");
+}
+
 }  // namespace
 
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
@@ -85,7 +113,10 @@ std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& 
     throw InputError((a.whole() ? name_a : name_b) + ": found the joints of a limb, and one stack in " +
                      (a.whole() ? name_b : name_a) + "; allowed are two of a kind, or --joint");
   }
-  if (!a.whole()) return FirstDifference(a.limb.messages, name_a, b.limb.messages, name_b);
+  if (!a.whole()) {
+    RequireSameUnits(a.limb, name_a, b.limb, name_b);
+    return FirstDifference(a.limb.messages, name_a, b.limb.messages, name_b);
+  }
   const auto lacks = [](const LimbLog& from, const LimbLog& to) -> const RunLog* {
     for (const RunLog& joint : from.joints) {
       if (std::ranges::find(to.joints, joint.suffix, &RunLog::suffix) == to.joints.end()) return &joint;
@@ -98,6 +129,7 @@ std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& 
     return "differ: the joint " + joint->joint + " is in " + name_b + " alone";
   for (const RunLog& joint : a.joints) {
     const RunLog& other = *std::ranges::find(b.joints, joint.suffix, &RunLog::suffix);
+    RequireSameUnits(joint, name_a, other, name_b);
     const auto difference = FirstDifference(joint.messages, name_a, other.messages, name_b);
     if (difference) return "joint " + joint.joint + ": " + *difference;
   }

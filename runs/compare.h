@@ -21,7 +21,8 @@ std::optional<std::string> FirstDifference(const RunMessages& a, const std::stri
                                            const RunMessages& b, const std::string& name_b);
 
 // The same for two limbs, joint by joint: "joint knee: differ at tick ...", or which joint is missing from
-// which limb. For two single stacks, as above.
+// which limb. For two single stacks, as above. Throws InputError for a limb and a stack, and for runs whose
+// models are in other units.
 std::optional<std::string> FirstDifference(const LimbLog& a, const std::string& name_a, const LimbLog& b,
                                            const std::string& name_b);
 

@@ -133,7 +133,7 @@ void RequireOneRun(const RunLog& log) {
   std::string remedy = ", so record each into a log of its own";
   for (const std::string& remark : remarks) {
     if (remark.find("joined") != std::string::npos)
-      remedy = "; " + remark + ": hydro-log repair says how to take them apart";
+      remedy = "; " + remark + ": hydro-log repair --split " + log.file + " takes them apart";
   }
   throw InputError(log.file + ": found " + found + "; one run by one sender is needed" + remedy +
                    "; hydro-log info " + log.file + " shows each");

@@ -25,7 +25,9 @@ namespace {
 constexpr double kLongestStep = 86400;  // s from row to row
 
 const std::vector<std::pair<std::string, tables::DateOrder>> kDateOrders = {
-    {"dmy", tables::DateOrder::kDayFirst}, {"mdy", tables::DateOrder::kMonthFirst}};
+    {"dmy", tables::DateOrder::kDayFirst},
+    {"mdy", tables::DateOrder::kMonthFirst},
+    {"ymd", tables::DateOrder::kYearFirst}};
 
 // Lists what a key of [columns] may name.
 std::string ColumnsOf(const tables::Table& table) {

@@ -97,7 +97,7 @@ void CheckTimes(const TomlNode& root, StackConfig* config) {
   if (config->position_interval_ticks == 0) {
     throw KeyError(root, "position.sample_interval_s",
                    ShortestNumber(position.sample_interval_s) + " s, which is " +
-                       ShortestNumber(position.sample_interval_s * rate) + " ticks",
+                       ShortNumber(position.sample_interval_s * rate, 12) + " ticks",
                    "a whole number of " + Ticks(rate));
   }
   config->pressure_interval_ticks = 1;

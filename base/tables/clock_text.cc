@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <utility>
 
 #include "base/tables/csv_cells.h"
 
@@ -34,20 +35,34 @@ bool TakeShort(std::string_view* text, int* number) {
   return TakeDigits(text, 2, number) || TakeDigits(text, 1, number);
 }
 
-// Takes "26/11/2026".
-bool TakeSlashDate(std::string_view* text, SlashDate* date) {
+// Takes three numbers with one sign between them, the last of four digits or of one or two.
+bool TakeNumbers(std::string_view* text, std::string_view signs, ShortDate* date) {
   std::string_view rest = *text;
-  if (!TakeShort(&rest, &date->first) || !TakeOneOf(&rest, "/") || !TakeShort(&rest, &date->second) ||
-      !TakeOneOf(&rest, "/") || !TakeDigits(&rest, 4, &date->year)) {
+  if (!TakeShort(&rest, &date->first) || rest.empty() || signs.find(rest[0]) == std::string_view::npos)
     return false;
-  }
+  const char sign[] = {rest[0], 0};
+  TakeOneOf(&rest, sign);
+  if (!TakeShort(&rest, &date->second) || !TakeOneOf(&rest, sign)) return false;
+  date->two_digits = !TakeDigits(&rest, 4, &date->third);
+  if (date->two_digits && !TakeShort(&rest, &date->third)) return false;
+  if (!rest.empty() && rest[0] >= '0' && rest[0] <= '9') return false;
   *text = rest;
   return true;
+}
+
+std::chrono::year_month_day DateOf(const ShortDate& date, DateOrder order) {
+  constexpr int kCentury = 2000;
+  int day = date.first, month = date.second, year = date.third;
+  if (order == DateOrder::kMonthFirst) std::swap(day, month);
+  if (order == DateOrder::kYearFirst) std::swap(day, year);
+  return {std::chrono::year(date.two_digits ? kCentury + year : year),
+          std::chrono::month(static_cast<unsigned>(month)), std::chrono::day(static_cast<unsigned>(day))};
 }
 
 bool TakeDate(std::string_view* text, DateOrder order, int64_t* seconds) {
   int year = 0, month = 0, day = 0;
   std::string_view rest = *text;
+  std::chrono::year_month_day date;
   const bool year_first = TakeDigits(&rest, 4, &year) && !rest.empty() && (rest[0] == '-' || rest[0] == '/');
   if (year_first) {
     const char sign[] = {rest[0], 0};
@@ -55,21 +70,16 @@ bool TakeDate(std::string_view* text, DateOrder order, int64_t* seconds) {
         !TakeDigits(&rest, 2, &day)) {
       return false;
     }
-  } else if (SlashDate slash; order != DateOrder::kUnknown && TakeSlashDate(&(rest = *text), &slash)) {
-    const bool day_first = order == DateOrder::kDayFirst;
-    day = day_first ? slash.first : slash.second;
-    month = day_first ? slash.second : slash.first;
-    year = slash.year;
+    date = {std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+            std::chrono::day(static_cast<unsigned>(day))};
   } else {
+    ShortDate numbers;
     rest = *text;
-    if (!TakeDigits(&rest, 2, &day) || !TakeOneOf(&rest, ".") || !TakeDigits(&rest, 2, &month) ||
-        !TakeOneOf(&rest, ".") || !TakeDigits(&rest, 4, &year)) {
-      return false;
-    }
+    const bool dots = TakeNumbers(&rest, ".", &numbers);
+    if (!dots && (order == DateOrder::kUnknown || !TakeNumbers(&rest, "/-", &numbers))) return false;
+    if (order == DateOrder::kYearFirst && !dots && !numbers.two_digits) return false;
+    date = DateOf(numbers, dots ? DateOrder::kDayFirst : order);
   }
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok()) return false;
   *seconds = kDay * std::chrono::sys_days(date).time_since_epoch().count();
   *text = rest;
@@ -121,14 +131,20 @@ bool TakeZone(std::string_view* text, ClockTime* clock) {
 
 }  // namespace
 
-std::optional<SlashDate> ParseSlashDate(std::string_view text) {
+bool ShortDate::Fits(DateOrder order) const {
+  if (order == DateOrder::kUnknown || (order == DateOrder::kYearFirst && !two_digits)) return false;
+  return DateOf(*this, order).ok();
+}
+
+std::optional<ShortDate> ParseShortDate(std::string_view text) {
   text = Trimmed(text);
-  SlashDate date;
-  return TakeSlashDate(&text, &date) ? std::optional(date) : std::nullopt;
+  ShortDate date;
+  return TakeNumbers(&text, "/-", &date) ? std::optional(date) : std::nullopt;
 }
 
 bool IsClock(std::string_view text) {
-  return ParseClock(text, DateOrder::kDayFirst) || ParseClock(text, DateOrder::kMonthFirst);
+  return ParseClock(text, DateOrder::kDayFirst) || ParseClock(text, DateOrder::kMonthFirst) ||
+         ParseClock(text, DateOrder::kYearFirst);
 }
 
 std::optional<ClockTime> ParseClock(std::string_view text, DateOrder order) {

@@ -41,7 +41,7 @@ struct AskedColumns {
   std::vector<std::string> names = {};  // empty: all of the table
   std::string time = {};                // the asked column that may hold dates and times of day
   std::string date = {};                // the column that holds the dates for `time`
-  // What comes first in their dates with slashes; kUnknown: found from the rows.
+  // What comes first in their dates (clock_text.h, ShortDate); kUnknown: found from the rows.
   DateOrder date_order = DateOrder::kUnknown;
 
   bool all() const { return names.empty(); }

@@ -1,4 +1,4 @@
-// Which of day and month comes first in a table's dates with slashes.
+// Which of day, month and year comes first in a table's dates, where their places do not tell it.
 #pragma once
 
 #include "base/tables/clock_text.h"
@@ -8,10 +8,9 @@
 namespace hydro::tables {
 
 // Goes through the rows of a text, which stands before its first row, and finds the order of the dates in the
-// asked column of times or dates: that in which a number above 12 is a day. Where all rows have the same
+// asked column of times or dates: the only one in which all of them are dates. Where all rows have the same
 // date, its order does not matter. Throws InputError, with the sidecar's line that settles it, where the
-// dates can be read in two ways, and where they contradict each other. kUnknown: these are no dates with
-// slashes.
+// dates can be read in two ways, and where they contradict each other. kUnknown: these are no such dates.
 DateOrder FindDateOrder(CsvText rows, const AskedColumns& asked);
 
 }  // namespace hydro::tables

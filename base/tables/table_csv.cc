@@ -126,8 +126,39 @@ class RowReader {
     }
     const auto date = date_.has_value() ? std::optional(text_.cell(*date_)) : std::nullopt;
     value = time_.Take(cell, value, date);
-    if (!value.has_value()) throw text_.CellError(column, time_.Allowed());
+    if (!value.has_value()) RefuseTime(column);
     return *value;
+  }
+
+  // Names the cell that is no time: that of the date, where dates stand in a column of their own.
+  [[noreturn]] void RefuseTime(size_t column) const {
+    const auto time = [&](size_t of) { return ParseClock(text_.cell(of), DateOrder::kDayFirst); };
+    if (date_.has_value()) {
+      const auto day = ParseClock(text_.cell(*date_), time_.order());
+      if (!day || !day->date || day->time) {
+        throw text_.CellError(*date_,
+                              "a date alone, like 2026-01-31, 31.01.2026 or 31/1/26, beside the time in " +
+                                  Quoted(asked_.time));
+      }
+      if (const auto own = time(column); own && own->date) {
+        throw text_.CellError(column,
+                              "a time of day, like 10:30:25.000, beside the date in " + Quoted(asked_.date) +
+                                  "; for dates and times in this column, time = " + Quoted(asked_.time) +
+                                  " in the sidecar");
+      }
+      throw text_.CellError(column, time_.Allowed());
+    }
+    // A date alone, with its time of day in another column.
+    const auto here = time(column);
+    const bool alone = IsClock(text_.cell(column)) && (!here || !here->time);
+    for (size_t other = 0; alone && other < columns_; ++other) {
+      const auto clock = time(other);
+      if (!clock || !clock->time || clock->date) continue;
+      const std::string& name = text_.names()[other];
+      throw text_.CellError(column, "a time; the sidecar's line time = { column = " + Quoted(name) +
+                                        ", date = " + Quoted(asked_.time) + " } reads both columns");
+    }
+    throw text_.CellError(column, time_.Allowed());
   }
 
   // Notes and returns whether the last line, which has no end, was cut within an asked number.

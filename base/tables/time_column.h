@@ -23,8 +23,9 @@ enum class TimeKind {
 
 class TimeColumn {
  public:
-  // `order` is that of its dates with slashes, if it has such.
+  // `order` is that of its dates whose places do not tell it, if it has such.
   explicit TimeColumn(DateOrder order) : order_(order) {}
+  DateOrder order() const { return order_; }
 
   // Takes a cell, with its value if it is a number, and with the cell of the column of dates, if there is
   // one. The first cell that is not empty determines what the column holds. Empty when the cell does not have

@@ -140,11 +140,27 @@ class RunChecklist {
   // of 5 bar read a fifth less than that. The factors convert each pressure from another unit.
   ChargeFit FitOf(double low1, double low2, double factor1, double factor2) const {
     const double first = low1 * factor1, second = low2 * factor2, low = std::min(first, second);
-    const double noise = kBelowLowest * std::max(factor1 * EstimateNoise(run_.p1.values),
-                                                 factor2 * EstimateNoise(run_.p2.values));
-    return {.near = low > 0.85 * p_.p_3 - noise && low < 3 * p_.p_3 + noise,
-            .same = std::max(first, second) < 1.5 * low + noise};
+    const double noise =
+        kBelowLowest * std::max(factor1 * EstimateNoise(run_.p1.values), factor2 * EstimateNoise(run_.p2.values));
+    return {.near = low > 0.85 * p_.p_3 - ValveDrop() - noise && low < 3 * p_.p_3 + noise,
+            .same = std::max(first, second) < 1.5 * low + SteadyLoad() + noise};
   }
+
+  // How far a side falls below the charge pressure until the valve that feeds it is wide open.
+  double ValveDrop() const {
+    double drop = 0;
+    for (const model::EffectDescription& effect : model_.effects) {
+      const bool feeds = effect.id == "valve.check" || effect.id == "valve.pilot";
+      for (const char* name : {"cracking", "range"}) {
+        const auto found = effect.parameters.find(name);
+        if (feeds && found != effect.parameters.end()) drop += found->second;
+      }
+    }
+    return drop;
+  }
+
+  // By how much the weight along the path of a linear arm keeps one side above the other at all times.
+  double SteadyLoad() const { return units_.linear_arm ? std::abs(p_.mgl) / p_.k_2 : 0; }
 
   // "p1 and p2 are in mbar, not in bar": of all units that a sidecar can name, the one in which the pressures
   // agree best with the charge pressure. "" where there is none. Unlike the balances, this needs no motion.

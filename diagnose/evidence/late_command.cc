@@ -32,8 +32,13 @@ using Run = runs::MeasuredRun;
 constexpr double kPriorRows = 3;
 // Rows: motor and pressures that differ by more are not one device, and the command is late against neither.
 constexpr double kOneDevice = 0.5;
-// Rows: nearer to a whole row than to none, and right once it is moved by one.
+// Rows: nearer to a whole row than to none, and right once it is moved by that many.
 constexpr double kHalfARow = 0.5, kRight = 0.3;
+// Rows by which a recorder is late at most. The estimate is of the first order in the lateness: a few steps
+// lead to a command that is several rows away.
+constexpr int kMostRows = 5, kMostSteps = 4;
+// s: a lateness beyond it is no small change of what the balances see, and another clock's (clocks.h).
+constexpr double kMostLateness = 0.0201;
 // Standard errors.
 constexpr double kSurelyLate = 2;
 // Rows: an error as large cannot tell one row from none.
@@ -149,12 +154,18 @@ std::string LineFor(const std::vector<Run>& runs, int moved) {
 // The line for the runs of one recorder; empty: the command is where it belongs, or nobody can tell.
 std::string RemarkOn(const model::ModelDescription& given, const std::vector<Run>& runs, int* moved,
                      int jobs) {
-  const LateCommand found = FindLateCommand(given, runs, 0, jobs);
-  if (!(found.error < kLargestError)) return "";
-  if (!(std::abs(found.rows) > kHalfARow + kSurelyLate * found.error)) return "";
-  *moved = found.rows > 0 ? 1 : -1;
-  const LateCommand rest = FindLateCommand(given, runs, *moved, jobs);
-  if (!(std::abs(rest.rows) < kRight && rest.error < kLargestError)) return "";
+  LateCommand rest = FindLateCommand(given, runs, 0, jobs);
+  if (!(std::abs(rest.rows) > kHalfARow + kSurelyLate * rest.error)) return "";
+  // A command that is early may be an amplifier that is late, and then by any time.
+  const double step = MedianInterval(runs.front().time);
+  const int earliest = -1, latest = std::clamp(static_cast<int>(kMostLateness / step), 1, kMostRows);
+  for (int tried = 0; tried < kMostSteps && std::abs(rest.rows) > kHalfARow; ++tried) {
+    const int next = std::clamp(*moved + static_cast<int>(std::lround(rest.rows)), earliest, latest);
+    if (next == *moved) return "";
+    *moved = next;
+    rest = FindLateCommand(given, runs, *moved, jobs);
+  }
+  if (*moved == 0 || !(std::abs(rest.rows) < kRight && rest.error < kLargestError)) return "";
   std::vector<std::string> names;
   names.reserve(runs.size());
   for (const Run& run : runs) names.push_back(run.name);
@@ -164,7 +175,11 @@ std::string RemarkOn(const model::ModelDescription& given, const std::vector<Run
   const std::string key = runs::KeyIn(runs.front(), runs::kSignals.front());
   const std::string who = RunsNamed(names) + ": the " + key + " is " + (*moved > 0 ? "late" : "early") +
                           " by " + size + " rows against all other signals: ";
-  if (*moved > 0) return who + "a row holds what acted before it. This " + LineFor(runs, *moved);
+  if (*moved == 1) return who + "a row holds what acted before it. This " + LineFor(runs, *moved);
+  if (*moved > 1) {
+    return who + "a row holds what acted " + std::to_string(*moved) + " rows before. This " +
+           LineFor(runs, *moved);
+  }
   return who +
          "a row holds what acts from the next row on, or the amplifier is as late (amp.delay). If it "
          "is the recording, this " +

@@ -1,5 +1,5 @@
 // Whether the command stands in the wrong row of its table: a recorder that writes what was acting, or what
-// is to act from the next row on, makes it late or early by one sample.
+// is to act from the next row on, makes it late or early by one sample; one that buffers, by several.
 #pragma once
 
 #include <string>
@@ -26,10 +26,10 @@ struct CommandRemarks {
   std::vector<std::string> early;  // it may also be the amplifier that is late
 };
 
-// For each recorder, a line where the balances show that the command is late or early by a whole row: beyond
-// its uncertainty nearer to one row than to none, and right once it is moved by one. The line has what mends
-// it in the sidecar. Logs of this stack and runs without a sidecar are left out: their commands act at the
-// tick they belong to.
+// For each recorder, a line where the balances show that the command is late by one to five rows (and up to
+// 20 ms), or early by one: beyond its uncertainty nearer to a whole row than to none, and right once it is
+// moved by that many. The line has what mends it in the sidecar. Logs of this stack and runs without a
+// sidecar are left out: their commands act at the tick they belong to.
 CommandRemarks RemarksOnCommands(const model::ModelDescription& given,
                                  const std::vector<runs::MeasuredRun>& runs, int jobs);
 

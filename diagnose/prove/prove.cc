@@ -182,8 +182,10 @@ Proof Reported(ProofSets* sets, const Prover& prover, size_t best) {
   context.Report("fitting the whole runs", 0.93);
   const ProofWindows& windows = sets->windows();
   std::vector<RunData> told = WithDiscrepancy(windows.told, (*sets)[best].hypothesis.model, context.jobs);
+  // Where other values are all that was found, they are the best ones: a reader sees one refit, not two.
+  const bool values_alone = best != ProofSets::kGiven && (*sets)[best].Effects().empty();
   return ProofOf(context, windows, std::move(told), sets->all(),
-                 {ProofSets::kGiven, prover.BestValues(), best});
+                 {ProofSets::kGiven, values_alone ? best : prover.BestValues(), best});
 }
 
 // The place of the best set without an effect that may be absent and that the windows do not show either; if

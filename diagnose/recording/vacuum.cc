@@ -6,7 +6,6 @@
 #include "base/maths/median.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "model/equations/equations.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -28,7 +27,7 @@ bool Lasts(const std::vector<double>& values, double zero) {
 std::optional<BelowVacuum> FindBelowVacuum(const model::ModelDescription& model,
                                            const runs::MeasuredSignal& pressure) {
   BelowVacuum below;
-  below.zero = -model::Equations(model, {}).data().atmosphere;
+  below.zero = -model::AtmosphereOf(model);
   std::vector<double> known;
   for (const double value : pressure.values) {
     if (std::isnan(value)) continue;

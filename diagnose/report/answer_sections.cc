@@ -128,6 +128,11 @@ std::string WeightsInWords(size_t set_90, bool first_was_found) {
          "what was found.";
 }
 
+// Of exact sensors, a hundredth of what was missing may be left, which is more than their noise.
+std::string NothingBut(const ComparedGap& gap) {
+  return gap.gap.after < 2 ? "Nothing but noise: " : "Next to nothing: ";
+}
+
 }  // namespace
 
 std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
@@ -221,15 +226,15 @@ std::string WhatRemains(const Diagnosis& diagnosis) {
       ShortNumber(gap.gap.after, 3) + " noise units" + (IsOpen(diagnosis.verdict) ? " remain" : "") +
       " on the " + (gap.of_fitted ? "fitted" : "held-out") + " runs" +
       (gap.seconds > 0 ? ", predicted over " + ShortNumber(gap.seconds, 2) + " s" : "") + ".";
-  if (diagnosis.verdict == Verdict::kNothingMissing) return "<p>Nothing but noise: " + left + "</p>\n";
+  if (diagnosis.verdict == Verdict::kNothingMissing) return "<p>" + NothingBut(gap) + left + "</p>\n";
   const std::string places = Places(diagnosis);
   std::string where;
   if (!places.empty() && IsOpen(diagnosis.verdict))
     where = " This is where, with what was found in the model:";
   if (!places.empty() && !IsOpen(diagnosis.verdict)) where = " This is where the model as given disagrees:";
   if (places.empty() && IsOpen(diagnosis.verdict)) where = " No balance shows where.";
-  return "<p>" + std::string(IsOpen(diagnosis.verdict) ? "" : "Nothing but noise: ") + left + where +
-         "</p>\n" + places + MissingTerms(diagnosis);
+  return "<p>" + (IsOpen(diagnosis.verdict) ? "" : NothingBut(gap)) + left + where + "</p>\n" + places +
+         MissingTerms(diagnosis);
 }
 
 std::string WhatToMeasureNext(const Diagnosis& diagnosis) {

@@ -152,7 +152,11 @@ std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
              ShortNumber(compared.gap.before, 3) + " noise units" +
              (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s." : ".");
     case Verdict::kParameters:
-      return "The equations suffice with other values: " + Enumerated(parameters) + gap;
+      if (Falls(compared.gap))
+        return "The equations suffice with other values: " + Enumerated(parameters) + gap;
+      return "The equations suffice; other values fit the runs better, but predict the " +
+             std::string(compared.of_fitted ? "fitted" : "held-out") +
+             " ones no better: " + Enumerated(parameters) + gap;
     case Verdict::kNamed:
       return Found("Missing: ", "", effects, parameters) + gap;
     case Verdict::kTied:

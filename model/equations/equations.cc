@@ -6,7 +6,6 @@
 #include <sstream>
 #include <utility>
 
-#include "base/units.h"
 #include "model/effects/catalogue.h"
 #include "model/equations/evaluate.h"
 #include "model/equations/read_sensors.h"
@@ -29,18 +28,6 @@ void CheckBounds(const ParameterInfo& info, const UnitSystem& units, double valu
   throw ModelError("parameter " + owner + info.name + " = " + Number(value) + " " + info.UnitIn(units) +
                    "; allowed is " + (info.min_allowed ? "from " : "above ") + Number(info.min) +
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
-}
-
-// The only number with a unit in the equations. It is 14.6959 psi in every system, so that the same rig moves
-// in the same way whatever its units; 101325 Pa differs from this by 4 in a million.
-double Atmosphere(const ModelDescription& description) {
-  constexpr double kPsiOfAir = 14.6959;
-  const bool named = description.units != UnitSystem{};
-  // A model that does not state its units may still be in SI: no liquid has a beta of 1e7 psi.
-  const double unit = named                               ? ParseUnit(description.units.UnitFor("psi"))->size
-                      : description.parameters.beta > 1e7 ? 1
-                                                          : kPsi;
-  return unit == kPsi ? kPsiOfAir : kPsiOfAir * kPsi / unit;
 }
 
 // Not inlined: one copy serves every caller that needs derivatives.
@@ -130,7 +117,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
     : units_(description.units) {
   data_.parameters = description.parameters;
   data_.linear_arm = units_.linear_arm;
-  data_.atmosphere = Atmosphere(description);
+  data_.atmosphere = AtmosphereOf(description);
   data_.shaft = options.shaft;
   data_.bypass = options.bypass;
   data_.arm_angle = options.arm_angle;

@@ -4,9 +4,22 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/units.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::model {
+
+// The only number with a unit in the equations. It is 14.6959 psi in every system, so that the same rig moves
+// in the same way whatever its units; 101325 Pa differs from this by 4 in a million.
+double AtmosphereOf(const ModelDescription& model) {
+  constexpr double kPsiOfAir = 14.6959;
+  const bool named = model.units != UnitSystem{};
+  // A model that does not state its units may still be in SI: no liquid has a beta of 1e7 psi.
+  const double unit = named                         ? ParseUnit(model.units.UnitFor("psi"))->size
+                      : model.parameters.beta > 1e7 ? 1
+                                                    : kPsi;
+  return unit == kPsi ? kPsiOfAir : kPsiOfAir * kPsi / unit;
+}
 
 void Deviate(ModelDescription* model, size_t base, double deviations) {
   constexpr double kMost = 13.8;  // about log(10^6)

@@ -61,6 +61,9 @@ struct ModelDescription {
   std::map<std::string, double> uncertainty = {};
 };
 
+// The pressure of the surrounding air, from which a model's pressures count, in its unit.
+double AtmosphereOf(const ModelDescription& model);
+
 // Machines that a model allows: base parameters drawn at random, with deviations as large as their
 // uncertainty.
 

@@ -20,9 +20,7 @@ std::string Place(int64_t offset, int64_t index) {
   return Byte(offset) + ", event " + std::to_string(index) + ": ";
 }
 
-std::string At(int64_t offset, int64_t utime) {
-  return Byte(offset) + " (" + NumberText(static_cast<double>(utime) * 1e-6) + " s)";
-}
+std::string At(int64_t offset, int64_t utime) { return Byte(offset) + " (" + StampText(utime) + ")"; }
 
 std::string Counted(int64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
@@ -192,9 +190,8 @@ bool LogExaminer::CompareBlock(const LogEvent& event, const LogCheck& check) {
   }
   if (same < check.count) {
     return Damaged(pending_[same].offset, Place(pending_[same].offset, first + static_cast<int64_t>(same)) +
-                                              "at " +
-                                              NumberText(static_cast<double>(pending_[same].utime) * 1e-6) +
-                                              " s: the event has another checksum than when it was written");
+                                              "at " + StampText(pending_[same].utime) +
+                                              ": the event has another checksum than when it was written");
   }
   if (missing != 0) {
     return Damaged(event.offset, range + ": found a check event that was written at byte " +

@@ -179,43 +179,6 @@ RepairResult RepairInPlace(const std::string& file) {
   }
 }
 
-namespace {
-
-// Quotes a file's name as one word of a command line.
-std::string ShellWord(const std::string& name) {
-  std::string quoted;
-  for (const char c : name) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  const bool plain =
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./") ==
-      std::string::npos;
-  return plain && !name.starts_with('-') ? name : "'" + quoted + "'";
-}
-
-}  // namespace
-
-std::string DescribeJoined(const RepairResult& result, const std::string& file) {
-  if (result.joined_at.empty()) return {};
-  const std::filesystem::path path(file);
-  const std::string ending = path.extension() == ".lcmlog" ? ".lcmlog" : "";
-  const std::string stem = ending.empty() ? file : file.substr(0, file.size() - ending.size());
-  const size_t count = result.joined_at.size() + 1;
-  std::string text =
-      file + ": " + std::to_string(count) +
-      " recordings were joined in it, and other verbs read one run; these commands take them apart:\n";
-  constexpr size_t kMostParts = 20;
-  for (size_t k = 0; k < std::min(count, kMostParts); ++k) {
-    const int64_t begin = k == 0 ? 0 : result.joined_at[k - 1];
-    const std::string size = k + 1 == count ? "" : std::to_string(result.joined_at[k] - begin);
-    const std::string word = ShellWord(file);
-    text += "  ";
-    if (k > 0) text += "tail -c +" + std::to_string(begin + 1) + " " + word + (size.empty() ? "" : " | ");
-    if (!size.empty()) text += "head -c " + size + (k == 0 ? " " + word : "");
-    text += " > " + ShellWord(stem + "-" + std::to_string(k + 1) + ending) + "\n";
-  }
-  if (count > kMostParts) text += "  and so on, at each byte where hydro-log info says that one was joined\n";
-  return text;
-}
-
 std::string Describe(const RepairResult& result, const std::string& file) {
   // The places of what was lost are bytes of the log as it was found.
   const std::string& found = result.damaged.empty() ? file : result.damaged;

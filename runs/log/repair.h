@@ -46,10 +46,6 @@ RepairResult RepairLog(const std::string& file, const std::string& out);
 // WriteError and InputError, the latter also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
 
-// One line on the recordings that were joined in a log, and one line for each of them with the command that
-// extracts it; empty: the log is one recording. `file` holds the log as it was found.
-std::string DescribeJoined(const RepairResult& result, const std::string& file);
-
 // One line for what was kept, and one line for each place where something was lost. `file` is the name by
 // which the log was given.
 std::string Describe(const RepairResult& result, const std::string& file);

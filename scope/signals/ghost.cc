@@ -79,18 +79,14 @@ std::optional<double> Ghost::Slope(double model::Measurement::*angle) const {
 
 void Ghost::Start(const GhostSample& sample) {
   actuator_.reset();
-  const model::Measurement& measured = sample.measured;
-  model::StartState start{};
-  const auto speed = [&](double value, double model::Measurement::*angle) {
-    return std::isfinite(value) ? value : Slope(angle).value_or(kMissing);
+  model::Measurement begin = sample.measured;
+  const auto fill = [&](double model::Measurement::*speed, double model::Measurement::*angle) {
+    if (!std::isfinite(begin.*speed)) begin.*speed = Slope(angle).value_or(kMissing);
   };
-  const bool free = config_->model.shaft == model::Shaft::kFree;
-  start[model::kMotorAngle] = std::isfinite(measured.motor_angle) ? measured.motor_angle : 0;
-  start[model::kMotorSpeed] = speed(measured.motor_speed, &model::Measurement::motor_angle);
-  start[model::kP1] = measured.p1;
-  start[model::kP2] = measured.p2;
-  start[model::kArmAngle] = free ? measured.arm_angle : 0;
-  start[model::kArmSpeed] = free ? speed(measured.arm_speed, &model::Measurement::arm_angle) : 0;
+  fill(&model::Measurement::motor_speed, &model::Measurement::motor_angle);
+  fill(&model::Measurement::arm_speed, &model::Measurement::arm_angle);
+  if (!std::isfinite(begin.motor_angle)) begin.motor_angle = 0;
+  const model::StartState start = model::StartOf(begin, config_->model.shaft);
   for (size_t i = 0; i < 6; ++i) {
     if (std::isfinite(start[i])) continue;
     if (newest_.size() >= kSlopeSamples) problem_ = "a state that it begins from is not measured";

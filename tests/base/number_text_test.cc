@@ -5,6 +5,7 @@
 #include <clocale>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -30,6 +31,16 @@ TEST(NumberTextTest, Rounded) {
   EXPECT_EQ(ShortNumber(-0.0), "0");
   EXPECT_EQ(ShortNumber(2.6e-5), "2.6e-05");
   EXPECT_EQ(ShortNumber(NAN), "-");
+}
+
+// Tests that a stamp is a date, to the microsecond, and that of a simulated clock, which begins at 0,
+// seconds.
+TEST(NumberTextTest, Stamps) {
+  EXPECT_EQ(StampText(1'795'714'394'000'123), "2026-11-26 17:33:14.000123 UTC");
+  EXPECT_EQ(StampText(1'709'251'199'999'999), "2024-02-29 23:59:59.999999 UTC");
+  EXPECT_EQ(StampText(12'500'000), "12.5 s");
+  EXPECT_EQ(StampText(-1'000'000), "-1 s");
+  EXPECT_EQ(StampText(std::numeric_limits<int64_t>::max()), "9223372036854.775 s");
 }
 
 // Tests that a program that has set a locale with decimal commas, as one that embeds these libraries may,

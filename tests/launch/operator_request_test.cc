@@ -118,10 +118,8 @@ class NoProcesses : public LocalProcesses {
   std::string Left() override { return ""; }
 };
 
-// What a forecast says of what may keep the arm from following.
-const std::string kLimits =
-    "; the arm follows as far as its load lets it; zero volts again beyond limits.pressure 2000 psi, "
-    "limits.arm_angle 0.8407 rad";
+// What a forecast says of the machine, as far as it is the same whatever the loops leave.
+const std::string kMotion = "; by its model no limit ends that within 10.5 s, after which the arm is at 0.";
 
 class OperatorRequestTest : public ::testing::Test {
  protected:
@@ -216,11 +214,12 @@ TEST_F(OperatorRequestTest, SaysWhereItMoves) {
   Add("_knee", 2, rearm_t::NOTHING_LATCHED, "no fault is latched");
   const OperatorResult result = RearmStack(bus_, clock_, config_);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(
+  EXPECT_THAT(
       result.text,
-      "re-armed: hip: ended pressure_limit; knee: no fault is latched; hip: the arm is at 0.125 rad; its "
-      "reference comes back to 0.1 rad: the reference moves by -0.025 rad in 0.5 s, at up to 0.05 rad/s" +
-          kLimits);
+      StartsWith(
+          "re-armed: hip: ended pressure_limit; knee: no fault is latched; hip: the arm is at 0.125 rad; its "
+          "reference comes back to 0.1 rad: the reference moves by -0.025 rad in 0.5 s, at up to 0.05 rad/s" +
+          kMotion));
   ASSERT_EQ(result.forecasts.size(), 2u);
   EXPECT_EQ(result.forecasts[0].first, "hip");
   EXPECT_TRUE(result.forecasts[0].second.known);
@@ -234,11 +233,10 @@ TEST_F(OperatorRequestTest, ForecastsWithoutARequest) {
   Add("_hip", 1, rearm_t::ACCEPTED, "").Hold();
   const OperatorResult result = ForecastRearm(bus_, clock_, config_);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(
-      result.text,
-      "the arm is at 0.125 rad; its reference comes back to 0.1 rad: the reference moves by -0.025 rad in "
-      "0.5 s, at up to 0.05 rad/s" +
-          kLimits);
+  EXPECT_THAT(result.text, StartsWith("the arm is at 0.125 rad; its reference comes back to 0.1 rad: the "
+                                      "reference moves by -0.025 rad in "
+                                      "0.5 s, at up to 0.05 rad/s" +
+                                      kMotion));
   EXPECT_EQ(plants_[0]->asked(), 0);
 }
 

@@ -182,5 +182,31 @@ TEST(CompareTest, FaultsOfTwoProcesses) {
   EXPECT_NE(Difference(a, b), std::nullopt);
 }
 
+// Tests that of runs in other units one line says which those are and what compares them, because their first
+// numbers differ whatever the runs do; and that runs that do not say their units are compared.
+TEST(CompareTest, RunsInOtherUnits) {
+  LimbLog a, b;
+  a.limb.messages = b.limb.messages = log::SampleRun(9);
+  for (LimbLog* log : {&a, &b}) log->limb.messages.Of<run_description_t>().resize(1);
+  run_description_t& of_a = a.limb.messages.Of<run_description_t>().front();
+  run_description_t& of_b = b.limb.messages.Of<run_description_t>().front();
+  of_b = of_a;
+  of_a.model_text = "name = \"a\"\n";
+  of_b.model_text = "units = \"si\"\n";
+  try {
+    FirstDifference(a, "a.lcmlog", b, "b.lcmlog");
+    FAIL() << "compared";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("b.lcmlog: found a run in m, N and Pa, allowed one in the units "
+                                "of a.lcmlog, in, lbf and psi, "),
+                      HasSubstr("hydro-log export --si")));
+  }
+  of_b.model_text = of_a.model_text;
+  EXPECT_EQ(FirstDifference(a, "a.lcmlog", b, "b.lcmlog"), std::nullopt);
+  of_b.model_text = "";
+  EXPECT_EQ(FirstDifference(a, "a.lcmlog", b, "b.lcmlog"), std::nullopt);
+}
+
 }  // namespace
 }  // namespace hydro::runs

@@ -12,6 +12,7 @@
 #include "runs/compare.h"
 #include "runs/info.h"
 #include "runs/limb_info.h"
+#include "runs/log/joined.h"
 #include "runs/log/repair.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
@@ -139,9 +140,13 @@ class RepairVerb {
         "replaced, and the damaged one kept as LOG.damaged (LOG.damaged1 ... where that is taken).");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
+    verb.AddFlag(
+        "--split", &split_,
+        "write each of the recordings that were joined in LOG, as it is there, to LOG-1, LOG-2, ...");
     verb.AddForce();
   }
   int Run() const {
+    if (split_) return Split();
     if (!out_.empty()) CheckKeeps(out_, {log_});
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (!result.mended()) {
@@ -172,7 +177,21 @@ class RepairVerb {
     return "";
   }
 
+  int Split() const {
+    if (!out_.empty()) throw InputError("--split: found it beside -o, allowed one of the two");
+    std::string text;
+    for (const log::JoinedPart& part : log::SplitJoined(log_)) {
+      text += part.file + ": " + log::NameOf(part.verdict.completeness);
+      if (part.verdict.completeness == log::Completeness::kDamaged)
+        text += ": " + part.verdict.where + "; hydro-log repair " + part.file + " keeps what can be read";
+      text += "\n";
+    }
+    std::fputs(PrintableLines(text).c_str(), stdout);
+    return 0;
+  }
+
   std::string log_, out_;
+  bool split_ = false;
 };
 
 }  // namespace

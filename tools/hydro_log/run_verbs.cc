@@ -9,6 +9,7 @@
 #include "base/read_files.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "process/stop_signal.h"
 #include "runs/limb_info.h"
 #include "runs/senders.h"
@@ -172,6 +173,11 @@ int ReplayVerb::Run() const {
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
   if (!(timeout_s_ > 0 && timeout_s_ <= kLongest_s)) {
     throw InputError("--timeout: must be a number above 0 and at most " + ShortNumber(kLongest_s));
+  }
+  const std::vector<std::string> names = {"pressure", "position", "both"};
+  if (const std::string meant = ours ? "" : DidYouMean(controller_, names); !meant.empty()) {
+    throw InputError("--controller: found " + Quoted(controller_) + meant + ", allowed " + QuotedList(names) +
+                     ", or a command of your own");
   }
   const std::vector<std::string> command = ours ? std::vector<std::string>() : CommandWords(controller_);
   if (!ours) {

@@ -9,6 +9,7 @@
 #include "base/number_text.h"
 #include "model/sides.h"
 #include "tune/live/change_check.h"
+#include "tune/live/rearm_words.h"
 
 namespace hydro::tuning {
 namespace {
@@ -204,95 +205,32 @@ void FollowTheReference(const Wanted& wanted, double begin, RearmForecast* forec
   forecast->one_way = !(rises && falls);
 }
 
-std::string ReturnText(const RearmForecast& f) {
-  const double way = f.target - f.present;
-  const bool moves = std::fabs(way) > f.resolution;
-  if (!moves && f.turns.empty() && f.steps.empty()) return "the reference does not move";
-  std::string text =
-      moves ? fmt::format("the reference moves by {}{} {}", way > 0 ? "+" : "", ShortNumber(way), f.unit)
-            : "the reference ends where it is now";
-  if (f.return_s == 0) return text + " at once";
-  text += fmt::format(" in {} s, at up to {} {}/s", ShortNumber(f.return_s), ShortNumber(f.top_rate), f.unit);
-  for (const ReferenceTurn& turn : f.turns) {
-    const bool beyond = (turn.at - f.target) * way > 0;
-    text += fmt::format(", by way of {} {} ({}) after {} s", ShortNumber(turn.at), f.unit,
-                        beyond ? "beyond that" : "the other direction", ShortNumber(turn.after_s));
-  }
-  if (f.steps.empty()) return text;
-  const ReferenceStep& first = f.steps.front();
-  text += fmt::format(", and jumps by {}{} {} after {} s", first.by > 0 ? "+" : "", ShortNumber(first.by),
-                      f.unit, ShortNumber(first.after_s));
-  const size_t more = f.steps.size() - 1;
-  if (more == 0) return text;
-  return text + fmt::format(" and {}{} more time{}", f.steps.size() < kMostSteps ? "" : "at least ", more,
-                            more == 1 ? "" : "s");
-}
-
-// An arm that moves goes on for a while: said where that is not the way of its reference, or a material part
-// of it.
-std::string MovesText(const RearmForecast& f) {
-  constexpr double kMaterial = 0.1;
-  const double way = f.target - f.present;
-  const bool against = f.speed * (f.turns.empty() ? way : f.turns.front().at - f.present) <= 0;
-  const double of_return =
-      f.return_s > 0 ? std::max(f.top_rate, std::fabs(way) / f.return_s) : std::fabs(way);
-  const double least = std::max(kMaterial * of_return, f.resolution);
-  if (!std::isfinite(f.speed) || !against || std::fabs(f.speed) <= least) return "";
-  return fmt::format(" and moves at {}{} {}/s, {}", f.speed > 0 ? "+" : "", ShortNumber(f.speed), f.unit,
-                     std::fabs(way) <= f.resolution ? "in which it goes on at first"
-                                                    : "the other way, in which it goes on at first");
-}
-
-// What stands between the reference and the arm.
-std::string LimitsText(const settings::StackConfig& config) {
+// What a limit lets through of a reference that is no angle.
+void FindMost(const settings::StackConfig& config, RearmForecast* forecast) {
+  const model::Parameters& p = config.model.description.parameters;
   const UnitSystem& units = config.model.description.units;
-  const settings::LimitsSection& limits = config.limits;
-  const auto listed = [](std::string* list, const char* name, double limit, const std::string& unit) {
-    if (!std::isfinite(limit)) return;
-    *list += fmt::format("{}{} {} {}", list->empty() ? "" : ", ", name, ShortNumber(limit), unit);
+  const auto narrow = [&](double most, const std::string& by) {
+    if (most < forecast->most) {
+      forecast->most = most;
+      forecast->most_by = by;
+    }
   };
-  std::string held_back, ends;
-  listed(&held_back, "limits.arm_torque", limits.arm_torque_in_lbf, units.UnitFor("in-lbf", -1));
-  listed(&ends, "limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
-  listed(&ends, "limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
-  listed(&ends, "limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
-  std::string text = "the arm follows as far as its load";
-  text += held_back.empty() ? " lets it" : " and " + held_back + " let it";
-  if (!ends.empty()) text += "; zero volts again beyond " + ends;
-  return text;
-}
-
-std::string TextOf(const RearmForecast& f, const Referred& referred, const settings::StackConfig& config) {
-  const auto number = [&](double value) {
-    return ShortNumber(std::fabs(value) <= f.resolution ? 0 : value) + " " + f.unit;
-  };
-  const bool planner = config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner;
-  std::string text =
-      fmt::format("{} is at {}{}; its reference comes back to {}{}: {}", referred.words, number(f.present),
-                  MovesText(f), number(f.target), planner ? " (by the newest plan)" : "", ReturnText(f));
-  const double spread = f.highest - f.lowest,
-               least = std::max(1e-3 * std::max(std::fabs(f.highest), std::fabs(f.lowest)), f.resolution);
-  if (spread > least) {
-    text += fmt::format("; in the {} s after that it {} {} {} {}", ShortNumber(kForecast_s),
-                        f.one_way ? "goes from" : "is between", number(f.one_way ? f.target : f.lowest),
-                        f.one_way ? "to" : "and", number(f.one_way ? f.last : f.highest));
-  }
-  return text + "; " +
-         (f.quantity == "arm_angle" ? LimitsText(config) : "how far the arm moves does not follow from that");
+  if (config.reference.signal == ReferenceSignal::kArmAngle) return;
+  if (config.reference.signal == ReferenceSignal::kVoltage)
+    return narrow(p.T_pmax / p.k_1, fmt::format("the motor's torque T_pmax {} {}", ShortNumber(p.T_pmax),
+                                                units.UnitFor("in-lbf")));
+  const double per_pressure = config.reference.signal == ReferenceSignal::kTorque ? p.k_2 : 1;
+  narrow(config.limits.arm_torque_in_lbf / p.k_2 * per_pressure, ArmTorqueLimit(config));
+  if (config.position.dac_bits > 0)
+    narrow(config.position.dac_range_psi * per_pressure,
+           fmt::format("position.dac_range {} {}", ShortNumber(config.position.dac_range_psi),
+                       units.UnitFor("psi")));
 }
 
 RearmForecast Unknown(const std::string& why) {
   RearmForecast forecast;
   forecast.text = "where the machine will move to is not known: " + why;
   return forecast;
-}
-
-// The name of a position loop that the user wrote; empty: it is the project's.
-std::string OwnPositionLoop(const settings::StackConfig& config) {
-  for (const settings::ProcessSection& process : config.processes) {
-    if (!process.command.empty() && process.role == "position_ctrl") return process.command.front();
-  }
-  return "";
 }
 
 }  // namespace
@@ -317,7 +255,7 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
   try {
     const settings::StackConfig config =
         ConfigInForce(*heard.run, heard.in_force.value_or(tuned_settings_t{}));
-    if (const std::string own = OwnPositionLoop(config); !own.empty())
+    if (const std::string own = OwnProgram(config, "position_ctrl"); !own.empty())
       return Unknown("the position loop is a program of your own, " + own);
     const Referred referred = ReferredTo(config, *heard.state);
     if (!std::isfinite(referred.present)) return Unknown(std::string(referred.words) + " is not measured");
@@ -333,7 +271,10 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
     FollowTheReturn(wanted, heard.state->time, &forecast);
     if (forecast.return_s > 0) FindTurns(wanted, heard.state->time, &forecast);
     FollowTheReference(wanted, heard.state->time + forecast.return_s, &forecast);
-    forecast.text = TextOf(forecast, referred, config);
+    FindMost(config, &forecast);
+    forecast.motion = SimulateRearm(
+        config, *heard.state, [&](double time) { return wanted.At(time); }, forecast.return_s + kForecast_s);
+    forecast.text = ForecastText(forecast, referred.words, config);
     if (says_it_acts) {
       forecast.text += fmt::format(
           "; but the device says that it acts by a command, with {} V, though a fault holds the voltage at "

@@ -1,19 +1,22 @@
 // Forecasts what the machine will do when it is re-armed, as far as that can be known: where the reference
 // returns to, how far that is from the arm, and how fast it moves. While the voltage is held at zero, the
-// published reference follows the arm and does not show this. Load and limits decide whether the arm follows
-// its reference, so the forecast promises nothing about the arm. One function serves every page and terminal
-// from which the machine is re-armed. Pure.
+// published reference follows the arm and does not show this. Load and limits decide whether the machine
+// follows its reference: what the model says of that is simulated (rearm_motion.h), and where nothing can be
+// simulated, the forecast says so. One function serves every page and terminal from which the machine is
+// re-armed. Pure.
 #pragma once
 
 #include <hydro/arm_plan_t.hpp>
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 #include <hydro/tuned_settings_t.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "settings/stack_config.h"
+#include "tune/live/rearm_motion.h"
 
 namespace hydro::tuning {
 
@@ -52,7 +55,11 @@ struct RearmForecast {
   double highest = 0;
   double last = 0;       // where it is then
   bool one_way = false;  // it only rises, or only falls
-  std::string text;      // one line for a person
+  // The largest pressure, torque or voltage that a limit lets through of such a reference, and that limit.
+  double most = std::numeric_limits<double>::infinity();
+  std::string most_by;
+  RearmMotion motion;  // what the machine does, by its model
+  std::string text;    // one line for a person
 };
 
 inline constexpr double kForecast_s = 10;

@@ -42,10 +42,14 @@ std::string WhatTheRigCannotFollow(const settings::StackConfig& config) {
         return Beyond("a speed", fastest, speed, units.UnitFor("rad/s", 1), "limits.motor_speed at the arm");
       return "";
     }
-    case settings::ReferenceSignal::kPressure:
-      if (largest > pressure)
-        return Beyond("a pressure", largest, pressure, units.UnitFor("psi"), "T_pmax/D and limits.pressure");
+    case settings::ReferenceSignal::kPressure: {
+      const double most = std::min(pressure, config.limits.arm_torque_in_lbf / p.k_2);
+      if (largest > most) {
+        return Beyond("a pressure", largest, most, units.UnitFor("psi"),
+                      "T_pmax/D, limits.pressure and limits.arm_torque/k_2");
+      }
       return "";
+    }
     case settings::ReferenceSignal::kTorque: {
       const double torque = std::min(pressure * p.k_2, config.limits.arm_torque_in_lbf);
       if (largest > torque) {

@@ -40,8 +40,8 @@ Goals ParseGoals(const std::vector<std::string>& texts, const std::string& unit)
     const Goal& goal = Find(text, text.substr(0, equals), unit);
     const std::string given = equals == std::string::npos ? "" : text.substr(equals + 1);
     auto number = ParseNumber(given);
-    // "30 mm"
-    if (goal.value == &Goals::step && !number && given.find(' ') != std::string::npos) {
+    // "30 mm", "30mm"
+    if (goal.value == &Goals::step && !number && given.find_first_of("0123456789") != std::string::npos) {
       number = settings::NumberOf(given, unit, "--goal", goal.name);
     }
     const bool allowed = number && std::isfinite(*number) && (goal.zero_allowed ? *number >= 0 : *number > 0);

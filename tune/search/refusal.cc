@@ -7,9 +7,9 @@
 #include "base/number_text.h"
 #include "runs/step_response.h"
 #include "tune/design/bang_bang.h"
-#include "tune/design/configured_laws.h"
 #include "tune/design/loop_margins.h"
 #include "tune/design/operating_cases.h"
+#include "tune/search/unsettled.h"
 
 namespace hydro::tune {
 namespace {
@@ -74,12 +74,6 @@ std::string RefusalByTheMotor(const StepJudge& judge, const Goals& goals) {
   return "";
 }
 
-double FrictionError(const settings::StackConfig& config, const Gains& gains) {
-  const model::Parameters& p = config.model.description.parameters;
-  const pressure_ctrl::PressureLawSettings law = design::PressureLawSettingsFor(With(config, gains));
-  return p.T_s / (p.k_1 * (law.gains.k_p + law.reference_feedforward) * gains.c1);
-}
-
 namespace {
 
 std::string SettledIn(double ratio) {
@@ -108,15 +102,17 @@ std::string RefusalToPropose(const StepJudge& judge, const Goals& goals, const T
                              const Tried& configured) {
   if (!Settles(best)) {
     const StepCase& slowest = best.steps.slowest;
+    const std::string why = WhyUnsettled(judge, best.gains, slowest);
     return fmt::format(
         "no proposal: with no gains that keep the margins does the arm settle within {} times the shortest "
         "time "
-        "after every step tried, with the best of them not after one of {} from {}; the configured gains {}; "
+        "after every step tried, with the best of them not after one of {} from {}{}; the configured gains "
+        "{}; "
         "--goal step=S tunes for one size of step, and a faster pressure loop (natural frequency here: {} "
         "rad/s) "
         "settles sooner",
         Number(kNeverSettled), Arm(judge.config(), slowest.step), Arm(judge.config(), slowest.start),
-        SpeedText(configured), Number(best.gains.natural_frequency));
+        why.empty() ? "" : " (" + why + ")", SpeedText(configured), Number(best.gains.natural_frequency));
   }
   if (IsBetter(goals, best, configured)) return "";
   std::string text = "no proposal: nothing better than the configured gains was found, which " +

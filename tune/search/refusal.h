@@ -19,7 +19,4 @@ std::string RefusalBySearch(const StepJudge& judge, const Goals& goals, const Se
 std::string RefusalToPropose(const StepJudge& judge, const Goals& goals, const Tried& best,
                              const Tried& configured);
 
-// rad: how far from its target friction may hold the arm with these gains.
-double FrictionError(const settings::StackConfig& config, const Gains& gains);
-
 }  // namespace hydro::tune

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "base/number_text.h"
 #include "base/units.h"
+#include "base/word_list.h"
 #include "tune/design/configured_laws.h"
 #include "tune/design/operating_cases.h"
+#include "tune/search/unsettled.h"
 
 namespace hydro::tune {
 namespace {
@@ -73,6 +76,30 @@ std::string RatioText(double ratio) {
   return ratio >= kNeverSettled ? "never" : fmt::format("{:.2f}", ratio);
 }
 
+// Below a table with "never" or "stops": a line for each limit that is behind them.
+std::string UnsettledText(const TuningReport& report) {
+  const std::string unit = report.judge->config().model.description.units.UnitFor("rad", 1);
+  std::string text;
+  for (const Proposal& proposal : report.proposals) {
+    std::map<std::string, std::vector<std::string>> steps;  // by why they do not settle
+    const auto add = [&](const StepCase& step, const std::string& name) {
+      const std::string why = WhyUnsettled(*report.judge, proposal.tried.gains, step);
+      if (!why.empty()) steps[why].push_back(name);
+    };
+    const auto never = [](double ratio) { return ratio >= kNeverSettled; };
+    for (size_t i = 0; i < proposal.steps.size(); ++i) {
+      const double step = report.judge->steps()[i];
+      if (never(proposal.steps[i].ratio)) add(report.judge->Nominal(step), NumberText(step) + " " + unit);
+    }
+    const StepVerdict& verdict = proposal.tried.steps;
+    if (never(verdict.ratio)) add(verdict.slowest, "over the travel");
+    if (never(verdict.uncertain_ratio)) add(verdict.uncertain_slowest, "uncertain model");
+    for (const auto& [why, names] : steps)
+      text += "  " + proposal.name + ", " + Joined(names) + ": " + why + "\n";
+  }
+  return text;
+}
+
 std::string StepsText(const TuningReport& report) {
   const UnitSystem& units = report.judge->config().model.description.units;
   std::string text = fmt::format("  {:>8} {:>9}", "step " + units.UnitFor("rad", 1), "bound s");
@@ -101,7 +128,7 @@ std::string StepsText(const TuningReport& report) {
   };
   row("over the travel", [](const Proposal& p) { return p.tried.steps.ratio; });
   row("uncertain model", [](const Proposal& p) { return p.tried.steps.uncertain_ratio; });
-  return text;
+  return text + UnsettledText(report);
 }
 
 std::string TradeOffText(const TuningReport& report) {

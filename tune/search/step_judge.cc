@@ -21,7 +21,6 @@ constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
 // Gains with which fewer cases never settle are better, whatever the largest ratio is.
 constexpr double kUnsettled = 10;
-constexpr double kLastPart = 0.1;    // of a trial: how far the arm still swings there
 constexpr double kUsedTravel = 0.9;  // of the arm's range; steps start there, towards the middle
 constexpr int64_t kSampleSeed = 20261123;
 constexpr double kMostDeviations = 2;  // of a parameter in a sample
@@ -177,7 +176,7 @@ StepVerdict StepJudge::Judge(const Gains& gains) const {
     (step.model == 0 ? cases : samples) += 1;
     if (!result.settled) (step.model == 0 ? verdict.unsettled : verdict.uncertain_unsettled) += 1;
     double& ratio = step.model == 0 ? verdict.ratio : verdict.uncertain_ratio;
-    if (step.model == 0 && result.ratio > ratio) verdict.slowest = step;
+    if (result.ratio > ratio) (step.model == 0 ? verdict.slowest : verdict.uncertain_slowest) = step;
     ratio = std::max(ratio, result.ratio);
     if (step.model == 0) {
       verdict.overshoot_percent = std::max(verdict.overshoot_percent, result.overshoot_percent);

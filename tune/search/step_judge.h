@@ -42,6 +42,7 @@ struct StepVerdict {
   double overshoot_percent = 0;    // the largest with the model as it is
   double settling = 0;             // s: the longest of the goal's step with the model as it is
   StepCase slowest;                // the case with the largest ratio of these
+  StepCase uncertain_slowest;      // and of the samples
   double unsettled = 0;            // share of the cases with the model as it is that never settle
   double uncertain_unsettled = 0;  // and with the samples of the model
   double score() const;            // smaller is better

@@ -3,28 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <vector>
 
 #include "model/terms/description.h"
-#include "position_ctrl/law/position_law.h"
-#include "pressure_ctrl/law/pressure_law.h"
 #include "settings/stack_config.h"
 #include "tune/design/sampled_position_loop.h"
+#include "tune/design/stack_loops.h"
 
 namespace hydro::tune {
 
-struct StepTrial {
+struct StepTrial : design::LoopSettings {
   model::ModelDescription model;
-  pressure_ctrl::PressureLawSettings pressure;
-  position_ctrl::PositionLawSettings position;
-  std::optional<position_ctrl::BrakingCurve> curve = {};
-  double tick = 0;            // s, of the plant
-  int interval = 1;           // ticks between samples of the position loop
-  int pressure_interval = 1;  // ticks between samples of the pressure loop
-  int command_delay = 1;      // ticks, as plant.command_delay_ticks
-  int dac_bits = 0;           // as position.dac_bits
-  double dac_range = 0;       // psi
+  double tick = 0;  // s, of the plant
   settings::NoiseSection noise;
   int64_t seed = 1;
   double start = 0;  // rad, where the arm is before the step
@@ -34,11 +23,18 @@ struct StepTrial {
   double duration = 0;  // s, after the step
 };
 
+// Of a trial: how far the arm still swings there, and which limits still hold it.
+inline constexpr double kLastPart = 0.1;
+
 struct StepRun {
   design::Response response;    // the true angle less `start`, one point per tick, from the step on
   double highest_pressure = 0;  // psi, of either side
   double highest_speed = 0;     // rad/s, of the motor
   double saturated = 0;         // s, with the motor at its torque limit or the voltage at the law's limit
+  double held_back = 0;         // s, in which limits.arm_torque kept back what the position law asked for
+  // The same of the last kLastPart of the trial.
+  double saturated_at_end = 0;
+  double held_back_at_end = 0;
 };
 
 // The arm's response to a reference that steps at a sample of the position loop. Up to rounding, it equals

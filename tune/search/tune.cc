@@ -20,6 +20,7 @@
 #include "tune/search/search.h"
 #include "tune/search/simulated_step.h"
 #include "tune/search/tuned_text.h"
+#include "tune/search/unsettled.h"
 
 namespace hydro::tune {
 namespace {
@@ -141,12 +142,13 @@ std::vector<Proposal> Compared(const StepJudge& judge, const Tried& configured, 
 }
 
 // States what was written, and what to do next.
-std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& proposed) {
+std::vector<std::string> Epilogue(const TuneRequest& request, const StepJudge& judge, const Tried& proposed) {
   std::vector<std::string> lines;
   if (proposed.steps.uncertain_ratio >= kNeverSettled) {
-    lines.emplace_back(
-        "WARNING: with some of what may be true instead of the model ([uncertainty]) the arm never settles; "
-        "ask for less");
+    lines.push_back(
+        "WARNING: with some of what may be true instead of the model ([uncertainty]) the arm never "
+        "settles: " +
+        WhyUnsettled(judge, proposed.gains, proposed.steps.uncertain_slowest) + "; ask for less");
   }
   if (!request.folder.empty())
     lines.push_back("written: " + request.folder + "/tune.html, " + request.folder + "/tune.svg");
@@ -212,7 +214,8 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   if (!request.output.empty()) {
     WriteTextFile(request.output, TunedText(request, config, With(config, chosen.best.gains)), out);
   }
-  for (const std::string& told : Epilogue(request, chosen.best)) std::fprintf(said, "%s\n", told.c_str());
+  for (const std::string& told : Epilogue(request, judge, chosen.best))
+    std::fprintf(said, "%s\n", told.c_str());
   return 0;
 }
 

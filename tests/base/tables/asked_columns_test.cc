@@ -183,6 +183,47 @@ TEST_F(AskedColumnsTest, DatesWithSlashes) {
               HasSubstr("time = { column = \"t\", date = \"day\", date_order = \"dmy\" }"));
 }
 
+// Tests years of two digits, and dashes: what all rows together show in one way only is read, and of the rest
+// the line of the sidecar that settles it is said.
+TEST_F(AskedColumnsTest, DatesWithShortYears) {
+  ExpectTheTable(Read("t,u\n30.11.26 23:59:59.5,7\n1.12.26 00:00:00,8\n01.12.26 00:00:00.5,9\n"));
+  ExpectTheTable(Read("t,u\n26/11/26 10:30:25,7\n26/11/26 10:30:25.5,8\n26/11/26 10:30:26,9\n"));
+  ExpectTheTable(Read("t,u\n11/30/26 23:59:59.5,7\n12/1/26 00:00:00,8\n12/1/26 00:00:00.5,9\n"));
+  ExpectTheTable(Read("t,u\n30-11-2026 23:59:59.5,7\n1-12-2026 00:00:00,8\n1-12-2026 00:00:00.5,9\n"));
+  const std::string three_ways = "t,u\n1-2-3 23:59:59.5,7\n1-2-4 00:00:00,8\n1-2-4 00:00:00.5,9\n";
+  EXPECT_THAT(
+      ErrorOf(three_ways),
+      AllOf(HasSubstr("line 3, column t: found \"1-2-4 00:00:00\", allowed dates of which one has four "
+                      "digits of the year and a day above 12, or time = { column = \"t\", date_order = "
+                      "\"dmy\" } in the sidecar (\"mdy\" where the month comes first, \"ymd\" where the "
+                      "year comes first): these can be read in three ways")));
+  AskedColumns stated = kAsked;
+  stated.date_order = DateOrder::kYearFirst;
+  ExpectTheTable(Read(three_ways, stated));
+  EXPECT_THAT(ErrorOf("t,u\n26/11/26 00:00:00,7\n27/11/26 00:00:00,8\n"),
+              HasSubstr("(\"ymd\" where the year comes first): these can be read in two ways"));
+  EXPECT_THAT(ErrorOf("t,u\n32/13/26 00:00:00,7\n"), HasSubstr("found \"32/13/26 00:00:00\""));
+}
+
+// Tests that of a date and a time in two columns, the one that is wrong is named, and that a column of dates
+// alone is answered with the line that reads both.
+TEST_F(AskedColumnsTest, DateAndTimeInTwoColumns) {
+  const AskedColumns with_date{.names = {"t", "u", "day"}, .time = "t", .date = "day"};
+  ExpectTheTable(
+      Read("day,t,u\n30.11.26,23:59:59.5,7\n01.12.26,0:00:00,8\n1.12.26,0:00:00.5,9\n", with_date));
+  EXPECT_THAT(ErrorOf("day,t,u\nMonday,23:59:59.5,7\n", with_date),
+              HasSubstr("line 2, column day: found \"Monday\", allowed a date alone, like 2026-01-31"));
+  EXPECT_THAT(ErrorOf("day,t,u\n2026-01-31,2026-01-31 23:59:59.5,7\n", with_date),
+              AllOf(HasSubstr("line 2, column t: found \"2026-01-31 23:59:59.5\", allowed a time of day"),
+                    HasSubstr("time = \"t\" in the sidecar")));
+  for (const char* date : {"2026-01-31", "31.01.26", "31/1/26"}) {
+    EXPECT_THAT(
+        ErrorOf(std::string("t,u,clock\n") + date + ",7,10:30:25\n"),
+        HasSubstr("allowed a time; the sidecar's line time = { column = \"clock\", date = \"t\" } reads "
+                  "both columns"));
+  }
+}
+
 // Tests what is a clock's text, and what is not.
 TEST(ClockTextTest, Parses) {
   const auto seconds = [](const char* text) {

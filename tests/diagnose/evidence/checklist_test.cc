@@ -50,6 +50,33 @@ TEST(ChecklistTest, Si) {
   EXPECT_THAT(charge, ::testing::Not(::testing::HasSubstr("psi")));
 }
 
+// Tests that a side below the charge pressure is none to look at where the model's valves are that stiff, and
+// that a weight keeps one side of a linear arm above the other.
+TEST(ChecklistTest, WhatTheModelKnowsOfTheCharge) {
+  const auto charge = [](const model::ModelDescription& model, const runs::MeasuredRun& run) {
+    const std::vector<ChecklistLine> lines = Checklist(model, run);
+    const auto line = std::find_if(lines.begin(), lines.end(),
+                                   [](const ChecklistLine& one) { return one.item == "charge pressure"; });
+    return line == lines.end() ? "" : Written(*line);
+  };
+  model::ModelDescription model = Table1Model();
+  const double p_3 = model.parameters.p_3;
+  runs::MeasuredRun low = PlainSwing(model::Shaft::kFree), loaded = low;
+  for (double& p1 : low.p1.values) p1 -= 0.25 * p_3;
+  for (double& p2 : loaded.p2.values) p2 += 0.9 * p_3;
+  EXPECT_THAT(charge(model, low), ::testing::StartsWith("look"));
+  EXPECT_THAT(charge(model, loaded), ::testing::StartsWith("look"));
+  model.effects = {
+      {.id = "valve.pilot",
+       .parameters = {{"ratio", 3}, {"cracking", 0.05 * p_3}, {"range", 0.25 * p_3}, {"conductance", 5}},
+       .names = {}}};
+  EXPECT_THAT(charge(model, low), ::testing::StartsWith("ok"));
+  model.effects.clear();
+  model.units.linear_arm = true;
+  model.parameters.mgl = 0.8 * p_3 * model.parameters.k_2;
+  EXPECT_THAT(charge(model, loaded), ::testing::StartsWith("ok"));
+}
+
 // Tests that one side whose scale is wrong is worth a look, though the other side is at the charge pressure.
 TEST(ChecklistTest, SidesDiffer) {
   runs::MeasuredRun run = PlainSwing(model::Shaft::kFree);

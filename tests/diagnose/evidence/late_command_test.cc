@@ -84,6 +84,25 @@ TEST(LateCommand, IsSaidWithTheLineThatMendsIt) {
   }
 }
 
+// Tests that a command that is several rows late is said with all of them; one that is early by as many may
+// be a late amplifier, and is left to the search.
+TEST(LateCommand, OfSeveralRows) {
+  for (const double step : {1e-3, 5e-3}) {
+    for (const int rows : {2, 3, 4, 5}) {
+      if (rows * step > 0.0201) continue;
+      SCOPED_TRACE(std::to_string(step) + " s, rows " + std::to_string(rows));
+      const Bench bench{step, static_cast<uint64_t>(rows)};
+      const CommandRemarks late = RemarksOnCommands(Table1With(), Recorded(bench, rows), 2);
+      EXPECT_NEAR(NumberAfter("the voltage is late by ", late.late), rows, 0.3);
+      EXPECT_NEAR(NumberAfter("delay = ", late.late), rows * step, 1e-9);
+      EXPECT_NEAR(NumberAfter("a row holds what acted ", late.late), rows, 0);
+      const CommandRemarks early = RemarksOnCommands(Table1With(), Recorded(bench, -rows), 2);
+      EXPECT_THAT(early.late, IsEmpty());
+      EXPECT_THAT(early.early, IsEmpty());
+    }
+  }
+}
+
 // Tests that other values and friction that the model lacks are not taken for rows of the
 // command, and do not hide them.
 TEST(LateCommand, IsNoMissingEffect) {

@@ -149,6 +149,8 @@ TEST(Sentence, WordsAgreeWithTheFigures) {
           EXPECT_FALSE(says("significant gap") && closed);
           EXPECT_FALSE(says("closes the") && !(closed && curve));
           EXPECT_FALSE(says("explain part of the gap") && known && after >= before);
+          EXPECT_FALSE(says("suffice with other values") && known && after >= before);
+          EXPECT_FALSE(says("no better") && known && after < before);
         }
       }
     }

@@ -34,9 +34,9 @@ TEST(FrontEndLiesTest, ReadingsThatNoMachineGives) {
   };
   const Case cases[] = {
       {HYDRO_P1, 1e30F, "at most 4000 psi, twice limits.pressure"},
-      {HYDRO_P2, -1e30F, "at least -214.7 psi, a vacuum less a tenth of limits.pressure"},
+      {HYDRO_P2, -1e30F, "at least -214.696 psi, a vacuum less a tenth of limits.pressure"},
       {HYDRO_P2, 4001, "at most 4000 psi"},
-      {HYDRO_P2, -215, "at least -214.7 psi"},
+      {HYDRO_P2, -215, "at least -214.696 psi"},
       {HYDRO_P1, -200, nullptr},
       {HYDRO_MOTOR_SPEED, 1e30F, "ten times T_pmax/b"},
       {HYDRO_MOTOR_SPEED, -28000, "ten times T_pmax/b"},

@@ -128,9 +128,9 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
-// Tests that repair says of logs that were joined how to take them apart, intact or not, with checksums or
-// without, and that its commands give back what was joined; and of two runs in one recording that they are
-// two.
+// Tests that repair says of logs that were joined with which command to take them apart, intact or not, with
+// checksums or without, and that the command gives back what was joined, under names that end as logs do; and
+// of two runs in one recording that they are two.
 TEST_F(HydroLogTest, RepairOfJoinedLogs) {
   log::WriteRun(Path("a.lcmlog"), log::SampleRun(9));
   log::WriteRun(Path("b.lcmlog"), log::SampleRun(20));
@@ -139,23 +139,34 @@ TEST_F(HydroLogTest, RepairOfJoinedLogs) {
     log::WriteBytes(Path(name), bytes);
     const Outcome outcome = HydroLog({"repair", Path(name)});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    const size_t commands = outcome.out.find("take them apart:\n");
-    if (commands != std::string::npos) {
-      EXPECT_EQ(system(outcome.out.substr(commands + 17).c_str()), 0);
-    }
     return outcome.out;
   };
-  EXPECT_THAT(take_apart("all it's.lcmlog", a + b + a),
-              AllOf(HasSubstr(": nothing to repair\n"), HasSubstr(": 3 recordings were joined in it")));
+  EXPECT_THAT(
+      take_apart("all it's.lcmlog", a + b + a),
+      AllOf(HasSubstr(": nothing to repair\n"), HasSubstr(": 3 recordings were joined in it"),
+            HasSubstr("hydro-log repair --split '"), HasSubstr("all it'\\''s.lcmlog' takes them apart")));
+  const Outcome all = HydroLog({"repair", "--split", Path("all it's.lcmlog")});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.out, StartsWith(Path("all it's-1.lcmlog") + ": complete\n"));
   EXPECT_EQ(log::ReadBytes(Path("all it's-1.lcmlog")), a);
   EXPECT_EQ(log::ReadBytes(Path("all it's-2.lcmlog")), b);
   EXPECT_EQ(log::ReadBytes(Path("all it's-3.lcmlog")), a);
+  const Outcome again = HydroLog({"repair", "--split", Path("all it's.lcmlog")});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("all it's-1.lcmlog"));
   std::string flipped = a;
   flipped[a.size() / 2] ^= 1;
-  EXPECT_THAT(take_apart("torn", flipped + b),
-              HasSubstr(Path("torn.damaged") + ": 2 recordings were joined in it"));
-  EXPECT_EQ(log::ReadBytes(Path("torn.damaged-1")), flipped);
-  EXPECT_EQ(log::ReadBytes(Path("torn.damaged-2")), b);
+  EXPECT_THAT(take_apart("torn.lcmlog", flipped + b),
+              HasSubstr("hydro-log repair --split " + Path("torn.lcmlog.damaged")));
+  EXPECT_THAT(HydroLog({"repair", "--split", Path("torn.lcmlog.damaged")}).out,
+              HasSubstr("; hydro-log repair " + Path("torn-1.lcmlog") + " keeps what can be read\n"));
+  EXPECT_EQ(log::ReadBytes(Path("torn-1.lcmlog")), flipped);
+  EXPECT_EQ(log::ReadBytes(Path("torn-2.lcmlog")), b);
+  const Outcome one = HydroLog({"repair", "--split", Path("b.lcmlog")});
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_THAT(one.err, HasSubstr("b.lcmlog: found one recording"));
+  EXPECT_THAT(HydroLog({"repair", "--split", Path("b.lcmlog"), "-o", Path("c")}).err,
+              HasSubstr("--split: found it beside -o"));
   EXPECT_EQ(take_apart("alone", b), Path("alone") + ": nothing to repair\n");
   runs::RunMessages both = log::SampleRun(9);
   runs::RunMessages other = both;

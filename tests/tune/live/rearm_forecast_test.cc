@@ -13,10 +13,12 @@
 #include <hydro/rearm_t.hpp>
 #include <hydro/tuning_request_t.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bus/in_process_bus.h"
+#include "model/started_actuator.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -78,6 +80,7 @@ class RearmForecastTest : public ::testing::Test {
   void OnState(const state_t& state) {
     angles_.push_back(state.arm_angle);
     pressures_.push_back(state.p2 - state.p1);
+    if (state.tick > kRearms + 1 && state.command_tick < 0 && !ended_) ended_ = state.tick;
     if (state.tick == kTrips || state.tick == kIsWell) SayFault(state.tick == kTrips);
     if (const auto due = at_.find(state.tick); due != at_.end()) due->second(state);
     if (state.tick != kRearms) return;
@@ -103,6 +106,9 @@ class RearmForecastTest : public ::testing::Test {
   // The published reference at a time after the re-arm.
   double ReferenceAfter(double seconds) const {
     return std::prev(references_.upper_bound(kRearms + std::llround(seconds * kRate)))->second;
+  }
+  double PressureAfter(double seconds) const {
+    return pressures_.at(kRearms + std::llround(seconds * kRate));
   }
   double ArmAfter(double seconds) const { return angles_.at(kRearms + std::llround(seconds * kRate)); }
 
@@ -149,12 +155,29 @@ class RearmForecastTest : public ::testing::Test {
                   0.012 * forecast_.top_rate + slack);
   }
 
+  // What was said of the machine came true: it ends at that limit at that time, or it is where it was said to
+  // be. `slack` is that of the quantity.
+  void ExpectTheMachineDoes(double slack) const {
+    const RearmMotion& motion = forecast_.motion;
+    ASSERT_EQ(motion.unforeseen, "");
+    const double at = motion.seconds,
+                 quantity = forecast_.quantity == "arm_angle" ? ArmAfter(at) : PressureAfter(at);
+    EXPECT_EQ(ended_.has_value(), !motion.ended_by.empty()) << forecast_.text;
+    if (ended_) {
+      EXPECT_NEAR(static_cast<double>(*ended_ - kRearms) / kRate, at, 0.01) << forecast_.text;
+    } else {
+      EXPECT_NEAR(motion.reaches, quantity, slack) << forecast_.text;
+      EXPECT_NEAR(at, forecast_.return_s + kForecast_s, 1e-9);
+    }
+  }
+
   bus::InProcessBus* bus_ = nullptr;
   std::map<int64_t, std::function<void(const state_t&)>> at_;
   HeardOfStack heard_;
   RearmForecast forecast_;
   int accepted_ = 0;
   std::vector<double> angles_, pressures_;  // by tick
+  std::optional<int64_t> ended_;            // at zero volts again since this tick
   std::map<int64_t, double> references_;
 };
 
@@ -210,9 +233,10 @@ TEST_F(RearmForecastTest, ALimitThatBinds) {
   ExpectTrue();
   const double way = forecast_.target - forecast_.present;
   EXPECT_LT(std::fabs(ArmAfter(3) - ArmAfter(0)), 0.5 * std::fabs(way)) << "the arm does not go that way";
-  EXPECT_THAT(forecast_.text, Not(HasSubstr("the arm will")));
+  ExpectTheMachineDoes(2e-3);
   EXPECT_THAT(forecast_.text,
-              HasSubstr("; the arm follows as far as its load and limits.arm_torque 1 in-lbf let it"));
+              HasSubstr("; by its model no limit ends that within 10.5 s, after which the arm is at "));
+  EXPECT_THAT(forecast_.text, HasSubstr(" rad, held back by limits.arm_torque 1 in-lbf"));
 }
 
 // Tests a speed limit that the way back exceeds: the arm is stopped on it, at zero volts, as the forecast
@@ -221,8 +245,10 @@ TEST_F(RearmForecastTest, ALimitThatStopsAgain) {
   Run({"reference.steps=[[0.2, 0.3]]", "limits.return_s=0.02", "limits.motor_speed=20"});
   ASSERT_TRUE(forecast_.known);
   EXPECT_GT(std::fabs(ArmAfter(3) - forecast_.target), 0.02) << "the arm does not get there";
-  EXPECT_THAT(forecast_.text,
-              HasSubstr("; zero volts again beyond limits.pressure 2000 psi, limits.motor_speed 20 rad/s"));
+  ExpectTheMachineDoes(0);
+  EXPECT_EQ(forecast_.motion.ended_by, "limits.motor_speed 20 rad/s");
+  EXPECT_THAT(forecast_.text, HasSubstr("; by its model the machine is at zero volts again after 0.0"));
+  EXPECT_THAT(forecast_.text, HasSubstr(" s, beyond limits.motor_speed 20 rad/s, when the arm is at "));
 }
 
 // Tests references that move all the time, and one that jumps on the way back.
@@ -326,7 +352,7 @@ TEST(RearmForecast, NoMove) {
     const std::string at = target == 0 ? "0 rad" : "0.3 rad";
     EXPECT_THAT(ForecastRearm(heard).text,
                 StartsWith("the arm is at " + at + "; its reference comes back to " + at +
-                           ": the reference does not move; the arm follows"));
+                           ": the reference does not move; by its model no limit ends that within 10.5 s, "));
     EXPECT_FALSE(ForecastRearm(heard).jumps);
     heard.state->arm_angle = target - 1e-5;
     EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("the reference moves by +1e-05 rad in 0.5 s"));
@@ -397,7 +423,7 @@ TEST_F(RearmForecastTest, APlan) {
   }
 }
 
-// Tests a reference that is no angle: what is known of it is said, and that the arm's way does not follow.
+// Tests a reference that is no angle: its return, and where the arm runs by it.
 TEST_F(RearmForecastTest, APressure) {
   Run({"reference={signal = \"pressure\", kind = \"steps\", steps = [[0.2, 60.0]]}", "noise.p1_psi=0",
        "noise.p2_psi=0"},
@@ -407,7 +433,95 @@ TEST_F(RearmForecastTest, APressure) {
   EXPECT_EQ(forecast_.target, 60);
   EXPECT_NEAR(forecast_.present, pressures_.at(kRearms), 1e-9);
   EXPECT_NEAR(ReferenceAfter(0.51), 60, 1e-9);
-  EXPECT_THAT(forecast_.text, HasSubstr("how far the arm moves does not follow"));
+  ExpectTheMachineDoes(0);
+  EXPECT_THAT(forecast_.motion.ended_by, StartsWith("limits.arm_angle 0.8"));
+  EXPECT_THAT(forecast_.text, HasSubstr(" s, beyond limits.arm_angle 0.8"));
+}
+
+// Tests a pressure, and a torque, that a limit lets through in part only: that limit is named beside where
+// the reference comes back to, and where the machine comes to is what it lets through.
+TEST_F(RearmForecastTest, APressureThatALimitHoldsBack) {
+  Run({"reference={signal = \"pressure\", kind = \"steps\", steps = [[0.2, 400.0]]}", "model.shaft=clamped",
+       "noise.p1_psi=0", "noise.p2_psi=0"});
+  ExpectTheMachineDoes(0.5);
+  EXPECT_NEAR(forecast_.motion.reaches, 500 / 3.68, 10) << "friction of the pump stays";
+  EXPECT_EQ(forecast_.motion.held_by, "limits.arm_torque 500 in-lbf");
+  EXPECT_THAT(
+      forecast_.text,
+      HasSubstr(
+          "; its reference comes back to 400 psi (limits.arm_torque 500 in-lbf lets through 135.9 psi): "
+          "the reference moves by +"));
+  EXPECT_THAT(forecast_.text,
+              HasSubstr("; by its model no limit ends that within 10.5 s, after which the pressure "
+                        "p2 - p1 is at 1"));
+  EXPECT_THAT(forecast_.text, HasSubstr(" psi, held back by limits.arm_torque 500 in-lbf"));
+}
+
+TEST_F(RearmForecastTest, ATorqueThatALimitHoldsBack) {
+  Run({"reference={signal = \"torque\", kind = \"steps\", steps = [[0.2, 200.0], [4, -300.0]]}",
+       "model.shaft=clamped", "limits.arm_torque=250", "noise.p1_psi=0", "noise.p2_psi=0"});
+  EXPECT_THAT(forecast_.text,
+              HasSubstr("; its reference comes back to 200 in-lbf: the reference moves by +"));
+  EXPECT_THAT(forecast_.text, HasSubstr("; limits.arm_torque 250 in-lbf lets through 250 in-lbf of that; "));
+  EXPECT_EQ(forecast_.motion.held_by, "limits.arm_torque 250 in-lbf");
+}
+
+// Tests that a pressure beyond the limit of the sides is foreseen to end there.
+TEST_F(RearmForecastTest, APressureThatEndsAtItsLimit) {
+  Run({"reference={signal = \"pressure\", kind = \"steps\", steps = [[0.2, 20.0], [1, 130.0]]}",
+       "model.shaft=clamped", "limits.pressure=150", "noise.p1_psi=0", "noise.p2_psi=0"});
+  ExpectTheMachineDoes(0);
+  EXPECT_EQ(forecast_.motion.ended_by, "limits.pressure 150 psi");
+}
+
+// Tests a voltage, which nothing but the machine answers.
+TEST_F(RearmForecastTest, AVoltage) {
+  Run({"reference={signal = \"voltage\", kind = \"steps\", steps = [[0.2, 2.5]]}", "limits.motor_speed=70"});
+  ASSERT_TRUE(forecast_.known) << forecast_.text;
+  const RearmMotion& motion = forecast_.motion;
+  EXPECT_EQ(ended_.has_value(), !motion.ended_by.empty()) << forecast_.text;
+  if (ended_) {
+    EXPECT_NEAR(static_cast<double>(*ended_ - kRearms) / kRate, motion.seconds, 0.01);
+  }
+}
+
+// Tests an arm that moves as it is re-armed, and that moves on while the plant skips ticks: it may pass its
+// limit on that way alone.
+TEST(RearmForecast, SkippedTicks) {
+  settings::StackConfig config =
+      settings::LoadStackConfig(HYDRO_TEST_CONFIG, {"reference.steps=[[0.1, 0.3]]"});
+  const model::Parameters& p = config.model.description.parameters;
+  HeardOfStack heard;
+  heard.state.emplace();
+  heard.state->command_tick = -1;
+  heard.state->time = 2;
+  heard.state->tick = 2000;
+  heard.state->arm_angle = 0.3;
+  heard.state->arm_speed = 0.5;
+  heard.state->motor_speed = 0.5 * p.c / p.D;
+  heard.state->p1 = heard.state->p2 = p.p_3;
+  constexpr int kSkipped = 300;
+  model::StartedActuator coasts(config.model.description, {},
+                                model::StartOf({.motor_speed = heard.state->motor_speed,
+                                                .arm_angle = 0.3,
+                                                .arm_speed = 0.5,
+                                                .p1 = p.p_3,
+                                                .p2 = p.p_3},
+                                               model::Shaft::kFree),
+                                0);
+  coasts.Advance(0, kSkipped / kRate);
+  const double limit = 0.3 + 0.95 * (coasts.Measure().arm_angle - 0.3);
+  config = settings::Changed(config, {"limits.arm_angle=" + std::to_string(limit)});
+  heard.run.emplace();
+  heard.run->rate_hz = kRate;
+  heard.run->config_text = config.text;
+  heard.run->model_text = config.model.text;
+  const RearmMotion at_once = ForecastRearm(heard).motion;
+  EXPECT_EQ(at_once.unforeseen, "");
+  EXPECT_EQ(at_once.ended_by, "");
+  EXPECT_NEAR(at_once.reaches, 0.3, 5e-3);
+  heard.state->skipped_ticks = kSkipped;
+  EXPECT_THAT(ForecastRearm(heard).motion.ended_by, StartsWith("limits.arm_angle 0."));
 }
 
 // Tests that what cannot be known is said instead of a number.
@@ -425,6 +539,13 @@ TEST(RearmForecast, Unknown) {
   heard.run->model_text = config.model.text;
   heard.run->model_file = "table1.toml";
   EXPECT_TRUE(ForecastRearm(heard).known);
+  HeardOfStack unmeasured = heard;
+  unmeasured.state->motor_speed = NAN;
+  EXPECT_THAT(
+      ForecastRearm(unmeasured).text,
+      HasSubstr("; what the machine will do cannot be foreseen, because the motor's speed is not measured; "
+                "limits.arm_torque 500 in-lbf may hold it back; zero volts again beyond limits.pressure "
+                "2000 psi, limits.arm_angle 0.8"));
   heard.state->arm_angle = NAN;
   EXPECT_THAT(ForecastRearm(heard).text, HasSubstr("the arm is not measured"));
   heard.state->arm_angle = 0.1;

@@ -28,6 +28,9 @@ TEST(Goals, AreRead) {
 TEST(Goals, AStepHasAUnit) {
   EXPECT_DOUBLE_EQ(*ParseGoals({"step=5 deg"}).step, 5 * kDegree);
   EXPECT_DOUBLE_EQ(*ParseGoals({"step=30 mm"}, "m").step, 0.03);
+  EXPECT_DOUBLE_EQ(*ParseGoals({"step=30mm"}, "m").step, 0.03);
+  EXPECT_THAT(InputErrorOf([] { ParseGoals({"step=30mm"}); }),
+              HasSubstr("--goal: step: found \"30mm\", allowed a number (in rad), or a text"));
   EXPECT_EQ(ParseGoals({"step=0.03"}, "m").step, 0.03);
   EXPECT_EQ(ParseGoals({"step_rad=0.2"}).step, 0.2);
   EXPECT_THAT(InputErrorOf([] { ParseGoals({"step_rad=0.2"}, "m"); }), HasSubstr("allowed NAME=VALUE"));

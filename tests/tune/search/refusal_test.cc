@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/tune/search/configs.h"
+#include "tune/search/unsettled.h"
 
 namespace hydro::tune {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string Refused(const Goals& goals, const std::vector<std::string>& overrides = {},
@@ -51,6 +53,7 @@ TEST(Refusal, NamesWhatTheBestGainsReach) {
 // Gains with these ratios of the steps, with and without the model's uncertainty.
 Tried Rated(double ratio, double uncertain_ratio, double gain_margin) {
   Tried tried;
+  tried.gains = GainsOf(Retuned());
   tried.steps.ratio = ratio;
   tried.steps.uncertain_ratio = uncertain_ratio;
   tried.steps.unsettled = ratio >= kNeverSettled ? 0.1 : 0;
@@ -83,15 +86,36 @@ TEST(Refusal, ProposesNothingThatIsNoBetter) {
   const Tried never = Rated(kNeverSettled, kNeverSettled, 3);
   EXPECT_THAT(
       refused({}, never, Rated(kNeverSettled + 0.5, kNeverSettled + 0.5, 3)),
-      HasSubstr("no proposal: with no gains that keep the margins does the arm settle within 2.5 times the "
-                "shortest time after every step tried, with the best of them not after one of 0.3 rad from 0 "
-                "rad; the configured gains "
-                "never settle"));
+      AllOf(HasSubstr(
+                "no proposal: with no gains that keep the margins does the arm settle within 2.5 times "
+                "the shortest time after every step tried, with the best of them not after one of 0.3 rad "
+                "from 0 rad ("),
+            HasSubstr("); the configured gains never settle")));
   // With a goal of settling time, margins decide.
   const Goals goals = {.settling_s = 1};
   EXPECT_EQ(refused(goals, Rated(1.4, 1.5, 5), Rated(1.2, 1.3, 4)), "");
   EXPECT_THAT(refused(goals, Rated(1.2, 1.3, 3), Rated(1.4, 1.5, 4)), HasSubstr("they meet the goals"));
   EXPECT_EQ(refused(goals, Rated(1.4, 1.5, 2), Rated(1.2, 1.3, 1.1)), "");
+}
+
+// Tests that the limit is named that keeps the arm from settling: each in a stack in which it does, and of
+// gains that swing, that none is.
+TEST(Refusal, NamesWhatKeepsTheArmFromSettling) {
+  const auto why = [](const std::vector<std::string>& overrides) {
+    const settings::StackConfig config = Retuned(overrides);
+    const StepJudge judge(config, {.samples = 0});
+    return WhyUnsettled(judge, GainsOf(config), judge.Nominal(0.1));
+  };
+  EXPECT_EQ(why({}), "");
+  EXPECT_THAT(why({"limits.arm_torque=8"}), HasSubstr("limits.arm_torque 8 in-lbf holds it back "));
+  EXPECT_THAT(why({"limits.pressure=130"}), HasSubstr("limits.pressure 130 psi ends the run, at "));
+  EXPECT_THAT(why({"limits.motor_speed=100"}), HasSubstr("limits.motor_speed 100 rad/s ends the run, at "));
+  EXPECT_THAT(why({"position.c1=10000", "position.c2=60"}),
+              HasSubstr("the motor is at its torque T_pmax 40 in-lbf "));
+  EXPECT_THAT(why({"position.c1=2000", "position.c2=300"}),
+              HasSubstr("the pump's friction T_s holds the arm "));
+  EXPECT_THAT(why({"position.c1=700", "position.c2=60"}),
+              HasSubstr("no limit is reached for long: it is the gains"));
 }
 
 // Tests T_s/(k_1 k_p c_1), without the reference's feed-forward beside k_p.
