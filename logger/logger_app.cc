@@ -10,7 +10,7 @@
 #include <hydro/state_t.hpp>
 #include <utility>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "process/role.h"
 #include "process/status.h"
 

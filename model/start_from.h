@@ -5,7 +5,6 @@
 
 #include "model/equations/equations.h"
 #include "model/equations/evaluate.h"
-#include "model/response.h"
 
 namespace hydro::model {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "process/second_sender.h"
 

@@ -1,13 +1,15 @@
-// Chooses the stack whose channels are read from a log that holds several stacks.
+// Chooses the stack whose channels are read from a log that holds several stacks, and the order of a
+// limb's joints.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "runs/log/log_reader.h"
 #include "runs/run_log.h"
-#include "runs/stack_choice.h"
 #include "settings/joint_documents.h"
 
 namespace hydro::runs {
@@ -35,5 +37,26 @@ bool IsWholeLimb(const RunLog& log, const StackChoice& choice);
 
 // The suffix to read, by the rule of ReadRunLog(). `log` must have its list of channels. Throws InputError.
 std::string ChooseSuffix(const RunLog& log, const StackChoice& choice);
+
+// The configurations of the limbs in a log, as the limbs describe themselves there.
+class LimbConfigs {
+ public:
+  // Takes the first event of a channel, whichever channel it is.
+  void TakeFirst(const log::LogEvent& event);
+
+  // The configuration, as TOML, of the limb whose own channels have this suffix; empty where the log has
+  // none.
+  std::string Of(const std::string& limb) const;
+
+  // Sorts the joints of each limb into the order of its configuration. Joints that are not in it come last,
+  // by suffix.
+  void Order(std::vector<JointChannels>* joints) const;
+
+ private:
+  std::map<std::string, std::string> texts_;  // by suffix
+};
+
+// Whether this configuration of a limb has an [arm], which couples the loads of its joints.
+bool HasArm(const std::string& limb_config);
 
 }  // namespace hydro::runs

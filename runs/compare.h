@@ -5,7 +5,6 @@
 #include <string>
 
 #include "runs/run_log.h"
-#include "runs/run_messages.h"
 
 namespace hydro::runs {
 

@@ -8,11 +8,10 @@
 #include <string_view>
 #include <tuple>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
 #include "runs/run_config.h"
-#include "runs/sampling.h"
 #include "runs/senders.h"
 
 namespace hydro::runs {

@@ -8,7 +8,7 @@
 #include "base/utf8.h"
 #include "bus/output_left.h"
 #include "runs/info.h"
-#include "runs/sampling.h"
+#include "runs/run_config.h"
 #include "runs/senders.h"
 
 namespace hydro::runs {

@@ -1,7 +1,8 @@
 // Facts about a run from its log's description, even if this version does not accept that description as a
-// configuration.
+// configuration, and whether its log has every state.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "base/unit_system.h"
 #include "hydro/run_description_t.hpp"
+#include "runs/run_log.h"
 
 namespace hydro::runs {
 
@@ -26,5 +28,16 @@ std::string ModelName(const run_description_t& description, const std::string& f
 
 // The units of the run's model; the paper's where there is no model.
 UnitSystem ModelUnits(const run_description_t& description, const std::string& file);
+
+// Ticks from one state to the next where a limb sent its joints' states at a chosen rate (limb.telemetry_hz);
+// 1: every state was sent.
+int64_t SampleTicks(const RunMessages& messages);
+
+// "a state every 20 ticks (limb.telemetry_hz)"; empty where every state was sent.
+std::string DescribeSampling(int64_t sample_ticks);
+
+// Throws InputError where states are missing on purpose, because the work named by `needs_it` ("a replay")
+// would take them for lost.
+void RequireEveryState(const RunLog& log, const std::string& needs_it);
 
 }  // namespace hydro::runs

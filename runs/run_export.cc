@@ -1,12 +1,11 @@
 #include "base/input_error.h"
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
 #include "runs/measured_run.h"
 #include "runs/message_order.h"
 #include "runs/run_config.h"
 #include "runs/run_table.h"
-#include "runs/sampling.h"
 #include "runs/senders.h"
 
 namespace hydro::runs {

@@ -9,12 +9,10 @@
 #include <unordered_set>
 #include <utility>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
 #include "runs/channel_suffix.h"
-#include "runs/limb_configs.h"
-#include "runs/log/log_format.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/message_kinds.h"
 
@@ -193,6 +191,11 @@ LimbLog Read(const std::string& file, const StackChoice& choice, Undecodable und
 }
 
 }  // namespace
+
+void AddStackChoice(settings::CommandLine* verb, StackChoice* choice) {
+  verb->AddOption("--suffix", &choice->suffix, "TEXT suffix of the channels, where a log has several");
+  verb->AddOption("--joint", &choice->joint, "NAME read this joint of a limb, where a log has several");
+}
 
 RunLog ReadRunLog(const std::string& file, const StackChoice& choice, Undecodable undecodable,
                   log::OnDamage on_damage) {

@@ -2,15 +2,47 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "bus/messages.h"
 #include "runs/clock_steps.h"
 #include "runs/log/log_reader.h"
-#include "runs/run_messages.h"
-#include "runs/stack_choice.h"
+#include "settings/command_line.h"
 
 namespace hydro::runs {
+
+// The messages of a run, with a list for each row of the table of messages.
+class RunMessages {
+ public:
+  template <bus::StackMessage Message>
+  std::vector<Message>& Of() {
+    return std::get<std::vector<Message>>(lists_);
+  }
+  template <bus::StackMessage Message>
+  const std::vector<Message>& Of() const {
+    return std::get<std::vector<Message>>(lists_);
+  }
+
+ private:
+  template <class... Message>
+  static std::tuple<std::vector<Message>...> ListsFor(const std::tuple<bus::MessageRow<Message>...>&);
+
+  decltype(ListsFor(bus::kMessages)) lists_;
+};
+
+// Without either, the only stack in the log is read.
+struct StackChoice {
+  std::optional<std::string> suffix = {};  // of its channels; with a joint, the suffix of its limb's channels
+  std::optional<std::string> joint = {};   // of a limb, by its name
+
+  bool given() const { return suffix.has_value() || joint.has_value(); }
+};
+
+// The options --suffix and --joint.
+void AddStackChoice(settings::CommandLine* verb, StackChoice* choice);
 
 // The contents of a log's channel, whether or not it belongs to this stack.
 struct ChannelSummary {

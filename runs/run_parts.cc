@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/number_text.h"
-#include "runs/measured_signals.h"
+#include "runs/measured_run.h"
 
 namespace hydro::runs {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "bus/channels.h"
 #include "runs/message_order.h"
 

@@ -12,11 +12,9 @@
 #include "base/unit_system.h"
 #include "base/units.h"
 #include "base/word_list.h"
-#include "runs/counters.h"
-#include "runs/measured_signals.h"
-#include "runs/run_delays.h"
 #include "runs/signal_columns.h"
-#include "runs/signal_unit.h"
+#include "runs/measured_run.h"
+#include "runs/sample_times.h"
 #include "runs/table_times.h"
 
 namespace hydro::runs {

@@ -1,6 +1,8 @@
-// Reads columns of a table as a run's signals.
+// Reads columns of a table as a run's signals: their units, and angles that roll over because their
+// numbers have few bits.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,5 +37,18 @@ std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& 
 // the command's key.
 std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source,
                                   const std::string& what = "voltage");
+
+// How many of `ours` make one of `theirs`: 1e5 for bar and Pa. Empty where `theirs` is not a unit or measures
+// something else.
+std::optional<double> UnitFactor(const std::string& theirs, const std::string& ours);
+
+// The usual units for what `ours` measures, for messages. Any other text for such a unit is also accepted.
+std::vector<std::string> UnitsLike(const std::string& ours);
+
+// Unwraps an angle where a counter of 8 to 32 bits, or of one revolution, rolls over, and notes this in the
+// table's layout. `source.column` lies in the table, whose values this changes. `revolution` is one
+// revolution in the signal's unit; 0: there is none.
+void CountAngleOn(const SignalColumn& source, const std::string& signal, double revolution,
+                  tables::Table* table);
 
 }  // namespace hydro::runs

@@ -7,11 +7,11 @@
 
 #include "base/json_text.h"
 #include "base/number_text.h"
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/text_file.h"
 #include "base/units.h"
 #include "bus/output_left.h"
-#include "runs/sampling.h"
+#include "runs/run_config.h"
 #include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
 #include "runs/tuning_history.h"

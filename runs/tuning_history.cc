@@ -4,7 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "base/text_lines.h"
 #include "base/word_list.h"
 
 namespace hydro::runs {

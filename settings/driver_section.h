@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "settings/front_end_url.h"
+#include "settings/urls.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::settings {

@@ -7,7 +7,6 @@
 #include "base/text_file.h"
 #include "model/terms/model_error.h"
 #include "settings/joint_documents.h"
-#include "settings/joint_stacks.h"
 #include "settings/limb_processes.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"

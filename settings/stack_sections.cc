@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "settings/bus_url.h"
+#include "settings/urls.h"
 #include "settings/process_sections.h"
 #include "settings/quantity_keys.h"
 #include "settings/scope_section.h"

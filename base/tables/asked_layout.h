@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/tables/csv_layout.h"
-#include "base/tables/csv_lines.h"
+#include "base/tables/csv_cells.h"
 
 namespace hydro::tables {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/tables/csv_layout.h"
-#include "base/tables/time_column.h"
+#include "base/tables/clock_text.h"
 
 namespace hydro::tables {
 

@@ -17,7 +17,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "base/text_lines.h"
+#include "base/word_list.h"
 #include "base/utf8.h"
 #include "batch/run/case_command.h"
 #include "batch/run/case_result.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/balances/column_maker.h"
 
 namespace hydro::diagnose {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 
 namespace hydro::diagnose {
 

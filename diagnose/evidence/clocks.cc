@@ -8,8 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/run_delays.h"
-#include "runs/slow_samples.h"
+#include "runs/sample_times.h"
 
 namespace hydro::diagnose {
 

@@ -12,7 +12,7 @@
 namespace hydro::diagnose {
 
 // Estimates the recording's clocks relative to that of p1 and p2 (a common shift cannot be seen) and shifts
-// its signals to that clock (RemoveDelays of runs/run_delays.h). In the balances a clock is the column of a
+// its signals to that clock (RemoveDelays of runs/sample_times.h). In the balances a clock is the column of a
 // late signal with a wide prior. Its delay is found by Gauss-Newton on their evidence, first on rows up to
 // 0.25 Hz, where a large delay is a small change, and finally on rows up to 2 Hz. All values of the model are
 // nearly free there, so that a wrong value is not taken for a delay (late_signals.h).

@@ -7,7 +7,7 @@
 #include "diagnose/balances/rows.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
-#include "runs/run_delays.h"
+#include "runs/sample_times.h"
 
 namespace hydro::diagnose {
 

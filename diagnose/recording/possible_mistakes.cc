@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/measured_signals.h"
-#include "runs/signal_unit.h"
-#include "runs/slow_samples.h"
+#include "runs/measured_run.h"
+#include "runs/signal_columns.h"
+#include "runs/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

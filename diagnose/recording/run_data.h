@@ -13,7 +13,6 @@
 #include "model/response.h"
 #include "model/trajectory/trajectory.h"
 #include "runs/measured_run.h"
-#include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
 

@@ -11,7 +11,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
-#include "runs/measured_signals.h"
+#include "runs/measured_run.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "runs/measured_signals.h"
+#include "runs/measured_run.h"
 #include "runs/run_table.h"
-#include "runs/signal_unit.h"
+#include "runs/signal_columns.h"
 
 namespace hydro::diagnose {
 namespace {

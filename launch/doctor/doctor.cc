@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/text_file.h"
-#include "launch/doctor/doctor_facts.h"
 #include "process/role.h"
 #include "settings/limb_config.h"
 

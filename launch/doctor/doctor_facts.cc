@@ -1,4 +1,4 @@
-#include "launch/doctor/doctor_facts.h"
+#include "launch/doctor/doctor.h"
 
 #include <net/if.h>
 #include <pwd.h>

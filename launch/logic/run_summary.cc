@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/utf8.h"
 #include "bus/output_left.h"
 #include "process/fault_codes.h"

@@ -5,9 +5,9 @@
 
 #include "base/interruption.h"
 #include "base/number_text.h"
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/text_file.h"
-#include "runs/log/log_format.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::log {
 namespace {

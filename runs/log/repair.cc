@@ -10,7 +10,7 @@
 
 #include "base/read_files.h"
 #include "runs/log/doubtful_events.h"
-#include "runs/log/listed_events.h"
+#include "runs/log/sound_events.h"
 #include "runs/log/log_check.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "scope/signals/decoded.h"
 
 namespace hydro::scope {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/text_file.h"
 #include "base/utf8.h"
 #include "bus/output_left.h"

@@ -10,7 +10,6 @@
 
 #include "bus/channels.h"
 #include "runs/channel_suffix.h"
-#include "runs/limb_configs.h"
 #include "runs/log/log_reader.h"
 #include "scope/signals/intake.h"
 

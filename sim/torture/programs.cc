@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "bus/channels.h"
 #include "logger/logger_app.h"
 #include "plant/plant_app.h"

@@ -1,4 +1,4 @@
-#include "base/multiples.h"
+#include "base/integers.h"
 
 #include <gtest/gtest.h>
 

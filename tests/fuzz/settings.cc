@@ -6,7 +6,7 @@
 
 #include "bus/seal/bus_key.h"
 #include "bus/udpm/udpm_url.h"
-#include "settings/bus_url.h"
+#include "settings/urls.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_config.h"

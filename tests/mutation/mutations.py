@@ -215,7 +215,7 @@ MUTATIONS = [
         ("power.leakage", "power.leakage = x.cross_flow", "power.leakage = -x.cross_flow"),
     ),
     # Arms of several links.
-    *_rows("model/arm/newton_euler.h",
+    *_rows("model/arm/planar_arm.cc",
            ("arm.centrifugal", "- turn_rate * at.sine - square * at.cosine", "- turn_rate * at.sine + square * at.cosine"),
            ("arm.gravity", "joint{T{}, T{gravity}}", "joint{T{}, T{-gravity}}"),
            ("arm.next_joint", "l.centre * force[i].y + l.length * outer.y", "l.centre * force[i].y - l.length * outer.y")),

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "runs/message_fields.h"
+#include "runs/message_order.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

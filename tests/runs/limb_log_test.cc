@@ -10,7 +10,6 @@
 #include "runs/measured_run.h"
 #include "runs/run_config.h"
 #include "runs/run_table.h"
-#include "runs/sampling.h"
 #include "runs/senders.h"
 #include "tests/runs/log/log_fixture.h"
 

@@ -1,8 +1,8 @@
 #include <random>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "runs/compare.h"
-#include "runs/log/log_format.h"
+#include "runs/log/log_reader.h"
 #include "runs/log/repair.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"

@@ -1,4 +1,4 @@
-#include "runs/sidecar_search.h"
+#include "runs/sidecar.h"
 
 #include <gmock/gmock.h>
 

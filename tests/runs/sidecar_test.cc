@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "runs/signal_unit.h"
+#include "runs/signal_columns.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "base/number_text.h"
-#include "runs/counters.h"
+#include "runs/signal_columns.h"
 #include "runs/measured_run.h"
 #include "tests/runs/log/log_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "settings/bus_url.h"
+#include "settings/urls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "settings/front_end_url.h"
+#include "settings/urls.h"
 
 #include <gmock/gmock.h>
 #include <termios.h>

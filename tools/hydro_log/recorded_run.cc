@@ -8,7 +8,7 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "runs/sampling.h"
+#include "runs/run_config.h"
 #include "runs/tuning_history.h"
 #include "tools/hydro_log/record_gap.h"
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "runs/run_log.h"

@@ -9,7 +9,7 @@
 #include "base/input_error.h"
 #include "base/standard_output.h"
 #include "base/text_file.h"
-#include "base/text_lines.h"
+#include "base/word_list.h"
 #include "bus/channels.h"
 #include "runs/tuning_history.h"
 #include "tune/live/change_check.h"

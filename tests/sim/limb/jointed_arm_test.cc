@@ -1,4 +1,4 @@
-#include "sim/limb/jointed_arm.h"
+#include "sim/limb/joint.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

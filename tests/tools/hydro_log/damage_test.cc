@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/read_files.h"
 #include "runs/compare.h"
 #include "runs/info.h"
