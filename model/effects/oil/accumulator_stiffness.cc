@@ -1,7 +1,7 @@
 // accumulator.stiffness: p3 rises by `stiffness` per volume returned to the accumulator, and falls by as much
 // per volume that the one-way valves take from it, as with a spring-loaded accumulator.
 
-#include "model/effects/accumulator.h"
+#include "model/effects/oil/accumulator.h"
 
 namespace hydro::model {
 

@@ -1,7 +1,7 @@
 // sensor.sign: one measured channel is inverted. The equations do not change.
 
 #include "model/effects/effect.h"
-#include "model/effects/sensor_signal.h"
+#include "model/effects/sensor/sensor_signal.h"
 
 namespace hydro::model {
 

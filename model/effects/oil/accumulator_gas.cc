@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/effects/accumulator.h"
+#include "model/effects/oil/accumulator.h"
 
 namespace hydro::model {
 

@@ -2,7 +2,7 @@
 // zero over `speed_range`: abs(T) <= T_max (1 - (abs(theta') - corner_speed)/speed_range) while driving,
 // T_max = T_pmax (torque_line.h).
 
-#include "model/effects/torque_line.h"
+#include "model/effects/drive/torque_line.h"
 
 namespace hydro::model {
 

@@ -2,7 +2,7 @@
 // start, the first value. The equations do not change.
 
 #include "model/effects/effect.h"
-#include "model/effects/sensor_signal.h"
+#include "model/effects/sensor/sensor_signal.h"
 
 namespace hydro::model {
 

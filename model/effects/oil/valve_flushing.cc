@@ -2,7 +2,7 @@
 // hot oil and to drain the surplus of unequal areas. For side 1, opening = (p2 - p1 - shift)/range from 0 to
 // 1, and the flow out of the side is conductance opening (p1 - p3). One switch for each side.
 
-#include "model/effects/opening.h"
+#include "model/effects/oil/opening.h"
 
 namespace hydro::model {
 

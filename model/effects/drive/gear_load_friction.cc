@@ -2,7 +2,7 @@
 // the shaft's load besides friction: D dp and every other load. With `load` of 1 or more the load cannot turn
 // the motor, as in a worm gear.
 
-#include "model/effects/gear_friction.h"
+#include "model/effects/drive/gear_friction.h"
 
 namespace hydro::model {
 

@@ -2,7 +2,7 @@
 // motor's side of a gear. While the motor drives, it takes the same part of the torque as a smaller k_1
 // would.
 
-#include "model/effects/gear_friction.h"
+#include "model/effects/drive/gear_friction.h"
 
 namespace hydro::model {
 

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "model/effects/opening.h"
+#include "model/effects/oil/opening.h"
 
 namespace hydro::model {
 

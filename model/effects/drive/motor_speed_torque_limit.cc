@@ -1,7 +1,7 @@
 // motor.speed_torque_limit: abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving, with T_max =
 // T_pmax. It is the torque that the supply's voltage leaves above the motor's back EMF (torque_line.h).
 
-#include "model/effects/torque_line.h"
+#include "model/effects/drive/torque_line.h"
 
 namespace hydro::model {
 
