@@ -11,8 +11,8 @@
 #include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
-#include "runs/run_config.h"
-#include "runs/senders.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/senders.h"
 
 namespace hydro::runs {
 namespace {

@@ -15,7 +15,7 @@
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "bus/output_left.h"
-#include "runs/run_config.h"
+#include "runs/recorded/run_config.h"
 
 namespace hydro::runs {
 namespace {

@@ -2,18 +2,22 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "base/tables/csv_layout.h"
 #include "base/tables/clock_text.h"
+#include "base/tables/csv_layout.h"
 
 namespace hydro::tables {
 
+// Stands for a missing value.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
 struct Column {
   std::string name;
-  std::vector<double> values;  // NaN: a missing value
+  std::vector<double> values;  // kMissing where there is none
   std::string unit = {};       // from a row of units, spelled as in base/units if the unit is known there
 };
 

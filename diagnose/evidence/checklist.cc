@@ -13,8 +13,8 @@
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/vacuum.h"
-#include "runs/measured_run.h"
-#include "runs/sample_times.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

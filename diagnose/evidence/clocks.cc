@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/sample_times.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 

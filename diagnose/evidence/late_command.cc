@@ -19,7 +19,7 @@
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "model/terms/parameter_info.h"
-#include "runs/sample_times.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

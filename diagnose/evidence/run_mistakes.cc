@@ -9,7 +9,7 @@
 #include "base/maths/spread.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/sample_times.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

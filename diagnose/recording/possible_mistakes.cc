@@ -6,9 +6,9 @@
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/measured_run.h"
-#include "runs/signal_columns.h"
-#include "runs/sample_times.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
+#include "runs/measured/signal_columns.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/sample_times.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/word_list.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -17,7 +17,7 @@
 #include "runs/exports/selection.h"
 #include "runs/exports/sheet_units.h"
 #include "runs/log/log_reader.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 
 namespace hydro::exports {
 namespace {

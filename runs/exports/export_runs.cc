@@ -12,7 +12,7 @@
 #include "runs/exports/channel_sheets.h"
 #include "runs/exports/sheet_units.h"
 #include "runs/log/log_verdict.h"
-#include "runs/run_config.h"
+#include "runs/recorded/run_config.h"
 
 namespace hydro::exports {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "runs/exports/selection.h"
 #include "runs/exports/sheet.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::exports {
 

@@ -11,7 +11,7 @@
 #include "bus/output_left.h"
 #include "process/participant.h"
 #include "process/status.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/tuning_history.h"
 #include "scope/signals/decoded.h"
 #include "scope/signals/intake.h"
 

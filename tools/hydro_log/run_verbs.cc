@@ -11,7 +11,7 @@
 #include "base/text_file.h"
 #include "process/stop_signal.h"
 #include "runs/limb_info.h"
-#include "runs/senders.h"
+#include "runs/recorded/senders.h"
 #include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
 #include "tools/hydro_log/own_controller.h"

@@ -11,7 +11,7 @@
 #include "base/text_file.h"
 #include "base/word_list.h"
 #include "bus/channels.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/tuning_history.h"
 #include "tune/live/change_check.h"
 #include "tune/live/rearm_forecast.h"
 #include "tune/live/saved_config.h"

@@ -17,7 +17,7 @@
 #include "hydro/run_description_t.hpp"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::log {
 

@@ -2,11 +2,10 @@
 #include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
-#include "runs/measured_run.h"
-#include "runs/message_order.h"
-#include "runs/run_config.h"
-#include "runs/run_table.h"
-#include "runs/senders.h"
+#include "runs/recorded/message_order.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/run_table.h"
+#include "runs/recorded/senders.h"
 
 namespace hydro::runs {
 namespace {
@@ -70,9 +69,9 @@ bool LacksStates(const state_t& state, const state_t& next) {
 double PressureReference(const motor_command_t* motor, const pressure_command_t* pressure) {
   if (motor != nullptr) {
     const bool has_one = motor->pressure_command_tick >= 0 && motor->status != motor_command_t::OPEN_LOOP;
-    return has_one ? motor->pressure_ref : kMissing;
+    return has_one ? motor->pressure_ref : tables::kMissing;
   }
-  return pressure != nullptr && pressure->open_loop == 0 ? pressure->pressure_ref : kMissing;
+  return pressure != nullptr && pressure->open_loop == 0 ? pressure->pressure_ref : tables::kMissing;
 }
 
 }  // namespace
@@ -110,7 +109,7 @@ tables::Table ExportRun(const RunLog& log) {
     const state_t& state = *states[k];
     const int64_t commanding_tick = SaturatingDifference(state.tick, delay);
     const state_t* const next = k + 1 < states.size() ? states[k + 1] : nullptr;
-    double voltage = kMissing;
+    double voltage = tables::kMissing;
     if (sampled) {
       voltage = state.voltage;  // no sample tells what acted from this tick on; this acted up to it
     } else if (next != nullptr && !LacksStates(state, *next)) {
@@ -125,7 +124,7 @@ tables::Table ExportRun(const RunLog& log) {
                              static_cast<double>(state.tick),
                              voltage,
                              PressureReference(motor.At(state.tick), pressure.LastUpTo(commanding_tick)),
-                             arm != nullptr ? arm->value : kMissing,
+                             arm != nullptr ? arm->value : tables::kMissing,
                              state.motor_angle,
                              state.motor_speed,
                              state.arm_angle,

@@ -1,4 +1,4 @@
-#include "runs/senders.h"
+#include "runs/recorded/senders.h"
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,7 @@
 
 #include "base/integers.h"
 #include "bus/channels.h"
-#include "runs/message_order.h"
+#include "runs/recorded/message_order.h"
 
 namespace hydro::runs {
 namespace {

@@ -1,4 +1,4 @@
-#include "runs/compare.h"
+#include "runs/recorded/compare.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
-#include "runs/message_order.h"
+#include "runs/recorded/message_order.h"
 
 namespace hydro::runs {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::runs {
 

@@ -10,7 +10,7 @@
 
 #include "base/unit_system.h"
 #include "hydro/run_description_t.hpp"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::runs {
 

@@ -1,4 +1,4 @@
-#include "runs/run_parts.h"
+#include "runs/measured/run_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/number_text.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::runs {
 namespace {

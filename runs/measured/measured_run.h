@@ -18,8 +18,7 @@
 
 namespace hydro::runs {
 
-// Stands for a missing value.
-inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+using tables::kMissing;
 
 // The source of values: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
 struct ColumnSource {
@@ -52,7 +51,7 @@ struct MeasuredRun {
   std::string layout;
 
   // One line that says which conclusions the run does not support because its log is incomplete, repaired or
-  // holds another stack too (runs/run_log.h); empty when there is nothing to say.
+  // holds another stack too (runs/recorded/run_log.h); empty when there is nothing to say.
   std::string caution;
 
   UnitSystem units;  // of all values except time (s) and voltage (V)
@@ -115,9 +114,9 @@ std::vector<MeasuredRun> ReadMeasuredRuns(const std::string& file,
 // The same for a file that is one run. Throws InputError when it is several.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
-// The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run,
-// which gives the shaft, the bypass and the stated noise of the sensors. `model_text`, if any, gives the
-// units.
+// The run in a table of hydro-log export (runs/recorded/run_table.h). `config_text` is the configuration of
+// the run, which gives the shaft, the bypass and the stated noise of the sensors. `model_text`, if any, gives
+// the units.
 MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
                         const std::string& model_text);
 

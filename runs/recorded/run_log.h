@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bus/messages.h"
-#include "runs/clock_steps.h"
 #include "runs/log/log_reader.h"
+#include "runs/recorded/clock_steps.h"
 #include "settings/command_line.h"
 
 namespace hydro::runs {

@@ -1,4 +1,4 @@
-#include "runs/table_times.h"
+#include "runs/measured/table_times.h"
 
 #include <algorithm>
 #include <array>

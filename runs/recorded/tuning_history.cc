@@ -1,4 +1,4 @@
-#include "runs/tuning_history.h"
+#include "runs/recorded/tuning_history.h"
 
 #include <algorithm>
 #include <map>

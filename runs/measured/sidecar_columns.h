@@ -3,7 +3,7 @@
 
 #include "base/input_error.h"
 #include "base/tables/table.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/input_error.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::runs {
 

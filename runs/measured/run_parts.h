@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 

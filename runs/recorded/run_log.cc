@@ -1,4 +1,4 @@
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 #include <algorithm>
 #include <map>
@@ -12,9 +12,9 @@
 #include "base/bytes.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
-#include "runs/channel_suffix.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/message_kinds.h"
+#include "runs/recorded/channel_suffix.h"
 
 namespace hydro::runs {
 namespace {

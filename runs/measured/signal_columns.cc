@@ -1,4 +1,4 @@
-#include "runs/signal_columns.h"
+#include "runs/measured/signal_columns.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runs/clock_steps.h"
+#include "runs/recorded/clock_steps.h"
 
 namespace hydro::runs {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/tables/table.h"
-#include "runs/signal_columns.h"
+#include "runs/measured/signal_columns.h"
 
 namespace hydro::runs {
 

@@ -1,4 +1,4 @@
-#include "runs/sidecar_columns.h"
+#include "runs/measured/sidecar_columns.h"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +12,10 @@
 #include "base/unit_system.h"
 #include "base/units.h"
 #include "base/word_list.h"
-#include "runs/signal_columns.h"
-#include "runs/measured_run.h"
-#include "runs/sample_times.h"
-#include "runs/table_times.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
+#include "runs/measured/signal_columns.h"
+#include "runs/measured/table_times.h"
 
 namespace hydro::runs {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/tables/table.h"
 #include "base/unit_system.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::runs {
 

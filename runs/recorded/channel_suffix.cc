@@ -1,4 +1,4 @@
-#include "runs/channel_suffix.h"
+#include "runs/recorded/channel_suffix.h"
 
 #include <algorithm>
 #include <hydro/run_description_t.hpp>

@@ -1,4 +1,4 @@
-#include "runs/sidecar.h"
+#include "runs/measured/sidecar.h"
 
 #include <fnmatch.h>
 
@@ -11,9 +11,9 @@
 #include "base/tables/table.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
-#include "runs/measured_run.h"
-#include "runs/run_parts.h"
-#include "runs/sidecar_columns.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/run_parts.h"
+#include "runs/measured/sidecar_columns.h"
 #include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"

@@ -8,7 +8,7 @@
 
 #include "base/input_error.h"
 #include "base/tables/table.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::runs {
 

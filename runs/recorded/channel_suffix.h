@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runs/log/log_reader.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "settings/joint_documents.h"
 
 namespace hydro::runs {

@@ -7,7 +7,7 @@
 
 #include "base/input_error.h"
 #include "base/unit_system.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::runs {
 

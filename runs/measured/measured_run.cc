@@ -1,4 +1,4 @@
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 #include <cmath>
 #include <filesystem>
@@ -6,12 +6,12 @@
 #include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "runs/channel_suffix.h"
-#include "runs/run_log.h"
-#include "runs/run_table.h"
-#include "runs/run_config.h"
-#include "runs/sidecar.h"
-#include "runs/signal_columns.h"
+#include "runs/measured/sidecar.h"
+#include "runs/measured/signal_columns.h"
+#include "runs/recorded/channel_suffix.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/run_log.h"
+#include "runs/recorded/run_table.h"
 #include "settings/model_file.h"
 #include "settings/read_quantities.h"
 #include "settings/toml/section_reader.h"

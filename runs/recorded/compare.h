@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::runs {
 

@@ -1,4 +1,4 @@
-#include "runs/sample_times.h"
+#include "runs/measured/sample_times.h"
 
 #include <algorithm>
 #include <cstddef>

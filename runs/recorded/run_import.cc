@@ -8,8 +8,7 @@
 #include "base/units.h"
 #include "bus/channels.h"
 #include "runs/log/log_writer.h"
-#include "runs/measured_run.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "settings/model_file.h"
 
 namespace hydro::runs {
@@ -146,7 +145,7 @@ class Values {
  public:
   Values(const tables::Table& table, const char* name) : column_(table.Find(name)) {}
   bool present() const { return column_ != nullptr; }
-  double operator[](size_t row) const { return column_ != nullptr ? column_->values[row] : kMissing; }
+  double operator[](size_t row) const { return column_ != nullptr ? column_->values[row] : tables::kMissing; }
 
  private:
   const tables::Column* column_;
@@ -195,7 +194,7 @@ class Import {
     state.p1 = p1_[row];
     state.p2 = p2_[row];
     // A table does not tell what acted before its first row, so the actuator is assumed to have been at rest.
-    state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : kMissing;
+    state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : tables::kMissing;
     state.command_tick = row > 0 && voltage_.present() ? ticks_[row] - 1 : -1;
     log_.AppendMessage(channels_.Of<state_t>(), state, state.utime);
   }
@@ -218,10 +217,10 @@ class Import {
     const bool next_acts = row + 1 < rows && ticks_[row + 1] == ticks_[row] + 1;
     const bool last_follows = row + 2 == rows;
     if (row + 1 == rows && !std::isnan(voltage_[row]) && (row == 0 || ticks_[row - 1] + 1 != ticks_[row])) {
-      AppendCommand(utime, ticks_[row] - 1, voltage_[row], kMissing);
+      AppendCommand(utime, ticks_[row] - 1, voltage_[row], tables::kMissing);
     }
     if (!std::isnan(pressure_ref_[row]) || (next_acts && last_follows && !std::isnan(voltage_[row + 1]))) {
-      AppendCommand(utime, ticks_[row], next_acts ? voltage_[row + 1] : kMissing, pressure_ref_[row]);
+      AppendCommand(utime, ticks_[row], next_acts ? voltage_[row + 1] : tables::kMissing, pressure_ref_[row]);
     }
   }
 
@@ -245,7 +244,7 @@ class Import {
   const bus::Channels channels_;
   int64_t motor_sequence_ = 0;
   int64_t reference_sequence_ = 0;
-  double last_reference_ = kMissing;
+  double last_reference_ = tables::kMissing;
 };
 
 }  // namespace
