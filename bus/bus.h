@@ -2,7 +2,7 @@
 //
 // An application takes a Bus and a Clock (clock.h), never a socket. The same application runs over LCM UDP
 // multicast (udpm/open_udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a
-// recorded log (log_bus.h).
+// recorded log, which hydro-log replay plays into an InProcessBus.
 //
 // Every transport keeps this contract (tests/bus/bus_contract_test.cc):
 // - Messages from one sender on one channel arrive in the order in which they were sent.

@@ -20,10 +20,4 @@ Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan) {
   return grace;
 }
 
-std::vector<std::string> RolesOf(const LaunchPlan& plan) {
-  std::vector<std::string> roles;
-  for (const ChildSpec& child : plan.children) roles.push_back(child.role());
-  return roles;
-}
-
 }  // namespace hydro::launch
