@@ -18,9 +18,11 @@
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/text_file.h"
+#include "bus/seal/bus_key.h"
 #include "launch/own_controller_texts.h"
 #include "launch/own_driver_texts.h"
 #include "process/own_program.h"
+#include "settings/limb_config.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::launch {
@@ -171,6 +173,20 @@ void WriteNewFiles(const std::vector<NewFile>& files) {
 constexpr char kExample[] = "udp_box";
 
 }  // namespace
+
+int MakeKey(const settings::CommonOptions& options) {
+  const settings::StackConfig config = settings::LoadCommonConfig(options.config, options.overrides);
+  const std::string& file = config.bus.resolved_key_file;
+  if (file.empty()) {
+    throw InputError(options.config +
+                     ": bus.key_file: found nothing, allowed is the path of the key file to create");
+  }
+  bus::MakeBusKeyFile(file);
+  std::printf(
+      "%s: a new key, readable by you alone; every host of the stack needs a copy (docs/security.md)\n",
+      file.c_str());
+  return 0;
+}
 
 int NewController(const std::string& name) {
   CheckNewName("--new-controller", name);

@@ -1,10 +1,17 @@
-// Implements hydro-launch new-controller and new-driver: files made from the examples, as a start for the
-// user.
+// What hydro-launch makes for a start: a key (--make-key), and files from the examples (new-controller,
+// new-driver).
 #pragma once
 
 #include <string>
 
+#include "settings/command_line.h"
+
 namespace hydro::launch {
+
+// Writes a new key into the file that the configuration's bus.key_file names, and confirms it on stdout.
+// Returns the exit code. Throws InputError when the configuration has no bus.key_file or the file exists
+// already.
+int MakeKey(const settings::CommonOptions& options);
 
 // Writes NAME.py, a first position loop, and NAME.toml, a stack that uses it, into the current folder, and
 // prints what to do with them. Returns the exit code. Throws InputError for a name that cannot be used, and

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/integers.h"
-#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::logger {

@@ -8,7 +8,6 @@
 #include "model/terms/description.h"
 #include "model/terms/measurement.h"
 #include "model/terms/model_error.h"
-#include "model/terms/state.h"
 
 namespace hydro::model {
 
@@ -17,10 +16,6 @@ class Actuator {
   // Throws ModelError, e.g. "arm angle 1.5708 rad leaves V_1 = -2.63 in^3; V_1, V_2 > 0 needs |alpha| <
   // 0.8578 rad".
   Actuator(const ModelDescription& description, const ActuatorOptions& options);
-  // Begins at `time` (s) in the state `start`, such as a measured one, as Respond does (model/response.h);
-  // the effects' t counts from options.begin. The pressures and the arm angle in `options` are not used.
-  Actuator(const ModelDescription& description, const ActuatorOptions& options, const StartState& start,
-           double time);
   ~Actuator();
   Actuator(Actuator&&) noexcept;
   Actuator& operator=(Actuator&&) noexcept;

@@ -13,7 +13,6 @@
 #include "model/terms/description.h"
 #include "model/terms/measurement.h"
 #include "model/terms/parameter_info.h"
-#include "model/terms/state.h"
 
 namespace hydro::model {
 
@@ -45,6 +44,20 @@ struct Stimulus {
   // The outside influences at each time, interpolated linearly between them; empty: none at any time.
   std::vector<Surroundings> around = {};
 };
+
+// The base states at the first time, indexed as in model/state.h, followed by what no sensor shows. The arm's
+// states are used with a free shaft only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3.
+// The states of effects start from these.
+using StartState = std::array<double, 12>;
+// rad: how much more than the angle sensor an effect that repeats with the shaft sees (motor.cogging,
+// pump.flow_ripple).
+inline constexpr size_t kTurn = 6;
+// psi, four numbers: the waves under way in the lines of line.wave. For each side: the pump's pressure less
+// the actuator's, and the line's flow times its impedance I w.
+inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
+// in^3: the volume that the accumulator of accumulator.stiffness has already taken in, so that its pressure
+// begins above p_3.
+inline constexpr size_t kReturned = 11;
 
 struct Response {
   // By channel, then by sample; empty for channels that were not requested.

@@ -5,6 +5,7 @@
 
 #include "model/equations/equations.h"
 #include "model/equations/evaluate.h"
+#include "model/response.h"
 
 namespace hydro::model {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "settings/urls.h"
 #include "settings/toml/toml_document.h"
+#include "settings/urls.h"
 
 namespace hydro::settings {
 

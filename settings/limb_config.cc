@@ -13,7 +13,6 @@
 #include "settings/read_quantities.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
-#include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

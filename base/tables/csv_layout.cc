@@ -4,7 +4,7 @@
 
 #include "base/tables/asked_layout.h"
 #include "base/tables/csv_cells.h"
-#include "base/tables/notation.h"
+#include "base/tables/decimal_sign.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/tables/clock_text.h"
 #include "base/tables/csv_layout.h"
+#include "base/tables/time_column.h"
 
 namespace hydro::tables {
 

@@ -79,7 +79,8 @@ class CaseTimes {
   std::string lines_;
 };
 
-// The mean time in s of the cases listed in times/, in the 100 files that were written last. None when no case is listed.
+// The mean time in s of the cases listed in times/, in the 100 files that were written last. None when no
+// case is listed.
 std::optional<double> MeanCaseSeconds(const std::string& folder);
 
 }  // namespace hydro::batch

@@ -98,8 +98,9 @@ int Problems(const std::vector<Finding>& findings);
 int RunDoctor(const std::string& config_file, const std::vector<std::string>& overrides,
               const std::string& host);
 
-// Gathers the facts from files under /proc and /sys, from limits and from sockets. Changes nothing. Takes two seconds, during which it listens on the port and measures wake-ups; up to four when multicast
-// packets do not come back.
+// Gathers the facts from files under /proc and /sys, from limits and from sockets. Changes nothing. Takes two
+// seconds, during which it listens on the port and measures wake-ups; up to four when multicast packets do
+// not come back.
 MachineFacts GatherFacts(const DoctorTask& task);
 
 // The interface through which a multicast group leaves the machine.

@@ -1,6 +1,6 @@
 #include "launch/logic/children.h"
 
-#include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::launch {
 

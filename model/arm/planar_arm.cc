@@ -19,9 +19,7 @@ struct Moving {
 
 Moving operator+(Moving x, Moving y) { return {x.value + y.value, x.rate + y.rate}; }
 Moving operator-(Moving x, Moving y) { return {x.value - y.value, x.rate - y.rate}; }
-Moving operator*(Moving x, Moving y) {
-  return {x.value * y.value, x.rate * y.value + x.value * y.rate};
-}
+Moving operator*(Moving x, Moving y) { return {x.value * y.value, x.rate * y.value + x.value * y.rate}; }
 Moving operator*(double x, Moving y) { return {x * y.value, x * y.rate}; }
 
 template <class T>

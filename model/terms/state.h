@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "model/terms/measurement.h"  // first: its Channel has enumerators of the same names
@@ -17,20 +16,6 @@ inline constexpr int kP2 = 3;
 inline constexpr int kArmAngle = 4;  // free shaft only
 inline constexpr int kArmSpeed = 5;  // free shaft only
 inline constexpr int kMaxStates = 32;
-
-// Where a simulation that does not begin at rest begins: the base states, indexed as above, followed by what
-// no sensor shows. The arm's states are used with a free shaft only; with the bypass open, p2 is p1.
-// Pressures below p_3 start at p_3. The states of effects start from these.
-using StartState = std::array<double, 12>;
-// rad: how much more than the angle sensor an effect that repeats with the shaft sees (motor.cogging,
-// pump.flow_ripple).
-inline constexpr size_t kTurn = 6;
-// psi, four numbers: the waves under way in the lines of line.wave. For each side: the pump's pressure less
-// the actuator's, and the line's flow times its impedance I w.
-inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
-// in^3: the volume that the accumulator of accumulator.stiffness has already taken in, so that its pressure
-// begins above p_3.
-inline constexpr size_t kReturned = 11;
 
 // The positions of the model's switches. Between two changes of mode the right-hand side is smooth.
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/integers.h"
 #include "base/interruption.h"
 #include "base/number_text.h"
-#include "base/integers.h"
 #include "base/text_file.h"
 #include "runs/log/log_reader.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "model/actuator.h"
+#include "model/started_actuator.h"
 #include "scope/signals/channel_list.h"
 #include "settings/stack_config.h"
 
@@ -81,7 +81,7 @@ class Ghost {
   std::shared_ptr<const settings::StackConfig> config_;
   double resync_s_;
   std::unique_ptr<trajectory::Trajectory> motion_;  // motion of a driven shaft; the actuator points to it
-  std::optional<model::Actuator> actuator_;
+  std::optional<model::StartedActuator> actuator_;
   std::deque<GhostSample> newest_;
   double started_ = 0;  // s
   bool sync_ = false;

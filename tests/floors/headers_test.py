@@ -32,7 +32,7 @@ EXEMPT = {
     "pressure_ctrl/own_pressure_loop.h": "a whole program: e2e.own_controller runs the example that stands on it",
     "firmware/board.h": "what a board provides: e2e.front_end_firmware runs those that exist",
     "firmware/device_frames.h": "the inside of device.h, for two files",
-    "model/start_from.h": "where Respond and Actuator begin: their tests go through it",
+    "model/start_from.h": "where Respond and StartedActuator begin: their tests go through it",
     "model/response_pass.h": "the inside of Respond, for two files: the tests of response.h go through it",
 }
 

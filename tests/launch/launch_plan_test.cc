@@ -225,7 +225,6 @@ TEST_F(LaunchPlanTest, StartsAProgramOfTheUsersOwn) {
                                std::string("HYDRO_SET=position.c1=2\ntime.mode=lockstep"),
                                "HYDRO_BUS_URL=" + config_.bus.url}));
   EXPECT_EQ(plan.children[0].role(), "plant");
-  EXPECT_EQ(child.role(), "position_ctrl");
 
   config_.processes[1].host = "desk";
   config_.processes[0].host = "rig";

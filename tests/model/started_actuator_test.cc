@@ -1,4 +1,4 @@
-#include "model/actuator.h"
+#include "model/started_actuator.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(StartedActuatorTest, GoesOnAsTheOther) {
     options.initial_pressure = 100;
     Actuator whole(Table1Model(), options);
     for (int k = 0; k < 300; ++k) whole.Advance(Voltage(k * 1e-3), (k + 1) * 1e-3);
-    Actuator begun(Table1Model(), options, StateOf(whole.Measure()), whole.time());
+    StartedActuator begun(Table1Model(), options, StateOf(whole.Measure()), whole.time());
     EXPECT_EQ(begun.time(), whole.time());
     EXPECT_EQ(begun.Measure().p1, whole.Measure().p1);
     for (int k = 300; k < 900; ++k) {
@@ -61,15 +61,15 @@ TEST(StartedActuatorTest, BeginsWhereItCan) {
   StartState start{};
   start[kP1] = -5;
   start[kP2] = 100;
-  const Actuator low(Table1Model(), {}, start, 1);
+  const StartedActuator low(Table1Model(), {}, start, 1);
   EXPECT_EQ(low.Measure().p1, testing::Table1().p_3);
   EXPECT_EQ(low.Measure().p2, 100);
   start[kArmAngle] = 1.5;  // V_1 would be negative
-  EXPECT_THROW(Actuator(Table1Model(), {}, start, 1), ModelError);
+  EXPECT_THROW(StartedActuator(Table1Model(), {}, start, 1), ModelError);
   ActuatorOptions options;
   options.relative_tolerance = 0;
   start[kArmAngle] = 0;
-  EXPECT_THROW(Actuator(Table1Model(), options, start, 1), ModelError);
+  EXPECT_THROW(StartedActuator(Table1Model(), options, start, 1), ModelError);
 }
 
 }  // namespace

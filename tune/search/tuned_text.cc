@@ -8,8 +8,8 @@
 
 #include "base/text_file.h"
 #include "base/word_list.h"
-#include "settings/limb_config.h"
 #include "settings/config_entries.h"
+#include "settings/limb_config.h"
 #include "settings/quantity_keys.h"
 #include "settings/read_quantities.h"
 #include "settings/toml/toml_document.h"
