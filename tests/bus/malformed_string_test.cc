@@ -81,7 +81,9 @@ void ExpectNoHarm(std::string_view channel) {
       bool decoded = false;
       EXPECT_NO_THROW(decoded = TypeOf<Message>().decode_into(&into, bytes.data(), size))
           << channel << ", " << length << " at byte " << at;
-      if (decoded) EXPECT_EQ(into.getEncodedSize(), size) << channel << ", " << length << " at byte " << at;
+      if (decoded) {
+        EXPECT_EQ(into.getEncodedSize(), size) << channel << ", " << length << " at byte " << at;
+      }
     }
   }
 }

@@ -144,7 +144,12 @@ class DiagnoseTest(stack.TestCase):
         self.assertEqual(short.wait(timeout=LONG), 2, short.report())
         self.assertRegex(short.stderr, "found 99 samples")
 
-        self.run_program("hydro-diagnose", bar, "--model", TABLE1, "--out", self.path("out"), timeout=LONG)
+        diagnosis = ("hydro-diagnose", bar, "--model", TABLE1, "--out", self.path("out"))
+        os.mkdir(self.path("out"))
+        self.write("out/report.html", "of another diagnosis")
+        refused = self.run_program(*diagnosis, expect=2)
+        self.assertRegex(refused.stderr, r"^[^\n]*report\.html: found a file of this name[^\n]*--force[^\n]*\n$")
+        self.run_program(*diagnosis, "--force", timeout=LONG)
         with open(self.path("out/report.json"), encoding="utf-8") as file:
             report = json.load(file)
         self.assertEqual(report["verdict"], "unexplained")
@@ -152,11 +157,8 @@ class DiagnoseTest(stack.TestCase):
         self.assertTrue(report["sentence"].startswith("Mend the recording first: run bar: p1 and p2 are in bar"))
         self.assertIn(report["remarks"][0], checked.stdout)
         self.assertIsNone(report["gap"]["held_out"]["after"])
-
-        again = ("hydro-diagnose", bar, "--model", TABLE1, "--out", self.path("out"))
-        refused = self.run_program(*again, expect=2)
-        self.assertRegex(refused.stderr, r"^[^\n]*report\.html: found a file of this name[^\n]*--force[^\n]*\n$")
-        self.run_program(*again, "--force", timeout=LONG)
+        with open(self.path("out/report.html"), encoding="utf-8") as file:
+            self.assertIn("<html", file.read())
 
     # Tests that a simulated log is diagnosed, and that its reports are whole and the same a second time,
     # except for the time that it took.

@@ -20,8 +20,12 @@ constexpr double kD = 0.00796, kJ = 0.03, kB = 0.01455, kTs = 4, kBeta = 247000,
                  kCi = 1e-6, kP3 = 100;
 constexpr double kSpring = kBeta / kVms;  // psi/in^3 of one side
 
+const ExperimentResult& Figure2Result() {
+  static const ExperimentResult result = RunFig2({});
+  return result;
+}
 const json& Fig2() {
-  static const json numbers = ParseJson(RunFig2({}).numbers);
+  static const json numbers = ParseJson(Figure2Result().numbers);
   return numbers;
 }
 const json& Fig3() {
@@ -161,12 +165,11 @@ TEST(Figure2, PeriodsAndSwings) {
 
 // Tests that the paper's contradiction is reported with its figures.
 TEST(Figure2, Finding) {
-  const ExperimentResult result = RunFig2({});
+  const ExperimentResult& result = Figure2Result();
   ASSERT_EQ(result.findings.size(), 1u);
   EXPECT_EQ(result.findings[0].number, 3);
   EXPECT_NE(result.findings[0].evidence.find("4.203 cycles"), std::string::npos)
       << result.findings[0].evidence;
-  EXPECT_EQ(result.numbers, JsonText(Fig2()));  // bit-identical
   for (const tables::Column& column : result.table.columns) {
     EXPECT_EQ(column.values.size(), result.table.rows()) << column.name;
   }

@@ -10,8 +10,6 @@ namespace foreign_rig {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-
 const char* NameOf(Signal signal) {
   switch (signal) {
     case Signal::kMotorSpeed:

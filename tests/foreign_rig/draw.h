@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string_view>
 
 namespace foreign_rig {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  // rad: phases are drawn from 0 to it
 
 class Draw {
  public:

@@ -7,7 +7,6 @@ namespace foreign_rig {
 
 namespace {
 
-constexpr double kLargestVoltage = 11.5;
 constexpr double kConverterStep = 1.0 / 1024;  // V
 constexpr double kLargestSpeed = 260;          // rad/s that the position loop asks for
 

@@ -8,9 +8,6 @@ namespace foreign_rig {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-constexpr double kLargestVoltage = 11.5;
-
 using Form = Stretch::Form;
 
 // Bypass open: nothing holds the pump but friction, so that held voltages are short or follow a speed.

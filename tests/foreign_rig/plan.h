@@ -9,6 +9,8 @@
 
 namespace foreign_rig {
 
+inline constexpr double kLargestVoltage = 11.5;  // V, of either sign
+
 enum class Goal { kVoltage, kSpeed, kPressure, kAngle };
 
 // From `start` until the next stretch begins; about `mean`, in V, rad/s, psi or rad.

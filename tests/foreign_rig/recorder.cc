@@ -7,8 +7,6 @@ namespace foreign_rig {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-
 Channel DrawChannel(Draw& draw, double noise, double step) {
   Channel c;
   c.noise = noise;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "recording.h"
 #include "text.h"
@@ -11,8 +12,6 @@
 namespace foreign_rig {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 void WriteModel(const Values& given, const std::string& file) {
   std::ofstream out = Open(file);
@@ -38,8 +37,8 @@ Units UnitsOf(const Mistake& mistake) {
   if (mistake.what == "bar") u.pressure = 1 / 14.5037738;
   if (mistake.what == "kPa") u.pressure = 6.89475729;
   if (mistake.what == "MPa") u.pressure = 6.89475729e-3;
-  if (mistake.what == "rpm") u.speed = 30 / kPi;
-  if (mistake.what == "deg") u.arm = 180 / kPi;
+  if (mistake.what == "rpm") u.speed = 30 / std::numbers::pi;
+  if (mistake.what == "deg") u.arm = 180 / std::numbers::pi;
   if (mistake.what == "ms") u.time = 1000;
   return u;
 }

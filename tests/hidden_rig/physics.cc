@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace hidden_rig {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kAtmosphere = 14.696;  // psi
 constexpr double kPolytropic = 1.4;
 
@@ -79,10 +79,12 @@ Physics::Physics(const RigSetup& setup, const Plan& plan, const Conditions& cond
 }
 
 double Physics::Motion(double t) const {
-  return plan_.arm_angle + plan_.motion_amplitude * 0.5 * (1 - std::cos(2 * kPi * plan_.motion_hz * t));
+  return plan_.arm_angle +
+         plan_.motion_amplitude * 0.5 * (1 - std::cos(2 * std::numbers::pi * plan_.motion_hz * t));
 }
 double Physics::MotionRate(double t) const {
-  return plan_.motion_amplitude * kPi * plan_.motion_hz * std::sin(2 * kPi * plan_.motion_hz * t);
+  return plan_.motion_amplitude * std::numbers::pi * plan_.motion_hz *
+         std::sin(2 * std::numbers::pi * plan_.motion_hz * t);
 }
 
 double Physics::Volume(const State& x, int side) const {
@@ -190,7 +192,7 @@ double Physics::MotorTorque(double t, const State& x, State& rate) const {
     const double turn = fx_.cogging_periods * x[kTheta] + fx_.cogging_phase;
     torque -= fx_.cogging * (std::sin(turn) + 0.01 * std::sin(2 * turn));
   }
-  if (out_.daily_torque > 0) torque -= out_.daily_torque * std::sin(2 * kPi * (t + day_) / 7.3);
+  if (out_.daily_torque > 0) torque -= out_.daily_torque * std::sin(2 * std::numbers::pi * (t + day_) / 7.3);
   return torque;
 }
 
@@ -267,7 +269,8 @@ double Physics::LinkTorque(double t, const State& x) const {
   double link = -base_.mgl * std::cos(angle) - out_.gravity_sine * std::sin(angle) - out_.arm_spring * angle;
   if (out_.end_cushion > 0)
     link -= out_.end_cushion * (Softplus(angle - 0.12, 0.002) - Softplus(-angle - 0.12, 0.002));
-  if (out_.floor_vibration > 0) link += out_.floor_vibration * std::sin(2 * kPi * 9.0 * (t + day_));
+  if (out_.floor_vibration > 0)
+    link += out_.floor_vibration * std::sin(2 * std::numbers::pi * 9.0 * (t + day_));
   return link;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numbers>
 #include <random>
 
 #include "physics.h"
@@ -10,8 +11,6 @@
 namespace hidden_rig {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Normal deviates that are the same with every standard library.
 class Noise {
@@ -26,8 +25,8 @@ class Noise {
     const double v = (static_cast<double>(engine_() >> 11) + 0.5) * 0x1p-53;
     const double r = std::sqrt(-2 * std::log(u));
     spare_ = true;
-    kept_ = r * std::sin(2 * kPi * v);
-    return r * std::cos(2 * kPi * v);
+    kept_ = r * std::sin(2 * std::numbers::pi * v);
+    return r * std::cos(2 * std::numbers::pi * v);
   }
 
  private:
@@ -50,12 +49,12 @@ double Value(const Segment& s, double t) {
     case Segment::Form::kRamp:
       return s.offset + s.amplitude * u / (s.end - s.start);
     case Segment::Form::kSine:
-      return s.offset + s.amplitude * std::sin(2 * kPi * s.hz * u);
+      return s.offset + s.amplitude * std::sin(2 * std::numbers::pi * s.hz * u);
     case Segment::Form::kSquare:
       return s.offset + (std::fmod(u * s.hz, 1.0) < 0.5 ? s.amplitude : -s.amplitude);
     case Segment::Form::kChirp: {
       const double grow = (s.hz_end - s.hz) / (s.end - s.start);
-      return s.offset + s.amplitude * std::sin(2 * kPi * (s.hz * u + 0.5 * grow * u * u));
+      return s.offset + s.amplitude * std::sin(2 * std::numbers::pi * (s.hz * u + 0.5 * grow * u * u));
     }
   }
   return 0;

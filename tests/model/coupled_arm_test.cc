@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,10 +16,11 @@
 namespace hydro::model {
 namespace {
 
+using testing::kFlexure;
+using testing::RefusalOf;
 using testing::Table1Model;
 
 constexpr double kTick = 1e-3;
-const EffectDescription kFlexure = {"arm.flexure", {{"stiffness", 60000}, {"damping", 60}}, {}};
 
 EffectDescription SealFriction(double coulomb) {
   return {"actuator.seal_friction", {{"coulomb", coulomb}, {"viscous", 5}}, {}};
@@ -206,37 +206,28 @@ TEST(CoupledArm, IdenticalCallsGiveIdenticalBits) {
   EXPECT_EQ(a.time(), 200 * kTick);
 }
 
-std::string Message(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Tests that what does not fit is refused, with the joint's number.
 TEST(CoupledArm, RefusesByName) {
-  EXPECT_EQ(Message([] { CoupledArm(Straight(3), Joints(2)); }),
+  EXPECT_EQ(RefusalOf([] { CoupledArm(Straight(3), Joints(2)); }),
             "found 2 joints for an arm of 3 links; allowed is one for each link");
-  EXPECT_EQ(Message([] {
+  EXPECT_EQ(RefusalOf([] {
               std::vector<ArmJoint> joints = Joints(2);
               joints[1].options.shaft = Shaft::kDriven;
               CoupledArm(Straight(2), joints);
             }),
             "joint 2: a driven shaft needs a motion");
-  EXPECT_EQ(Message([] {
+  EXPECT_EQ(RefusalOf([] {
               std::vector<ArmJoint> joints = Joints(2);
               joints[1].model.parameters.beta = 0;
               CoupledArm(Straight(2), joints);
             }).substr(0, 25),
             "joint 2: parameter beta =");
-  EXPECT_EQ(Message([] { CoupledArm(Straight(1), Joints(1), {.steps_per_radian = 0}); }),
+  EXPECT_EQ(RefusalOf([] { CoupledArm(Straight(1), Joints(1), {.steps_per_radian = 0}); }),
             "longest_step and steps_per_radian of a coupled arm must be above 0");
   CoupledArm arm(Straight(2), Joints(2));
-  EXPECT_EQ(Message([&] { arm.Advance(std::array<double, 1>{0}, 1); }), "found 1 voltages for 2 joints");
+  EXPECT_EQ(RefusalOf([&] { arm.Advance(std::array<double, 1>{0}, 1); }), "found 1 voltages for 2 joints");
   arm.Advance(std::array<double, 2>{0, 0}, 0.5);
-  EXPECT_EQ(Message([&] {
+  EXPECT_EQ(RefusalOf([&] {
               arm.Advance(std::array<double, 2>{0, 0}, 0.4);
             }),
             "cannot advance to t = 0.400000 s from t = 0.500000 s");
@@ -245,7 +236,7 @@ TEST(CoupledArm, RefusesByName) {
 // Tests that a joint that leaves its stroke ends the run with an error that names it.
 TEST(CoupledArm, NamesTheJointThatLeavesItsStroke) {
   CoupledArm arm(Straight(2), Joints(2));
-  const std::string message = Message([&] { arm.Advance(std::array<double, 2>{0, 10}, 20); });
+  const std::string message = RefusalOf([&] { arm.Advance(std::array<double, 2>{0, 10}, 20); });
   EXPECT_EQ(message.substr(0, 9), "joint 2: ") << message;
 }
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "tests/model/model_case.h"
@@ -13,11 +12,12 @@
 namespace hydro::model {
 namespace {
 
+using testing::kFlexure;
+using testing::RefusalOf;
 using testing::SquareWaveLoop;
 using testing::Table1Model;
 
 const EffectDescription kSealFriction = {"actuator.seal_friction", {{"coulomb", 60}, {"viscous", 10}}, {}};
-const EffectDescription kFlexure = {"arm.flexure", {{"stiffness", 60000}, {"damping", 60}}, {}};
 
 std::vector<std::vector<EffectDescription>> Models() {
   return {{}, {kSealFriction}, {kFlexure}, {kFlexure, kSealFriction}, {testing::Lag(1e-3)}};
@@ -142,26 +142,17 @@ TEST(LoadedActuator, MovingTheArmCompressesTheFluid) {
   EXPECT_EQ(loaded.arm_speed(), 0.25);
 }
 
-std::string Message(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Tests that a load that means nothing is refused.
 TEST(LoadedActuator, RefusesLoadsWithoutMeaning) {
   LoadedActuator loaded(Table1Model(), {});
-  EXPECT_EQ(Message([&] { loaded.SetLoad({.inertia = 0}); }),
+  EXPECT_EQ(RefusalOf([&] { loaded.SetLoad({.inertia = 0}); }),
             "inertia of the arm's load = 0; allowed is above 0");
-  EXPECT_EQ(Message([&] { loaded.SetLoad({.inertia = 1, .torque = std::nan("")}); }),
+  EXPECT_EQ(RefusalOf([&] { loaded.SetLoad({.inertia = 1, .torque = std::nan("")}); }),
             "the torque of the arm's load is not finite");
   LoadedActuator clamped(Table1Model(), {.shaft = Shaft::kClamped});
-  EXPECT_EQ(Message([&] { clamped.SetLoad({.inertia = 1}); }), "an arm with a load needs a free shaft");
-  EXPECT_EQ(Message([&] { clamped.MoveArm(0, 0); }), "a clamped arm cannot be moved");
-  EXPECT_EQ(Message([] { LoadedActuator(Table1Model(), {.shaft = Shaft::kDriven}); }),
+  EXPECT_EQ(RefusalOf([&] { clamped.SetLoad({.inertia = 1}); }), "an arm with a load needs a free shaft");
+  EXPECT_EQ(RefusalOf([&] { clamped.MoveArm(0, 0); }), "a clamped arm cannot be moved");
+  EXPECT_EQ(RefusalOf([] { LoadedActuator(Table1Model(), {.shaft = Shaft::kDriven}); }),
             "a driven shaft needs a motion");
 }
 

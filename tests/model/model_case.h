@@ -1,6 +1,7 @@
 // Models and conditions that several tests run.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "model/actuator.h"
 #include "model/equations/equations.h"
 #include "model/integrate/simulation.h"
+#include "model/terms/model_error.h"
 #include "tests/table1.h"
 
 namespace hydro::testing {
@@ -30,6 +32,17 @@ inline model::EffectDescription Wave(double frequency, double volume_fraction, d
           {}};
 }
 inline model::EffectDescription Lag(double tau) { return {"amp.lag", {{"tau", tau}}, {}}; }
+inline const model::EffectDescription kFlexure = {"arm.flexure", {{"stiffness", 60000}, {"damping", 60}}, {}};
+
+// What the model says when `act` is refused; empty where it is not.
+inline std::string RefusalOf(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const model::ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 inline model::ActuatorOptions Held(model::Shaft shaft,
                                    model::Integrator integrator = model::Integrator::kFast) {

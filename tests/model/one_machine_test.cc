@@ -16,7 +16,7 @@
 namespace hydro::testing {
 namespace {
 
-struct Case {
+struct Machine {
   std::string name;
   model::ModelDescription model;
   model::Shaft shaft = model::Shaft::kClamped;
@@ -29,7 +29,7 @@ const trajectory::Trajectory& Motion() {
   return *motion;
 }
 
-std::vector<Case> Cases() {
+std::vector<Machine> Machines() {
   const model::EffectDescription check = {"valve.check", {{"cracking", 5}, {"conductance", 0.01}}, {}};
   const model::EffectDescription relief = {"valve.relief", {{"set", 250}, {"conductance", 1e-3}}, {}};
   const model::EffectDescription seal = {"actuator.seal_friction", {{"coulomb", 300}, {"viscous", 50}}, {}};
@@ -58,10 +58,10 @@ std::vector<Case> Cases() {
   };
 }
 
-class OneMachine : public ::testing::TestWithParam<Case> {};
+class OneMachine : public ::testing::TestWithParam<Machine> {};
 
 // Levels that stick, slip, turn round and saturate, sampled at 1 kHz.
-model::Stimulus Levels(const Case& c) {
+model::Stimulus Levels(const Machine& c) {
   model::Stimulus stimulus;
   stimulus.shaft = c.shaft;
   stimulus.bypass = c.bypass;
@@ -78,7 +78,7 @@ model::Stimulus Levels(const Case& c) {
 // Tests that the plant's simulation and Respond read the same at every sample of a run in which the pump
 // sticks and slips both ways and the switches of valves and effects change.
 TEST_P(OneMachine, PlantAndFitAgree) {
-  const Case& c = GetParam();
+  const Machine& c = GetParam();
   const model::Stimulus stimulus = Levels(c);
   constexpr double kTolerance = 1e-10;
   model::ActuatorOptions options = Held(c.shaft, model::Integrator::kAuto);
@@ -127,7 +127,7 @@ TEST_P(OneMachine, PlantAndFitAgree) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Model, OneMachine, ::testing::ValuesIn(Cases()),
+INSTANTIATE_TEST_SUITE_P(Model, OneMachine, ::testing::ValuesIn(Machines()),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

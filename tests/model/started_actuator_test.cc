@@ -7,16 +7,12 @@
 
 #include "model/terms/model_error.h"
 #include "model/terms/state.h"
-#include "tests/table1.h"
+#include "tests/model/model_case.h"
 
 namespace hydro::model {
 namespace {
 
-ModelDescription Table1Model() {
-  ModelDescription model;
-  model.parameters = testing::Table1();
-  return model;
-}
+using testing::Table1Model;
 
 StartState StateOf(const Measurement& measured) {
   StartState start{};

@@ -29,7 +29,7 @@ struct Start {
 };
 
 // Steps of both signs, some beyond the amplifier's limit, with rests at 0 in which the pump sticks.
-double Voltage(int tick) {
+double StepsAndRests(int tick) {
   constexpr std::array kSteps = {0.0, 3.0, -5.0, 12.0, 0.0, -1.5, 7.0, 0.0};
   return kSteps[static_cast<size_t>(tick / 40) % kSteps.size()] + 0.5 * std::sin(0.1 * tick);
 }
@@ -47,7 +47,7 @@ std::vector<model::Measurement> Motion(const model::ModelDescription& first, con
   std::vector<model::Measurement> motion;
   for (int k = 0; k < ticks; ++k) {
     motion.push_back(actuator.Measure());
-    actuator.Advance(Voltage(k), (k + 1) * 1e-3);
+    actuator.Advance(StepsAndRests(k), (k + 1) * 1e-3);
   }
   return motion;
 }

@@ -24,7 +24,7 @@ model::ModelDescription Given() {
   return model;
 }
 
-model::ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
+model::ModelDescription GivenWith(const std::string& id, const std::map<std::string, double>& parameters) {
   model::ModelDescription model = Given();
   model.effects.push_back({id, parameters, {}});
   return model;
@@ -84,22 +84,23 @@ TEST_P(HiddenTerm, ShowsInItsOwnBalance) {
 INSTANTIATE_TEST_SUITE_P(
     Locate, HiddenTerm,
     ::testing::Values(
-        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.9}, {"speed", 3}}), "pump_torque",
+        Case{"Stribeck", GivenWith("pump.stribeck", {{"static_excess", 0.9}, {"speed", 3}}), "pump_torque",
              "|motor_speed| from ", "motor_speed"},
-        Case{"PressureFriction", With("pump.pressure_friction", {{"f", 2e-4}}), "pump_torque", "p1 + p2",
+        Case{"PressureFriction", GivenWith("pump.pressure_friction", {{"f", 2e-4}}), "pump_torque", "p1 + p2",
              "(p1 + p2) sgn(motor_speed)"},
-        Case{"QuadraticDrag", With("pump.quadratic_drag", {{"k", 2e-5}}), "pump_torque", "|motor_speed| > ",
-             "motor_speed"},
-        Case{"SealFriction", With("actuator.seal_friction", {{"coulomb", 20}, {"viscous", 5}}), "arm_torque",
-             "sign of arm_speed", "arm_speed"},
-        Case{"Lag", With("amp.lag", {{"tau", 0.004}}), "command", "change of voltage", "change of voltage"},
+        Case{"QuadraticDrag", GivenWith("pump.quadratic_drag", {{"k", 2e-5}}), "pump_torque",
+             "|motor_speed| > ", "motor_speed"},
+        Case{"SealFriction", GivenWith("actuator.seal_friction", {{"coulomb", 20}, {"viscous", 5}}),
+             "arm_torque", "sign of arm_speed", "arm_speed"},
+        Case{"Lag", GivenWith("amp.lag", {{"tau", 0.004}}), "command", "change of voltage",
+             "change of voltage"},
         Case{"TorquePerVolt", Changed(&model::Parameters::k_1, 1.05), "command", "voltage", "voltage"},
         Case{"TorqueLimit", Changed(&model::Parameters::T_pmax, 0.7), "command", "voltage", ""},
         Case{"ExternalLeakage", Changed(&model::Parameters::c_E, 3), "flow_2", "p2 > ", "p2", 0.5},
         Case{"InternalLeakage", Changed(&model::Parameters::c_I, 5), "flow_2", "|p2 - p1| > ", "p2 - p1",
              0.4},
         Case{"Gravity", Changed(&model::Parameters::mgl, 1.2), "arm_torque", "", ""},
-        Case{"PressureOffset", With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}}), "sensor",
+        Case{"PressureOffset", GivenWith("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}}), "sensor",
              "p1 reads +12", ""}),
     [](const auto& test) { return test.param.name; });
 
@@ -121,9 +122,10 @@ TEST(Locate, NothingMissing) {
 // delays.
 TEST(Locate, NothingMissingWithEffects) {
   for (const model::ModelDescription& model :
-       {With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
-        With("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
-        With("amp.delay", {{"delay", 0.003}}), With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
+       {GivenWith("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
+        GivenWith("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
+        GivenWith("amp.delay", {{"delay", 0.003}}),
+        GivenWith("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
     NoisyRig rig;
     rig.model = model;
     const Localisation found = LocateIn(rig.RecordAll(), model);
@@ -151,7 +153,7 @@ TEST(Locate, LateReadings) {
 
 // Tests that the table of the missing term is the hidden term: friction that grows with pressure.
 TEST(Locate, TableIsTheHiddenTerm) {
-  const Localisation found = LocateOn(With("pump.pressure_friction", {{"f", 2e-4}}));
+  const Localisation found = LocateOn(GivenWith("pump.pressure_friction", {{"f", 2e-4}}));
   ASSERT_FALSE(found.missing.empty());
   const MeasuredCurve& table = found.missing.front();
   EXPECT_EQ(table.balance, "pump_torque");
@@ -254,8 +256,8 @@ TEST(WorstSignal, IsNamedWithItsStretch) {
 
 // Tests that the same runs give the same localisation to the bit.
 TEST(Locate, Repeats) {
-  const Localisation a = LocateOn(With("pump.quadratic_drag", {{"k", 2e-5}}));
-  const Localisation b = LocateOn(With("pump.quadratic_drag", {{"k", 2e-5}}));
+  const Localisation a = LocateOn(GivenWith("pump.quadratic_drag", {{"k", 2e-5}}));
+  const Localisation b = LocateOn(GivenWith("pump.quadratic_drag", {{"k", 2e-5}}));
   ASSERT_EQ(a.location.size(), b.location.size());
   for (size_t i = 0; i < a.location.size(); ++i) EXPECT_EQ(a.location[i].share, b.location[i].share);
   ASSERT_EQ(a.missing.size(), b.missing.size());
