@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/copy_words.h"
+#include "base/bytes.h"
 
 namespace hydro {
 

@@ -3,10 +3,23 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <sstream>
 
 #include "base/text_file.h"
 
 namespace hydro {
+
+std::vector<std::string> TextLines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(std::move(line));
+  return lines;
+}
+
+std::string Trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
 
 std::string Joined(const std::vector<std::string>& parts, const std::string& between) {
   std::string joined;

@@ -1,10 +1,16 @@
-// Words for a message: lists of them, and the known word that a misspelt one may mean.
+// Words and lines of text: lists of words for a message, and the known word that a misspelt one may mean.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace hydro {
+
+// The lines without their ends; a line end at the end of the text begins no further line.
+std::vector<std::string> TextLines(const std::string& text);
+
+// The text without blanks, tabs and carriage returns at both ends.
+std::string Trimmed(const std::string& text);
 
 // Joins lists of words for a sentence.
 

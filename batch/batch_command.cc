@@ -10,7 +10,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "batch/run/case_count.h"
+#include "batch/run/case_progress.h"
 #include "batch/run/run_cases.h"
 #include "batch/status.h"
 #include "batch/store/study_lock.h"

@@ -11,8 +11,7 @@
 
 #include "base/input_error.h"
 #include "base/text_file.h"
-#include "batch/run/case_count.h"
-#include "batch/run/case_times.h"
+#include "batch/run/case_progress.h"
 #include "batch/run/run_cases.h"
 #include "batch/slurm/array_driver.h"
 #include "batch/slurm/slurm_answers.h"

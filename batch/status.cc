@@ -11,8 +11,7 @@
 
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "batch/run/case_count.h"
-#include "batch/run/case_times.h"
+#include "batch/run/case_progress.h"
 #include "batch/store/case_store.h"
 #include "batch/store/small_file.h"
 #include "batch/store/study_lock.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "bench/model_tick.h"
 #include "plant/simulated_rig.h"
 #include "runs/log/log_writer.h"

@@ -2,7 +2,7 @@
 //
 // An application takes a Bus and a Clock (clock.h), never a socket. The same application runs over LCM UDP
 // multicast (udpm/open_udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a
-// recorded log (log_bus.h).
+// recorded log, which hydro-log replay plays into an InProcessBus.
 //
 // Every transport keeps this contract (tests/bus/bus_contract_test.cc):
 // - Messages from one sender on one channel arrive in the order in which they were sent.
@@ -29,11 +29,19 @@
 #include <utility>
 #include <vector>
 
-#include "base/copy_words.h"
-#include "bus/hosted_process.h"
+#include "base/bytes.h"
 #include "bus/seal_trailer.h"
 
 namespace hydro::bus {
+
+// The identity of a simulated process, and the signal sent to it, where many of them share one real process
+// (sim/torture/).
+struct HostedProcess {
+  std::string host;
+  int32_t id = 0;       // its process id
+  int64_t session = 0;  // its identity on the bus; never 0
+  int stop_signal = 0;  // SIGINT, SIGTERM or SIGHUP, once one has been sent to it
+};
 
 // Thrown when the bus cannot work here: no multicast route, a bad URL, a failed self-test. what() says what
 // to do about it.

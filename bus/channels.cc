@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 
 namespace hydro::bus {
 

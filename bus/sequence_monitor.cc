@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 
 namespace hydro::bus {
 

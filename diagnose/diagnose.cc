@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"

@@ -9,7 +9,7 @@
 
 #include "diagnose/prove/progress.h"
 #include "diagnose/recording/diagnosis.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

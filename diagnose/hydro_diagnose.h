@@ -12,7 +12,8 @@
 namespace hydro::diagnose {
 
 struct DiagnoseRequest {
-  std::vector<std::string> runs, held_out;  // files, or LOG#NAME for a joint of a limb (runs/measured_run.h)
+  std::vector<std::string> runs,
+      held_out;  // files, or LOG#NAME for a joint of a limb (runs/measured/measured_run.h)
   std::string model, folder;
   std::string effects;                   // file; "": the whole catalogue may be named
   std::vector<std::string> own_effects;  // files of effects as text, tried beside the catalogue's

@@ -11,7 +11,7 @@
 #include "diagnose/evidence/recording_check.h"
 #include "diagnose/recording/diagnosis.h"
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <utility>
 
-#include "process/role.h"
 #include "process/spawn.h"
-#include "process/supervision.h"
+#include "process/status.h"
+#include "process/stop_signal.h"
 
 namespace hydro::launch {
 

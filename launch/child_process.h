@@ -57,7 +57,7 @@ class ChildProcess : public Stoppable {
   // then also kills what a program of the user's own has started: a loop must not go on unwatched.
   bool TryReap();
 
-  // Sends a heartbeat (process/supervision.h). Never waits; what the program does not read is lost.
+  // Sends a heartbeat (process/stop_signal.h). Never waits; what the program does not read is lost.
   void Beat();
 
   // Sends a signal to the process unless it has been reaped; for a program of the user's own, also to all

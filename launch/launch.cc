@@ -19,9 +19,9 @@
 #include "launch/logic/stack_launch.h"
 #include "launch/supervisor.h"
 #include "launch/terminal_report.h"
-#include "process/abstract_socket.h"
 #include "process/own_program.h"
 #include "process/stack_bus.h"
+#include "process/stop_socket.h"
 #include "settings/limb_config.h"
 #include "settings/stack_config.h"
 

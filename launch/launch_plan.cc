@@ -7,7 +7,7 @@
 #include <set>
 
 #include "process/own_program.h"
-#include "process/role.h"
+#include "process/status.h"
 #include "settings/limb_processes.h"
 #include "settings/process_sections.h"
 

@@ -17,9 +17,8 @@
 
 #include "bus/udpm/udpm_url.h"
 #include "launch/logic/operator_request.h"
-#include "process/abstract_socket.h"
-#include "process/role.h"
 #include "process/stack_bus.h"
+#include "process/status.h"
 #include "process/stop_socket.h"
 #include "settings/stack_config.h"
 

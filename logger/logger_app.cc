@@ -10,8 +10,7 @@
 #include <hydro/state_t.hpp>
 #include <utility>
 
-#include "base/saturating.h"
-#include "process/role.h"
+#include "base/integers.h"
 #include "process/status.h"
 
 namespace hydro::logger {

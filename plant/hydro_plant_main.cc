@@ -4,7 +4,7 @@
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "process/process_main.h"
-#include "process/supervision.h"
+#include "process/stop_signal.h"
 #include "tune/design/fastest_motion.h"
 
 int main(int argc, char** argv) {

@@ -8,7 +8,7 @@
 #include <hydro/pressure_command_t.hpp>
 #include <optional>
 
-#include "base/multiples.h"
+#include "base/integers.h"
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "plant/output_safety.h"

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "plant/motor_commands.h"
 #include "plant/output_safety.h"
 #include "plant/rig.h"

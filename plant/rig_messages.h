@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/copy_words.h"
+#include "base/bytes.h"
 #include "plant/rig.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"

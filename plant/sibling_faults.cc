@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "bus/channels.h"
-#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::plant {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/input_error.h"
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "process/status.h"
 
 namespace hydro::plant {

@@ -1,6 +1,6 @@
 #include "plant/voltage_guard.h"
 
-#include "process/second_sender.h"
+#include "process/fault_codes.h"
 
 namespace hydro::plant {
 

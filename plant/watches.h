@@ -76,7 +76,7 @@ class LoggerWindow {
 class LauncherWatch {
  public:
   // `heartbeat` returns whether the launcher has sent a heartbeat since the last call
-  // (process/supervision.h); once one has come, their absence is a fault. Empty: there is no launcher.
+  // (process/stop_signal.h); once one has come, their absence is a fault. Empty: there is no launcher.
   LauncherWatch(std::function<bool()> heartbeat, double allowed_silence_s, OutputSafety& safety)
       : heartbeat_(std::move(heartbeat)), allowed_(allowed_silence_s), safety_(safety) {}
 

@@ -13,7 +13,7 @@
 #include <memory>
 #include <optional>
 
-#include "base/multiples.h"
+#include "base/integers.h"
 #include "bus/sequence_monitor.h"
 #include "position_ctrl/law/position_law.h"
 #include "position_ctrl/plan_follower.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 
 namespace hydro::pressure_ctrl {
 namespace {

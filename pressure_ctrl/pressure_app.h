@@ -14,7 +14,7 @@
 #include <hydro/state_t.hpp>
 #include <optional>
 
-#include "base/multiples.h"
+#include "base/integers.h"
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "pressure_ctrl/law/pressure_law.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "pressure_ctrl/pressure_app.h"
-#include "process/second_sender.h"
+#include "process/fault_codes.h"
 
 namespace hydro::pressure_ctrl {
 namespace {

@@ -14,7 +14,7 @@ namespace hydro::process {
 // Pure: the caller passes in what others announce (HYDRO_CONFIGURATION).
 class Agreement {
  public:
-  // `own` holds sorted lines "key = value" (settings/agreed_entries.h). With an empty text, this process
+  // `own` holds sorted lines "key = value" (settings/config_entries.h). With an empty text, this process
   // agrees with every other.
   explicit Agreement(std::string own) : own_(std::move(own)) {}
 

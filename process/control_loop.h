@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <hydro/state_t.hpp>
 
-#include "base/multiples.h"
+#include "base/integers.h"
 #include "bus/sequence_monitor.h"
 #include "process/app.h"
 #include "process/participant.h"

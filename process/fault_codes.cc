@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "process/second_sender.h"
-
 namespace hydro::process {
 namespace {
 

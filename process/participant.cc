@@ -9,7 +9,6 @@
 #include <hydro/loop_statistics_t.hpp>
 
 #include "bus/session.h"
-#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::process {

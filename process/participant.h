@@ -29,7 +29,7 @@ inline constexpr char kLaunchRole[] = "launch";
 class Participant {
  public:
   // `role` is plant, driver, pressure_ctrl, position_ctrl or logger. `agreed` is the configuration that it
-  // runs with (settings/agreed_entries.h); when it is empty, the configuration is not compared with others.
+  // runs with (settings/config_entries.h); when it is empty, the configuration is not compared with others.
   // Subscribes to HYDRO_STOP, HYDRO_PROCESS_STATUS and HYDRO_CONFIGURATION.
   Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels, const std::string& role,
               const std::string& agreed = "");

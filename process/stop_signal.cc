@@ -1,7 +1,10 @@
 #include "process/stop_signal.h"
 
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <initializer_list>
 #include <mutex>
@@ -39,6 +42,14 @@ void StopBecause(const StopRequest& request) {
 StopRequest StopReason() {
   const std::lock_guard lock(reason_mutex);
   return stop_request;
+}
+
+bool HeartbeatArrived() {
+  std::array<char, 256> bytes;
+  // Only a socket can be read without waiting and without changing it for other processes; this call does not
+  // touch a terminal or a pipe.
+  const ssize_t size = recv(STDIN_FILENO, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  return size > 0 && std::find(bytes.begin(), bytes.begin() + size, kHeartbeat) != bytes.begin() + size;
 }
 
 }  // namespace hydro::process

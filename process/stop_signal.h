@@ -1,4 +1,5 @@
-// SIGINT, SIGTERM and SIGHUP as a flag that loops check.
+// What tells a process to go on or to stop: SIGINT, SIGTERM and SIGHUP as a flag that loops check, and the
+// heartbeat of the hydro-launch that started it.
 #pragma once
 
 #include <csignal>
@@ -37,5 +38,13 @@ void StopBecause(const StopRequest& request);
 
 // The reason why the flag was set; empty when a signal came from elsewhere.
 StopRequest StopReason();
+
+// The byte that a launcher sends, many times a second, to the standard input of each process that it has
+// started.
+inline constexpr char kHeartbeat = 'h';
+
+// Returns true when a heartbeat has arrived on standard input since the last call. Never waits. Anything else
+// on standard input, as under a program that is not hydro-launch, is not a heartbeat.
+bool HeartbeatArrived();
 
 }  // namespace hydro::process

@@ -1,8 +1,8 @@
 // A way to stop a process without a network: the process listens on a local socket.
 //
-// The socket is in Linux's abstract namespace, so it leaves no file behind and ends with its process. Only
-// requests from the same user and from root are heard. hydro-launch --stop uses the socket before it uses the
-// bus.
+// The socket is in Linux's abstract namespace, as others of a stack are: it leaves no file behind and ends
+// with its process. Only requests from the same user and from root are heard. hydro-launch --stop uses the
+// socket before it uses the bus.
 #pragma once
 
 #include <string>
@@ -10,6 +10,13 @@
 #include <vector>
 
 namespace hydro::process {
+
+// A socket of `kind` (SOCK_DGRAM, SOCK_SEQPACKET | SOCK_NONBLOCK ...) that is bound to the name; -1 with
+// errno when the name is taken or too long (ENAMETOOLONG).
+int BindAbstract(int kind, const std::string& name);
+
+// The same kind of socket, connected to the process that listens under the name.
+int ConnectAbstract(int kind, const std::string& name);
 
 // The beginning of the names of a stack's stop sockets; port and channel suffix distinguish it from other
 // stacks: "hydro-stop/7667//". The rest of a name is the role, a slash and the process id.

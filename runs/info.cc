@@ -8,12 +8,11 @@
 #include <string_view>
 #include <tuple>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/units.h"
 #include "bus/channels.h"
-#include "runs/run_config.h"
-#include "runs/sampling.h"
-#include "runs/senders.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/senders.h"
 
 namespace hydro::runs {
 namespace {

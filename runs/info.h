@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "runs/run_log.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/run_log.h"
+#include "runs/recorded/tuning_history.h"
 
 namespace hydro::runs {
 

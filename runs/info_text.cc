@@ -8,8 +8,8 @@
 #include "base/utf8.h"
 #include "bus/output_left.h"
 #include "runs/info.h"
-#include "runs/sampling.h"
-#include "runs/senders.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/senders.h"
 
 namespace hydro::runs {
 namespace {

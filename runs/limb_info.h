@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runs/info.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "runs/tracking.h"
 
 namespace hydro::runs {

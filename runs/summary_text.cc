@@ -5,16 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/integers.h"
 #include "base/json_text.h"
 #include "base/number_text.h"
-#include "base/saturating.h"
 #include "base/text_file.h"
 #include "base/units.h"
 #include "bus/output_left.h"
-#include "runs/sampling.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/tuning_history.h"
 #include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
-#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/units.h"
-#include "runs/run_config.h"
+#include "runs/recorded/run_config.h"
 
 namespace hydro::runs {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/unit_system.h"
 #include "runs/info.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "runs/step_response.h"
 
 namespace hydro::runs {

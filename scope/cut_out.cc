@@ -9,9 +9,9 @@
 #include "runs/exports/sheet_units.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
-#include "runs/run_config.h"
-#include "runs/run_log.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/run_log.h"
+#include "runs/recorded/run_table.h"
 #include "scope/signals/cut_window.h"
 
 namespace hydro::scope {

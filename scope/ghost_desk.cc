@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/input_error.h"
-#include "runs/sampling.h"
+#include "runs/recorded/run_config.h"
 #include "scope/signals/ghost.h"
 
 namespace hydro::scope {

@@ -7,7 +7,7 @@
 #include "base/json_text.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/tuning_history.h"
 #include "tune/live/rearm_forecast.h"
 #include "tune/live/saved_config.h"
 #include "tune/live/tunable_keys.h"

@@ -12,7 +12,7 @@
 #include "base/number_text.h"
 #include "base/tables/table.h"
 #include "base/text_file.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "scope/cut_out.h"
 #include "scope/foxglove_conversation.h"
 #include "scope/live_messages.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "settings/front_end_url.h"
 #include "settings/toml/toml_document.h"
+#include "settings/urls.h"
 
 namespace hydro::settings {
 

@@ -10,7 +10,6 @@
 #include "model/effects/catalogue.h"
 #include "model/terms/parameter_info.h"
 #include "settings/effect_file.h"
-#include "settings/parameter_range.h"
 
 namespace hydro::settings {
 namespace {

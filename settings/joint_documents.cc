@@ -9,7 +9,6 @@
 #include "base/text_file.h"
 #include "base/word_list.h"
 #include "settings/overrides.h"
-#include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

@@ -7,14 +7,12 @@
 #include "base/text_file.h"
 #include "model/terms/model_error.h"
 #include "settings/joint_documents.h"
-#include "settings/joint_stacks.h"
 #include "settings/limb_processes.h"
 #include "settings/overrides.h"
 #include "settings/process_sections.h"
 #include "settings/read_quantities.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_document.h"
-#include "settings/toml/section_lists.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

@@ -8,7 +8,6 @@
 #include "model/terms/parameter_info.h"
 #include "settings/effect_file.h"
 #include "settings/effect_sections.h"
-#include "settings/parameter_range.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

@@ -42,7 +42,7 @@ void LayOver(const TomlNode& own, TomlNode* under) {
   }
 }
 
-std::string Trimmed(const std::string& text) {
+std::string WithoutSpaces(const std::string& text) {
   const size_t first = text.find_first_not_of(' ');
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
@@ -54,7 +54,7 @@ TomlNode ParseValue(const std::string& value) {
   } catch (const InputError&) {
     // The value is not TOML: a bare word such as lockstep or udpm://...
   }
-  return StringNode(Trimmed(value));
+  return StringNode(WithoutSpaces(value));
 }
 
 // The [[joint]] section of that name.
@@ -83,7 +83,7 @@ void ApplyOne(const std::string& option, TomlNode* root) {
   if (equals == std::string::npos || equals == 0) {
     throw InputError(place + ": found " + Quoted(option) + ", allowed section.key=value");
   }
-  const std::string given = Trimmed(option.substr(0, equals));
+  const std::string given = WithoutSpaces(option.substr(0, equals));
   const std::string path = PresentPath(given);
   TomlNode* node = root;
   for (size_t begin = 0; begin <= path.size();) {

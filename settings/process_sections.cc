@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "settings/toml/section_lists.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
 namespace {

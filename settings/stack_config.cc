@@ -6,7 +6,7 @@
 #include "base/file_kind.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
-#include "settings/agreed_entries.h"
+#include "settings/config_entries.h"
 #include "settings/joint_documents.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cctype>
 
-#include "settings/bus_url.h"
 #include "settings/process_sections.h"
 #include "settings/quantity_keys.h"
 #include "settings/scope_section.h"
 #include "settings/trajectory_spec.h"
+#include "settings/urls.h"
 
 namespace hydro::settings {
 namespace {

@@ -1,16 +1,19 @@
 #include "settings/trajectory_spec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
 #include "base/number_text.h"
-#include "settings/csv_points.h"
+#include "base/tables/csv_text.h"
+#include "base/text_file.h"
+#include "base/word_list.h"
 
 namespace hydro::settings {
 namespace {
 
-using Kind = TrajectorySpec::Kind;
+using TrajectoryKind = TrajectorySpec::Kind;
 
 const std::map<std::string, std::vector<std::string>>& KeysOfKinds() {
   static const std::map<std::string, std::vector<std::string>> keys = {
@@ -85,6 +88,73 @@ void ReadCsv(SectionReader& section, const std::string& config_file, TrajectoryS
 
 }  // namespace
 
+using tables::CsvLayout;
+using tables::CsvText;
+using tables::FindLayout;
+namespace {
+
+size_t ColumnOf(const CsvText& text, const std::string& name) {
+  std::vector<std::string> names;
+  for (const std::string& column : text.names()) names.emplace_back(tables::Trimmed(column));
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(text.Place() + ": found no column " + Quoted(name) + ", allowed " + QuotedList(names) +
+                     DidYouMean(name, names));
+  }
+  if (std::find(found + 1, names.end(), name) != names.end()) {
+    throw InputError(text.Place() + ": found two columns " + Quoted(name) + ", allowed one");
+  }
+  return static_cast<size_t>(found - names.begin());
+}
+
+// A file that was cut off inside its last number ends with a different number, which a machine would follow.
+void CheckLastNumber(const CsvText& text, size_t time_column, size_t value_column) {
+  const size_t last = text.names().size() - 1;
+  if (!text.unended() || (last != time_column && last != value_column)) return;
+  throw text.CellError(
+      last, "a number before the end of a line: the file may be cut within it; look at it, and end the line");
+}
+
+double FiniteNumber(const CsvText& text, size_t column) {
+  const std::optional<double> value = text.Number(column);
+  if (!value.has_value() || !std::isfinite(*value)) throw text.CellError(column, "a finite number");
+  return *value;
+}
+
+// Chooses the plain layout unless only the other layout (semicolons or tabs between cells, decimal commas)
+// has the column of times.
+CsvLayout LayoutOf(const std::string& text, const std::string& file, const std::string& column) {
+  const CsvText plain(text, file);
+  const auto is_time = [](const std::string& name) { return tables::Trimmed(name) == "time_s"; };
+  if (std::any_of(plain.names().begin(), plain.names().end(), is_time)) return {};
+  return FindLayout(text, file, {}, {.names = {"time_s", column}});
+}
+
+}  // namespace
+
+std::vector<trajectory::Step> ParseCsvPoints(const std::string& text, const std::string& file,
+                                             const std::string& column) {
+  CsvText rows(text, file, LayoutOf(text, file, column));
+  const size_t time_column = ColumnOf(rows, "time_s");
+  const size_t value_column = ColumnOf(rows, column);
+  std::vector<trajectory::Step> points;
+  while (rows.Next()) {
+    const double time = FiniteNumber(rows, time_column);
+    const double value = FiniteNumber(rows, value_column);
+    CheckLastNumber(rows, time_column, value_column);
+    if (!points.empty() && time <= points.back().time) {
+      throw rows.CellError(time_column,
+                           "above " + ShortestNumber(points.back().time) + ", the time of the row before");
+    }
+    points.push_back({time, value});
+  }
+  return points;
+}
+
+std::vector<trajectory::Step> ReadCsvPoints(const std::string& file, const std::string& column) {
+  return ParseCsvPoints(ReadTextFile(file), file, column);
+}
+
 std::vector<std::string> KeysOfTrajectory(const std::string& kind) {
   const auto found = KeysOfKinds().find(kind);
   return found == KeysOfKinds().end() ? std::vector<std::string>{} : found->second;
@@ -92,20 +162,20 @@ std::vector<std::string> KeysOfTrajectory(const std::string& kind) {
 
 TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_file) {
   TrajectorySpec spec;
-  section.Choice<Kind>("kind",
-                       {{"steps", Kind::kSteps},
-                        {"sine", Kind::kSine},
-                        {"square", Kind::kSquare},
-                        {"chirp", Kind::kChirp},
-                        {"csv", Kind::kCsv},
-                        {"planner", Kind::kPlanner}},
-                       &spec.kind);
-  if (spec.kind == Kind::kSteps) {
+  section.Choice<TrajectoryKind>("kind",
+                                 {{"steps", TrajectoryKind::kSteps},
+                                  {"sine", TrajectoryKind::kSine},
+                                  {"square", TrajectoryKind::kSquare},
+                                  {"chirp", TrajectoryKind::kChirp},
+                                  {"csv", TrajectoryKind::kCsv},
+                                  {"planner", TrajectoryKind::kPlanner}},
+                                 &spec.kind);
+  if (spec.kind == TrajectoryKind::kSteps) {
     section.Number("initial", &spec.initial);
     ReadPairs(section, "steps", &spec.steps);
     return spec;
   }
-  if (spec.kind == Kind::kPlanner) {
+  if (spec.kind == TrajectoryKind::kPlanner) {
     section.Number("initial", &spec.initial);
     section.Number("timeout_s", &spec.timeout_s, {.min = 0, .max = 1e6, .min_allowed = false});
     section.Number("delay_s", &spec.delay_s, {.min = 0, .max = 10});
@@ -113,20 +183,20 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
                    {.min = 0, .min_allowed = false, .infinity_allowed = true});
     return spec;
   }
-  if (spec.kind == Kind::kCsv) {
+  if (spec.kind == TrajectoryKind::kCsv) {
     ReadCsv(section, config_file, &spec);
     return spec;
   }
   section.Number("offset", &spec.offset);
   section.Number("amplitude", &spec.amplitude);
   section.Number("start_s", &spec.start_s);
-  if (spec.kind == Kind::kChirp) {
+  if (spec.kind == TrajectoryKind::kChirp) {
     section.Number("first_frequency_hz", &spec.first_frequency_hz, kNotNegative);
     section.Number("last_frequency_hz", &spec.last_frequency_hz, kPositive);
     section.Number("duration_s", &spec.duration_s, kPositive);
   } else {
     section.Number("frequency_hz", &spec.frequency_hz, kPositive);
-    if (spec.kind == Kind::kSine) section.Number("phase_rad", &spec.phase_rad);
+    if (spec.kind == TrajectoryKind::kSine) section.Number("phase_rad", &spec.phase_rad);
   }
   return spec;
 }
@@ -141,7 +211,7 @@ std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& 
 }
 
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
-  if (section == nullptr || spec.kind != Kind::kCsv) return;
+  if (section == nullptr || spec.kind != TrajectoryKind::kCsv) return;
   const TomlNode* file = section->Find("file");
   if (file == nullptr) return;  // already has its points
   TomlNode points = ArrayNode({});
@@ -156,19 +226,19 @@ void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
 
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec) {
   switch (spec.kind) {
-    case Kind::kSteps:
+    case TrajectoryKind::kSteps:
       return trajectory::MakeSteps(spec.initial, spec.steps);
-    case Kind::kSine:
+    case TrajectoryKind::kSine:
       return trajectory::MakeSine(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s,
                                   spec.phase_rad);
-    case Kind::kSquare:
+    case TrajectoryKind::kSquare:
       return trajectory::MakeSquare(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s);
-    case Kind::kChirp:
+    case TrajectoryKind::kChirp:
       return trajectory::MakeChirp(spec.offset, spec.amplitude, spec.first_frequency_hz,
                                    spec.last_frequency_hz, spec.start_s, spec.duration_s);
-    case Kind::kPlanner:  // a planner's points arrive while the stack runs
+    case TrajectoryKind::kPlanner:  // a planner's points arrive while the stack runs
       return trajectory::MakeSteps(spec.initial, {});
-    case Kind::kCsv:
+    case TrajectoryKind::kCsv:
       break;
   }
   return trajectory::MakePoints(spec.points, spec.interpolation);

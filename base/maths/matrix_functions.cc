@@ -30,10 +30,6 @@ Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
   return A.ldlt().solve(B);
 }
 
-Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
-  return A.transpose() * B;
-}
-
 SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};

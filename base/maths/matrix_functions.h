@@ -30,9 +30,6 @@ Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, con
 // The X that solves A X = B.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// The products A'B and A'A, compiled once for the same reason.
-Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-
 // A = V diag(values) V' for a symmetric matrix, values in increasing order.
 struct SymmetricEigensystem {
   Eigen::VectorXd values;

@@ -1,10 +1,42 @@
-// How numbers spread, and on what they depend. Infinite numbers are allowed, NaN is not.
+// How numbers spread, their range and their median, and on what they depend. Infinite numbers are allowed,
+// NaN is not, but in RangeOf().
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace hydro::maths {
+
+// The smallest and the largest of some values; low is above high when there are none.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  double size() const { return high - low; }
+};
+
+// The range of all values that are not NaN.
+inline Range RangeOf(const std::vector<double>& values) {
+  Range range;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+// The middle value; for an even number of values, the upper of the two. There must be at least one value, and
+// none may be NaN.
+inline double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 // A value with its 95 % confidence interval.
 struct Estimate {

@@ -8,7 +8,6 @@
 #include "base/tables/clock_text.h"
 #include "base/tables/csv_cells.h"
 #include "base/tables/text_encoding.h"
-#include "base/tables/unit_cells.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "base/tables/csv_cells.h"
 #include "base/tables/csv_layout.h"
-#include "base/tables/csv_lines.h"
 
 namespace hydro::tables {
 

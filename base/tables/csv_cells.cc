@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "base/number_text.h"
+#include "base/unit_system.h"
+#include "base/units.h"
 
 namespace hydro::tables {
 namespace {
@@ -37,6 +40,23 @@ bool MayOpen(std::string_view text, size_t quote) {
   const size_t before = text.substr(0, quote).find_last_not_of(' ');
   return before == std::string_view::npos ||
          std::string_view(",;\t\n").find(text[before]) != std::string_view::npos;
+}
+
+bool IsNumber(std::string_view cell) {
+  return ParseNumber(cell).has_value() || ParseDecimalComma(cell).has_value();
+}
+
+// Units of quantities that no signal measures, and of pressures that count from another zero.
+constexpr std::string_view kOthers[] = {"A",      "mA",     "%",     "°C",    "degC",  "C",    "K",    "W",
+                                        "kW",     "g",      "l/min", "L/min", "psig",  "psia", "barg", "bara",
+                                        "bar(g)", "bar(a)", "1/min", "m/s²",  "m/s^2", "dB"};
+
+std::string_view WithoutBrackets(std::string_view cell) {
+  cell = Trimmed(cell);
+  if (cell.size() < 2) return cell;
+  const bool bracketed =
+      (cell.front() == '[' && cell.back() == ']') || (cell.front() == '(' && cell.back() == ')');
+  return bracketed ? Trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
 }  // namespace
@@ -111,6 +131,58 @@ std::optional<double> ParseDecimalComma(std::string_view text) {
   if (text.find('.') != std::string_view::npos) return std::nullopt;
   std::replace_copy(text.begin(), text.end(), copy.begin(), ',', '.');
   return ParseNumber({copy.data(), text.size()});
+}
+
+const char* NameOf(char separator) {
+  switch (separator) {
+    case ';':
+      return "semicolons";
+    case '\t':
+      return "tabs";
+    case ' ':
+      return "blanks";
+    default:
+      return "commas";
+  }
+}
+
+Lines LinesOf(std::string_view text, char separator, size_t skip, size_t most) {
+  Lines lines;
+  for (size_t number = 1; !text.empty() && lines.size() < most; ++number) {
+    // The skipped lines may hold any text, with any quotes.
+    const size_t end = number <= skip ? text.find('\n') : EndOfLine(text);
+    const std::string_view whole = text.substr(0, end);
+    const std::string_view line = WithoutEnd(whole, separator);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (number > skip && !line.empty()) lines.push_back({line, number, line.front() == '#'});
+    number += static_cast<size_t>(std::count(whole.begin(), whole.end(), '\n'));
+  }
+  return lines;
+}
+
+std::vector<std::string_view> CellsOf(const Line& line, char separator) {
+  std::vector<std::string_view> cells;
+  SplitCells(line.text, separator, cells);
+  return cells;
+}
+
+bool AllNumbers(const std::vector<std::string_view>& cells) {
+  bool any = false;
+  for (const std::string_view cell : cells) {
+    if (cell.empty()) continue;
+    if (!IsNumber(cell)) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::string UnitOfCell(std::string_view cell) { return std::string(OurSpelling(WithoutBrackets(cell))); }
+
+bool IsUnitCell(std::string_view cell) {
+  if (WithoutBrackets(cell).size() != Trimmed(cell).size()) return true;
+  const std::string unit = UnitOfCell(cell);
+  return ParseUnit(unit).has_value() ||
+         std::find(std::begin(kOthers), std::end(kOthers), unit) != std::end(kOthers);
 }
 
 }  // namespace hydro::tables

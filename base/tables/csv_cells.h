@@ -1,4 +1,4 @@
-// Splits a line of CSV into cells.
+// Splits CSV text into lines and cells, and recognises cells with units as recorders write them.
 #pragma once
 
 #include <cstddef>
@@ -32,5 +32,35 @@ std::string CellText(std::string_view cell);
 
 // A number with a decimal comma, and neither a point nor a second comma: "0,5".
 std::optional<double> ParseDecimalComma(std::string_view text);
+
+// The characters that may stand between cells; ' ' is any run of blanks and tabs.
+inline constexpr char kSeparators[] = {',', ';', '\t', ' '};
+
+const char* NameOf(char separator);
+
+struct Line {
+  std::string_view text;
+  size_t number = 0;  // from 1
+  bool comment = false;
+};
+
+using Lines = std::vector<Line>;
+
+// The lines that are not blank, each without its end (WithoutEnd() of csv_cells.h): at most `most`, after
+// those that are skipped.
+Lines LinesOf(std::string_view text, char separator, size_t skip, size_t most);
+
+std::vector<std::string_view> CellsOf(const Line& line, char separator);
+
+// Whether every cell is empty or a number, with a point or a comma, and at least one is a number.
+bool AllNumbers(const std::vector<std::string_view>& cells);
+
+// The cell without its brackets, spelled as in base/units if the unit is known there: "[°/s]" is "deg/s",
+// "PSI" is "psi", "U/min" is "rpm". Other texts come back unchanged.
+std::string UnitOfCell(std::string_view cell);
+
+// Whether the cell is a unit: one of base/units, another that recorders write (A, %, °C), or any text in
+// brackets.
+bool IsUnitCell(std::string_view cell);
 
 }  // namespace hydro::tables

@@ -4,9 +4,7 @@
 
 #include "base/tables/asked_layout.h"
 #include "base/tables/csv_cells.h"
-#include "base/tables/csv_lines.h"
 #include "base/tables/decimal_sign.h"
-#include "base/tables/unit_cells.h"
 #include "base/text_file.h"
 #include "base/word_list.h"
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "base/tables/csv_cells.h"
-#include "base/tables/csv_lines.h"
 
 namespace hydro::tables {
 namespace {

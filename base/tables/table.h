@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +12,12 @@
 
 namespace hydro::tables {
 
+// Stands for a missing value.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
 struct Column {
   std::string name;
-  std::vector<double> values;  // NaN: a missing value
+  std::vector<double> values;  // kMissing where there is none
   std::string unit = {};       // from a row of units, spelled as in base/units if the unit is known there
 };
 

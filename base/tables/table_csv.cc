@@ -7,11 +7,11 @@
 #include "base/mapped_file.h"
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/tables/csv_cells.h"
 #include "base/tables/csv_text.h"
 #include "base/tables/date_order.h"
 #include "base/tables/table.h"
 #include "base/tables/text_encoding.h"
-#include "base/tables/unit_cells.h"
 #include "base/text_file.h"
 
 namespace hydro::tables {

@@ -16,9 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "batch/run/case_count.h"
+#include "batch/run/case_progress.h"
 #include "batch/run/case_runner.h"
-#include "batch/run/case_times.h"
 #include "batch/store/case_store.h"
 #include "batch/store/small_file.h"
 #include "batch/store/study_lock.h"

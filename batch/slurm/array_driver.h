@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/run/case_count.h"
+#include "batch/run/case_progress.h"
 #include "batch/slurm/array_folder.h"
 #include "batch/slurm/cluster.h"
 #include "batch/store/case_store.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <optional>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "bus/seal_trailer.h"
 
 namespace hydro::definitions {

@@ -8,7 +8,7 @@
 
 #include "base/input_error.h"
 #include "base/text_file.h"
-#include "base/text_lines.h"
+#include "base/word_list.h"
 #include "bus/messages.h"
 
 namespace hydro::definitions {

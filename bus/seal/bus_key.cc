@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "diagnose/balances/column_maker.h"
 #include "diagnose/balances/latent_pressures.h"

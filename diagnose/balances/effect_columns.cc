@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/balances/column_maker.h"
 
 namespace hydro::diagnose {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 
 namespace hydro::diagnose {
 

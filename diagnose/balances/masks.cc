@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "diagnose/balances/test_functions.h"
 
 namespace hydro::diagnose {

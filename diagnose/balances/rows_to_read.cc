@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "diagnose/recording/sample_interval.h"
 
 namespace hydro::diagnose {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/second_sensors.h"
 

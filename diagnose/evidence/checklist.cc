@@ -6,15 +6,15 @@
 #include <limits>
 #include <optional>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/evidence/run_mistakes.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/vacuum.h"
-#include "runs/measured_signals.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

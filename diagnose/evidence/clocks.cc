@@ -9,8 +9,7 @@
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/run_delays.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 

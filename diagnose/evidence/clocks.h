@@ -7,15 +7,15 @@
 #include "diagnose/recording/diagnosis.h"
 #include "diagnose/recording/run_data.h"
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 
 // Estimates the recording's clocks relative to that of p1 and p2 (a common shift cannot be seen) and shifts
-// its signals to that clock (RemoveDelays of runs/run_delays.h). In the balances a clock is the column of a
-// late signal with a wide prior. Its delay is found by Gauss-Newton on their evidence, first on rows up to
-// 0.25 Hz, where a large delay is a small change, and finally on rows up to 2 Hz. All values of the model are
-// nearly free there, so that a wrong value is not taken for a delay (late_signals.h).
+// its signals to that clock (RemoveDelays of runs/measured/sample_times.h). In the balances a clock is the
+// column of a late signal with a wide prior. Its delay is found by Gauss-Newton on their evidence, first on
+// rows up to 0.25 Hz, where a large delay is a small change, and finally on rows up to 2 Hz. All values of
+// the model are nearly free there, so that a wrong value is not taken for a delay (late_signals.h).
 //
 // A late command and motor count as another clock when both are late by at least 20 ms and by at least two
 // samples, and when this is likelier than a delay of that one signal or of the pressures alone. The catalogue

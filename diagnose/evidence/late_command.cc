@@ -19,8 +19,7 @@
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
 #include "model/terms/parameter_info.h"
-#include "runs/run_delays.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

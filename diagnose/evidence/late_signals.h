@@ -6,8 +6,8 @@
 
 #include "diagnose/balances/rows.h"
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
-#include "runs/run_delays.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/balances/masks.h"
 #include "diagnose/balances/run_motion.h"
 #include "diagnose/balances/test_functions.h"

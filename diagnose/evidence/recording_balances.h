@@ -10,7 +10,7 @@
 
 #include "diagnose/recording/recording_mistake.h"
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

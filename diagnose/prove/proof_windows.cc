@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/thinned.h"
 #include "diagnose/recording/windows.h"

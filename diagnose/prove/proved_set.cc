@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "diagnose/fit/fit.h"
 #include "diagnose/fit/likeliest_scale.h"
 #include "diagnose/prove/proof_context.h"

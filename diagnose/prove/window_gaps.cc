@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/maths/matrix_functions.h"
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/turn.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/run_data.h"

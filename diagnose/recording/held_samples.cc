@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/run_data.h"

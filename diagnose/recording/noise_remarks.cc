@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 

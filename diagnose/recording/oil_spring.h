@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/terms/terms.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/recording_mistake.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/measured_signals.h"
-#include "runs/signal_unit.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sample_times.h"
+#include "runs/measured/signal_columns.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/run_data.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runs/measured_signals.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/recording/noise_remarks.h"
 #include "diagnose/recording/sample_interval.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {

@@ -4,19 +4,19 @@
 #include <cmath>
 #include <set>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 
 namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kFewestOfASignal = 20;  // of one signal, because slower sensors leave gaps
 
-// The row of the table of signals (runs/measured_signals.h).
+// The row of the table of signals (runs/measured/measured_run.h).
 constexpr const runs::SignalName* SignalRow(runs::MeasuredSignal runs::MeasuredRun::*signal) {
   for (const runs::SignalName& one : runs::kSignals) {
     if (one.signal == signal) return &one;

@@ -12,8 +12,7 @@
 
 #include "model/response.h"
 #include "model/trajectory/trajectory.h"
-#include "runs/measured_run.h"
-#include "runs/measured_signals.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 
 namespace hydro::diagnose {
 

@@ -10,7 +10,7 @@
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/sidecar_lines.h"
-#include "runs/measured_signals.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 namespace {

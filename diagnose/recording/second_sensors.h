@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

@@ -6,9 +6,9 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
-#include "runs/measured_signals.h"
-#include "runs/run_table.h"
-#include "runs/signal_unit.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/signal_columns.h"
+#include "runs/recorded/run_table.h"
 
 namespace hydro::diagnose {
 namespace {

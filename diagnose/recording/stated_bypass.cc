@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "diagnose/recording/oil_spring.h"
 #include "diagnose/recording/run_data.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "model/terms/terms.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
 

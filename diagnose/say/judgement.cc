@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/evidence/change_set.h"
 #include "diagnose/evidence/set_weights.h"
 #include "diagnose/fit/intervals.h"

@@ -1,6 +1,6 @@
 #include "diagnose/say/lacking.h"
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "diagnose/balances/masks.h"
 #include "diagnose/balances/test_functions.h"

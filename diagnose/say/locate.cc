@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "base/number_text.h"
 #include "diagnose/say/seen.h"
 

@@ -14,7 +14,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/pump_friction.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {

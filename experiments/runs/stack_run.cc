@@ -19,7 +19,7 @@
 #include "base/new_file.h"
 #include "bus/channels.h"
 #include "bus/udpm/udpm_url.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 

@@ -16,7 +16,7 @@ struct StackSetup {
 };
 
 // Runs a stack to the end of its time.duration_s and returns its signals, one row per plant tick, with the
-// columns of hydro-log export (runs/run_table.h). Throws InputError for a faulty configuration, and
+// columns of hydro-log export (runs/recorded/run_table.h). Throws InputError for a faulty configuration, and
 // std::runtime_error naming the setup when the run failed (a fault tripped).
 using StackRunner = std::function<tables::Table(const StackSetup&)>;
 

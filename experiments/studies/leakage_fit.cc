@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {

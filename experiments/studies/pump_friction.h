@@ -9,7 +9,7 @@
 #include "base/maths/spread.h"
 #include "experiments/studies/steady_speed.h"
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::experiments {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/maths/linear_fit.h"
-#include "base/maths/median.h"
+#include "base/maths/spread.h"
 
 namespace hydro::experiments {
 namespace {

@@ -8,8 +8,7 @@
 #include <set>
 
 #include "base/text_file.h"
-#include "launch/doctor/doctor_facts.h"
-#include "process/role.h"
+#include "process/status.h"
 #include "settings/limb_config.h"
 
 namespace hydro::launch {

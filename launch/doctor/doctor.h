@@ -1,7 +1,7 @@
 // hydro-launch --doctor: finds out whether this machine and its network are fit to run a stack. Each problem
 // comes with the command that fixes it.
 //
-// Pure: facts about the machine go in, partly as the kernel's own texts (doctor_facts.h reads them), and
+// Pure: facts about the machine go in, partly as the kernel's own texts (GatherFacts() reads them), and
 // findings come out.
 #pragma once
 
@@ -97,5 +97,20 @@ int Problems(const std::vector<Finding>& findings);
 // all is well, 1 when there are problems.
 int RunDoctor(const std::string& config_file, const std::vector<std::string>& overrides,
               const std::string& host);
+
+// Gathers the facts from files under /proc and /sys, from limits and from sockets. Changes nothing. Takes two
+// seconds, during which it listens on the port and measures wake-ups; up to four when multicast packets do
+// not come back.
+MachineFacts GatherFacts(const DoctorTask& task);
+
+// The interface through which a multicast group leaves the machine.
+struct MulticastRoute {
+  std::string interface;
+  std::string destination;  // e.g. 224.0.0.0/4; default
+};
+
+// The most specific route to `group` (IPv4, dotted) in the text of /proc/net/route; nothing when there is
+// none or it rejects packets.
+std::optional<MulticastRoute> FindMulticastRoute(const std::string& routes, const std::string& group);
 
 }  // namespace hydro::launch

@@ -1,5 +1,3 @@
-#include "launch/doctor/doctor_facts.h"
-
 #include <net/if.h>
 #include <pwd.h>
 #include <sched.h>
@@ -19,6 +17,7 @@
 
 #include "bus/channels.h"
 #include "bus/udpm/open_udpm_bus.h"
+#include "launch/doctor/doctor.h"
 
 namespace hydro::launch {
 namespace {

@@ -1,6 +1,6 @@
 #include "launch/logic/children.h"
 
-#include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::launch {
 
@@ -18,12 +18,6 @@ Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan) {
   if (plan.spread && grace.before_last == bus::Clock::Duration::zero())
     grace.before_last = std::chrono::milliseconds(500);
   return grace;
-}
-
-std::vector<std::string> RolesOf(const LaunchPlan& plan) {
-  std::vector<std::string> roles;
-  for (const ChildSpec& child : plan.children) roles.push_back(child.role());
-  return roles;
 }
 
 }  // namespace hydro::launch

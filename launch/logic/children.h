@@ -67,9 +67,6 @@ struct LaunchTiming {
   bus::Clock::Duration stop_arrival = std::chrono::milliseconds(500);
 };
 
-// The roles of the plan's children.
-std::vector<std::string> RolesOf(const LaunchPlan& plan);
-
 // The times that a stop of that plan allows its children.
 Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan);
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/utf8.h"
 #include "bus/output_left.h"
 #include "process/fault_codes.h"
-#include "process/role.h"
+#include "process/status.h"
 #include "runs/timing/timing_report.h"
 
 namespace hydro::launch {

@@ -8,7 +8,7 @@
 
 #include "bus/output_left.h"
 #include "launch/logic/stack_launch.h"
-#include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::launch {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "bus/session.h"
 #include "process/participant.h"
-#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::launch {

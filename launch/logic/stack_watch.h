@@ -15,7 +15,6 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
-#include "bus/hosted_process.h"
 #include "launch/logic/children.h"
 #include "launch/logic/run_summary.h"
 #include "runs/timing/timing_record.h"

@@ -5,7 +5,7 @@
 
 #include "bus/clock.h"
 #include "plant/driver/device.h"
-#include "plant/driver/device_sensors.h"
+#include "plant/driver/device_sensor.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {

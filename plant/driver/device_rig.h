@@ -8,7 +8,7 @@
 
 #include "bus/clock.h"
 #include "plant/driver/device.h"
-#include "plant/driver/device_sensors.h"
+#include "plant/driver/device_sensor.h"
 #include "plant/driver/device_watch.h"
 #include "plant/driver/zero_guardian.h"
 #include "plant/rig.h"

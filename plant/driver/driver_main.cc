@@ -23,7 +23,6 @@
 #include "process/process_main.h"
 #include "process/spawn.h"
 #include "process/stop_signal.h"
-#include "process/supervision.h"
 #include "process/timing/real_time.h"
 #include "settings/process_sections.h"
 #include "settings/stack_config.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "settings/front_end_url.h"
+#include "settings/urls.h"
 
 namespace hydro::plant {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "bus/clock.h"
 #include "process/timing/histogram.h"
 

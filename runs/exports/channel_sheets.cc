@@ -1,17 +1,85 @@
 #include "runs/exports/channel_sheets.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "bus/definitions/encoded_values.h"
 #include "bus/definitions/ros_message.h"
 #include "bus/messages.h"
-#include "runs/exports/row_times.h"
+#include "hydro/state_t.hpp"
+#include "runs/exports/selection.h"
+#include "runs/exports/sheet_units.h"
 #include "runs/log/log_reader.h"
+#include "runs/recorded/run_table.h"
 
 namespace hydro::exports {
 namespace {
+
+// The plant time at which a message of a log belongs.
+
+// Plant time by tick. A log may hold several plants one after another, each with its own ticks. A message
+// belongs to the plant whose state came last.
+class RowTimes {
+ public:
+  // Takes the states, in the order of the log.
+  void Add(const state_t& state);
+
+  // What a row keeps until all states are known. This is needed because a command may be recorded before the
+  // state that it answers.
+  struct Mark {
+    size_t plant = 0;
+    std::optional<int64_t> tick;
+    double latest = 0;  // s, time of the last state before the message; NaN: none
+  };
+  Mark Here(std::optional<int64_t> tick) const;
+
+  // The time of the tick's state or, without a tick or where the log lacks that state, the time of the last
+  // state before the message. Call it after the last Add().
+  double At(const Mark& mark);
+
+ private:
+  struct Plant {
+    int64_t session = 0;
+    std::vector<std::pair<int64_t, double>> ticks;  // tick, s
+    bool sorted = false;
+  };
+  std::vector<Plant> plants_;
+  double latest_ = 0;
+};
+
+void RowTimes::Add(const state_t& state) {
+  if (plants_.empty() || plants_.back().session != state.session)
+    plants_.push_back({state.session, {}, false});
+  plants_.back().ticks.emplace_back(state.tick, state.time);
+  plants_.back().sorted = false;
+  latest_ = state.time;
+}
+
+RowTimes::Mark RowTimes::Here(std::optional<int64_t> tick) const {
+  // A message before the first state may have a tick of the first plant.
+  if (plants_.empty()) return {0, tick, std::numeric_limits<double>::quiet_NaN()};
+  return {plants_.size() - 1, tick, latest_};
+}
+
+double RowTimes::At(const Mark& mark) {
+  if (!mark.tick || mark.plant >= plants_.size()) return mark.latest;
+  Plant& plant = plants_[mark.plant];
+  const auto before = [](const auto& a, const auto& b) { return a.first < b.first; };
+  if (!plant.sorted && !std::is_sorted(plant.ticks.begin(), plant.ticks.end(), before)) {
+    std::stable_sort(plant.ticks.begin(), plant.ticks.end(), before);
+  }
+  plant.sorted = true;
+  const auto found =
+      std::lower_bound(plant.ticks.begin(), plant.ticks.end(), std::pair(*mark.tick, 0.0), before);
+  return found != plant.ticks.end() && found->first == *mark.tick ? found->second : mark.latest;
+}
 
 using definitions::MessageDefinition;
 using definitions::Value;
@@ -82,6 +150,21 @@ void AppendRow(const log::LogEvent& event, std::vector<Value>& values, int64_t o
   for (size_t i = 0; i < values.size(); ++i) Append(values[i], &sheet.columns[i].values);
 }
 
+// What the columns of the run's table mean, in their order.
+constexpr const char* kMeanings[] = {
+    "plant time of the tick",
+    "plant tick, 0 at the start of the run",
+    "amplifier voltage that acts from this tick until the next, positive drives theta positive",
+    "reference of p2 - p1 that is in force for the pressure loop at this tick; NaN: none",
+    "where the arm is to be: the last reference up to this tick; NaN: none",
+    "theta of eq. (4); positive moves oil from side 1 to side 2; NaN: not measured",
+    "d theta/dt; NaN: not measured",
+    "alpha of eq. (15), 0 at mid-stroke, positive enlarges side 2; NaN: not measured",
+    "d alpha/dt; NaN: not measured",
+    "pressure of side 1, eq. (13); NaN: not measured",
+    "pressure of side 2, eq. (14); NaN: not measured"};
+static_assert(std::size(kMeanings) == runs::kRunColumns.size());
+
 }  // namespace
 
 std::vector<Sheet> ReadChannels(const std::vector<std::string>& files, const std::string& suffix,
@@ -113,6 +196,49 @@ std::vector<Sheet> ReadChannels(const std::vector<std::string>& files, const std
     sheets.push_back(std::move(one.sheet));
   }
   return sheets;
+}
+
+Sheet TableSheet(const runs::RunLog& log) {
+  tables::Table table = runs::ExportRun(log);
+  Sheet sheet;
+  sheet.name = kTableName;
+  sheet.description = "The run, one row per plant tick.";
+  sheet.source = "the loops' messages of " + std::filesystem::path(log.file).filename().string();
+  sheet.type = "hydro_msgs/msg/Table";
+  sheet.topic = "/hydro/table";
+  sheet.is_table = sheet.every_tick = true;
+  sheet.time_s = table.Find("time_s")->values;
+  sheet.columns.reserve(table.columns.size());
+  for (size_t i = 0; i < table.columns.size(); ++i) {
+    tables::Column& column = table.columns[i];
+    const definitions::Field field{column.name, definitions::FieldType::kDouble, "", PaperUnit(column.name),
+                                   kMeanings[i]};
+    sheet.columns.push_back({field, std::move(column.values)});
+  }
+  sheet.received.resize(sheet.rows());
+  sheet.published.resize(sheet.rows());
+  sheet.order.resize(sheet.rows());
+  return sheet;
+}
+
+void SetTimesOf(const Sheet& states, Sheet* table) {
+  const auto column = [](const Sheet& sheet, const char* name) -> const Values& {
+    return std::find_if(sheet.columns.begin(), sheet.columns.end(),
+                        [&](const SheetColumn& one) { return one.field.name == name; })
+        ->values;
+  };
+  std::unordered_map<int64_t, size_t> rows;  // by tick; the first of a state that was repeated
+  const auto& ticks = std::get<std::vector<int64_t>>(column(states, "tick"));
+  rows.reserve(ticks.size());
+  for (size_t row = 0; row < ticks.size(); ++row) rows.emplace(ticks[row], row);
+  const auto& wanted = std::get<std::vector<double>>(column(*table, "tick"));
+  for (size_t row = 0; row < wanted.size(); ++row) {
+    const auto found = rows.find(static_cast<int64_t>(wanted[row]));
+    if (found == rows.end()) continue;
+    table->received[row] = states.received[found->second];
+    table->published[row] = states.published[found->second];
+    table->order[row] = states.order[found->second];
+  }
 }
 
 }  // namespace hydro::exports

@@ -11,10 +11,8 @@
 #include "bus/messages.h"
 #include "runs/exports/channel_sheets.h"
 #include "runs/exports/sheet_units.h"
-#include "runs/exports/table_sheet.h"
 #include "runs/log/log_verdict.h"
-#include "runs/run_config.h"
-#include "runs/sampling.h"
+#include "runs/recorded/run_config.h"
 
 namespace hydro::exports {
 namespace {

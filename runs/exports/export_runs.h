@@ -7,7 +7,7 @@
 
 #include "runs/exports/selection.h"
 #include "runs/exports/sheet.h"
-#include "runs/stack_choice.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::exports {
 

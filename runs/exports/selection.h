@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runs/exports/sheet.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::exports {
 

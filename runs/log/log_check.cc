@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "base/big_endian.h"
-#include "runs/log/log_format.h"
+#include "base/bytes.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::log {
 namespace {

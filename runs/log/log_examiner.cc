@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/integers.h"
 #include "base/interruption.h"
 #include "base/number_text.h"
-#include "base/saturating.h"
 #include "base/text_file.h"
-#include "runs/log/log_format.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::log {
 namespace {

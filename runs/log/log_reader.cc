@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/file_kind.h"
 #include "base/interruption.h"
 #include "base/number_text.h"
 #include "runs/log/log_check.h"
-#include "runs/log/log_format.h"
 
 namespace hydro::log {
 namespace {

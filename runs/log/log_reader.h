@@ -1,7 +1,8 @@
-// Reads LCM event logs (log_format.h), both ours and lcm-logger's, strictly: anything that is not an event is
+// Reads LCM event logs, both ours and lcm-logger's, strictly: anything that is not an event is
 // an error.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,15 @@
 #include "runs/log/log_verdict.h"
 
 namespace hydro::log {
+
+// The bytes of an LCM event log, as liblcm's lcm_eventlog writes and reads them: a sequence of events, each
+//   sync word u32 | event number i64 | timestamp i64 (us) | channel length i32 | data length i32
+//   | channel | data
+// with all integers big-endian.
+constexpr uint32_t kLogSyncWord = 0xEDA1DA01;
+constexpr size_t kLogHeaderSize = 28;
+constexpr size_t kMaxLogChannelLength = 63;   // LCM's limit on the name of a channel
+constexpr size_t kMaxLogDataSize = 1u << 30;  // far above any message, so a greater length is damaged
 
 // The error for a log that is damaged, torn or not a log. what() names the file, the byte, the event, what
 // was found and what is allowed.

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/big_endian.h"
-#include "runs/log/log_format.h"
+#include "base/bytes.h"
+#include "runs/log/log_reader.h"
 
 namespace hydro::log {
 namespace {

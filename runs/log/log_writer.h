@@ -1,4 +1,4 @@
-// Writes LCM event logs (log_format.h) with checksums (log_check.h), which lcm-logplayer and lcm_eventlog can
+// Writes LCM event logs (log_reader.h) with checksums (log_check.h), which lcm-logplayer and lcm_eventlog can
 // read.
 #pragma once
 

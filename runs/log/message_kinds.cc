@@ -1,6 +1,6 @@
 #include "runs/log/message_kinds.h"
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "bus/messages.h"
 
 namespace hydro::log {

@@ -10,10 +10,10 @@
 
 #include "base/read_files.h"
 #include "runs/log/doubtful_events.h"
-#include "runs/log/listed_events.h"
 #include "runs/log/log_check.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
+#include "runs/log/sound_events.h"
 #include "runs/log/vouched_events.h"
 
 namespace hydro::log {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/text_file.h"
 #include "runs/log/log_check.h"
 #include "runs/log/log_reader.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/mapped_file.h"
-#include "runs/log/listed_events.h"
 #include "runs/log/sound_events.h"
 
 namespace hydro::log {

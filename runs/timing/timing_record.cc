@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 
 namespace hydro::timing {
 namespace {

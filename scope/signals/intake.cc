@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/integers.h"
 #include "base/number_text.h"
-#include "base/saturating.h"
 #include "scope/signals/decoded.h"
 
 namespace hydro::scope {

@@ -39,7 +39,6 @@ class Intake {
   int64_t states() const { return states_; }
   int64_t undecodable() const { return undecodable_; }
   int64_t foreign() const { return foreign_; }  // states of a second plant
-  int64_t last_state_utime() const { return heard_utime_; }
   // The plant time and tick of the newest state.
   double now() const { return time_; }
   int64_t tick() const { return tick_; }

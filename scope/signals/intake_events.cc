@@ -5,13 +5,13 @@
 #include <sstream>
 #include <utility>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "base/text_file.h"
 #include "base/utf8.h"
 #include "bus/output_left.h"
 #include "process/participant.h"
 #include "process/status.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/tuning_history.h"
 #include "scope/signals/decoded.h"
 #include "scope/signals/intake.h"
 

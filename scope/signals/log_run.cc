@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "bus/channels.h"
-#include "runs/channel_suffix.h"
-#include "runs/limb_configs.h"
 #include "runs/log/log_reader.h"
+#include "runs/recorded/channel_suffix.h"
 #include "scope/signals/intake.h"
 
 namespace hydro::scope {

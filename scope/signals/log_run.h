@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/stack_choice.h"
+#include "runs/recorded/run_log.h"
 #include "scope/signals/run.h"
 
 namespace hydro::scope {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 
 namespace hydro::scope {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/input_error.h"
-#include "runs/run_config.h"
+#include "runs/recorded/run_config.h"
 
 namespace hydro::scope {
 

@@ -1,6 +1,7 @@
 // Reads one section of a TOML document key by key, so that a key for which nothing asks is an error.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/input_error.h"
 #include "base/text_file.h"
 #include "settings/toml/toml_document.h"
 
@@ -140,5 +142,12 @@ bool SectionReader::Choice(const std::string& key, const std::vector<std::pair<s
   }
   throw Error(key, node->Shown(), QuotedList(names));
 }
+
+// The error for the section `name` of a list of sections that is written as [name].
+InputError NotAList(const std::string& place, const std::string& name);
+
+// When the parser reports a table defined twice, at line `at` of a text, that table may be a list whose
+// sections have single brackets. If it is, throws InputError for the first of them.
+void RefuseSingleBrackets(std::string_view text, const std::string& name, size_t at);
 
 }  // namespace hydro::settings

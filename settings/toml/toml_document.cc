@@ -10,7 +10,7 @@
 #include "base/file_kind.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
-#include "settings/toml/section_lists.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
 namespace {

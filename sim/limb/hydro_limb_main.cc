@@ -2,7 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "process/process_main.h"
-#include "process/supervision.h"
+#include "process/stop_signal.h"
 #include "sim/limb/limb_app.h"
 #include "tune/design/fastest_motion.h"
 

@@ -1,5 +1,5 @@
-// One joint of a limb: its rig, its plant and its two loops on a bus of its own, in the limb's process. The
-// classes are those of the separate processes.
+// The joints of a limb, in the limb's process: each with its rig, its plant and its two loops on a bus of
+// its own, whose classes are those of the separate processes; or with machines that move one arm ([arm]).
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,17 @@
 #include "bus/in_process_bus.h"
 #include "plant/plant_app.h"
 #include "plant/rig.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/limb_config.h"
 
 namespace hydro::limb {
+
+// Makes a machine for each joint, in the order of the configuration, which must have an arm. The machines
+// advance together: the first one that is told to advance takes the others along, each under the voltage that
+// it holds. Throws InputError.
+std::vector<std::unique_ptr<plant::SimulatedMachine>> MakeJointedArm(const settings::LimbConfig& config);
 
 class Joint {
  public:

@@ -5,7 +5,7 @@
 #include "base/input_error.h"
 #include "base/text_file.h"
 #include "plant/simulated_rig.h"
-#include "sim/limb/jointed_arm.h"
+#include "sim/limb/joint.h"
 
 namespace hydro::limb {
 namespace {

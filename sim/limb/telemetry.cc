@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "bus/channels.h"
 
 namespace hydro::limb {

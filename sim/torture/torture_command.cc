@@ -12,7 +12,6 @@
 #include "sim/torture/active_fault.h"
 #include "sim/torture/campaign.h"
 #include "sim/torture/run_schedule.h"
-#include "sim/torture/torture_config.h"
 
 namespace hydro::torture {
 namespace {

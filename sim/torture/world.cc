@@ -9,7 +9,7 @@
 #include "process/stop_signal.h"
 #include "sim/torture/active_fault.h"
 #include "sim/torture/programs.h"
-#include "sim/torture/torture_config.h"
+#include "sim/torture/run_schedule.h"
 
 namespace hydro::torture {
 namespace {

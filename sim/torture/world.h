@@ -18,7 +18,7 @@
 #include "sim/torture/invariants/launch_invariants.h"
 #include "sim/torture/invariants/observer.h"
 #include "sim/torture/invariants/records.h"
-#include "sim/torture/machines/disk.h"
+#include "sim/torture/machines/machine.h"
 #include "sim/torture/machines/network.h"
 #include "sim/torture/machines/simulated_process.h"
 #include "sim/torture/message_tail.h"

@@ -1,9 +1,9 @@
-#include "base/multiples.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
+
+#include "base/integers.h"
 
 namespace hydro {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "base/copy_words.h"
+#include "base/bytes.h"
 
 namespace hydro {
 namespace {

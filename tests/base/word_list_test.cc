@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/text_lines.h"
-
 namespace hydro {
 namespace {
 

@@ -1,6 +1,6 @@
 #include "batch/store/case_store.h"
 
-#include "batch/run/case_count.h"
+#include "batch/run/case_progress.h"
 #include "batch/store/small_file.h"
 #include "batch/store/study_lock.h"
 #include "tests/batch/study_folder.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "diagnose/report/report.h"
-#include "runs/measured_signals.h"
+#include "runs/measured/measured_run.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -10,7 +10,7 @@
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/smoothed_motion.h"
 #include "model/terms/state.h"
-#include "runs/slow_samples.h"
+#include "runs/measured/sample_times.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

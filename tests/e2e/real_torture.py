@@ -16,7 +16,7 @@ RETURN = 5.0  # s after the last fault in which control returns, as sim/torture/
 PATIENCE = 0.4  # s of the operator, as sim/torture/programs.cc
 REQUESTS = 6  # of the operator, half a second apart, as sim/torture/world_end.cc
 CONFIG = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "sim", "torture", "torture.toml")
-OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque=400")  # as sim/torture/torture_config.cc
+OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque=400")  # as sim/torture/run_schedule.cc
 
 
 class RealTorture:

@@ -5,7 +5,7 @@
 #include "base/input_error.h"
 #include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 
 namespace hydro::experiments {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "model/effects/catalogue.h"
 #include "model/terms/parameter_info.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 #include "settings/model_file.h"
 #include "tests/foreign_rig/write.h"
 #include "tests/rig_folder.h"

@@ -6,11 +6,11 @@
 
 #include "bus/seal/bus_key.h"
 #include "bus/udpm/udpm_url.h"
-#include "settings/bus_url.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_config.h"
 #include "settings/toml/toml_document.h"
+#include "settings/urls.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"

@@ -12,7 +12,7 @@
 
 #include "model/response.h"
 #include "model/terms/state.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 #include "tests/hidden_rig/cases.h"
 #include "tests/hidden_rig/line.h"
 #include "tests/hidden_rig/plans.h"

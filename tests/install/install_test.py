@@ -66,7 +66,7 @@ class InstallTest(unittest.TestCase):
         self.assertTrue(match, said)
         self.assertEqual(int(match[1]), 10_000)
         self.assertAlmostEqual(float(match[2]), 0.3, delta=0.01)
-        effects = len(list((SOURCE / "model/effects").glob("*_*.cc")))  # a file is GROUP_NAME.cc
+        effects = len(list((SOURCE / "model/effects").glob("*/*_*.cc")))  # a file is ROOM/GROUP_NAME.cc
         self.assertEqual(int(match[3]), effects)
 
     def test_a_controller_builds(self):

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/text_lines.h"
+#include "base/word_list.h"
 #include "launch/rearm_json.h"
 
 namespace hydro::launch {

@@ -1,4 +1,4 @@
-#include "runs/compare.h"
+#include "runs/recorded/compare.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "runs/message_fields.h"
+#include "runs/recorded/message_order.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

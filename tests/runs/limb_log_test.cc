@@ -4,14 +4,13 @@
 
 #include "bus/channels.h"
 #include "hydro/process_status_t.hpp"
-#include "runs/channel_suffix.h"
-#include "runs/compare.h"
 #include "runs/limb_info.h"
-#include "runs/measured_run.h"
-#include "runs/run_config.h"
-#include "runs/run_table.h"
-#include "runs/sampling.h"
-#include "runs/senders.h"
+#include "runs/measured/measured_run.h"
+#include "runs/recorded/channel_suffix.h"
+#include "runs/recorded/compare.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/run_table.h"
+#include "runs/recorded/senders.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -1,11 +1,11 @@
 #include <random>
 
-#include "base/big_endian.h"
-#include "runs/compare.h"
-#include "runs/log/log_format.h"
+#include "base/bytes.h"
+#include "runs/log/log_reader.h"
 #include "runs/log/repair.h"
-#include "runs/run_log.h"
-#include "runs/run_table.h"
+#include "runs/recorded/compare.h"
+#include "runs/recorded/run_log.h"
+#include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

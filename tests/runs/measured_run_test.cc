@@ -1,10 +1,10 @@
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

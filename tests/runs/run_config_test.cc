@@ -1,4 +1,4 @@
-#include "runs/run_config.h"
+#include "runs/recorded/run_config.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

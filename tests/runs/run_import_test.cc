@@ -6,9 +6,9 @@
 
 #include "base/input_error.h"
 #include "base/read_files.h"
-#include "runs/run_config.h"
-#include "runs/run_log.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/run_log.h"
+#include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -1,8 +1,8 @@
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 #include <gmock/gmock.h>
 
-#include "runs/compare.h"
+#include "runs/recorded/compare.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

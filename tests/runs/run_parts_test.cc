@@ -1,11 +1,11 @@
 // Sidecars that make several runs of a table, and what a sidecar says beside the actuator's own signals.
-#include "runs/run_parts.h"
+#include "runs/measured/run_parts.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -1,10 +1,10 @@
 // Whose states a log holds, and the clock that stamped it.
-#include "runs/senders.h"
+#include "runs/recorded/senders.h"
 
 #include <gmock/gmock.h>
 
 #include "runs/info.h"
-#include "runs/run_table.h"
+#include "runs/recorded/run_table.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

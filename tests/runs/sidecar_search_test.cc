@@ -1,8 +1,7 @@
-#include "runs/sidecar_search.h"
-
 #include <gmock/gmock.h>
 
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/sidecar.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -1,12 +1,12 @@
 // Units in sidecars, and the units of the model to which they lead.
-#include "runs/sidecar.h"
+#include "runs/measured/sidecar.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "base/units.h"
-#include "runs/signal_unit.h"
+#include "runs/measured/signal_columns.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

@@ -1,6 +1,6 @@
 // Times as recorders write them: repeated, rounded, rolled over, set, in bursts, and angles and commands of
 // few bits.
-#include "runs/table_times.h"
+#include "runs/measured/table_times.h"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "base/number_text.h"
-#include "runs/counters.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
+#include "runs/measured/signal_columns.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::runs {

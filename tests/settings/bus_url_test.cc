@@ -1,6 +1,6 @@
-#include "settings/bus_url.h"
-
 #include <gtest/gtest.h>
+
+#include "settings/urls.h"
 
 namespace hydro::settings {
 namespace {

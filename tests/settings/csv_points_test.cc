@@ -1,5 +1,4 @@
-#include "settings/csv_points.h"
-
+#include "settings/trajectory_spec.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {

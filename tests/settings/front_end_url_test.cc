@@ -1,7 +1,7 @@
-#include "settings/front_end_url.h"
-
 #include <gmock/gmock.h>
 #include <termios.h>
+
+#include "settings/urls.h"
 
 namespace hydro::settings {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runs/exports/selection.h"
-#include "runs/stack_choice.h"
+#include "runs/recorded/run_log.h"
 #include "settings/command_line.h"
 
 namespace hydro::hydro_log {

@@ -7,7 +7,7 @@
 
 #include "base/input_error.h"
 #include "bus/channels.h"
-#include "runs/compare.h"
+#include "runs/recorded/compare.h"
 #include "settings/process_sections.h"
 #include "tools/hydro_log/own_controller.h"
 #include "tools/hydro_log/record_gap.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "tools/hydro_log/replay.h"
 
 namespace hydro::hydro_log {

@@ -8,8 +8,8 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "runs/sampling.h"
-#include "runs/tuning_history.h"
+#include "runs/recorded/run_config.h"
+#include "runs/recorded/tuning_history.h"
 #include "tools/hydro_log/record_gap.h"
 
 namespace hydro::hydro_log {

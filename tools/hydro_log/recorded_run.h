@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/saturating.h"
+#include "base/integers.h"
 #include "bus/bus.h"
 #include "bus/channels.h"
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "settings/stack_config.h"
 
 namespace hydro::hydro_log {

@@ -9,7 +9,7 @@
 #include "bus/in_process_bus.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
-#include "runs/compare.h"
+#include "runs/recorded/compare.h"
 #include "tools/hydro_log/device_answers.h"
 #include "tools/hydro_log/record_gap.h"
 #include "tools/hydro_log/recorded_run.h"

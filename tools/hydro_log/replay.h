@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::hydro_log {
 

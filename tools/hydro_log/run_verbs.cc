@@ -12,7 +12,7 @@
 #include "base/word_list.h"
 #include "process/stop_signal.h"
 #include "runs/limb_info.h"
-#include "runs/senders.h"
+#include "runs/recorded/senders.h"
 #include "runs/timing/timing_report.h"
 #include "runs/tracking.h"
 #include "tools/hydro_log/own_controller.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_log.h"
+#include "runs/recorded/run_log.h"
 #include "settings/command_line.h"
 
 namespace hydro::hydro_log {

@@ -6,8 +6,8 @@
 
 namespace hydro::plot {
 
-// `run` has the columns of hydro-log export (runs/run_table.h). Both functions throw InputError naming the
-// file and the missing column.
+// `run` has the columns of hydro-log export (runs/recorded/run_table.h). Both functions throw InputError
+// naming the file and the missing column.
 
 // The arm's angle and its reference, and the motor's speed.
 page::Figure ArmFigure(const tables::Table& run);

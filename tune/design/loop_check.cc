@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "base/number_text.h"
-#include "model/effects/sensor_signal.h"
+#include "model/effects/sensor/sensor_signal.h"
 #include "tune/design/configured_laws.h"
 #include "tune/design/linear_stack.h"
 #include "tune/design/operating_cases.h"

@@ -5,7 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/text_file.h"
-#include "settings/moved_paths.h"
+#include "settings/config_entries.h"
 #include "settings/quantity_keys.h"
 #include "settings/read_quantities.h"
 #include "settings/toml/toml_edit.h"

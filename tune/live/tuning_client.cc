@@ -7,7 +7,6 @@
 
 #include "bus/output_left.h"
 #include "bus/session.h"
-#include "process/role.h"
 #include "process/status.h"
 
 namespace hydro::tuning {

@@ -8,13 +8,12 @@
 
 #include "base/text_file.h"
 #include "base/word_list.h"
+#include "settings/config_entries.h"
 #include "settings/limb_config.h"
-#include "settings/moved_paths.h"
 #include "settings/quantity_keys.h"
 #include "settings/read_quantities.h"
 #include "settings/toml/toml_document.h"
 #include "settings/toml/toml_edit.h"
-#include "settings/toml/toml_entries.h"
 #include "tune/search/gains.h"
 
 namespace hydro::tune {

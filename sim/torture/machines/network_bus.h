@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bus/bus.h"
-#include "bus/hosted_process.h"
 #include "bus/seal/authenticator.h"
 #include "sim/torture/machines/packet.h"
 

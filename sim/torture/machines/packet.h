@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "bus/bus.h"
 #include "sim/torture/machines/machine.h"
 

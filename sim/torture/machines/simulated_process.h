@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "bus/hosted_process.h"
+#include "bus/bus.h"
 #include "sim/torture/machines/machine.h"
 #include "sim/torture/machines/network_bus.h"
 

@@ -7,7 +7,6 @@
 #include "base/tables/csv_cells.h"
 #include "base/tables/table.h"
 #include "base/tables/text_encoding.h"
-#include "base/tables/unit_cells.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::tables {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "runs/run_delays.h"
+#include "runs/measured/sample_times.h"
 #include "tests/diagnose/small_runs.h"
 #include "tests/table1.h"
 

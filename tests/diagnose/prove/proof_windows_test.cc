@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/maths/range.h"
+#include "base/maths/spread.h"
 #include "diagnose/prove/proof_context.h"
 #include "diagnose/recording/run_data.h"
 #include "tests/diagnose/small_runs.h"

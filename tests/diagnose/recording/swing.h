@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/terms/description.h"
-#include "runs/measured_run.h"
+#include "runs/measured/measured_run.h"
 
 namespace hydro::testing {
 

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "launch/doctor/multicast_route.h"
-
 namespace hydro::launch {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "runs/log/repair.h"
 #include "tests/runs/log/log_fixture.h"
 

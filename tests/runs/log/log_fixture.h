@@ -11,14 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/read_files.h"
 #include "bus/channels.h"
 #include "hydro/run_description_t.hpp"
-#include "runs/log/log_format.h"
 #include "runs/log/log_reader.h"
 #include "runs/log/log_writer.h"
-#include "runs/run_messages.h"
+#include "runs/recorded/run_log.h"
 
 namespace hydro::log {
 

@@ -2,8 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "base/big_endian.h"
-#include "runs/log/log_format.h"
+#include "base/bytes.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::log {

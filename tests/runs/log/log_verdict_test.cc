@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "runs/log/log_check.h"
 #include "runs/log/repair.h"
 #include "tests/runs/log/log_fixture.h"

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "runs/log/log_format.h"
+#include "runs/log/log_reader.h"
 #include "tests/runs/log/log_fixture.h"
 
 namespace hydro::log {

@@ -1,10 +1,9 @@
-#include "sim/limb/jointed_arm.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/input_error.h"
 #include "model/coupled_arm.h"
+#include "sim/limb/joint.h"
 #include "tests/sim/limb/limb_fixture.h"
 
 namespace hydro::limb {

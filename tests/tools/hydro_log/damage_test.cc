@@ -4,13 +4,13 @@
 #include <functional>
 #include <random>
 
-#include "base/big_endian.h"
+#include "base/bytes.h"
 #include "base/read_files.h"
-#include "runs/compare.h"
 #include "runs/info.h"
 #include "runs/log/repair.h"
-#include "runs/measured_run.h"
-#include "runs/run_table.h"
+#include "runs/measured/measured_run.h"
+#include "runs/recorded/compare.h"
+#include "runs/recorded/run_table.h"
 #include "runs/tracking.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"

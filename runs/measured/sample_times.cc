@@ -1,0 +1,70 @@
+#include "runs/measured/sample_times.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "base/input_error.h"
+#include "base/maths/spread.h"
+#include "base/number_text.h"
+
+namespace hydro::runs {
+namespace {
+
+size_t Nearest(const std::vector<double>& time, double at) {
+  const auto after = std::lower_bound(time.begin(), time.end(), at);
+  if (after == time.begin()) return 0;
+  if (after == time.end()) return time.size() - 1;
+  const auto place = static_cast<size_t>(after - time.begin());
+  return time[place] - at < at - time[place - 1] ? place : place - 1;
+}
+
+}  // namespace
+
+bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run) {
+  const std::vector<double>& time = run->time;
+  double latest = 0, earliest = 0;
+  for (const auto& [signal, delay] : delays) {
+    latest = std::max(latest, delay);
+    earliest = std::min(earliest, delay);
+  }
+  // A margin of half a millionth, because the times in a table are rounded.
+  const double margin = 5e-7 * (time.back() - time.front());
+  const auto first = static_cast<size_t>(
+      std::lower_bound(time.begin(), time.end(), time.front() - earliest - margin) - time.begin());
+  const auto last = static_cast<size_t>(
+      std::upper_bound(time.begin(), time.end(), time.back() - latest + margin) - time.begin());
+  if (last < first + 2) return false;
+  for (const auto& [signal, delay] : delays) {
+    std::vector<double>& values = (run->*signal).values;
+    if (values.empty() || delay == 0) continue;
+    std::vector<double> moved(values.size());
+    for (size_t i = first; i < last; ++i) moved[i] = values[Nearest(time, time[i] + delay)];
+    values = std::move(moved);
+  }
+  run->Keep(first, last);
+  return true;
+}
+
+std::string TimeUnitHint(double interval) {
+  constexpr double kFastestSamples = 2e-5, kUsualSamples = 0.1;  // s
+  if (interval <= kSlowestSamples) return "";
+  for (const auto& [unit, size] : {std::pair("ms", 1e-3), std::pair("us", 1e-6), std::pair("ns", 1e-9)}) {
+    if (interval * size < kFastestSamples || interval * size > kUsualSamples) continue;
+    return std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")";
+  }
+  return "";
+}
+
+void RequireFastSamples(const MeasuredRun& run) {
+  std::vector<double> intervals;
+  for (size_t i = 1; i < run.samples(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
+  const double interval = intervals.empty() ? 0 : maths::Median(std::move(intervals));
+  if (interval <= kSlowestSamples) return;
+  throw InputError(run.file + ": time: found rows " + ShortNumber(interval) + " s apart, allowed at most " +
+                   ShortNumber(kSlowestSamples) + " s: slower ones show no motion of such a machine" +
+                   TimeUnitHint(interval));
+}
+
+}  // namespace hydro::runs
