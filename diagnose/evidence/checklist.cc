@@ -140,8 +140,8 @@ class RunChecklist {
   // of 5 bar read a fifth less than that. The factors convert each pressure from another unit.
   ChargeFit FitOf(double low1, double low2, double factor1, double factor2) const {
     const double first = low1 * factor1, second = low2 * factor2, low = std::min(first, second);
-    const double noise =
-        kBelowLowest * std::max(factor1 * EstimateNoise(run_.p1.values), factor2 * EstimateNoise(run_.p2.values));
+    const double noise = kBelowLowest * std::max(factor1 * EstimateNoise(run_.p1.values),
+                                                 factor2 * EstimateNoise(run_.p2.values));
     return {.near = low > 0.85 * p_.p_3 - ValveDrop() - noise && low < 3 * p_.p_3 + noise,
             .same = std::max(first, second) < 1.5 * low + SteadyLoad() + noise};
   }

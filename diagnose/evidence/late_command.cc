@@ -35,7 +35,7 @@ constexpr double kOneDevice = 0.5;
 constexpr double kHalfARow = 0.5, kRight = 0.3;
 // Rows by which a recorder is late at most. The estimate is of the first order in the lateness: a few steps
 // lead to a command that is several rows away.
-constexpr int kMostRows = 5, kMostSteps = 4;
+constexpr int kMostRows = 5, kMostTries = 4;
 // s: a lateness beyond it is no small change of what the balances see, and another clock's (clocks.h).
 constexpr double kMostLateness = 0.0201;
 // Standard errors.
@@ -158,7 +158,7 @@ std::string RemarkOn(const model::ModelDescription& given, const std::vector<Run
   // A command that is early may be an amplifier that is late, and then by any time.
   const double step = MedianInterval(runs.front().time);
   const int earliest = -1, latest = std::clamp(static_cast<int>(kMostLateness / step), 1, kMostRows);
-  for (int tried = 0; tried < kMostSteps && std::abs(rest.rows) > kHalfARow; ++tried) {
+  for (int tried = 0; tried < kMostTries && std::abs(rest.rows) > kHalfARow; ++tried) {
     const int next = std::clamp(*moved + static_cast<int>(std::lround(rest.rows)), earliest, latest);
     if (next == *moved) return "";
     *moved = next;

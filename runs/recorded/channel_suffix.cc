@@ -27,11 +27,12 @@ std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
 
 // Anybody on the network can forge channels, so of very many only the first are listed.
 std::string ListOf(const std::set<std::string>& suffixes) {
-  constexpr size_t kListed = 20;
+  constexpr size_t kMostListed = 20;
   std::string list;
   size_t listed = 0;
   for (const std::string& suffix : suffixes) {
-    if (listed++ == kListed) return list + ", ... (" + std::to_string(suffixes.size() - kListed) + " more)";
+    if (listed++ == kMostListed)
+      return list + ", ... (" + std::to_string(suffixes.size() - kMostListed) + " more)";
     list += (list.empty() ? "'" : ", '") + suffix + "'";
   }
   return list;

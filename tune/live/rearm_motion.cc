@@ -45,7 +45,7 @@ std::string WhyUnforeseen(const settings::StackConfig& config, const model::Meas
   return design::FastMotionRemark(config).empty() ? "" : "the model moves too fast to be simulated at once";
 }
 
-std::string Limit(const char* name, double value, const std::string& unit) {
+std::string LimitText(const char* name, double value, const std::string& unit) {
   return fmt::format("{} {} {}", name, ShortNumber(value), unit);
 }
 
@@ -54,11 +54,11 @@ std::string LimitPassedBy(const model::Measurement& now, const settings::StackCo
   const settings::LimitsSection& limits = config.limits;
   const UnitSystem& units = config.model.description.units;
   if (std::max(now.p1, now.p2) > limits.pressure_psi)
-    return Limit("limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
+    return LimitText("limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
   if (std::fabs(now.motor_speed) > limits.motor_speed_rad_s)
-    return Limit("limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
+    return LimitText("limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
   if (std::fabs(now.arm_angle) > limits.arm_angle_rad)
-    return Limit("limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
+    return LimitText("limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
   return "";
 }
 
@@ -112,7 +112,7 @@ class Rearmed {
     } else if (saturated > most) {
       const double torque = config_.model.description.parameters.T_pmax;
       motion.held_by =
-          Limit("the motor's torque T_pmax", torque, config_.model.description.units.UnitFor("in-lbf"));
+          LimitText("the motor's torque T_pmax", torque, config_.model.description.units.UnitFor("in-lbf"));
     }
     return motion;
   }
@@ -164,8 +164,8 @@ std::string OwnProgram(const settings::StackConfig& config, const std::string& r
 }
 
 std::string ArmTorqueLimit(const settings::StackConfig& config) {
-  return Limit("limits.arm_torque", config.limits.arm_torque_in_lbf,
-               config.model.description.units.UnitFor("in-lbf", -1));
+  return LimitText("limits.arm_torque", config.limits.arm_torque_in_lbf,
+                   config.model.description.units.UnitFor("in-lbf", -1));
 }
 
 RearmMotion SimulateRearm(const settings::StackConfig& config, const state_t& state,

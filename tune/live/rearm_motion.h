@@ -15,10 +15,10 @@ namespace hydro::tuning {
 struct RearmMotion {
   std::string unforeseen = "nothing was simulated";  // why nothing is known; empty: the rest holds
   double seconds = 0;                                // after the re-arm, of what was simulated
-  std::string
-      ended_by;         // the limit that zeroes the voltage again: "limits.motor_speed 20 rad/s"; empty: none
-  std::string held_by;  // the limit that holds the machine back at the end; empty: none
-  double reaches = 0;   // the quantity that the reference refers to, at the end
+  // The limit that zeroes the voltage again: "limits.motor_speed 20 rad/s"; empty: none.
+  std::string ended_by = {};
+  std::string held_by = {};  // the limit that holds the machine back at the end; empty: none
+  double reaches = 0;        // the quantity that the reference refers to, at the end
   double arm_angle = std::numeric_limits<double>::quiet_NaN();  // at the end; NaN: the arm is not free
 };
 

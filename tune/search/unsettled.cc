@@ -16,7 +16,7 @@ namespace {
 constexpr double kMostOfTheEnd = 0.3;
 constexpr double kMuchOfTheTrial = 0.2;
 
-std::string Number(double value) { return ShortNumber(value, 3); }
+std::string ThreeDigits(double value) { return ShortNumber(value, 3); }
 
 class Unsettled {
  public:
@@ -44,16 +44,17 @@ class Unsettled {
 
  private:
   static std::string Share(double share) {
-    return fmt::format("in {} % of", Number(std::round(100 * share)));
+    return fmt::format("in {} % of", ThreeDigits(std::round(100 * share)));
   }
-  std::string Arm(double value) const { return Number(value) + " " + units_.UnitFor("rad", 1); }
+  std::string Arm(double value) const { return ThreeDigits(value) + " " + units_.UnitFor("rad", 1); }
   std::string ArmTorque(const std::string& when) const {
     return fmt::format("limits.arm_torque {} {} holds it back {} that time",
-                       Number(config_.limits.arm_torque_in_lbf), units_.UnitFor("in-lbf", -1), when);
+                       ThreeDigits(config_.limits.arm_torque_in_lbf), units_.UnitFor("in-lbf", -1), when);
   }
   std::string MotorTorque(const std::string& when) const {
     return fmt::format("the motor is at its torque T_pmax {} {} {} that time",
-                       Number(config_.model.description.parameters.T_pmax), units_.UnitFor("in-lbf"), when);
+                       ThreeDigits(config_.model.description.parameters.T_pmax), units_.UnitFor("in-lbf"),
+                       when);
   }
 
   // The limit that ends the run of a stack. Only the model as its file says is held against limits.
@@ -61,8 +62,8 @@ class Unsettled {
     if (step_.model != 0) return "";
     const settings::LimitsSection& limits = config_.limits;
     const auto ends = [](const char* name, double limit, double reached, const std::string& unit) {
-      return fmt::format("limits.{} {} {} ends the run, at {} {}", name, Number(limit), unit, Number(reached),
-                         unit);
+      return fmt::format("limits.{} {} {} ends the run, at {} {}", name, ThreeDigits(limit), unit,
+                         ThreeDigits(reached), unit);
     };
     if (run_.highest_pressure > limits.pressure_psi)
       return ends("pressure", limits.pressure_psi, run_.highest_pressure, units_.UnitFor("psi"));
