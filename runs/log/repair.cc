@@ -153,7 +153,7 @@ namespace {
 // under the first name.
 std::string KeepAsDamaged(const std::string& file) {
   for (int i = 0;; ++i) {
-    const std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
+    std::string damaged = file + ".damaged" + (i == 0 ? "" : std::to_string(i));
     if (link(file.c_str(), damaged.c_str()) == 0) return damaged;
     if (errno == EEXIST) continue;
     throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +

@@ -82,8 +82,8 @@ void ExpectDifferenceQuotients(const model::Equations& equations, double voltage
   }
   EXPECT_EQ(model.output, output);
   for (int j = 0; j <= n; ++j) {
-    constexpr double kStep = 2.5e-4;  // a larger one sees the curvature of air and gas
-    const double h = kStep * scale[j];
+    constexpr double kDifference = 2.5e-4;  // a larger one sees the curvature of air and gas
+    const double h = kDifference * scale[j];
     const auto sides = [&](double by) {
       std::vector<double> moved = state;
       if (j < n) moved[j] += by;
@@ -94,7 +94,7 @@ void ExpectDifferenceQuotients(const model::Equations& equations, double voltage
     const std::vector<double> up = sides(h);
     const std::vector<double> down = sides(-h);
     for (int i = 0; i < n + kOutputs; ++i) {
-      EXPECT_NEAR(slopes(i, j) * scale[j], (up[i] - down[i]) / (2 * kStep), 1e-6 * size[i])
+      EXPECT_NEAR(slopes(i, j) * scale[j], (up[i] - down[i]) / (2 * kDifference), 1e-6 * size[i])
           << (i < n ? "rate " : "output ") << (i < n ? i : i - n) << " by " << (j < n ? "state " : "voltage ")
           << j;
     }

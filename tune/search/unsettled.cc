@@ -29,7 +29,7 @@ class Unsettled {
   std::string Why() const {
     if (result_.settled && result_.ratio < kStopped) return "";
     if (run_.response.angle.empty()) return "the arm runs into the end of its stroke";
-    if (const std::string ended = EndedBy(); !ended.empty()) return ended;
+    if (std::string ended = EndedBy(); !ended.empty()) return ended;
     const double end = kLastPart * run_.response.time.back(), whole = run_.response.time.back();
     if (run_.held_back_at_end > kMostOfTheEnd * end) return ArmTorque("to the end of");
     if (run_.saturated_at_end > kMostOfTheEnd * end) return MotorTorque("to the end of");
