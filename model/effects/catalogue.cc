@@ -58,9 +58,11 @@ std::string FaultIn(const CatalogueEntry& entry) {
   }
   const int waves = Count(info, Role::kTorqueWave) + Count(info, Role::kDisplacementWave);
   const int periods = Count(info, Role::kPeriods), phases = Count(info, Role::kPhase);
-  if (waves != periods || periods > 1 || phases > 1) {
+  const bool has_its_sine = periods == 1 || Count(info, Role::kSize) == 1;
+  if (waves != periods || periods > 1 || phases > 1 || (phases == 1 && !has_its_sine)) {
     return "needs one parameter with Role::kPeriods and one with Role::kTorqueWave or "
-           "Role::kDisplacementWave, or neither, and at most one with Role::kPhase";
+           "Role::kDisplacementWave, or neither, and at most one with Role::kPhase, beside a wave or the "
+           "only size";
   }
   return "";
 }

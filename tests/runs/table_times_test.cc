@@ -123,8 +123,8 @@ TEST_F(TableTimesTest, OrderOfDates) {
   const std::string rows = "1/2/2026 23:59:59,1,2\n2/2/2026 00:00:00,1,3\n2/2/2026 00:00:01,2,3\n";
   EXPECT_THAT(ErrorOf(rows), HasSubstr("or time = { column = \"t\", date_order = \"dmy\" } in the sidecar"));
   EXPECT_THAT(Read(rows, "{ column = \"t\", date_order = \"dmy\" }").time, ElementsAre(0, 1, 2));
-  EXPECT_THAT(ErrorOf(rows, "{ column = \"t\", date_order = \"ymd\" }"),
-              HasSubstr("columns.time.date_order: found \"ymd\", allowed \"dmy\" or \"mdy\""));
+  EXPECT_THAT(ErrorOf(rows, "{ column = \"t\", date_order = \"xyz\" }"),
+              HasSubstr("columns.time.date_order: found \"xyz\", allowed \"dmy\", \"mdy\" or \"ymd\""));
 }
 
 // Tests a date in a column of its own, and nanoseconds since 1970.

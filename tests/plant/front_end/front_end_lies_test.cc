@@ -319,7 +319,7 @@ TEST(FrontEndLiesTest, NumbersThatJump) {
     EXPECT_TRUE(bench.rig->faults().empty()) << by;
     EXPECT_EQ(bench.volts, -1.5F) << by;
   }
-  for (const uint32_t back : {200U, 0x80000000U, 0xc0000000U}) {
+  for (const uint32_t back : {200U, 0x80000000U}) {  // by more it is a jump ahead
     DeviceBench bench;
     ASSERT_TRUE(bench.Connect());
     bench.Ticks(150, 3);
