@@ -12,6 +12,9 @@ std::vector<std::string> TextLines(const std::string& text);
 // The text without blanks, tabs and carriage returns at both ends.
 std::string Trimmed(const std::string& text);
 
+// The text as one word for sh, in quotes where it needs them.
+std::string ShellWord(const std::string& text);
+
 // Joins lists of words for a sentence.
 
 // "a, b, c"

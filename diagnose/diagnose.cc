@@ -157,9 +157,8 @@ std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std:
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
     const model::BaseParameter& base = model::BaseParameters()[i];
     const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
-    const bool measures = base.member == &model::Parameters::k_1
-                              ? !oil || !driven
-                              : base.member == &model::Parameters::J && !driven;
+    const bool measures = (base.member == &model::Parameters::k_1 && !(oil && driven)) ||
+                          (base.member == &model::Parameters::J && !driven);
     const bool otherwise = !measures && (given.parameters.*base.member != 0 || !IsTermOfAnEffect(base));
     if (names.empty() ? otherwise : asked) allowed.push_back(i);
   }

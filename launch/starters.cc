@@ -18,6 +18,7 @@
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/text_file.h"
+#include "base/word_list.h"
 #include "bus/seal/bus_key.h"
 #include "launch/own_controller_texts.h"
 #include "launch/own_driver_texts.h"
@@ -84,17 +85,6 @@ std::string PackageFolder(const fs::path& home) {
     if (fs::exists(package / "hydroConfig.cmake", none)) return package.string();
   }
   return "";
-}
-
-// As a shell takes it.
-std::string ShellWord(const std::string& text) {
-  const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::strchr("/._-+", c) != nullptr;
-  });
-  if (plain && !text.empty()) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 // Throws InputError, which begins with `option`, for a name that Python, CMake or a shell would not take

@@ -11,18 +11,13 @@
 
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/word_list.h"
 #include "batch/store/case_store.h"
 #include "batch/store/small_file.h"
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::batch {
-
-std::string ShellWord(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 std::string PlainName(const std::string& text) {
   constexpr size_t kMost = 40;

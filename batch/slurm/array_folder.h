@@ -28,9 +28,6 @@ struct ScriptRequest {
 // job. The paths may hold any character.
 std::string ArrayScript(const ScriptRequest& request);
 
-// Quotes `text` as one word for sh.
-std::string ShellWord(const std::string& text);
-
 // A name for sbatch: letters, digits and "._-" of `text`, with a limited length.
 std::string PlainName(const std::string& text);
 

@@ -18,9 +18,6 @@ namespace {
 using Run = runs::MeasuredRun;
 using Signal = runs::MeasuredSignal Run::*;
 
-// s: shorter delays have names among the catalogue's effects of amplifier and sensors.
-constexpr double kLeastDelay = 0.02;
-
 bool CanBeAligned(const Run& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 2 * kFewestSamples &&

@@ -11,6 +11,9 @@
 
 namespace hydro::diagnose {
 
+// s: shorter delays have names among the catalogue's effects of amplifier and sensors.
+inline constexpr double kLeastDelay = 0.02;
+
 // Estimates the recording's clocks relative to that of p1 and p2 (a common shift cannot be seen) and shifts
 // its signals to that clock (RemoveDelays of runs/measured/sample_times.h). In the balances a clock is the
 // column of a late signal with a wide prior. Its delay is found by Gauss-Newton on their evidence, first on

@@ -13,6 +13,7 @@
 #include "base/word_list.h"
 #include "diagnose/balances/make_rows.h"
 #include "diagnose/balances/rows_to_read.h"
+#include "diagnose/evidence/clocks.h"
 #include "diagnose/evidence/late_signals.h"
 #include "diagnose/evidence/set_evidence.h"
 #include "diagnose/recording/run_data.h"
@@ -36,8 +37,9 @@ constexpr double kHalfARow = 0.5, kRight = 0.3;
 // Rows by which a recorder is late at most. The estimate is of the first order in the lateness: a few steps
 // lead to a command that is several rows away.
 constexpr int kMostRows = 5, kMostTries = 4;
-// s: a lateness beyond it is no small change of what the balances see, and another clock's (clocks.h).
-constexpr double kMostLateness = 0.0201;
+// Beyond kLeastDelay, lateness is no small change of what the balances see, and another clock's. Rows of 5 ms
+// are not always quite 5 ms apart.
+constexpr double kRounding = 1.005;
 // Standard errors.
 constexpr double kSurelyLate = 2;
 // Rows: an error as large cannot tell one row from none.
@@ -157,7 +159,8 @@ std::string RemarkOn(const model::ModelDescription& given, const std::vector<Run
   if (!(std::abs(rest.rows) > kHalfARow + kSurelyLate * rest.error)) return "";
   // A command that is early may be an amplifier that is late, and then by any time.
   const double step = MedianInterval(runs.front().time);
-  const int earliest = -1, latest = std::clamp(static_cast<int>(kMostLateness / step), 1, kMostRows);
+  const int earliest = -1,
+            latest = std::clamp(static_cast<int>(kRounding * kLeastDelay / step), 1, kMostRows);
   for (int tried = 0; tried < kMostTries && std::abs(rest.rows) > kHalfARow; ++tried) {
     const int next = std::clamp(*moved + static_cast<int>(std::lround(rest.rows)), earliest, latest);
     if (next == *moved) return "";

@@ -19,7 +19,6 @@ constexpr size_t kMostFitted = 9, kMostTold = 20, kMostNear = 32, kMostFar = 6;
 // The number of windows added for each extreme. A valve that opens now and then shows in few windows of a
 // long run: one of each extreme tells a fit that it opens, three judge beyond one window's scatter.
 constexpr size_t kToFitOfAnExtreme = 1, kToJudgeOfAnExtreme = 3;
-constexpr double kFarTimes = 4;
 constexpr double kFewestSamplesOfAWindow = 60;
 constexpr size_t kFewestOfAThinned = 200;
 constexpr double kWindowsOfARun = 3;
@@ -85,9 +84,6 @@ void SetJudging(const std::vector<const RunData*>& predicted, const WindowPool& 
 
 }  // namespace
 
-namespace {
-
-// s. Shorter runs judge nothing, unless most runs are shorter.
 double NearHorizon(const std::vector<const RunData*>& runs) {
   const double seconds = std::max(kHorizon, kFewestSamplesOfAWindow * SampleInterval(runs));
   const auto longer = std::count_if(runs.begin(), runs.end(), [&](const RunData* run) {
@@ -95,8 +91,6 @@ double NearHorizon(const std::vector<const RunData*>& runs) {
   });
   return 2 * static_cast<size_t>(longer) >= runs.size() ? seconds : SearchHorizon(runs);
 }
-
-}  // namespace
 
 ProofWindows ProofWindowsOf(const ProofContext& context) {
   const std::vector<const RunData*>& predicted = context.predicted();

@@ -30,6 +30,11 @@ struct ProofWindows {
   JudgingWindows far;  // four times as long; shorter runs have none
 };
 
+// s, the length of near windows of these runs; shorter runs judge nothing, unless most runs are shorter. Far
+// windows are kFarTimes as long.
+double NearHorizon(const std::vector<const RunData*>& runs);
+inline constexpr double kFarTimes = 4;
+
 // Judging windows come from the held-out runs. Without held-out runs they come from the fitted runs and
 // alternate with the windows that are fitted. They are spread over the runs and include those where a
 // pressure or the speed is largest, because anything that opens or saturates acts only there.

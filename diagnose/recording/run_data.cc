@@ -105,9 +105,9 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const maths::
 // shows, or an encoder's steps, counts down to the simulation's tolerance: an angle that turns far has a
 // large range, but its sensor is as good as before.
 double LeastNoise(double noise, double resolution, double range) {
-  constexpr double kShows = 1e-6, kStepsShow = 1e-7, kTolerance = 1e-6, kOfNone = 1e-5;  // of the range
+  constexpr double kShows = 1e-6, kStepsShow = 1e-7, kTolerance = 1e-6;  // of the range
   const bool shows = noise > kShows * range || resolution / std::sqrt(12.0) > kStepsShow * range;
-  return (shows ? kTolerance : kOfNone) * range;
+  return (shows ? kTolerance : kNoNoise) * range;
 }
 
 SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {

@@ -16,6 +16,10 @@
 
 namespace hydro::diagnose {
 
+// As a fraction of a signal's range: the noise that is assumed where none shows, since a simulation errs by
+// as much. A 12-bit encoder's steps do show.
+inline constexpr double kNoNoise = 1e-5;
+
 struct SignalData {
   model::Channel channel = model::Channel::kP1;
   std::vector<double> values;  // one for each sample; NaN: missing

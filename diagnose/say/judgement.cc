@@ -148,9 +148,7 @@ bool IsWorse(const BeforeAfter& gap) {
 }
 
 bool ExactSensors(const std::vector<const RunData*>& runs) {
-  // Of the range: no noise shows, so that a simulation's own error is assumed (run_data.cc). An encoder of
-  // 12 bits is not exact.
-  constexpr double kExact = 1.01e-5;
+  constexpr double kExact = 1.01 * kNoNoise;  // of a range that may have lost its spikes
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
       const double size = maths::RangeOf(signal.values).size();

@@ -50,8 +50,8 @@ struct CutRuns {
   explicit CutRuns(const ProofContext& context) : runs(context.runs) {
     runs.insert(runs.end(), context.held_out.begin(), context.held_out.end());
     // A start that is corrected hides a value's error over a short window. Over a long one values show most.
-    const ProofWindows proof = ProofWindowsOf(context);
-    for (const double seconds : {proof.far.seconds, proof.near.seconds}) {
+    const double near = NearHorizon(runs);
+    for (const double seconds : {kFarTimes * near, near}) {
       if (!possible) Cut(context.given.parameters, seconds);
     }
   }

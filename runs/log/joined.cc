@@ -2,20 +2,11 @@
 
 #include "base/mapped_file.h"
 #include "base/new_file.h"
+#include "base/word_list.h"
 #include "runs/log/log_reader.h"
 
 namespace hydro::log {
 namespace {
-
-// Quotes a file's name as one word of a command line.
-std::string ShellWord(const std::string& name) {
-  std::string quoted;
-  for (const char c : name) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  const bool plain =
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./") ==
-      std::string::npos;
-  return plain && !name.starts_with('-') ? name : "'" + quoted + "'";
-}
 
 // "run-2.lcmlog" for the second recording of "run.lcmlog", or of "run.lcmlog.damaged1", the name under which
 // a repair keeps it.

@@ -17,6 +17,14 @@ TEST(DidYouMeanTest, FindsNearNames) {
   EXPECT_EQ(DidYouMean("rate_Hz", kNames), ", did you mean \"rate_hz\"?");
 }
 
+// Tests that a word for sh is quoted where it has to be, and only there.
+TEST(ShellWordTest, QuotesWhatNeedsIt) {
+  EXPECT_EQ(ShellWord("/var/log/run-1_a+b.lcmlog"), "/var/log/run-1_a+b.lcmlog");
+  EXPECT_EQ(ShellWord("it's a run"), "'it'\\''s a run'");
+  EXPECT_EQ(ShellWord("$HOME"), "'$HOME'");
+  EXPECT_EQ(ShellWord(""), "''");
+}
+
 // Tests that an unrelated word finds nothing.
 TEST(DidYouMeanTest, FindsNothingFarAway) {
   EXPECT_EQ(Nearest("colour", kNames), "");

@@ -8,6 +8,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "model/sides.h"
+#include "settings/process_sections.h"
 #include "tune/live/change_check.h"
 #include "tune/live/rearm_words.h"
 
@@ -255,8 +256,8 @@ RearmForecast ForecastRearm(const HeardOfStack& heard) {
   try {
     const settings::StackConfig config =
         ConfigInForce(*heard.run, heard.in_force.value_or(tuned_settings_t{}));
-    if (const std::string own = OwnProgram(config, "position_ctrl"); !own.empty())
-      return Unknown("the position loop is a program of your own, " + own);
+    if (const settings::ProcessSection* own = settings::OwnProgramFor(config, "position_ctrl"))
+      return Unknown("the position loop is a program of your own, " + own->command.front());
     const Referred referred = ReferredTo(config, *heard.state);
     if (!std::isfinite(referred.present)) return Unknown(std::string(referred.words) + " is not measured");
     RearmForecast forecast;

@@ -10,6 +10,8 @@
 #include "model/sides.h"
 #include "model/started_actuator.h"
 #include "model/terms/state.h"
+#include "settings/process_sections.h"
+#include "settings/quantity_keys.h"
 #include "tune/design/fastest_motion.h"
 #include "tune/design/stack_loops.h"
 
@@ -35,8 +37,8 @@ std::string WhyUnforeseen(const settings::StackConfig& config, const model::Meas
   if (config.without_its_arm) return "the limb's [arm] couples this joint with the others";
   if (config.reference.trajectory.kind == settings::TrajectorySpec::Kind::kPlanner)
     return "the plans that follow are not known";
-  if (const std::string own = OwnProgram(config, "pressure_ctrl"); !own.empty())
-    return "the pressure loop is a program of your own, " + own;
+  if (const settings::ProcessSection* own = settings::OwnProgramFor(config, "pressure_ctrl"))
+    return "the pressure loop is a program of your own, " + own->command.front();
   const bool free = config.model.shaft == model::Shaft::kFree;
   if (!std::isfinite(start.motor_speed)) return "the motor's speed is not measured";
   if (!std::isfinite(start.p1) || !std::isfinite(start.p2)) return "the pressures are not measured";
@@ -45,20 +47,15 @@ std::string WhyUnforeseen(const settings::StackConfig& config, const model::Meas
   return design::FastMotionRemark(config).empty() ? "" : "the model moves too fast to be simulated at once";
 }
 
-std::string LimitText(const char* name, double value, const std::string& unit) {
-  return fmt::format("{} {} {}", name, ShortNumber(value), unit);
-}
-
 // The limit that a state has passed (pressure_ctrl/pressure_checks.cc); empty: none.
 std::string LimitPassedBy(const model::Measurement& now, const settings::StackConfig& config) {
   const settings::LimitsSection& limits = config.limits;
-  const UnitSystem& units = config.model.description.units;
   if (std::max(now.p1, now.p2) > limits.pressure_psi)
-    return LimitText("limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
+    return LimitText(config, "limits.pressure", limits.pressure_psi);
   if (std::fabs(now.motor_speed) > limits.motor_speed_rad_s)
-    return LimitText("limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
+    return LimitText(config, "limits.motor_speed", limits.motor_speed_rad_s);
   if (std::fabs(now.arm_angle) > limits.arm_angle_rad)
-    return LimitText("limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
+    return LimitText(config, "limits.arm_angle", limits.arm_angle_rad);
   return "";
 }
 
@@ -111,8 +108,8 @@ class Rearmed {
       motion.held_by = ArmTorqueLimit(config_);
     } else if (saturated > most) {
       const double torque = config_.model.description.parameters.T_pmax;
-      motion.held_by =
-          LimitText("the motor's torque T_pmax", torque, config_.model.description.units.UnitFor("in-lbf"));
+      motion.held_by = fmt::format("the motor's torque T_pmax {} {}", ShortNumber(torque),
+                                   config_.model.description.units.UnitFor("in-lbf"));
     }
     return motion;
   }
@@ -156,16 +153,13 @@ class Rearmed {
 
 }  // namespace
 
-std::string OwnProgram(const settings::StackConfig& config, const std::string& role) {
-  for (const settings::ProcessSection& process : config.processes) {
-    if (!process.command.empty() && process.role == role) return process.command.front();
-  }
-  return "";
+std::string LimitText(const settings::StackConfig& config, const std::string& key, double value) {
+  return fmt::format("{} {} {}", key, ShortNumber(value),
+                     settings::UnitOfKey(key, config.model.description.units, ""));
 }
 
 std::string ArmTorqueLimit(const settings::StackConfig& config) {
-  return LimitText("limits.arm_torque", config.limits.arm_torque_in_lbf,
-                   config.model.description.units.UnitFor("in-lbf", -1));
+  return LimitText(config, "limits.arm_torque", config.limits.arm_torque_in_lbf);
 }
 
 RearmMotion SimulateRearm(const settings::StackConfig& config, const state_t& state,

@@ -22,9 +22,8 @@ struct RearmMotion {
   double arm_angle = std::numeric_limits<double>::quiet_NaN();  // at the end; NaN: the arm is not free
 };
 
-// The program of the user's own that has this role in a stack; empty: it is one of ours.
-std::string OwnProgram(const settings::StackConfig& config, const std::string& role);
-
+// "limits.pressure 3000 psi"
+std::string LimitText(const settings::StackConfig& config, const std::string& key, double value);
 // "limits.arm_torque 500 in-lbf"
 std::string ArmTorqueLimit(const settings::StackConfig& config);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/number_text.h"
+#include "base/word_list.h"
 
 namespace hydro::tuning {
 namespace {
@@ -64,19 +65,17 @@ double LargestOf(const RearmForecast& f) {
 
 // The limits that may end it, for a machine of which nothing can be simulated.
 std::string LimitsText(const settings::StackConfig& config) {
-  const UnitSystem& units = config.model.description.units;
   const settings::LimitsSection& limits = config.limits;
-  const auto listed = [](std::string* list, const char* name, double limit, const std::string& unit) {
-    if (!std::isfinite(limit)) return;
-    *list += fmt::format("{}{} {} {}", list->empty() ? "" : ", ", name, ShortNumber(limit), unit);
+  std::vector<std::string> ends;
+  const auto list = [&](const char* key, double limit) {
+    if (std::isfinite(limit)) ends.push_back(LimitText(config, key, limit));
   };
-  std::string ends;
-  listed(&ends, "limits.pressure", limits.pressure_psi, units.UnitFor("psi"));
-  listed(&ends, "limits.motor_speed", limits.motor_speed_rad_s, units.UnitFor("rad/s"));
-  listed(&ends, "limits.arm_angle", limits.arm_angle_rad, units.UnitFor("rad", 1));
+  list("limits.pressure", limits.pressure_psi);
+  list("limits.motor_speed", limits.motor_speed_rad_s);
+  list("limits.arm_angle", limits.arm_angle_rad);
   std::string text;
   if (std::isfinite(limits.arm_torque_in_lbf)) text += "; " + ArmTorqueLimit(config) + " may hold it back";
-  return ends.empty() ? text : text + "; zero volts again beyond " + ends;
+  return ends.empty() ? text : text + "; zero volts again beyond " + Joined(ends);
 }
 
 // "the pressure p2 - p1 is at 135.8 psi and the arm is at 0.4 rad"

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/word_list.h"
 #include "batch/slurm/array_folder.h"
 #include "batch/slurm/grouping.h"
 #include "batch/slurm/slurm_answers.h"
