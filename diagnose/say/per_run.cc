@@ -133,8 +133,8 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
                                     const std::vector<size_t>& allowed) {
   const CutRuns cut(context);
   if (!cut.possible) return {};
-  std::vector<size_t> places;
-  for (const std::string& name : asked) places.push_back(model::BasePlace(name));
+  std::vector<size_t> places(asked.size());
+  std::ranges::transform(asked, places.begin(), model::BasePlace);
   if (asked.empty()) places = ValuesOfADay(allowed);
   std::vector<RunValues> all;
   for (const size_t base : places) {
