@@ -1,5 +1,7 @@
 #include "diagnose/say/lacking.h"
 
+#include <algorithm>
+
 #include "base/maths/spread.h"
 #include "base/parallel.h"
 #include "diagnose/balances/masks.h"
@@ -112,8 +114,8 @@ std::vector<LackingRun> LackingIn(const model::ModelDescription& model,
                                   const PressureOffsets& offsets) {
   std::vector<LackingRun> all(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) { all[r] = LackingIn(model, *runs[r], r, offsets); });
-  std::vector<RunMotion> motions;
-  for (const LackingRun& run : all) motions.push_back(run.motion);
+  std::vector<RunMotion> motions(all.size());
+  std::ranges::transform(all, motions.begin(), &LackingRun::motion);
   const HeldPressure held = FindHeldPressure(motions, model.parameters);
   for (LackingRun& run : all) {
     run.masks = MasksOf(run.motion, run.base.left, held, model.parameters);
