@@ -250,8 +250,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
-  const Proof proof = ProveProposals(context, as_given, proposed.proposals.empty() ? allowed : proposed.shown,
-                                     proposed.proposals, BlindChanges(context), proposed.said);
+  // Whoever names the values that may differ asks for them, and windows may show what balances do not.
+  const bool asked = !options.free.empty() || proposed.proposals.empty();
+  const Proof proof = ProveProposals(context, as_given, asked ? allowed : proposed.shown, proposed.proposals,
+                                     BlindChanges(context), proposed.said);
   Diagnosis diagnosis = Conclude(context, proof, proposed);
   diagnosis.unjudged = proposed.unjudged;
   diagnosis.remarks.insert(diagnosis.remarks.end(), proposed.remarks.begin(), proposed.remarks.end());

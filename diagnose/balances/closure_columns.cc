@@ -2,6 +2,7 @@
 // effect explains.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "diagnose/balances/closure_elements.h"
@@ -21,11 +22,14 @@ constexpr double kSmooth = 0.15;
 constexpr double kFirst = 1.5;
 // How far curves reach beyond the range that was seen.
 constexpr double kBeyond = 1.15, kALittle = 0.1, kFastArm = 4;
+// Turns of a motor: what it repeats in each of two turns or more is a wave.
+constexpr double kTurnsOfACurve = 2;
 
 double SpreadOf(int sine) { return kFirst * std::exp(-0.5 * std::pow(kSmooth * std::numbers::pi * sine, 2)); }
 
 double VariableOf(const std::string& name, const model::KnownMotion& at) {
   if (name == "motor_speed") return at.motor_speed;
+  if (name == "motor_angle") return at.motor_angle;
   if (name == "p1") return at.p1;
   if (name == "p2") return at.p2;
   if (name == "p2 - p1") return at.p2 - at.p1;
@@ -122,12 +126,34 @@ void AddArmElements(const ColumnSetup& setup, std::vector<ClosureElement>* eleme
                        .high = fast});
 }
 
+// A bare motor that swings, as a robot's joint does, carries a load that may depend on its angle.
+void AddShaftElement(const ColumnSetup& setup, const std::vector<RunMotion>& runs,
+                     std::vector<ClosureElement>* elements) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const RunMotion& run : runs) {
+    if (!run.Of(GridChannel::kAngle).measured()) return;  // it begins anywhere
+    for (const model::KnownMotion& at : run.at) {
+      low = std::min(low, at.motor_angle);
+      high = std::max(high, at.motor_angle);
+    }
+  }
+  const double range = high - low;
+  if (!(range > 0) || range >= kTurnsOfACurve * 2 * std::numbers::pi) return;
+  elements->push_back({.set = "closure.pump_torque(motor_angle)",
+                       .sines = kOtherSines,
+                       .parts = {{BalanceKind::kTorque, 1, "closure.pump_torque", "motor_angle"}},
+                       .unit = UsualOf(setup.sizes, BalanceKind::kTorque),
+                       .low = low - kALittle * range,
+                       .high = high + kALittle * range});
+}
+
 }  // namespace
 
 std::vector<ClosureElement> ClosureElements(const ColumnSetup& setup, const std::vector<RunMotion>& runs) {
-  bool oil = false, arm = false, moves = false;
+  bool oil = false, arm = false, moves = false, bare = true;
   for (const RunMotion& run : runs) {
     oil |= run.pressures;
+    bare &= run.options.bypass;
     arm |= CanForm(run, BalanceKind::kArm);
     moves |= run.arm_moves && run.pressures;
   }
@@ -135,6 +161,7 @@ std::vector<ClosureElement> ClosureElements(const ColumnSetup& setup, const std:
   std::vector<ClosureElement> elements = {
       Odd("closure.pump_torque(motor_speed)", kSpeedSines, UsualOf(setup.sizes, BalanceKind::kTorque), fast,
           {{BalanceKind::kTorque, 1, "closure.pump_torque", "motor_speed"}})};
+  if (bare) AddShaftElement(setup, runs, &elements);
   if (oil) AddOilElements(setup, moves, &elements);
   if (arm) AddArmElements(setup, &elements);
   return elements;

@@ -94,7 +94,10 @@ class BlockOfGrams {
 
   bool Teaches(const std::vector<Index>& group) const {
     if (IsLevel()) return true;
-    double signal = block_.main_column < 0 ? LargestBase(group) : SizeOf(block_.main_column, group);
+    // Noise shrinks what is fitted only where it is in a fitted column: where J is not free, J w' is not
+    // fitted.
+    if (block_.main_column < 0) return group.size() >= kLeastRows;
+    double signal = SizeOf(block_.main_column, group);
     // An arm that hardly accelerates shows its load instead.
     if (block_.balance == BalanceKind::kArm) signal = std::max(signal, MeanSquare(block_.y, group));
     return group.size() >= kLeastRows && signal > kLeastSignalToNoise * block_.sensor_variance(group).mean();

@@ -24,6 +24,7 @@ std::string UnitOf(const std::string& variable, const UnitSystem& units) {
   std::string angle = ChannelUnit(model::Channel::kArmAngle, units);
   if (variable == "arm_angle") return angle;
   if (variable == "arm_speed") return angle + "/s";
+  if (variable == "motor_angle") return ChannelUnit(model::Channel::kMotorAngle, units);
   return ChannelUnit(variable == "motor_speed" ? model::Channel::kMotorSpeed : model::Channel::kP1, units);
 }
 

@@ -69,9 +69,9 @@ void ProofSets::AddProposal(const Proposal& proposal) {
   hypothesis.measured =
       std::make_shared<const MeasuredValues>(MeasuredValues{proposal.model.parameters, proposal.deviation});
   // Estimates hold one number of each balance, which scales all others. A fit moves that number instead of
-  // the others.
+  // the others. Where nothing but values differs, windows may show one that the balances do not.
   for (const size_t place : allowed_) {
-    const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges);
+    const bool all = proposal.base.size() > static_cast<size_t>(kMostChanges) || proposal.changes.empty();
     const bool there = std::find(proposal.base.begin(), proposal.base.end(), place) != proposal.base.end();
     if (all && !there) hypothesis.base.push_back(place);
   }
@@ -178,8 +178,9 @@ void ProofSets::RefineOnWholeRuns(ProvedSet* set) const {
   JudgeFar(windows_, context_.jobs, set);
   JudgeFar(windows_, context_.jobs, &whole);
   const GapFall near = FallOf(set->near, whole.near), far = FallOf(set->far, whole.far);
-  // Windows that scatter strongly say little, but a set that is worse in most of them is worse.
-  const auto equal = [](const GapFall& fall) { return std::min(fall.error, kPartOfValues); };
+  // Alike is what two standard errors do not tell apart. Windows that scatter strongly say little, but a set
+  // that is worse in most of them is worse.
+  const auto equal = [](const GapFall& fall) { return std::min(2 * fall.error, kPartOfValues); };
   const bool near_falls = near.Exceeds(0) && far.logarithm >= -equal(far);
   const bool far_falls = far.Exceeds(0) && near.logarithm >= -equal(near);
   // Where windows are too short to decide, whole held-out runs do.

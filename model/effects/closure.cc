@@ -17,12 +17,13 @@ namespace hydro::model {
 
 namespace {
 
-enum class Variable { kMotorSpeed, kP1, kP2, kDifference, kSum, kArmAngle, kArmSpeed, kVoltage };
+enum class Variable { kMotorSpeed, kMotorAngle, kP1, kP2, kDifference, kSum, kArmAngle, kArmSpeed, kVoltage };
 
 // The names of the gap finder's tables of missing terms.
 const std::vector<std::pair<std::string, Variable>>& Variables() {
   static const std::vector<std::pair<std::string, Variable>> variables = {
       {"motor_speed", Variable::kMotorSpeed},
+      {"motor_angle", Variable::kMotorAngle},
       {"p1", Variable::kP1},
       {"p2", Variable::kP2},
       {"p2 - p1", Variable::kDifference},
@@ -52,6 +53,8 @@ T ValueIn(const Terms<T>& x, Variable variable) {
   switch (variable) {
     case Variable::kMotorSpeed:
       return x.motor_speed;
+    case Variable::kMotorAngle:
+      return x.motor_angle;
     case Variable::kP1:
       return x.p1;
     case Variable::kP2:

@@ -66,6 +66,46 @@ TEST(BareMotor, AWeightAtAnyPhase) {
   }
 }
 
+// Tests that friction that grows less than in proportion to the speed, as a greased gear has it, is named.
+TEST(BareMotor, FrictionOfALubricantThatThins) {
+  model::ModelDescription truth = Bare();
+  truth.effects = {{"pump.shear_thinning", {{"viscous", 0.06}, {"speed", 120}}, {}}};
+  const diagnose::Diagnosis d = diagnose::Diagnose(Bare(), RunsOf(truth, 4, 3), {}, {}, {});
+  ASSERT_EQ(d.effects.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.effects[0].id, "pump.shear_thinning");
+  const model::EffectDescription& found = d.model.effects.front();
+  for (const double speed : {40.0, 150.0, 300.0}) {
+    const auto friction = [&](const model::Parameters& p, double viscous, double half) {
+      return p.T_s + p.b * speed + viscous * speed / (1 + speed / half);
+    };
+    EXPECT_NEAR(friction(d.model.parameters, found.parameters.at("viscous"), found.parameters.at("speed")),
+                friction(truth.parameters, 0.06, 120), 0.2)
+        << speed;
+  }
+}
+
+// Tests that a load over the shaft's angle that is none of the catalogue's is shown as a curve over that
+// angle, and that no effect is named for it.
+TEST(BareMotor, AnUnknownLoadOverTheAngle) {
+  model::ModelDescription truth = Bare();
+  truth.parameters.J *= 150;  // it swings within a turn
+  model::EffectDescription load;
+  load.id = "closure.pump_torque";
+  load.name_lists["against"] = {"motor_angle"};
+  for (int k = 0; k <= 60; ++k) {
+    const double angle = -12 + 0.4 * k;
+    load.lists["knots"].push_back(angle);
+    load.lists["values"].push_back(-6 * std::sin(2 * angle + 0.5) - angle);
+  }
+  model::ModelDescription given = truth;
+  truth.effects = {load};
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, RunsOf(truth, 3, 3), {}, {}, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kUnexplained) << d.sentence;
+  EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
+  ASSERT_EQ(d.closures.size(), 1u) << d.sentence;
+  EXPECT_EQ(d.closures[0].against.front(), "motor_angle");
+}
+
 // Tests that the motor's torque, which measures all others, stays as given, and other friction is found.
 TEST(BareMotor, FrictionIsMeasuredByTheMotorsTorque) {
   model::ModelDescription truth = Bare();

@@ -86,11 +86,11 @@ std::map<std::string, double> Proposed(const model::EffectDescription& effect) {
 // catalogue's effects.
 TEST(OwnRoles, PeriodsAreReadOffTheBalances) {
   const std::map<std::string, double> own =
-      Proposed({"own.runout", {{"height", 1}, {"lobes", 6}, {"mark", 0.7}}, {}});
+      Proposed({"own.runout", {{"height", 1}, {"lobes", 12}, {"mark", 0.7}}, {}});
   const std::map<std::string, double> ours =
-      Proposed({kCogging, {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}});
+      Proposed({kCogging, {{"amplitude", 1}, {"periods", 12}, {"phase", 0.7}}, {}});
   ASSERT_FALSE(own.empty());
-  EXPECT_EQ(own.at("lobes"), 6);
+  EXPECT_EQ(own.at("lobes"), 12);
   EXPECT_NEAR(own.at("mark"), 0.7, 0.4);
   EXPECT_NEAR(own.at("height"), 1, 0.2);
   ASSERT_FALSE(ours.empty());

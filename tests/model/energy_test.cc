@@ -124,6 +124,7 @@ TEST(Energy, DrivenBypassAndEffects) {
                    Wave(300, 0.2, 0.05),
                    {"pump.pressure_friction", {{"f", 0.001}}, {}},
                    {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
+                   {"pump.shear_thinning", {{"viscous", 0.05}, {"speed", 3}}, {}},
                    {"actuator.seal_friction", {{"coulomb", 30}, {"viscous", 20}}, {}}});
   const model::ModelDescription others =
       Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},

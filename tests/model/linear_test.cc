@@ -103,11 +103,13 @@ TEST(NaturalFrequency, LineWaveKeepsTheSlowMode) {
 // Tests that the Jacobian by automatic derivatives equals difference quotients, in every mode and with every
 // effect.
 TEST(Jacobian, EqualsDifferenceQuotients) {
-  const model::ModelDescription model = Table1Model({Stribeck(0.5, 3),
-                                                     Lag(2e-3),
-                                                     Wave(300, 0.2, 0.05),
-                                                     {"pump.pressure_friction", {{"f", 0.001}}, {}},
-                                                     {"pump.quadratic_drag", {{"k", 1e-3}}, {}}});
+  const model::ModelDescription model =
+      Table1Model({Stribeck(0.5, 3),
+                   Lag(2e-3),
+                   Wave(300, 0.2, 0.05),
+                   {"pump.pressure_friction", {{"f", 0.001}}, {}},
+                   {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
+                   {"pump.shear_thinning", {{"viscous", 0.05}, {"speed", 3}}, {}}});
   for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
     for (const bool bypass : {false, true}) {
       model::ActuatorOptions options = Held(shaft);

@@ -54,6 +54,8 @@ std::vector<Case> Cases() {
   add("WaveFree", {Wave(300, 0.2, 0.05)}, Held(model::Shaft::kFree));
   add("WaveBypass", {Wave(300, 0.2, 0.05)}, bypass);
   add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(model::Shaft::kClamped));
+  add("ShearThinning", {{"pump.shear_thinning", {{"viscous", 0.05}, {"speed", 3}}, {}}},
+      Held(model::Shaft::kClamped));
   add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}},
       Held(model::Shaft::kClamped));
   add("PressureDrift", {{"sensor.pressure_drift", {{"p1", 20}, {"p2", -30}}, {}}},

@@ -448,6 +448,11 @@ MUTATIONS = [
     ),
     *_rows("model/effects/pump/pump_quadratic_drag.cc", ("quadratic_drag.sign", "x.load += x.own[0]", "x.load -= x.own[0]")),
     *_rows(
+        "model/effects/pump/pump_shear_thinning.cc",
+        ("shear_thinning.sign", "x.load += x.own[0]", "x.load -= x.own[0]"),
+        ("shear_thinning.thickens", "(1 + speed / x.own[1])", "(1 - speed / x.own[1])"),
+    ),
+    *_rows(
         "model/effects/pump/pump_stribeck.cc",
         ("stribeck.kinetic", "x.coulomb += x.T_s", "x.coulomb -= x.T_s"),
         ("stribeck.static", "x.breakaway += x.T_s", "x.breakaway -= x.T_s"),

@@ -1,6 +1,7 @@
 // Headless Chromium for the tests of the page, and what they ask of it.
 
 import { createRequire } from 'node:module';
+import { fileURLToPath } from 'node:url';
 import { kPatience_ms } from './stack.mjs';
 
 const { chromium } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('playwright-core');
@@ -19,7 +20,7 @@ const kSwitches = [
 ];
 
 export async function openBrowser() {
-  return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: kSwitches });
+  return chromium.launch({ executablePath: fileURLToPath(new URL('gentle_chromium', import.meta.url)), args: kSwitches });
 }
 
 // A page on the scope; every script error and every breach of its content security policy fails the test.

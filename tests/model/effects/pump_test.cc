@@ -68,6 +68,22 @@ TEST(QuadraticDrag, SteadySpeed) {
   }
 }
 
+// Tests that the steady speed balances Cross's law and b: friction below that of a lubricant that keeps its
+// viscosity.
+TEST(ShearThinning, SteadySpeed) {
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
+  options.bypass = true;
+  const double b = 0.01455, viscous = 0.05, half = 20, torque = 10 - 4;
+  for (const double sign : {1.0, -1.0}) {
+    model::Actuator actuator(
+        Table1Model({{"pump.shear_thinning", {{"viscous", viscous}, {"speed", half}}, {}}}), options);
+    actuator.Advance(sign * 2.5, 60);
+    const double speed = actuator.Measure().motor_speed;
+    EXPECT_GT(sign * speed, torque / (b + viscous) + 50);
+    EXPECT_NEAR(b * speed + viscous * speed / (1 + std::abs(speed) / half), sign * torque, 1e-6);
+  }
+}
+
 // Tests that the pressure difference of a pump at rest falls as an orifice allows: its square root falls
 // linearly, at k beta/V.
 TEST(TurbulentLeakage, RootFallsEvenly) {
