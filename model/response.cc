@@ -23,16 +23,25 @@ std::string EffectParameter::Label() const {
   return place.has_value() ? name + "[" + std::to_string(*place) + "]" : name;
 }
 
+bool EffectParameter::IsStated(const ModelDescription& model) const {
+  return place.has_value() || model.effects[effect].parameters.contains(name);
+}
+
 double& EffectParameter::In(ModelDescription* model) const {
   EffectDescription& owner = model->effects[effect];
-  return place.has_value() ? owner.lists.at(name).at(*place) : owner.parameters[name];
+  if (place.has_value()) return owner.lists.at(name).at(*place);
+  const auto stated = owner.parameters.find(name);
+  if (stated != owner.parameters.end()) return stated->second;
+  const std::vector<ParameterInfo>& infos = FindEffect(owner)->parameters;
+  const auto info = std::ranges::find(infos, name, &ParameterInfo::name);
+  return owner.parameters[name] = NumberOf(owner, *info, model->parameters);
 }
 
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
   std::vector<size_t> order(model.effects.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return model.effects[a].id < model.effects[b].id; });
+                   [&](size_t a, size_t b) { return ComesBefore(model.effects[a], model.effects[b]); });
   std::vector<EffectParameter> parameters;
   for (const size_t i : order) {
     const EffectInfo* info = FindEffect(model.effects[i]);

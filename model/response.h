@@ -24,11 +24,14 @@ struct EffectParameter {
 
   // "speed", "values[3]"
   std::string Label() const;
-  // A reference to its value in the model.
+  // Whether the model states it. A number that may be left out otherwise has its standard, and a response has
+  // no derivative by it.
+  bool IsStated(const ModelDescription& model) const;
+  // A reference to its value in the model, which states it from then on.
   double& In(ModelDescription* model) const;
 };
 
-// All such numbers of a model: effects in the order of their ids, and the parameters of each in the
+// All such numbers of a model: effects as they are applied, and the parameters of each in the
 // catalogue's order. Throws ModelError for an unknown effect.
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model);
 

@@ -40,6 +40,7 @@ const std::vector<std::pair<std::string, Scale>>& Scales() {
                                                                     {"charge", Scale::kCharge},
                                                                     {"sample", Scale::kSample},
                                                                     {"rate", Scale::kRate},
+                                                                    {"torque_rate", Scale::kTorqueRate},
                                                                     {"flow", Scale::kFlow},
                                                                     {"arm_stiffness", Scale::kArmStiffness},
                                                                     {"arm_damping", Scale::kArmDamping},

@@ -86,7 +86,7 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
       for (const std::string& name : parameter.names) choices.emplace_back(name, name);
       section.Choice(parameter.name, choices, &effect.names[parameter.name]);
       section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.meaning + ")");
-    } else {
+    } else if (!parameter.optional || section.Has(parameter.name)) {
       section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
       section.Require(parameter.name, Wanted(parameter, units));
     }

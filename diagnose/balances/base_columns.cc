@@ -54,6 +54,7 @@ void AddGivenEffects(ColumnMaker* maker) {
   const model::ModelDescription& given = maker->setup->given;
   const std::vector<model::EffectParameter> all = model::EffectParameters(given);
   for (size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].IsStated(given)) continue;
     const std::string& id = given.effects[all[i].effect].id;
     const model::Role role = ParameterOf(id, all[i].name).role;
     model::ModelDescription copy = given;

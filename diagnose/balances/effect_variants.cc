@@ -76,11 +76,12 @@ std::vector<EffectVariant> OnGrid(const EffectVariant& from, const model::Effect
   for (const ParameterInfo& parameter : info.parameters) {
     const bool amount =
         std::find(from.amounts.begin(), from.amounts.end(), parameter.name) != from.amounts.end();
-    shapes += parameter.is_number() && !amount ? 1 : 0;
+    shapes += parameter.is_number() && IsFitted(info, parameter) && !amount ? 1 : 0;
   }
   std::vector<EffectVariant> variants = {from};
   for (const ParameterInfo& parameter : info.parameters) {
-    if (!parameter.is_number() || from.at.parameters.contains(parameter.name)) continue;
+    if (!parameter.is_number() || !IsFitted(info, parameter)) continue;
+    if (from.at.parameters.contains(parameter.name)) continue;
     const std::vector<double> grid = GridOf(parameter, sizes, shapes == 1);
     std::vector<EffectVariant> next;
     for (const EffectVariant& variant : variants) {
@@ -116,7 +117,7 @@ EffectVariant Open(const Change& change, const model::EffectInfo& info) {
     if (parameter.role == Role::kPhase) variant.phase = parameter.name;
     // The error of a late channel, or of what its sensor does over time, grows with the time.
     const bool time = parameter.role == Role::kTime && (channel || change.effect.starts_with("sensor."));
-    if (!IsSize(parameter) && !time) continue;
+    if ((!IsSize(parameter) && !time) || !IsFitted(info, parameter)) continue;
     variant.amounts.push_back(parameter.name);
     variant.at.parameters[parameter.name] = 0;
     variant.is_time = time;

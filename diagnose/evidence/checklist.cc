@@ -150,10 +150,9 @@ class RunChecklist {
   double ValveDrop() const {
     double drop = 0;
     for (const model::EffectDescription& effect : model_.effects) {
-      const bool feeds = effect.id == "valve.check" || effect.id == "valve.pilot";
-      for (const char* name : {"cracking", "range"}) {
-        const auto found = effect.parameters.find(name);
-        if (feeds && found != effect.parameters.end()) drop += found->second;
+      if (effect.id != "valve.check" && effect.id != "valve.pilot_check") continue;
+      for (const model::ParameterInfo& number : model::FindEffect(effect)->parameters) {
+        if (number.name == "cracking" || number.name == "range") drop += NumberOf(effect, number, p_);
       }
     }
     return drop;

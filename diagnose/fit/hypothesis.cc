@@ -34,6 +34,7 @@ std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
     const model::EffectDescription& effect = model.effects[all[i].effect];
     const std::vector<std::string>& moved = hypothesis.effects;
     if (std::find(moved.begin(), moved.end(), effect.id) == moved.end()) continue;
+    if (!all[i].IsStated(model)) continue;
     const double value = all[i].In(&model);
     const bool periods = InfoOf(effect, all[i].name).role == model::Role::kPeriods;
     if (!periods || value != std::round(value)) free.push_back({all[i], i, value});
@@ -42,6 +43,10 @@ std::vector<FreeEffectNumber> FreeEffectNumbers(const Hypothesis& hypothesis) {
 }
 
 }  // namespace
+
+bool IsFitted(const model::EffectInfo& effect, const model::ParameterInfo& number) {
+  return !number.optional || effect.on_request;
+}
 
 std::string Change::Label() const {
   if (effect.empty()) return "parameter " + parameter;
@@ -143,6 +148,8 @@ double Sizes::Of(model::Scale scale) const {
       return sample;
     case model::Scale::kRate:
       return 1 / sample;
+    case model::Scale::kTorqueRate:
+      return torque / sample;
     case model::Scale::kFlow:
       return flow;
     case model::Scale::kArmStiffness:
@@ -213,7 +220,7 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   more.model.effects.push_back({change.effect, {}, change.names});
   std::vector<Hypothesis> all = {more};
   for (const model::ParameterInfo& parameter : info.parameters) {
-    if (parameter.is_name()) continue;
+    if (parameter.is_name() || !IsFitted(info, parameter)) continue;
     std::vector<Hypothesis> next;
     for (const Hypothesis& one : all) {
       for (const double start : StartsOf(parameter, sizes)) {

@@ -80,6 +80,10 @@ struct Hypothesis {
   Hypothesis Held() const;
 };
 
+// Whether fits move this number of an effect that the gap finder adds. What need not be stated stays at its
+// standard, except in effects that are looked for only when asked for by name: who asks knows the part.
+bool IsFitted(const model::EffectInfo& effect, const model::ParameterInfo& number);
+
 // Magnitudes seen in the runs; they scale starting values.
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;

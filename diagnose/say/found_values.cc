@@ -30,6 +30,7 @@ std::vector<OwnNumber> OwnNumbers(const model::ModelDescription& given, model::M
   }
   model::ModelDescription before = given;
   for (const model::EffectParameter& parameter : model::EffectParameters(given)) {
+    if (!parameter.IsStated(given)) continue;
     const std::string& id = given.effects[parameter.effect].id;
     // Effects that were added come after those that the model has.
     if (parameter.effect >= found.effects.size() || found.effects[parameter.effect].id != id) continue;

@@ -26,6 +26,10 @@ std::string Fault(const ParameterInfo& parameter) {
   if (parameter.role == Role::kChannel && !parameter.is_name()) return "has Role::kChannel but no names";
   if (!(parameter.min < parameter.max)) return "has a min that is not below its max";
   if (parameter.starts.empty()) return "has no starts";
+  if (parameter.is_name() && parameter.optional) return "is a name, which cannot be optional";
+  if (parameter.is_number() && parameter.optional == parameter.standard.text().empty()) {
+    return "needs a standard if it is an optional number, and only then";
+  }
   return "";
 }
 
@@ -136,6 +140,14 @@ bool HasRole(const std::string& effect, Role role) {
 
 const EffectInfo* FindEffect(const EffectDescription& effect) {
   return effect.formulas != nullptr ? &effect.formulas->info() : FindEffect(effect.id);
+}
+
+bool ComesBefore(const EffectDescription& a, const EffectDescription& b) {
+  const auto place = [](const EffectDescription& effect) {
+    const EffectInfo* info = FindEffect(effect);
+    return info == nullptr || info->after.empty() ? effect.id : info->after + "." + effect.id;
+  };
+  return place(a) < place(b);
 }
 
 const EffectInfo* FindEffect(const std::string& id) {

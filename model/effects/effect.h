@@ -8,7 +8,8 @@
 //                                                 q_1, q_2)
 //   p1', p2' with closed valves, (13), (14)    -> AddBalances of each effect (moves p_3)
 //   rates of the base states, eqs. (4), (13), (14), (15)
-// Effects are applied in the order of their ids, so a model does not depend on the order of its file.
+// Effects are applied in the order of their ids, but for EffectInfo::after, so a model does not depend on the
+// order of its file.
 #pragma once
 
 #include <memory>

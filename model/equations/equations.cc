@@ -99,6 +99,7 @@ void CheckParameters(const EffectDescription& effect, const EffectInfo& known, c
       }
     } else {
       const auto found = effect.parameters.find(info.name);
+      if (found == effect.parameters.end() && info.optional) continue;
       if (found == effect.parameters.end())
         throw ModelError("parameter " + owner + info.name + " is missing");
       CheckBounds(info, units, found->second, owner);
@@ -146,7 +147,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   }
 
   std::vector<EffectDescription> effects = description.effects;
-  std::stable_sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::stable_sort(effects.begin(), effects.end(), ComesBefore);
   for (size_t i = 0; i < effects.size(); ++i) {
     if (!options.repeated_effects && i > 0 && effects[i - 1].id == effects[i].id)
       throw ModelError("effect \"" + effects[i].id + "\" is there twice");
@@ -175,7 +176,14 @@ void Equations::AddEffect(const EffectDescription& effect, const StateSizes& siz
   data_.effects.push_back(BuildEffect(effect));
   const int first_parameter = static_cast<int>(data_.own.size());
   for (const ParameterInfo& info : known->parameters) {
-    if (info.is_number()) data_.own.push_back(effect.parameters.at(info.name));
+    if (info.is_number()) {
+      const double number = NumberOf(effect, info, data_.parameters);
+      if (!effect.parameters.contains(info.name)) {
+        CheckBounds(info, units_, number, effect.id + ".");  // base parameters may be extreme
+        data_.standards.emplace_back(data_.own.size(), info.standard);
+      }
+      data_.own.push_back(number);
+    }
     if (info.list != List::kValues) continue;
     const std::vector<double>& values = effect.lists.at(info.name);
     data_.own.insert(data_.own.end(), values.begin(), values.end());
@@ -188,7 +196,7 @@ void Equations::AddEffect(const EffectDescription& effect, const StateSizes& siz
   data_.reads_late |= made.reads_late();
   data_.reach = std::max(data_.reach, made.reach());
   if (made.replaces_valves()) {
-    CheckOnlyOne(!data_.ideal_valves, effect.id, "valve.check and valve.pilot");
+    CheckOnlyOne(!data_.ideal_valves, effect.id, "valve.check and valve.pilot_check");
     data_.ideal_valves = false;
   }
   if (made.p_3_state() >= 0) {

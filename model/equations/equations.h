@@ -5,12 +5,14 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/terms/actuator_options.h"
 #include "model/terms/description.h"
 #include "model/terms/measurement.h"
 #include "model/terms/model_error.h"
+#include "model/terms/parameter_info.h"
 #include "model/terms/state.h"
 #include "model/terms/terms.h"
 
@@ -47,6 +49,8 @@ struct EquationData : NumbersOf<double> {
   // s: `motion` is evaluated at times below this.
   double motion_limit = std::numeric_limits<double>::infinity();
   std::vector<std::shared_ptr<Effect>> effects;
+  // Numbers of effects that the model leaves out: the place in `own`, and what stands there.
+  std::vector<std::pair<size_t, Standard>> standards;
   Surroundings around;
   int states = 0;
   int switches = kFirstEffectSwitch;

@@ -294,10 +294,11 @@ void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double
   }
 }
 
-// The numbers that follow from n.parameters and n.own.
+// The numbers that follow from n.parameters and n.own, beginning with those that the model leaves out.
 template <class T>
 void CompleteNumbers(const EquationData& m, NumbersOf<T>* n) {
   const ParametersOf<T>& p = n->parameters;
+  for (const auto& [place, standard] : m.standards) n->own[place] = standard.In(p);
   n->inverse_J = 1.0 / p.J;
   n->inverse_J_a = 1.0 / p.J_a;
   n->fixed_volume = T(0.0);

@@ -48,6 +48,18 @@ BaseParameter AnySign(double Parameters::*member, double uncertainty, const Mean
 
 }  // namespace
 
+Standard::Standard(double value)
+    : text_(ShortestNumber(value)),
+      number_([value](const ParametersOf<double>& /*base*/) { return value; }),
+      jet_([value](const ParametersOf<Jet>& /*base*/) { return Jet(value); }) {}
+
+double NumberOf(const EffectDescription& effect, const ParameterInfo& number, const Parameters& base) {
+  const auto stated = effect.parameters.find(number.name);
+  if (stated != effect.parameters.end()) return stated->second;
+  if (!number.optional) throw ModelError("parameter " + effect.id + "." + number.name + " is missing");
+  return number.standard.In(base);
+}
+
 const std::vector<BaseParameter>& BaseParameters() {
   static const std::vector<BaseParameter> parameters = {
       Positive(&Parameters::k_1, kDataSheet,

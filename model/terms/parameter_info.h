@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/terms/description.h"
+#include "model/terms/jet.h"
 
 namespace hydro::model {
 
@@ -25,6 +28,7 @@ enum class Scale {
   kCharge,        // p_3
   kSample,        // the median time between samples
   kRate,          // one over kSample
+  kTorqueRate,    // T_pmax over kSample
   kFlow,          // D kSpeed over kPressure: a conductance that passes the pump's whole flow
   kArmStiffness,  // 2 beta c^2 / V_ms: the stiffness of the oil on both sides of the arm
   kArmDamping,    // 2 sqrt(J_a kArmStiffness): critical damping of the arm on its oil
@@ -61,6 +65,26 @@ enum class List {
   kValues,  // numbers, each of which a fit may move
 };
 
+// The value of a number that a model leaves out: a constant, or a formula of the base parameters, which it
+// then follows.
+class Standard {
+ public:
+  Standard() = default;
+  Standard(double value);  // implicit, for `.standard = 0.0` in an effect's entry
+  // `formula` takes a ParametersOf of any scalar. `text` is how documents show it.
+  template <class Formula>
+  Standard(std::string text, Formula formula) : text_(std::move(text)), number_(formula), jet_(formula) {}
+
+  const std::string& text() const { return text_; }  // "" where there is none
+  double In(const ParametersOf<double>& base) const { return number_(base); }
+  Jet In(const ParametersOf<Jet>& base) const { return jet_(base); }
+
+ private:
+  std::string text_;
+  std::function<double(const ParametersOf<double>&)> number_;
+  std::function<Jet(const ParametersOf<Jet>&)> jet_;
+};
+
 struct ParameterInfo {
   std::string name;
   std::string unit;         // in the paper's units; UnitIn() gives a model's own
@@ -85,7 +109,9 @@ struct ParameterInfo {
   // run every effect of the catalogue with it.
   double example = 0;
   List list = List::kNone;
-  bool optional = false;  // the list may be absent
+  // The list or number may be absent. Such a number then has its standard, which no fit moves by itself.
+  bool optional = false;
+  Standard standard = {};
   // Why a value above max is refused, if that is not obvious.
   const char* beyond_max = "";
 
@@ -93,6 +119,10 @@ struct ParameterInfo {
   bool is_number() const { return list == List::kNone && names.empty(); }
   std::string UnitIn(const UnitSystem& units) const { return units.UnitFor(unit, arm); }
 };
+
+// The value of an effect's number in a model with these base parameters: as stated, or else its standard.
+// Throws ModelError where it has neither.
+double NumberOf(const EffectDescription& effect, const ParameterInfo& number, const Parameters& base);
 
 // A base parameter and its place.
 struct BaseParameter {
@@ -137,6 +167,8 @@ struct EffectInfo {
   std::string equation;                   // what it changes in the model's equations, one line
   std::string confused_with;              // what produces similar traces in data
   std::vector<ParameterInfo> parameters;  // all required except those marked optional
+  // Effects are applied in the order of their ids, this one directly after the effect named here.
+  std::string after = "";
   // Checks how lists fit together that are each in order by themselves; null: there is nothing to check.
   std::optional<ListFault> (*fault)(const EffectDescription& effect) = nullptr;
   // The effect's states depend on what flowed before a run begins: kReturned of the start.
@@ -168,6 +200,9 @@ const std::vector<EffectInfo>& EffectCatalogue();
 const EffectInfo* FindEffect(const std::string& id);
 // The same for an effect of a model, which may bring its own.
 const EffectInfo* FindEffect(const EffectDescription& effect);
+
+// The order in which a model's effects are applied.
+bool ComesBefore(const EffectDescription& a, const EffectDescription& b);
 
 // Whether one of the effect's parameters has the role; false for an unknown effect.
 bool HasRole(const std::string& effect, Role role);

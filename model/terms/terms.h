@@ -58,7 +58,7 @@ struct Terms {
 
   // Values that an effect keeps for its own switches:
   T torque_asked;   // of the motor, before motor.speed_torque_limit or motor.current_limit reduces it
-  T voltage_asked;  // of the amplifier, before amp.input_rate_limit limits it
+  T voltage_asked;  // of the amplifier, before amp.rate_limit limits it
 
   // Derived from the above. Effects with their own states may replace the flows in AddStates.
   T net_torque;  // T_p - D dp - load: the torque that friction must hold when the pump is at rest

@@ -55,12 +55,12 @@ double Fitted(const diagnose::Diagnosis& d, double model::Parameters::*member) {
 TEST(BareMotor, AWeightAtAnyPhase) {
   for (const double phase : {0.0, 1.2, -1.66}) {
     model::ModelDescription truth = Bare();
-    truth.effects = {{"load.gravity", {{"torque", 6}, {"phase", phase}}, {}}};
+    truth.effects = {{"load.gravity", {{"mgl", 6}, {"phase", phase}}, {}}};
     const diagnose::Diagnosis d = diagnose::Diagnose(Bare(), RunsOf(truth, 4, 3), {}, {}, {});
     ASSERT_EQ(d.effects.size(), 1u) << phase << ": " << d.sentence;
     EXPECT_EQ(d.effects[0].id, "load.gravity");
     const model::EffectDescription& found = d.model.effects.front();
-    const double torque = found.parameters.at("torque"), at = found.parameters.at("phase");
+    const double torque = found.parameters.at("mgl"), at = found.parameters.at("phase");
     EXPECT_NEAR(torque * std::cos(at), 6 * std::cos(phase), 0.6) << phase;
     EXPECT_NEAR(torque * std::sin(at), 6 * std::sin(phase), 0.6) << phase;
   }

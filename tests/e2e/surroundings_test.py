@@ -89,7 +89,7 @@ class SurroundingsTest(stack.TestCase):
         self.record(0.03, (15, 35, 60), lambda t: 0.0)
         report = self.diagnose('temperature = { column = "T", unit = "degC" }\n', 3)
         self.assertEqual([effect["id"] for effect in report["effects"]], ["fluid.viscosity"], report["sentence"])
-        low, high = report["effects"][0]["parameters"]["rate"]["ci95"]
+        low, high = report["effects"][0]["parameters"]["k"]["ci95"]
         self.assertLess(abs(0.5 * (low + high) - 0.03), 0.001)
         self.assertLess(high - low, 0.003)
         gap = next(one["typical"] for one in report["gap"]["horizons"] if abs(one["seconds"] - 0.4) < 1e-9)

@@ -159,7 +159,7 @@ TEST(Balances, FollowTheStatesOfEffects) {
   size_t tested = 0;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     // Teeth meet, and a command is reached, between samples: nobody looks for these by their balances.
-    if (info.id == "gear.backlash" || info.id == "amp.input_rate_limit") continue;
+    if (info.id == "gear.backlash" || info.id == "amp.rate_limit") continue;
     const model::ModelDescription machine = Table1Model({Effect(info)});
     for (const model::ActuatorOptions& options : AllWays()) {
       if (!model::BalanceEquations(machine, options).has_states()) continue;

@@ -22,6 +22,7 @@ std::string Number(double number) {
 std::string Cell(const model::ParameterInfo& parameter) {
   std::string cell = "`" + parameter.name + "` (" + parameter.unit;
   if (!parameter.is_name()) cell += ", " + Number(parameter.example);
+  if (parameter.optional) cell += "; standard " + parameter.standard.text();
   return cell + ")";
 }
 

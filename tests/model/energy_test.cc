@@ -131,6 +131,7 @@ TEST(Energy, DrivenBypassAndEffects) {
                    {"arm.flexure", {{"stiffness", 6e3}, {"damping", 60}}, {}},
                    {"fluid.entrained_air", {{"air_fraction", 0.005}}, {}},
                    {"fluid.stiffening", {{"slope", 20}}, {}},
+                   {"load.spring", {{"stiffness", 500}, {"rest", 0.1}}, {}},
                    {"motor.cogging", {{"amplitude", 1}, {"periods", 12}, {"phase", 0.4}}, {}},
                    {"motor.speed_torque_limit", {{"no_load_speed", 30}}, {}},
                    {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}},

@@ -221,6 +221,22 @@ TEST(Response, DerivativesEqualDifferenceQuotients) {
   }
 }
 
+// Tests that a number that the model leaves out follows its base parameter: derivatives by that contain it.
+TEST(Response, LeftOutNumbersFollowTheirBaseParameter) {
+  const auto by = [](const char* base) {
+    return std::vector<model::Unknown>{{model::Unknown::Kind::kBase, model::BasePlace(base)}};
+  };
+  const model::ModelDescription gas =
+      Table1Model({{"accumulator.gas", {{"volume", 0.1}, {"exponent", 1.2}}, {}}});
+  ExpectDerivatives(gas, LevelsFor(kHoldings[0]), SomeStart(), by("p_3"), 1e-5, "gas");
+  const model::ModelDescription play =
+      Table1Model({{"gear.backlash", {{"width", 0.02}, {"stiffness", 200}}, {}}});
+  ExpectDerivatives(play, LevelsFor(kHoldings[0]), SomeStart(), by("J"), 1e-5, "play");
+  const model::ModelDescription pilot =
+      Table1Model({{"valve.pilot_check", {{"ratio", 3}, {"cracking", 10}}, {}}});
+  ExpectDerivatives(pilot, LevelsFor(kHoldings[0]), SomeStart(), by("T_pmax"), 1e-5, "pilot");
+}
+
 // Tests that a shaft that starts turned meets the same teeth as with another phase, though its sensor counts
 // from 0.
 TEST(Response, TurnedShaft) {
@@ -344,7 +360,7 @@ TEST(Response, AForceGivesItsImpulse) {
 // Tests that warm oil is that of a model with less viscous friction and more leakage, and that it may warm up
 // during the run.
 TEST(Response, WarmOilIsThinner) {
-  const model::ModelDescription given = Table1Model({{"fluid.viscosity", {{"rate", 0.03}}, {}}});
+  const model::ModelDescription given = Table1Model({{"fluid.viscosity", {{"k", 0.03}}, {}}});
   model::ModelDescription warm = Table1Model();
   const double thinner = std::exp(0.03 * (65 - 40));
   warm.parameters.b /= thinner;

@@ -1,7 +1,9 @@
 // gear.backlash: play between the motor's shaft and a load with its own inertia. With twist = theta -
-// theta_load, the two touch where |twist| > gap/2; a spring and damper then transmit stiffness (twist -/+
-// gap/2) + damping twist'. load.gravity and load.spring act on the load. Two states, the load's angle and
-// speed. One switch: 0, apart; +1 and -1, the motor pushes forward or backward.
+// theta_load, the two touch where |twist| > width/2; a spring and damper then transmit stiffness (twist -/+
+// width/2) + damping twist'. load.gravity and load.spring act on the load. Two states, the load's angle and
+// speed. Without damping the teeth bounce for as long as friction lets them; a load without a stated inertia
+// is as heavy as the motor, J, which is usual where a gear was chosen to match the two. One switch: 0, apart;
+// +1 and -1, the motor pushes forward or backward.
 
 #include <cmath>
 
@@ -85,37 +87,43 @@ class Backlash : public EffectOf<Backlash> {
 };
 
 [[maybe_unused]] const bool kGearBacklashAdded = AddToCatalogue(
-    {.info = {.id = "gear.backlash",
-              .summary = "play between the motor's shaft and its load",
-              .equation = "a gap, then a spring and damper, between the motor and a load of its own inertia",
-              .confused_with = "parameter J, arm.flexure",
-              .parameters = {{.name = "gap",
-                              .unit = "rad",
-                              .meaning = "the whole play, as an angle of the motor",
-                              .starts = {0.01},
-                              .example = 0.02},
-                             {.name = "stiffness",
-                              .unit = "in-lbf/rad",
-                              .min_allowed = false,
-                              .meaning = "torque per twist where the teeth touch",
-                              .starts = {100},
-                              .scale = Scale::kTorque,
-                              .example = 200},
-                             {.name = "damping",
-                              .unit = "in-lbf-s",
-                              .meaning = "torque per rate of twist where the teeth touch",
-                              .starts = {0.1},
-                              .scale = Scale::kTorque,
-                              .example = 0.5},
-                             {.name = "inertia",
-                              .unit = "lbf-in-s^2",
-                              .min_allowed = false,
-                              .meaning = "of the load, at the motor's speed",
-                              .starts = {0.01},
-                              .example = 0.005}},
-              // The load's own angle is not measured.
-              .unseen_by_balances = true,
-              .on_request = true},
+    {.info =
+         {.id = "gear.backlash",
+          .summary = "play between the motor's shaft and its load",
+          .equation =
+              "play of width, then stiffness and damping, between the motor and a load of its own inertia",
+          .confused_with = "parameter J, arm.flexure",
+          .parameters = {{.name = "width",
+                          .unit = "rad",
+                          .meaning = "the whole play, as an angle of the motor",
+                          .starts = {0.01},
+                          .example = 0.02},
+                         {.name = "stiffness",
+                          .unit = "in-lbf/rad",
+                          .min_allowed = false,
+                          .meaning = "torque per twist where the teeth touch",
+                          .starts = {100},
+                          .scale = Scale::kTorque,
+                          .example = 200},
+                         {.name = "damping",
+                          .unit = "in-lbf-s",
+                          .meaning = "torque per rate of twist where the teeth touch",
+                          .starts = {0.1},
+                          .scale = Scale::kTorque,
+                          .example = 0.5,
+                          .optional = true,
+                          .standard = 0.0},
+                         {.name = "inertia",
+                          .unit = "lbf-in-s^2",
+                          .min_allowed = false,
+                          .meaning = "of the load, at the motor's speed",
+                          .starts = {0.01},
+                          .example = 0.005,
+                          .optional = true,
+                          .standard = {"J", [](const auto& p) { return p.J; }}}},
+          // The load's own angle is not measured.
+          .unseen_by_balances = true,
+          .on_request = true},
      .make = MakeEffect<Backlash>});
 
 }  // namespace

@@ -75,7 +75,9 @@ class BackEmf : public EffectOf<BackEmf> {
                                              .starts = {2},
                                              .scale = Scale::kSample,
                                              .role = Role::kTime,
-                                             .example = 0.002}},
+                                             .example = 0.002,
+                                             .optional = true,
+                                             .standard = 0.0}},
                              // Without inductance, k_1 k_e adds to b.
                              .on_request = true},
                     .make = MakeEffect<BackEmf>});

@@ -1,5 +1,5 @@
 // load.gravity: a weight on an arm that the motor's shaft carries, with the torque m g l sin(theta + phase)
-// against forward rotation; m g l is the parameter `torque`. With gear.backlash, theta is the load's. A
+// against forward rotation; m g l is the parameter `mgl`. With gear.backlash, theta is the load's. A
 // weight at the hydraulic arm is the base parameter mgl.
 
 #include <cmath>
@@ -26,12 +26,12 @@ struct ShaftWeight {
 [[maybe_unused]] const bool kLoadGravityAdded = AddToCatalogue(
     {.info = {.id = "load.gravity",
               .summary = "a weight hangs on the motor's shaft",
-              .equation = "T -= torque sin(theta + phase)",
+              .equation = "T -= mgl sin(theta + phase)",
               .confused_with = "motor.cogging with one period, load.spring over a small angle",
-              .parameters = {{.name = "torque",
+              .parameters = {{.name = "mgl",
                               .unit = "in-lbf",
                               .min = -kUnbounded,
-                              .meaning = "m g l: the largest torque of the weight; negative: half a turn on",
+                              .meaning = "largest torque of the weight; negative: half a turn on",
                               .example = 3},
                              {.name = "phase",
                               .unit = "rad",

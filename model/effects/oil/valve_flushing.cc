@@ -25,7 +25,7 @@ struct Flushing {
                              .equation = "the side of the lower pressure loses conductance opening (p - p3), "
                                          "opening = (abs(dp) - shift)/range "
                                          "from 0 to 1",
-                             .confused_with = "parameter c_E, valve.pilot",
+                             .confused_with = "parameter c_E, valve.pilot_check",
                              .parameters = {{.name = "shift",
                                              .unit = "psi",
                                              .meaning = "pressure difference at which the shuttle moves",

@@ -149,6 +149,10 @@ TEST(EffectVariants, AllAreModels) {
       if (one.kind == Kind::kWave) continue;
       for (const model::ParameterInfo& parameter : info.parameters) {
         if (!parameter.is_number()) continue;
+        if (!diagnose::IsFitted(info, parameter)) {
+          EXPECT_FALSE(one.at.parameters.contains(parameter.name)) << one.set << " " << parameter.name;
+          continue;
+        }
         ASSERT_TRUE(one.at.parameters.contains(parameter.name)) << one.set << " " << parameter.name;
         const double value = one.at.parameters.at(parameter.name);
         EXPECT_GE(value, parameter.min) << one.set << " " << parameter.name;
@@ -158,6 +162,15 @@ TEST(EffectVariants, AllAreModels) {
   }
   EXPECT_EQ(sets.size(), count);
   EXPECT_GT(count, model::EffectCatalogue().size());
+}
+
+// Tests that an optional number stays at its standard, except in an effect that somebody has asked for.
+TEST(EffectVariants, OptionalNumbersStayAtTheirStandards) {
+  const std::vector<EffectVariant> gear = Of("gear.load_friction");
+  ASSERT_EQ(gear.size(), 1u);
+  EXPECT_THAT(gear[0].amounts, ElementsAre("load_share"));
+  EXPECT_FALSE(gear[0].at.parameters.contains("motor_share"));
+  EXPECT_TRUE(Of("accumulator.gas")[0].at.parameters.contains("precharge"));
 }
 
 // Tests that a parameter's entry is found by its names.

@@ -67,7 +67,7 @@ TEST(ChecklistTest, WhatTheModelKnowsOfTheCharge) {
   EXPECT_THAT(charge(model, low), ::testing::StartsWith("look"));
   EXPECT_THAT(charge(model, loaded), ::testing::StartsWith("look"));
   model.effects = {
-      {.id = "valve.pilot",
+      {.id = "valve.pilot_check",
        .parameters = {{"ratio", 3}, {"cracking", 0.05 * p_3}, {"range", 0.25 * p_3}, {"conductance", 5}},
        .names = {}}};
   EXPECT_THAT(charge(model, low), ::testing::StartsWith("ok"));

@@ -56,6 +56,30 @@ TEST(Hypothesis, FreeNumbers) {
   EXPECT_EQ(hypothesis.Held().model.parameters.b, 0.02);
 }
 
+// Tests that fits leave a number at its standard that need not be stated: of an effect that is added unasked,
+// and of one that the model has without that number. Where the model states it, and in effects that are
+// added only when asked for, it is free.
+TEST(Hypothesis, OptionalNumbers) {
+  const auto names = [](const Hypothesis& hypothesis) {
+    std::vector<std::string> all;
+    for (const FreeParameter& one : hypothesis.Free()) all.push_back(one.name);
+    return all;
+  };
+  using Names = std::vector<std::string>;
+  const auto given = [&](std::map<std::string, double> numbers) {
+    return names(WithFree(Table1With({{"gear.load_friction", std::move(numbers), {}}}), {}));
+  };
+  EXPECT_EQ(given({{"load_share", 0.1}}), (Names{"gear.load_friction.load_share"}));
+  EXPECT_EQ(given({{"load_share", 0.1}, {"motor_share", 0}}),
+            (Names{"gear.load_friction.motor_share", "gear.load_friction.load_share"}));
+  const auto added = [&](const char* effect) {
+    const Hypothesis plain = WithFree(Table1With({}), {});
+    return names(diagnose::With(plain, Change{effect, {}, ""}, diagnose::Sizes{.torque = 40}).front());
+  };
+  EXPECT_EQ(added("gear.load_friction"), (Names{"gear.load_friction.load_share"}));
+  EXPECT_EQ(added("motor.back_emf"), (Names{"motor.back_emf.k_e", "motor.back_emf.tau"}));
+}
+
 // Tests that a whole number of periods, which is counted and not fitted, is not free and stays when the free
 // numbers are set, and that one that is no whole number is fitted.
 TEST(Hypothesis, WholePeriodsStay) {

@@ -53,7 +53,7 @@ void ExpectMotion(const Rig& rig, const Motion& motion, double within) {
 
 // Tests that a weight on the shaft swings as a pendulum does, far beyond small angles.
 TEST(LoadGravity, SwingsLikeAPendulum) {
-  Rig rig = RigOf(BareMotor({{"load.gravity", Numbers{{"torque", 5}, {"phase", 0.7}}, {}}}));
+  Rig rig = RigOf(BareMotor({{"load.gravity", Numbers{{"mgl", 5}, {"phase", 0.7}}, {}}}));
   rig.simulation->Advance(0, 0.61);
   ExpectMotion(
       rig, Integrated({}, 0.61, [](const Motion& m) { return (-5 * std::sin(m.angle + 0.7)) / 0.03; }), 1e-5);
@@ -76,9 +76,8 @@ TEST(GearLoadFriction, GrowsWithWhatTheGearPassesOn) {
   const double motor = 0.1, load = 0.2, T_s = 1, w = 1e-3 * 40;
   const auto soft = [&](double y) { return std::sqrt(y * y + w * w) - w; };
   const model::ModelDescription model =
-      BareMotor({{"gear.load_friction", Numbers{{"load", load}}, {}},
-                 {"gear.motor_friction", Numbers{{"motor", motor}}, {}},
-                 {"load.gravity", Numbers{{"torque", 10}, {"phase", 0}}, {}}},
+      BareMotor({{"gear.load_friction", Numbers{{"motor_share", motor}, {"load_share", load}}, {}},
+                 {"load.gravity", Numbers{{"mgl", 10}, {"phase", 0}}, {}}},
                 T_s);
   const model::Equations equations(model, Bypassed());
   for (const double voltage : {-3.0, 3.0}) {
@@ -106,8 +105,8 @@ TEST(GearLoadFriction, GrowsWithWhatTheGearPassesOn) {
 // gear's.
 TEST(GearLoadFriction, LocksAWormGear) {
   for (const double load : {0.5, 1.2}) {
-    Rig rig = RigOf(BareMotor({{"gear.load_friction", Numbers{{"load", load}}, {}},
-                               {"load.gravity", Numbers{{"torque", 10}, {"phase", 1}}, {}}}));
+    Rig rig = RigOf(BareMotor({{"gear.load_friction", Numbers{{"load_share", load}}, {}},
+                               {"load.gravity", Numbers{{"mgl", 10}, {"phase", 1}}, {}}}));
     rig.simulation->Advance(0, 0.2);
     if (load > 1) {
       EXPECT_EQ(rig.Measure().motor_angle, 0);
@@ -165,8 +164,8 @@ TEST(MotorBackEmf, KeepsTheLimit) {
 
 // Tests that commands within the dead band do nothing, and what is beyond it acts, also behind a delay and
 // before a lag.
-TEST(AmpInputDeadBand, TakesTheMiddleAway) {
-  const model::EffectDescription band = {"amp.input_dead_band", Numbers{{"width", 0.5}}, {}};
+TEST(AmpDeadband, TakesTheMiddleAway) {
+  const model::EffectDescription band = {"amp.deadband", Numbers{{"width", 0.5}}, {}};
   const model::Equations equations(BareMotor({band}), Bypassed());
   for (const auto& [voltage, torque] :
        {std::pair{0.4, 0.0}, {-0.5, 0.0}, {2.0, 6.0}, {-2.0, -6.0}, {20.0, 40.0}}) {
@@ -182,10 +181,10 @@ TEST(AmpInputDeadBand, TakesTheMiddleAway) {
   EXPECT_NEAR(TermsOf(late, 2).torque, 6 * (1 - std::exp(-1)), 1e-6);
 }
 
-// Tests that the acting voltage moves in straight lines: up to a command, and back from halfway where the
-// command turns.
-TEST(AmpInputRateLimit, MovesInStraightLines) {
-  Rig rig = RigOf(BareMotor({{"amp.input_rate_limit", Numbers{{"rate", 100}}, {}}}));
+// Tests that the torque moves in straight lines: up to a command, and back from halfway where the command
+// turns.
+TEST(AmpRateLimit, MovesInStraightLines) {
+  Rig rig = RigOf(BareMotor({{"amp.rate_limit", Numbers{{"rate", 400}}, {}}}));
   const auto torque_at = [&](double voltage, double time) {
     rig.simulation->Advance(voltage, time);
     return TermsOf(rig, voltage).torque;
@@ -198,6 +197,12 @@ TEST(AmpInputRateLimit, MovesInStraightLines) {
   // The motor's speed is the area under all that: 2 and 1 up, then down through 0.
   const double area = 4 * (0.02 * 2 / 2 + (0.02 * 2 / 2) - 0.01 * 1 / 2 - 0.03 * 1);
   EXPECT_NEAR(rig.Measure().motor_speed, area / 0.03, 1e-3);
+  // A lag follows the line: tau T' = 400 t - T.
+  const double tau = 0.02;
+  Rig lagging = RigOf(
+      BareMotor({{"amp.rate_limit", Numbers{{"rate", 400}}, {}}, {"amp.lag", Numbers{{"tau", tau}}, {}}}));
+  lagging.simulation->Advance(3, 0.01);
+  EXPECT_NEAR(TermsOf(lagging, 3).torque, 400 * (0.01 - tau * (1 - std::exp(-0.01 / tau))), 1e-5);
 }
 
 // Tests the corner: the whole torque below it, the line above it, nothing while braking.
@@ -214,25 +219,25 @@ TEST(MotorCurrentLimit, FallsAboveItsCorner) {
   EXPECT_EQ(TermsOf(rig, -10).torque, -40);
 }
 
-// Tests play: the motor runs free through the gap, pushes the load behind it, and keeps the energy of both;
+// Tests play: the motor runs free through it, pushes the load behind it, and keeps the energy of both;
 // against the equations of two masses and a spring with a dead zone, integrated here in small steps.
-TEST(GearBacklash, PassesNothingWithinTheGap) {
-  const double gap = 0.2, stiffness = 300, inertia = 0.02;
-  Rig rig =
-      RigOf(BareMotor({{"gear.backlash",
-                        Numbers{{"gap", gap}, {"stiffness", stiffness}, {"damping", 0}, {"inertia", inertia}},
-                        {}},
-                       {"load.spring", Numbers{{"stiffness", 5}, {"rest", 0}}, {}}}));
-  const double voltage = 0.5, touches = std::sqrt(2 * gap / 2 * 0.03 / (4 * voltage));
+TEST(GearBacklash, PassesNothingWithinThePlay) {
+  const double width = 0.2, stiffness = 300, inertia = 0.02;
+  Rig rig = RigOf(
+      BareMotor({{"gear.backlash",
+                  Numbers{{"width", width}, {"stiffness", stiffness}, {"damping", 0}, {"inertia", inertia}},
+                  {}},
+                 {"load.spring", Numbers{{"stiffness", 5}, {"rest", 0}}, {}}}));
+  const double voltage = 0.5, touches = std::sqrt(2 * width / 2 * 0.03 / (4 * voltage));
   rig.simulation->Advance(voltage, 0.95 * touches);
-  EXPECT_EQ(rig.simulation->now().state[4], 0) << "the load stands while the motor crosses half the gap";
+  EXPECT_EQ(rig.simulation->now().state[4], 0) << "the load stands while the motor crosses half the play";
   EXPECT_NEAR(rig.Measure().motor_speed, 4 * voltage / 0.03 * 0.95 * touches, 1e-6);
   double x[4] = {0, 0, 0, 0};  // angle, speed of the motor; of the load
   constexpr double h = 1e-6;
   const double until = 0.4;
   for (int step = 0; step < std::lround(until / h); ++step) {
     const auto accelerations = [&](double angle, double load) {
-      const double twist = angle - load, beyond = std::max(std::abs(twist) - gap / 2, 0.0);
+      const double twist = angle - load, beyond = std::max(std::abs(twist) - width / 2, 0.0);
       const double passed = stiffness * (twist > 0 ? beyond : -beyond);
       return std::pair{(4 * voltage - passed) / 0.03, (passed - 5 * load) / inertia};
     };

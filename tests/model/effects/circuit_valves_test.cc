@@ -13,7 +13,8 @@ namespace hydro::testing {
 namespace {
 
 model::EffectDescription Pilot(double ratio = 3) {
-  return {"valve.pilot", {{"ratio", ratio}, {"cracking", 10}, {"range", 40}, {"conductance", 0.01}}, {}};
+  return {
+      "valve.pilot_check", {{"ratio", ratio}, {"cracking", 10}, {"range", 40}, {"conductance", 0.01}}, {}};
 }
 
 // Whether it is closed, between or wide open; and the flow out of side 1 there, at p1 and p2 with p_3 = 100.
@@ -36,7 +37,7 @@ void ExpectFlow(double p1, double p2, int position, double flow) {
 
 // Tests the check valve's own opening below p_3, and that the other side's pressure opens it against the
 // side's own.
-TEST(ValvePilot, OpensByBothPressures) {
+TEST(ValvePilotCheck, OpensByBothPressures) {
   ExpectFlow(95, 100, 0, 0);                          // below p_3 by less than the cracking pressure
   ExpectFlow(70, 100, 1, 0.01 * 0.5 * (70 - 100.0));  // (30 - 10)/40 open: oil comes in
   ExpectFlow(40, 100, 2, 0.01 * (40 - 100.0));
@@ -99,7 +100,7 @@ Swing SwingUnder(double force, double speed) {
   model::ModelDescription model = Table1Model(
       {{"actuator.unequal_areas", {{"difference", (1 - 0.65) / (1 + 0.65)}}, {}},
        {"actuator.seal_friction", {{"coulomb", 0}, {"viscous", 50}}, {}},
-       {"valve.pilot", {{"ratio", 3}, {"cracking", 10}, {"range", 120}, {"conductance", 0.01}}, {}}});
+       {"valve.pilot_check", {{"ratio", 3}, {"cracking", 10}, {"range", 120}, {"conductance", 0.01}}, {}}});
   model.units.linear_arm = true;  // the weight is the same wherever it stands
   model.parameters.V_ms = 40;
   model.parameters.mgl = force;
@@ -131,7 +132,7 @@ Swing SwingUnder(double force, double speed) {
 // load at which both sides are at about the charge pressure does not settle, because neither valve can stay
 // open: the pressures swing and the valves change for as long as the pump turns. With a clear load of either
 // sign, and on the way out, all settle.
-TEST(ValvePilot, OscillatesBetweenItsModesNearZeroLoad) {
+TEST(ValvePilotCheck, OscillatesBetweenItsModesNearZeroLoad) {
   for (const double force : {150.0, 300.0}) {
     const Swing swing = SwingUnder(force, -60);
     EXPECT_GT(swing.pressure, 50) << force;

@@ -210,11 +210,11 @@ TEST(UnequalSides, AreTheSymmetricActuatorWhereEqual) {
 // Tests that a model says that two effects of one kind contradict each other.
 TEST(UnequalSides, RefuseTwoOfAKind) {
   EXPECT_THROW(
-      model::Equations(
-          Table1Model(
-              {{"valve.check", {{"cracking", 10}, {"conductance", 0.01}}, {}},
-               {"valve.pilot", {{"ratio", 3}, {"cracking", 5}, {"range", 20}, {"conductance", 0.01}}, {}}}),
-          Held(model::Shaft::kFree)),
+      model::Equations(Table1Model({{"valve.check", {{"cracking", 10}, {"conductance", 0.01}}, {}},
+                                    {"valve.pilot_check",
+                                     {{"ratio", 3}, {"cracking", 5}, {"range", 20}, {"conductance", 0.01}},
+                                     {}}}),
+                       Held(model::Shaft::kFree)),
       model::ModelError);
 }
 

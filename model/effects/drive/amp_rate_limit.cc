@@ -1,6 +1,7 @@
-// amp.input_rate_limit: the amplifier follows its command no faster than `rate`: u' = rate sgn(v - u), and
-// acts on u. It comes after amp.delay and before amp.lag. One state, u. One switch: 0, u is the command; +1
-// and -1, u moves towards it in that direction.
+// amp.rate_limit: the motor's torque follows its command no faster than `rate`: |T'| <= rate. What moves is
+// the voltage that acts, u' = rate/k_1 sgn(v - u), so T = k_1 u stays within T_pmax as ever. It comes after
+// amp.delay and before amp.lag. One state, u. One switch: 0, u is the command; +1 and -1, u moves towards it
+// in that direction.
 
 #include <cmath>
 
@@ -27,7 +28,7 @@ class RateLimit : public EffectOf<RateLimit> {
 
   template <class T>
   void OwnStates(Terms<T>& x, T* rate) const {
-    rate[first_state()] = Side(x) * x.own[0];
+    rate[first_state()] = Side(x) * x.own[0] / x.parameters->k_1;
   }
 
   template <class T>
@@ -69,18 +70,19 @@ class RateLimit : public EffectOf<RateLimit> {
   }
 };
 
-[[maybe_unused]] const bool kAmpInputRateLimitAdded =
-    AddToCatalogue({.info = {.id = "amp.input_rate_limit",
-                             .summary = "the amplifier follows its command no faster than a rate",
-                             .equation = "u' = rate sgn(v - u), T = k_1 u",
+[[maybe_unused]] const bool kAmpRateLimitAdded =
+    AddToCatalogue({.info = {.id = "amp.rate_limit",
+                             .summary = "the motor torque follows the voltage no faster than a rate",
+                             .equation = "abs(dT/dt) <= rate",
                              .confused_with = "amp.lag, amp.delay",
                              .parameters = {{.name = "rate",
-                                             .unit = "V/s",
+                                             .unit = "in-lbf/s",
                                              .min_allowed = false,
-                                             .meaning = "largest rate of the voltage that acts",
-                                             .starts = {0.03, 0.3},
-                                             .scale = Scale::kRate,
-                                             .example = 2000}},
+                                             .meaning = "largest rate of the motor torque",
+                                             .starts = {0.003, 0.03},
+                                             .scale = Scale::kTorqueRate,
+                                             .example = 8000}},
+                             .after = "amp.delay",
                              // The time at which it reaches a command is known only to within a sample.
                              .unseen_by_balances = true,
                              .on_request = true},

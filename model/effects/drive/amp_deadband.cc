@@ -1,6 +1,6 @@
-// amp.input_dead_band: the amplifier ignores commands within +/- `width`, and acts on the excess of larger
-// ones: v -/+ width. It comes after amp.delay and before amp.lag. The voltage is held between commands, so
-// the corner is no event.
+// amp.deadband: the amplifier ignores commands within +/- `width`, and acts on the excess of larger ones:
+// v -/+ width. It comes after amp.delay and before amp.lag. The voltage is held between commands, so the
+// corner is no event.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace hydro::model {
 
 namespace {
 
-class DeadBand : public EffectOf<DeadBand> {
+class Deadband : public EffectOf<Deadband> {
  public:
   template <class T>
   void OwnProperties(Terms<T>& x) const {
@@ -19,8 +19,8 @@ class DeadBand : public EffectOf<DeadBand> {
   }
 };
 
-[[maybe_unused]] const bool kAmpInputDeadBandAdded =
-    AddToCatalogue({.info = {.id = "amp.input_dead_band",
+[[maybe_unused]] const bool kAmpDeadbandAdded =
+    AddToCatalogue({.info = {.id = "amp.deadband",
                              .summary = "the amplifier ignores small commands",
                              .equation = "v becomes v -/+ width, 0 within +/- width",
                              .confused_with = "parameter T_s, pump.stribeck",
@@ -28,10 +28,11 @@ class DeadBand : public EffectOf<DeadBand> {
                                              .unit = "V",
                                              .meaning = "command up to which nothing happens",
                                              .example = 0.2}},
+                             .after = "amp.delay",
                              // With commands that never come to rest on one side of the band, it looks like a
                              // larger T_s.
                              .on_request = true},
-                    .make = MakeEffect<DeadBand>});
+                    .make = MakeEffect<Deadband>});
 
 }  // namespace
 
