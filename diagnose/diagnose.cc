@@ -11,6 +11,7 @@
 #include "base/number_text.h"
 #include "diagnose/evidence/clocks.h"
 #include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/proof_windows.h"
 #include "diagnose/prove/propose.h"
 #include "diagnose/prove/prove.h"
 #include "diagnose/recording/recording_remarks.h"
@@ -248,6 +249,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   Hypothesis as_given;
   as_given.model = model;
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
+  as_given.longest_time = NearHorizon(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);
   // Whoever names the values that may differ asks for them, and windows may show what balances do not.

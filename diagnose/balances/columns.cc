@@ -108,8 +108,8 @@ BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalEr
 BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vector<BaseSeries>& base,
                              const model::Parameters& given) {
   BalanceSizes sizes;
-  double torque = 0, speed = 0, n = 0, flow = 0, difference = 0, oil = 0, arm = 0, arm_sum = 0, arm_n = 0,
-         arm_speed = 0;
+  double torque = 0, inertia = 0, load = 0, speed = 0, n = 0, flow = 0, difference = 0, oil = 0, arm = 0,
+         arm_sum = 0, arm_n = 0, arm_speed = 0;
   std::vector<double> speeds, pressures;
   sizes.arm_low = 1e300, sizes.arm_high = -1e300;
   for (size_t r = 0; r < runs.size(); ++r) {
@@ -117,6 +117,7 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
     for (size_t k = 0; k < run.size(); k += run.stride) {
       const model::KnownMotion& at = run.at[k];
       torque += std::pow(base[r].drive.smooth[k], 2);
+      inertia += std::pow(given.J * at.motor_acceleration, 2);
       speed += std::pow(at.motor_speed, 2);
       speeds.push_back(std::abs(at.motor_speed));
       ++n;
@@ -127,6 +128,7 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
       if (!run.pressures) continue;
       flow += std::pow(given.D * at.motor_speed, 2);
       difference += std::pow(at.p2 - at.p1, 2);
+      load += std::pow(given.D * (at.p2 - at.p1), 2);
       pressures.push_back(std::max(at.p1, at.p2));
       ++oil;
       if (!CanForm(run, BalanceKind::kArm)) continue;
@@ -143,7 +145,8 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
   sizes.difference = RootMean(difference, oil);
   sizes.pressure = Quantile(std::move(pressures), kTopPressureQuantile);
   sizes.arm_speed = RootMean(arm_speed, arm_n);
-  set(BalanceKind::kTorque, RootMean(torque, n));
+  // A motor that coasts, or that its load drives, is commanded nothing.
+  set(BalanceKind::kTorque, RootMean(std::max({torque, inertia, load}), n));
   set(BalanceKind::kFlow1, RootMean(flow, oil));
   set(BalanceKind::kFlow2, RootMean(flow, oil));
   const double mean = arm_n > 0 ? arm_sum / arm_n : 0;

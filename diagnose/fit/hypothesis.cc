@@ -109,6 +109,8 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     }
     if (parameter.role == model::Role::kFrequency && parameter.low < highest_frequency)
       parameter.high = std::min(parameter.high, highest_frequency);
+    if (parameter.role == model::Role::kTime && std::max(0.0, parameter.low) < longest_time)
+      parameter.high = std::min(parameter.high, longest_time);
     free.push_back(parameter);
   }
   return free;

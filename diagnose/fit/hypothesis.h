@@ -71,6 +71,9 @@ struct Hypothesis {
   // Hz, the highest frequency that runs sampled this way can show. Beyond half their sampling rate, a
   // resonance fits any stiffness or resistance.
   double highest_frequency = std::numeric_limits<double>::infinity();
+  // s, the longest time by which something can follow what drives it within the windows that judge. A longer
+  // lag takes the command away, and a joint that sticks is predicted well by no torque at all.
+  double longest_time = std::numeric_limits<double>::infinity();
 
   std::vector<FreeParameter> Free() const;
   // Sets the model to these values, in the order of Free().

@@ -45,7 +45,8 @@ void RemarkOnUsersOwn(Diagnosis* d) {
 }
 
 // Says where windows and whole runs disagree.
-void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks) {
+void RemarkOnWholeRuns(const BeforeAfter& gap, const BeforeAfter& of_fitted,
+                       std::vector<std::string>* remarks) {
   if (!std::isfinite(gap.after)) {
     remarks->push_back(
         std::isfinite(gap.before)
@@ -59,6 +60,10 @@ void RemarkOnWholeRuns(const BeforeAfter& gap, std::vector<std::string>* remarks
     remarks->push_back("Over whole held-out runs, where every small error adds up, the gap is " +
                        ShortNumber(gap.after, 3) + " noise units with what was found and " +
                        ShortNumber(gap.before, 3) + " with the model as given");
+  } else if (IsWorse(of_fitted)) {
+    remarks->push_back("Over whole fitted runs, where every small error adds up, the gap is " +
+                       ShortNumber(of_fitted.after, 3) + " noise units with what was found and " +
+                       ShortNumber(of_fitted.before, 3) + " with the model as given");
   }
 }
 
@@ -102,7 +107,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
     return Conclude(context, nothing, proposed);
   }
   HearBothWitnesses(proof, &d);
-  if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, &d.remarks);
+  if (proof.OnWindows()) RemarkOnWholeRuns(d.held_out, d.fit, &d.remarks);
   d.candidates = CandidatesOf(context, proof, d, proposed.scores);
   RemarkOnUsersOwn(&d);
   d.curves = CurvesOf(context, proof, whole);
