@@ -13,6 +13,8 @@
 namespace hydro::plant {
 namespace {
 
+constexpr int kSettlingTries = 10;
+constexpr auto kSettlingTry = std::chrono::milliseconds(10);
 constexpr int kFirstTries = 100;  // about 1 ms each, for the first readings of all inputs
 
 // In the run, what a driver takes for an error of the configuration is one of the device, which has changed.
@@ -93,9 +95,21 @@ model::Measurement DeviceRig::Read(int64_t /*tick*/) {
 
 bool DeviceRig::WriteZero() noexcept { return WriteZeroTo(*device_, zero_); }
 
+// An output behind a filter settles soon. One that still holds something else has not taken the zero,
+// whatever the device says.
 OutputLeft DeviceRig::Zero() noexcept {
   OutputLeft left{.accepted = WriteZero(), .voltage = NAN};
-  left.voltage = amplifier_.scale * device_->ReadBack() + amplifier_.offset;
+  double held = device_->ReadBack();
+  const auto elsewhere = [&] {
+    return std::isfinite(held) && std::fabs(held - zero_) > description_.output.tolerance;
+  };
+  for (int i = 0; i < kSettlingTries && elsewhere(); ++i) {
+    std::this_thread::sleep_for(kSettlingTry);
+    left.accepted = WriteZero();
+    held = device_->ReadBack();
+  }
+  left.accepted = left.accepted && !elsewhere();
+  left.voltage = amplifier_.scale * held + amplifier_.offset;
   return left;
 }
 

@@ -42,6 +42,7 @@ bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now
 void DeviceWatch::LookAtOutput(const Reading& output, bus::Clock::TimePoint now,
                                std::vector<RigFault>* faults) {
   if (!std::isfinite(output.value) || driven_.empty()) return;
+  if (now - output.at > patience_) return;  // what a silent device said last is no reading
   // A device answers a little later, so it may hold any output that was put out within the patience.
   while (driven_.size() > 1 && now - driven_[1].first > patience_) driven_.pop_front();
   const auto [least, most] = std::minmax_element(

@@ -76,8 +76,26 @@ bool FrontEndRig::FindSilence() {
 // What it has counted so far tells nothing of what it counts from now on.
 void FrontEndRig::ForgetDevice() {
   trips_.reset();
+  sensor_faults_ = {};
   motor_count_.Forget();
   arm_count_.Forget();
+}
+
+// Several good readings in a row end a sensor's fault: a loose contact must not switch the voltage on and off
+// at its own pace.
+void FrontEndRig::HoldSensorFault(int sensor, size_t faults_before) {
+  SensorFault& held = sensor_faults_[static_cast<size_t>(sensor)];
+  if (faults_.size() > faults_before) {
+    held = {faults_.back(), 0};
+    return;
+  }
+  if (!held.fault) return;
+  if (++held.good_readings >= kGoodReadings) {
+    held = {};
+    return;
+  }
+  faults_.push_back(*held.fault);
+  read_.value[sensor] = std::numeric_limits<float>::quiet_NaN();
 }
 
 // A signal that is not a number is missing, whatever the device reports. A rate that is missing is a fault of
@@ -90,6 +108,7 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
     const bool of_angle = kind == HYDRO_SENSOR_RATE && !std::isfinite(sample.value[i - 1]);
     const bool expected = kind != HYDRO_SENSOR_NONE && answered && !of_angle;
     const std::string code = std::string("sensor_") + SensorName(i);
+    const size_t faults_before = faults_.size();
     if (by_device) {
       Add(code, fmt::format("the front end's reading of {} is not credible: an end of its range, or outside "
                             "of what driver.{} allows",
@@ -108,6 +127,7 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
     }
     // No process shall take this value for a signal.
     if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
+    HoldSensorFault(i, faults_before);
   }
 }
 
@@ -164,7 +184,10 @@ void FrontEndRig::FindUnaskedArming(const hydro_sample& sample) {
     if (asked_to_arm_at_ && now_ - *asked_to_arm_at_ > 2 * stale_time_) asked_to_arm_at_.reset();
     return;
   }
-  if (asked_to_arm_at_) return;
+  if (asked_to_arm_at_) {
+    asked_to_arm_at_ = now_;
+    return;
+  }
   Add("device_fault",
       fmt::format("the front end says that it is armed with {:.4g} V and was not asked to arm; allowed is "
                   "one that arms "

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <utility>
@@ -28,6 +29,11 @@ constexpr auto kForeign = 300ms;      // a device asked this long answers severa
 constexpr double kNearZero = 0.05;    // V; offsets of converters are below it
 constexpr double kSampleBytes = 107;  // on the wire
 constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop bits
+
+// Whether the device puts out a voltage, or reads one back, that is none of a converter's offsets.
+bool HoldsVolts(const hydro_sample& sample) {
+  return std::fabs(sample.voltage) > kNearZero || std::fabs(sample.read_back) > kNearZero;
+}
 
 uint32_t RandomSession() {
   std::random_device random;
@@ -226,8 +232,9 @@ double FrontEndRig::Drive(double voltage) {
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
-    // A device that was asked to arm may say falsely that it is not armed, and hold its last voltage.
-    if (asked_to_arm_at_ && !faults_.empty()) connection_.AskForZero(now_);
+    // A device that was asked to arm may say falsely that it is not armed, and hold its last voltage. Whoever
+    // sees volts that nobody commands asks for zero.
+    if ((asked_to_arm_at_ && !faults_.empty()) || HoldsVolts(read_)) connection_.AskForZero(now_);
     connection_.KeepAlive(now_);
   } else if (armed && obeys && followed_) {
     if (!followed_->sent) SendFollowed();

@@ -2,6 +2,7 @@
 // (docs/front_end.md).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -119,6 +120,7 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   bool FindSilence();
   void TakeTurn();
   void FindSensorFaults(const hydro_sample& sample);
+  void HoldSensorFault(int sensor, size_t faults_before);
   void FindContradictions();
   void FindJumps();
   void ForgetDevice();
@@ -153,6 +155,13 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<uint32_t> trips_;                         // of the device, at the last reading
   int64_t resets_ = 0, jumps_ = 0;                        // at the last reading
   bool has_read_back_ = false;                            // a sample has said what the output holds
+  // A sensor's fault, and its good readings in a row since; it ends with kGoodReadings of them.
+  struct SensorFault {
+    std::optional<RigFault> fault;
+    int good_readings = 0;
+  };
+  static constexpr int kGoodReadings = 10;
+  std::array<SensorFault, HYDRO_SENSORS> sensor_faults_ = {};
   DeviceCount motor_count_, arm_count_;
 };
 

@@ -22,8 +22,8 @@ struct Public {
 
 const std::vector<Public>& AllPublic() {
   static const std::vector<Public> all = {
-      {"gear.load_friction", "motor_share = 0.1\nload_share = 0.2\n", {}, true},
-      {"gear.load_friction", "load_share = 0.2\n", {"motor_share"}, true},
+      {"gear.load_friction", "motor_share = 0.1\nload_share = 0.2\n", {}},
+      {"gear.load_friction", "load_share = 0.2\n", {"motor_share"}},
       {"gear.backlash", "width = 0.02\nstiffness = 200\n", {"damping", "inertia"}, true},
       {"load.gravity", "mgl = 3\nphase = 0.4\n", {}, true},
       {"load.spring", "stiffness = 20\nrest = 0.1\n", {}, true},
@@ -139,7 +139,7 @@ TEST(PublicEffects, RefuseFormerNames) {
   EXPECT_THAT(error("gear.backlash", "gap = 0.1\nstiffness = 1\n"), HasSubstr("width"));
   EXPECT_THAT(error("load.gravity", "torque = 1\nphase = 0\n"), HasSubstr("mgl"));
   EXPECT_THAT(error("gear.load_friction", "load = 0.1\n"), HasSubstr("load_share"));
-  EXPECT_THAT(error("fluid.viscosity", "rate = 0.1\n"), HasSubstr("fluid.viscosity.k"));
+  EXPECT_THAT(error("fluid.viscosity", "rate = 0.1\n"), HasSubstr("\"k\""));
 }
 
 }  // namespace

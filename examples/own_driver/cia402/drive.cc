@@ -22,6 +22,7 @@ using hydro::plant::DeviceInput;
 
 constexpr int kAnswer_ms = 500;
 constexpr int kHeartbeatTicks = 10;
+constexpr int kMostAtOnce = 256;  // frames that one turn takes, however many come
 constexpr int kReadBackTries = 20, kReadBackTry_ms = 5;
 constexpr int kTolerance = 50;  // permille, of the torque that a drive measures
 constexpr uint16_t kModeOfOperation = 0x6060;
@@ -166,7 +167,9 @@ bool CanDrive::Send(const can_frame& frame) const noexcept {
 
 void CanDrive::Receive() noexcept {
   can_frame frame;
-  for (ssize_t got; (got = recv(socket_, &frame, sizeof frame, 0)) > 0 || (got < 0 && errno == EINTR);) {
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    const ssize_t got = recv(socket_, &frame, sizeof frame, 0);
+    if (got == 0 || (got < 0 && errno != EINTR)) break;
     if (got != sizeof frame) continue;
     switch (Take(frame, node_, &said_)) {
       case Part::kMotion:

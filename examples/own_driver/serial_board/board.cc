@@ -24,6 +24,7 @@ constexpr double kHighestOutput = 2047 / 204.8;  // V, the last code of 12 bits
 constexpr milliseconds kPatience{5};             // an answer that takes longer is lost
 constexpr milliseconds kAskAgain{100};
 constexpr int kReadBackTries = 20;
+constexpr int kMostAtOnce = 64;  // reads in one turn, however much comes
 
 constexpr std::pair<int, speed_t> kRates[] = {{115200, B115200},   {230400, B230400},   {460800, B460800},
                                               {500000, B500000},   {921600, B921600},   {1000000, B1000000},
@@ -153,7 +154,9 @@ bool SerialBoard::Send(double volts) noexcept {
 bool SerialBoard::Receive() noexcept {
   bool answered = false;
   char bytes[512];
-  for (ssize_t got; (got = read(port_, bytes, sizeof bytes)) > 0 || (got < 0 && errno == EINTR);) {
+  for (int reads = 0; reads < kMostAtOnce; ++reads) {
+    const ssize_t got = read(port_, bytes, sizeof bytes);
+    if (got == 0 || (got < 0 && errno != EINTR)) break;
     for (ssize_t i = 0; i < got; ++i) answered = Take(bytes[i]) || answered;
   }
   return answered;

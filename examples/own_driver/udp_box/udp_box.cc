@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <ctime>
 
@@ -19,6 +20,7 @@ using hydro::plant::DeviceInput;
 
 constexpr auto kAnswerTime = std::chrono::microseconds(300);
 constexpr uint32_t kRemembered = 64;  // of the newest commands it is known when they were sent
+constexpr int kMostAtOnce = 64;       // datagrams that one turn takes, however many come
 
 // The socket to "udp://HOST:PORT". Throws InputError.
 int Connect(const hydro::plant::DeviceSettings& settings) {
@@ -91,10 +93,11 @@ class UdpBox : public hydro::plant::Device {
     return Send({.output = output_});
   }
 
+  // The newest answer, if there is one; a box that never ends to send must not hold the end of a run.
   double ReadBack() noexcept override {
-    while (WaitForAnswer(std::chrono::milliseconds(20))) {
-    }
-    return answer_.output;
+    bool answered = false;
+    for (int i = 0; i < 5 && WaitForAnswer(std::chrono::milliseconds(20)); ++i) answered = true;
+    return answered ? answer_.output : std::nan("");
   }
 
  private:
@@ -112,7 +115,9 @@ class UdpBox : public hydro::plant::Device {
   bool Receive() noexcept {
     bool received = false;
     Answer answer;
-    for (ssize_t got; (got = recv(socket_, &answer, sizeof answer, 0)) >= 0 || errno == EINTR;) {
+    for (int i = 0; i < kMostAtOnce; ++i) {
+      const ssize_t got = recv(socket_, &answer, sizeof answer, MSG_TRUNC);
+      if (got < 0 && errno != EINTR) break;
       if (got != sizeof answer || answer.magic != Answer{}.magic) continue;
       answer_ = answer;
       answered_ = AskedAt(answer.sequence);
@@ -121,10 +126,15 @@ class UdpBox : public hydro::plant::Device {
     return received;
   }
 
+  // Anybody may send to the port, so what is no answer does not end the wait.
   bool WaitForAnswer(std::chrono::nanoseconds patience) noexcept {
-    pollfd waits{.fd = socket_, .events = POLLIN, .revents = 0};
-    const timespec limit{patience.count() / 1000000000, patience.count() % 1000000000};
-    return ppoll(&waits, 1, &limit, nullptr) > 0 && Receive();
+    const auto until = clock_.Now() + patience;
+    for (std::chrono::nanoseconds left = patience; left.count() > 0; left = until - clock_.Now()) {
+      pollfd waits{.fd = socket_, .events = POLLIN, .revents = 0};
+      const timespec limit{left.count() / 1000000000, left.count() % 1000000000};
+      if (ppoll(&waits, 1, &limit, nullptr) > 0 && Receive()) return true;
+    }
+    return false;
   }
 
   std::string name_;

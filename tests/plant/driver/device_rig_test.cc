@@ -359,6 +359,35 @@ TEST_F(DeviceRigTest, RefusedZero) {
   }
 }
 
+// Tests that an output which still holds something after it took the zero has not taken it.
+TEST_F(DeviceRigTest, OutputThatStays) {
+  const auto rig = Open();
+  EXPECT_TRUE(rig->Zero().accepted);
+  device_->lies = 3;
+  const OutputLeft left = rig->Zero();
+  EXPECT_FALSE(left.accepted);
+  EXPECT_EQ(left.voltage, 1.5);
+  device_->lies = std::nan("");  // it does not say
+  EXPECT_TRUE(rig->Zero().accepted);
+  device_->lies.reset();
+}
+
+// Tests that what a device read back before it fell silent is held against nothing that was put out since.
+TEST_F(DeviceRigTest, OldReadBack) {
+  const auto rig = Open();
+  device_->tells_output = true;
+  rig->Drive(5);
+  Read(*rig);
+  device_->tells_output = false;  // the reading stays as it was
+  device_->readings.output = {10, clock_.Now()};
+  device_->silent = true;
+  for (int i = 0; i < 300; ++i) {
+    rig->Drive(0);
+    Read(*rig);
+  }
+  EXPECT_THAT(Codes(*rig), ElementsAre("device_silent"));
+}
+
 // Tests that the guardian zeroes the device of a process that was killed together with its process group, as
 // hydro-launch kills what a program of the user's own leaves.
 TEST_F(DeviceRigTest, GuardianSurvivesItsGroup) {

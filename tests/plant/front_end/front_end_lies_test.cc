@@ -65,6 +65,40 @@ TEST(FrontEndLiesTest, ReadingsThatNoMachineGives) {
   }
 }
 
+// Tests that a device which says, long after it was armed, that it is not is asked for zero volts while it
+// holds some.
+TEST(FrontEndLiesTest, NotArmedLongAfterwards) {
+  for (const uint8_t state : {HYDRO_READY, HYDRO_IDLE, HYDRO_TRIPPED}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(2000, 3);
+    ASSERT_TRUE(bench.rig->faults().empty());
+    ASSERT_EQ(bench.volts, -1.5F);
+    bench.lie = [state](hydro_sample& sample) { sample.state = state; };
+    bench.Ticks(5, 3);
+    EXPECT_EQ(bench.volts, 0) << int{state};
+    EXPECT_FALSE(bench.rig->faults().empty()) << int{state};
+  }
+}
+
+// Tests that a sensor's fault lasts until ten good readings in a row, so that a loose contact does not switch
+// the voltage on and off.
+TEST(FrontEndLiesTest, LooseContact) {
+  DeviceBench bench;
+  int ticks = 0;
+  Lied(&bench, [&ticks](hydro_sample& sample) {
+    if (ticks++ % 5 == 0) sample.value[HYDRO_P1] = std::numeric_limits<float>::quiet_NaN();
+  });
+  for (int i = 0; i < 100; ++i) {
+    bench.Ticks(1, 3);
+    EXPECT_NE(bench.Fault("sensor_p1"), "") << i;
+    EXPECT_EQ(bench.volts, 0) << i;
+  }
+  bench.lie = [](hydro_sample&) {};
+  bench.Ticks(30, 3);
+  EXPECT_EQ(bench.Fault("sensor_p1"), "");
+}
+
 // Tests that limits which are given narrow the ends, and that an input beyond any converter's is none.
 TEST(FrontEndLiesTest, EndsFollowLimits) {
   DeviceBench slow(std::string(kFrontEndText) + "[limits]\nmotor_speed = 100\npressure = inf\n");
