@@ -69,6 +69,28 @@ class LinksTest(BoardTest):
         self.assertEqual(self.process.wait(), 0)
         self.assertFalse(os.path.lexists(self.path("tty")))
 
+    # Tests that a board takes no path that is another board's or the user's, and removes none that is not its own, but one that a
+    # killed board has left.
+    def test_paths_of_others(self):
+        precious, link = self.path("precious"), self.path("link")
+        with open(precious, "w", encoding="utf-8") as file:
+            file.write("kept")
+        os.symlink(precious, link)
+        self.run_program("hydro-front-end", f"pty:{link}", expect=2)
+        self.assertEqual(os.readlink(link), precious)
+        for kind, there in (("pty", "tty"), ("unix", "socket")):
+            first = self.start("hydro-front-end", f"{kind}:{self.path(there)}")
+            first.wait_for("^link")
+            self.run_program("hydro-front-end", f"{kind}:{self.path(there)}", expect=2)
+            self.assertTrue(os.path.lexists(self.path(there)))
+            first.send(signal.SIGKILL)
+            first.wait()
+            second = self.start("hydro-front-end", f"{kind}:{self.path(there)}")
+            second.wait_for("^link")
+            second.send(signal.SIGTERM)
+            self.assertEqual(second.wait(), 0)
+            self.assertFalse(os.path.lexists(self.path(there)))
+
     # Tests the same over a Unix socket. A cable that is out for longer than the watchdog trips the device; a
     # cable that is in again gives samples at once, and volts only after a re-arm.
     def test_cable(self):

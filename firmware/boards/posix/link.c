@@ -19,7 +19,42 @@ static bool fails(const char* name, const char* url, const char* what) {
   return false;
 }
 
+/* What lstat() tells one file from another by. */
+static bool is_own(const struct link* link) {
+  struct stat found;
+  return lstat(link->path, &found) == 0 && found.st_dev == link->device && found.st_ino == link->inode;
+}
+
+static void remember(struct link* link, const char* path) {
+  struct stat made;
+  if (lstat(path, &made) != 0) return;
+  strcpy(link->path, path);
+  link->device = made.st_dev;
+  link->inode = made.st_ino;
+}
+
+/* Removes the link to a terminal that a killed board has left. A terminal that is there may be another
+ * board's, and a link to anything else is the user's. */
+static void remove_stale_link(const char* path) {
+  char target[16] = "";
+  struct stat found;
+  if (readlink(path, target, sizeof target - 1) < 0 || strncmp(target, "/dev/pts/", 9) != 0) return;
+  if (stat(path, &found) != 0 && errno == ENOENT) unlink(path);
+}
+
+/* Removes the socket that a killed board has left: nobody listens there. */
+static void remove_stale_socket(const struct sockaddr_un* address) {
+  struct stat found;
+  if (lstat(address->sun_path, &found) != 0 || !S_ISSOCK(found.st_mode)) return;
+  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (probe < 0) return;
+  if (connect(probe, (const struct sockaddr*)address, sizeof *address) != 0 && errno == ECONNREFUSED)
+    unlink(address->sun_path);
+  close(probe);
+}
+
 static bool open_pty(struct link* link, const char* name, const char* url) {
+  if (url[3] == ':') remove_stale_link(url + 4); /* before a terminal of the same number is opened */
   link->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (link->fd < 0 || grantpt(link->fd) != 0 || unlockpt(link->fd) != 0) {
     return fails(name, url, "no pseudo terminal to be had");
@@ -35,12 +70,10 @@ static bool open_pty(struct link* link, const char* name, const char* url) {
   tcsetattr(held, TCSANOW, &mode);
   if (url[3] == ':') {
     const char* path = url + 4;
-    struct stat found;
     if (strlen(path) >= sizeof link->path) return fails(name, url, "the path is too long");
-    /* A board that was killed has left its link. */
-    if (lstat(path, &found) == 0 && S_ISLNK(found.st_mode)) unlink(path);
-    if (symlink(terminal, path) != 0) return fails(name, url, "the symbolic link cannot be made");
-    strcpy(link->path, path);
+    if (symlink(terminal, path) != 0)
+      return fails(name, url, "the symbolic link cannot be made; allowed is a path where nothing is");
+    remember(link, path);
     terminal = path;
   }
   printf("%s %s\n", name, terminal);
@@ -55,15 +88,15 @@ static bool open_unix(struct link* link, const char* name, const char* url) {
     return fails(name, url, "a path of 1 to 107 characters is allowed");
   }
   strcpy(address.sun_path, path);
-  struct stat found;
-  if (lstat(path, &found) == 0 && S_ISSOCK(found.st_mode)) unlink(path); /* left by a board that was killed */
+  remove_stale_socket(&address);
   link->fd = -1;
   link->listening = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (link->listening < 0 || bind(link->listening, (struct sockaddr*)&address, sizeof address) != 0 ||
       listen(link->listening, 1) != 0) {
-    return fails(name, url, "the socket cannot be made");
+    return fails(name, url,
+                 "the socket cannot be made; allowed is a path where nothing is and no board listens");
   }
-  strcpy(link->path, path);
+  remember(link, path);
   printf("%s %s\n", name, path);
   return true;
 }
@@ -153,7 +186,7 @@ void link_send(struct link* link, const uint8_t* bytes, size_t count, const stru
 
 void link_close(struct link* link) {
   if (link->kind == LINK_NONE) return;
-  if (link->path[0] != '\0') unlink(link->path);
+  if (link->path[0] != '\0' && is_own(link)) unlink(link->path);
   if (link->fd >= 0) close(link->fd);
   if (link->listening >= 0) close(link->listening);
 }

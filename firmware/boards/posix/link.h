@@ -6,14 +6,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 enum link_kind { LINK_NONE, LINK_PTY, LINK_UNIX, LINK_UDP };
 
 struct link {
   enum link_kind kind;
-  int fd;                   /* pseudo terminal, connected Unix socket (-1: none is connected), UDP socket */
-  int listening;            /* of a Unix socket */
-  char path[108];           /* to remove at the end; "": nothing */
+  int fd;         /* pseudo terminal, connected Unix socket (-1: none is connected), UDP socket */
+  int listening;  /* of a Unix socket */
+  char path[108]; /* to remove at the end, if it is still what was made; "": nothing */
+  dev_t device;
+  ino_t inode;
   struct sockaddr_in peer;  /* UDP: the address to which answers go; port 0: none yet */
   struct sockaddr_in asker; /* UDP: the sender of the last datagram */
 };
