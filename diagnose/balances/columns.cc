@@ -16,6 +16,8 @@ namespace {
 constexpr double kTopQuantile = 0.995;
 // The quantile that counts as the largest pressure.
 constexpr double kTopPressureQuantile = 0.998;
+// A command whose torque is less than a tenth of what moves is none: the motor coasts, or its load drives it.
+constexpr double kCommanded = 0.1;
 // A whole effect is next to nothing if it would take this many times its size to make the usual part.
 constexpr double kNextToNothing = 1e3;
 // A column that seldom acts is measured where it acts: by the root of sum x^4 over sum x^2.
@@ -145,8 +147,8 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
   sizes.difference = RootMean(difference, oil);
   sizes.pressure = Quantile(std::move(pressures), kTopPressureQuantile);
   sizes.arm_speed = RootMean(arm_speed, arm_n);
-  // A motor that coasts, or that its load drives, is commanded nothing.
-  set(BalanceKind::kTorque, RootMean(std::max({torque, inertia, load}), n));
+  const double largest = std::max(inertia, load);
+  set(BalanceKind::kTorque, RootMean(torque > kCommanded * kCommanded * largest ? torque : largest, n));
   set(BalanceKind::kFlow1, RootMean(flow, oil));
   set(BalanceKind::kFlow2, RootMean(flow, oil));
   const double mean = arm_n > 0 ? arm_sum / arm_n : 0;

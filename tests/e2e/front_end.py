@@ -39,7 +39,7 @@ class FrontEnd:
                 os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(10))
 
     def start(self):
-        self.converters = self.case.path("converters")
+        self.converters = self.case.path("converters-" + self.link)
         self.board = self.case.start("hydro-front-end", self.address, "--converters", "unix:" + self.converters, "--rate", self.rate)
         found = self.board.wait_for("^link (.*)").group(1)
         if self.link == "udp":
