@@ -149,7 +149,7 @@ class Computer:
         self.body = body
         return identity, self.ask(SETTINGS, body, SETTINGS_HELD)
 
-    def sample(self, wanted=lambda _: True, seconds=10, send=lambda: None):
+    def sample(self, wanted=lambda _: True, seconds=30, send=lambda: None):
         """The next sample for which `wanted` holds; `send` is called every 5 ms."""
         end = time.monotonic() + seconds
         again = 0
