@@ -110,8 +110,8 @@ BalanceSeries ReadingColumn(const ColumnMaker& maker, size_t run, const SignalEr
 BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vector<BaseSeries>& base,
                              const model::Parameters& given) {
   BalanceSizes sizes;
-  double torque = 0, inertia = 0, load = 0, speed = 0, n = 0, flow = 0, difference = 0, oil = 0, arm = 0,
-         arm_sum = 0, arm_n = 0, arm_speed = 0;
+  double torque = 0, inertia = 0, speed = 0, n = 0, flow = 0, difference = 0, oil = 0, arm = 0, arm_sum = 0,
+         arm_n = 0, arm_speed = 0;
   std::vector<double> speeds, pressures;
   sizes.arm_low = 1e300, sizes.arm_high = -1e300;
   for (size_t r = 0; r < runs.size(); ++r) {
@@ -130,7 +130,6 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
       if (!run.pressures) continue;
       flow += std::pow(given.D * at.motor_speed, 2);
       difference += std::pow(at.p2 - at.p1, 2);
-      load += std::pow(given.D * (at.p2 - at.p1), 2);
       pressures.push_back(std::max(at.p1, at.p2));
       ++oil;
       if (!CanForm(run, BalanceKind::kArm)) continue;
@@ -147,7 +146,7 @@ BalanceSizes SizesOfBalances(const std::vector<RunMotion>& runs, const std::vect
   sizes.difference = RootMean(difference, oil);
   sizes.pressure = Quantile(std::move(pressures), kTopPressureQuantile);
   sizes.arm_speed = RootMean(arm_speed, arm_n);
-  const double largest = std::max(inertia, load);
+  const double largest = std::max(inertia, given.D * given.D * difference);
   set(BalanceKind::kTorque, RootMean(torque > kCommanded * kCommanded * largest ? torque : largest, n));
   set(BalanceKind::kFlow1, RootMean(flow, oil));
   set(BalanceKind::kFlow2, RootMean(flow, oil));

@@ -16,10 +16,6 @@ namespace {
 
 // If a round reduces the sum of squares by less than this part, another round is not worthwhile.
 constexpr double kWorthARound = 0.02;
-// Rounds go on beyond the limit while each halves the sum, because prior knowledge of values that are far off
-// is weighed by the gap that they themselves make. So many halvings are a gap of a thousand noise units.
-constexpr double kFarOffStill = 0.5;
-constexpr int kMostRounds = 20;
 constexpr double kStepTolerance = 1e-3;
 // Relative to the median window's rms: a window's remainder counts up to this factor.
 constexpr double kMostOfTheMedian = 3;
@@ -94,9 +90,7 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
   options.jobs = context.jobs;
   options.most_iterations = limits.steps;
   Fitted at = AsItIs(set->hypothesis, fitted, context.jobs);
-  bool far_off = true;
-  for (int round = 0; (round < limits.rounds || (far_off && round < kMostRounds)) && at.ok(); ++round) {
-    if (TimeIsUp(context)) return;
+  for (int round = 0; round < limits.rounds && at.ok() && !TimeIsUp(context); ++round) {
     Hypothesis from = at.hypothesis;
     from.known = KnownOfValues(context, fitted, from, at.sum);
     const double before = at.sum;
@@ -109,7 +103,6 @@ void RefineValues(const ProofContext& context, const std::vector<const RunData*>
     JudgeSet(windows, context.jobs, &refined);
     if (PredictsBetter(windows, context.jobs, &refined, set)) *set = std::move(refined);
     if (at.sum > (1 - kWorthARound) * before) return;
-    far_off = at.sum < kFarOffStill * before;
   }
 }
 
