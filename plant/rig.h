@@ -23,6 +23,10 @@ struct RigFault {
   double limit = std::numeric_limits<double>::quiet_NaN();
 };
 
+// A sensor's fault lasts until so many good readings in a row: a loose contact must not switch the voltage on
+// and off at its own pace.
+inline constexpr int kGoodReadings = 10;
+
 // Thrown when the rig cannot go on: the run then ends with the latched fault code() and exit code 1.
 class RigError : public std::runtime_error {
  public:

@@ -38,7 +38,6 @@ class DeviceSensor {
   // The fault "sensor_NAME". It lasts from the first reading that is not credible until kGoodReadings good
   // ones have come in a row.
   const std::optional<RigFault>& fault() const { return fault_; }
-  static constexpr int kGoodReadings = 10;
 
   // The last reading, for display.
   const std::string& name() const { return name_; }

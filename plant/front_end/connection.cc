@@ -332,8 +332,10 @@ LinkTrouble Connection::WhyNot() const {
     return {fmt::format("{} bytes that are no frames", bytes_),
             "a front end (docs/front_end.md): is it another device, or another baud rate?"};
   }
-  return {"nothing that answers",
-          "a front end (docs/front_end.md): is it powered, does its firmware run, is the address its own?"};
+  return {
+      "nothing that answers",
+      "a front end (docs/front_end.md): is it powered, does its firmware run, is the address its own, and "
+      "does no other program have it?"};
 }
 
 }  // namespace hydro::plant

@@ -81,8 +81,6 @@ void FrontEndRig::ForgetDevice() {
   arm_count_.Forget();
 }
 
-// Several good readings in a row end a sensor's fault: a loose contact must not switch the voltage on and off
-// at its own pace.
 void FrontEndRig::HoldSensorFault(int sensor, size_t faults_before) {
   SensorFault& held = sensor_faults_[static_cast<size_t>(sensor)];
   if (faults_.size() > faults_before) {

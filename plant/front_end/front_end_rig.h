@@ -155,12 +155,11 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<uint32_t> trips_;                         // of the device, at the last reading
   int64_t resets_ = 0, jumps_ = 0;                        // at the last reading
   bool has_read_back_ = false;                            // a sample has said what the output holds
-  // A sensor's fault, and its good readings in a row since; it ends with kGoodReadings of them.
+  // A sensor's newest fault, and its good readings in a row since; it ends with kGoodReadings of them.
   struct SensorFault {
     std::optional<RigFault> fault;
     int good_readings = 0;
   };
-  static constexpr int kGoodReadings = 10;
   std::array<SensorFault, HYDRO_SENSORS> sensor_faults_ = {};
   DeviceCount motor_count_, arm_count_;
 };
