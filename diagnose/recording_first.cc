@@ -71,8 +71,8 @@ std::vector<runs::MeasuredRun> OnOneClock(const std::vector<AlignedRun>& aligned
   return runs;
 }
 
-// Leaves out sensors that are not believed, and says so.
-std::vector<std::string> WithoutUnbelieved(std::vector<runs::MeasuredRun>* runs,
+// Corrects or leaves out sensors that are not believed, and says so.
+std::vector<std::string> CorrectSensors(std::vector<runs::MeasuredRun>* runs,
                                            std::vector<runs::MeasuredRun>* held_out,
                                            std::vector<AlignedRun>* aligned) {
   std::vector<runs::MeasuredRun*> recorded, prepared;
@@ -85,8 +85,8 @@ std::vector<std::string> WithoutUnbelieved(std::vector<runs::MeasuredRun>* runs,
     all.push_back(one.run);
   }
   ComparedSensors compared = CompareSensors(all);
-  LeaveOut(compared.unbelieved, recorded);
-  LeaveOut(compared.unbelieved, prepared);
+  CorrectOrLeaveOut(compared.unbelieved, recorded);
+  CorrectOrLeaveOut(compared.unbelieved, prepared);
   return std::move(compared.remarks);
 }
 
@@ -181,7 +181,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
         checked.inverted.push_back(sensor);
     }
   }
-  if (!checked.mend_first) checked.sensors = WithoutUnbelieved(runs, held_out, &checked.aligned);
+  if (!checked.mend_first) checked.sensors = CorrectSensors(runs, held_out, &checked.aligned);
   if (!checked.mend_first && !time_is_up())
     checked.commands = RemarksOnCommands(model, OnOneClock(checked.aligned), jobs);
   return checked;

@@ -30,12 +30,13 @@ Priors::Priors(const MatrixXd& covariance, std::vector<int> always)
       always_(std::move(always)),
       of_always_(Inverted(covariance(always_, always_))) {}
 
-PriorOfAmounts Priors::With(const std::vector<int>& changes) const {
+PriorOfAmounts Priors::With(const std::vector<int>& changes, const VectorXd& scales) const {
   if (changes.empty()) return of_always_;
   // The inverse of a matrix in four parts, by the Schur complement of the part whose inverse is known.
   const MatrixXd across = covariance_(changes, always_);
   const MatrixXd regression = across * of_always_.precision;
-  const PriorOfAmounts rest = Inverted(covariance_(changes, changes) - regression * across.transpose());
+  const MatrixXd own = scales.asDiagonal() * covariance_(changes, changes) * scales.asDiagonal();
+  const PriorOfAmounts rest = Inverted(own - regression * across.transpose());
   const Index m = of_always_.precision.rows(), k = rest.precision.rows();
   PriorOfAmounts all{MatrixXd(m + k, m + k), of_always_.log_determinant + rest.log_determinant};
   const MatrixXd coupled = rest.precision * regression;

@@ -23,8 +23,9 @@ class Priors {
   // definite.
   Priors(const Eigen::MatrixXd& covariance, std::vector<int> always);
 
-  // The prior of the columns `always` followed by `changes`.
-  PriorOfAmounts With(const std::vector<int>& changes) const;
+  // The prior of the columns `always` followed by `changes`, whose standard deviations are multiplied by
+  // `scales`, 1 or more each.
+  PriorOfAmounts With(const std::vector<int>& changes, const Eigen::VectorXd& scales) const;
 
  private:
   Eigen::MatrixXd covariance_;  // of all columns

@@ -1,6 +1,7 @@
 #include "diagnose/evidence/set_evidence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -13,6 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+// The size of a change is known to an order of magnitude only: three and ten times the usual one are as many
+// times rarer, so that the prior falls as the square of the size. With a normal distribution alone, a weight
+// that is all of a motor's torque costs 50 nats, and a short recording cannot show it.
+constexpr double kSizes[] = {3, 10};
 constexpr int kMostFromNothing = 25, kMostFromNull = 8;  // iterations between amounts and variances
 
 }  // namespace
@@ -78,7 +83,7 @@ void SetEvidence::SolveNull() {
   const VectorXd start = (floor_.array() + whole.array() / numbers_.array().max(1.0)).inverse();
   // The first solution has no Jacobian: only then is it known which part of the residuals is not the sensors'
   // noise.
-  Solution null = Solve({}, start, kMostFromNothing);
+  Solution null = Solve({}, {}, start, kMostFromNothing);
   VectorXd noise = none.NoiseSquares(null.amounts);
   if (!noise.size() || noise.maxCoeff() <= 0) noise = numbers_.cwiseProduct(floor_);
   const auto left = (null.squares + 2 * kVarianceShape * floor_).array();
@@ -87,7 +92,7 @@ void SetEvidence::SolveNull() {
   const Eigen::ArrayXd moves = (InertiaSquares().array() / left).min(1.0);
   const Eigen::ArrayXd disturbs = (1 - noise.array() / left).max(0.0).min(1.0);
   inertia_numbers_ = (numbers_.array() * inertia_share_.array() * disturbs * moves).sum();
-  if (inertia_numbers_ > 0) null = Solve({}, start, kMostFromNothing);
+  if (inertia_numbers_ > 0) null = Solve({}, {}, start, kMostFromNothing);
   null_noise_ = none.NoiseSquares(null.amounts);
   null_squares_ = null.squares.cwiseMax(null_noise_) + 2 * kVarianceShape * floor_;
   start_weights_ = null.next;
@@ -147,8 +152,36 @@ SetFit SetEvidence::Fit(const ChangeSet& set) const {
   return fit;
 }
 
+// How large a change's amounts are, in their usual size.
+double SetEvidence::SizeIn(const Solution& solution, const std::vector<int>& its) const {
+  double squares = 0;
+  for (size_t i = always_.size(); i < solution.columns.size(); ++i) {
+    const int column = solution.columns[i];
+    if (std::binary_search(its.begin(), its.end(), column))
+      squares += std::pow(
+          solution.amounts[static_cast<Index>(i)] / grams_->columns[static_cast<size_t>(column)].sd, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(its.size()));
+}
+
 SetEvidence::Solution SetEvidence::SolveFor(const ChangeSet& set) const {
-  return Solve(ColumnsOf(set), start_weights_, kMostFromNull);
+  const std::vector<int> columns = ColumnsOf(set);
+  const auto count = static_cast<Index>(columns.size());
+  Solution best = Solve(columns, VectorXd::Ones(count), start_weights_, kMostFromNull);
+  for (const std::string& name : set) {
+    const std::vector<int> its = ColumnsOf({name});
+    if (SizeIn(best, its) <= 1) continue;
+    VectorXd scales = best.scales;
+    const double log_size = best.log_size;
+    for (const double size : kSizes) {
+      for (Index i = 0; i < count; ++i)
+        if (std::binary_search(its.begin(), its.end(), columns[static_cast<size_t>(i)])) scales[i] = size;
+      Solution larger = Solve(columns, scales, start_weights_, kMostFromNull);
+      larger.log_size = log_size - std::log(size);
+      if (LogOf(larger) > LogOf(best)) best = std::move(larger);
+    }
+  }
+  return best;
 }
 
 }  // namespace hydro::diagnose

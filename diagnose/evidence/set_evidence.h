@@ -5,6 +5,7 @@
 //   log E = -sum_g (a + n_g / 2) ln((b_g + RSS_g / 2) / f_g) - amounts' P^-1 amounts / 2 - ln|P A| / 2
 // This holds at the amounts and variances that agree with each other. Corrections are made for noise in the
 // columns, for the Jacobian where a disturbance moves the shaft, and for amounts that cannot be negative.
+// A change may be three or ten times as large as usual, at odds of 1/3 and 1/10.
 #pragma once
 
 #include <Eigen/Core>
@@ -70,9 +71,13 @@ class SetEvidence {
   Eigen::VectorXd InertiaSquares() const;
 
   std::vector<int> ColumnsOf(const ChangeSet& set) const;
+  double SizeIn(const Solution& solution, const std::vector<int>& its) const;
+  // With the likeliest size of each change whose amounts are beyond the usual one.
   Solution SolveFor(const ChangeSet& set) const;
-  // Iterates between amounts and variances, starting from `weights`, at most `most` times.
-  Solution Solve(const std::vector<int>& changes, Eigen::VectorXd weights, int most) const;
+  // Iterates between amounts and variances, starting from `weights`, at most `most` times. `scales`: factors
+  // on the standard deviations of the changes' amounts.
+  Solution Solve(const std::vector<int>& changes, const Eigen::VectorXd& scales, Eigen::VectorXd weights,
+                 int most) const;
   void AddJacobian(const std::vector<Eigen::Index>& inertia, const Eigen::VectorXd& amounts,
                    Eigen::MatrixXd* normal, Eigen::VectorXd* right) const;
   Eigen::VectorXd NoiseFactors(const Eigen::VectorXd& passed) const;

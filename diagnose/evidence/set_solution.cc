@@ -36,10 +36,12 @@ double InertiaFactor(const std::vector<Index>& inertia, const VectorXd& amounts)
 
 }  // namespace
 
-SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, VectorXd weights, int most) const {
+SetEvidence::Solution SetEvidence::Solve(const std::vector<int>& changes, const VectorXd& scales,
+                                         VectorXd weights, int most) const {
   const NormalEquations equations(blocks_, static_cast<Index>(always_.size()), changes);
-  const PriorOfAmounts prior = priors_->With(changes);
+  const PriorOfAmounts prior = priors_->With(changes, scales);
   Solution found;
+  found.scales = scales;
   found.columns = always_;
   found.columns.insert(found.columns.end(), changes.begin(), changes.end());
   std::vector<Index> inertia;
@@ -106,7 +108,7 @@ VectorXd SetEvidence::LogLikelihoods(const Solution& solution) const {
 }
 
 double SetEvidence::LogOf(const Solution& solution) const {
-  double log = LogLikelihoods(solution).sum() - solution.penalty + solution.jacobian;
+  double log = LogLikelihoods(solution).sum() - solution.penalty + solution.jacobian + solution.log_size;
   for (size_t i = 0; i < solution.columns.size(); ++i) {
     const ScanColumn& column = grams_->columns[static_cast<size_t>(solution.columns[i])];
     if (!column.positive && !std::isfinite(column.most)) continue;
@@ -116,8 +118,10 @@ double SetEvidence::LogOf(const Solution& solution) const {
     // An amount that cannot be negative has only half of the prior: 2 Phi(mean / deviation).
     if (column.positive) log += std::log(2.0) + LogNormal(solution.amounts[at] / deviation);
     // The prior also excludes values beyond the largest possible amount.
-    if (std::isfinite(column.most))
-      log += LogNormal((column.most - solution.amounts[at]) / deviation) - LogNormal(column.most / column.sd);
+    if (!std::isfinite(column.most)) continue;
+    const double sd =
+        column.sd * (i < always_.size() ? 1 : solution.scales[at - static_cast<Index>(always_.size())]);
+    log += LogNormal((column.most - solution.amounts[at]) / deviation) - LogNormal(column.most / sd);
   }
   return log;
 }

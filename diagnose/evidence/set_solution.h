@@ -19,8 +19,10 @@ struct SetEvidence::Solution {
   Eigen::VectorXd next;     // that follow from the residuals of the amounts
   Eigen::VectorXd squares, counted_squares;
   Eigen::LLT<Eigen::MatrixXd> normal;
-  double penalty = 0;   // amounts' P^-1 amounts / 2 + ln|P A| / 2
-  double jacobian = 0;  // of the torque balance, part of log E
+  Eigen::VectorXd scales;  // of the changes' amounts, see SolveFor()
+  double log_size = 0;     // ln of the odds of these scales
+  double penalty = 0;      // amounts' P^-1 amounts / 2 + ln|P A| / 2
+  double jacobian = 0;     // of the torque balance, part of log E
 };
 
 }  // namespace hydro::diagnose

@@ -87,6 +87,9 @@ double RootMeanSquare(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+// Whether the factor is known as well as two sensors agree anyway.
+bool IsKnown(const SecondSensor& second) { return second.factor_half < kSensorFactor * second.factor; }
+
 std::optional<SecondSensor> Compared(const SensorBlocks& blocks) {
   const std::optional<FittedBlocks> fit =
       FitBlocks({blocks.first, std::vector<double>(blocks.first.size(), 1.0), blocks.rate}, blocks.second);
@@ -120,7 +123,9 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
             runs::UnitIn(run, name) + (second.offset > 0 ? " more" : " less");
   }
   text += std::string(": ") + pair.believed;
-  text += pair.set_aside ? ", and the speed is left out" : ", and dp is only compared with them";
+  text += !pair.set_aside   ? ", and dp is only compared with them"
+          : IsKnown(second) ? ", and the speed is corrected"
+                            : ", and the speed is left out";
   runs::ColumnSource agrees = (run.*pair.second).source;
   if (agrees.column.empty()) return text;
   agrees.scale /= second.factor;
@@ -173,7 +178,7 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
       for (const size_t r : recorder.runs) {
         names.push_back(runs[r].name);
         if (differ == SensorsDiffer::kInSize && pair.set_aside)
-          compared.unbelieved.push_back({r, pair.second});
+          compared.unbelieved.push_back({r, pair.second, IsKnown(*second) ? second : std::nullopt});
       }
       compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " +
                                  Text(pair, runs[recorder.runs.front()], *second, size, differ));
@@ -182,8 +187,17 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
   return compared;
 }
 
-void LeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieved, const std::vector<Run*>& runs) {
-  for (const ComparedSensors::Unbelieved& one : unbelieved) (runs[one.run]->*one.signal).values.clear();
+void CorrectOrLeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieved,
+                       const std::vector<Run*>& runs) {
+  for (const ComparedSensors::Unbelieved& one : unbelieved) {
+    runs::MeasuredSignal& signal = runs[one.run]->*one.signal;
+    if (!one.reads) {
+      signal.values.clear();
+      continue;
+    }
+    for (double& value : signal.values) value = (value - one.reads->offset) / one.reads->factor;
+    if (signal.noise) *signal.noise /= one.reads->factor;
+  }
 }
 
 }  // namespace hydro::diagnose

@@ -28,6 +28,9 @@ struct ComparedSensors {
   struct Unbelieved {
     size_t run;
     runs::MeasuredSignal runs::MeasuredRun::*signal;
+    // How it reads what the first one reads; nothing where the factor is not known as well as two sensors
+    // agree anyway.
+    std::optional<SecondSensor> reads;
   };
   std::vector<Unbelieved> unbelieved;
 };
@@ -39,8 +42,9 @@ struct ComparedSensors {
 // signs.
 ComparedSensors CompareSensors(const std::vector<runs::MeasuredRun>& runs);
 
-// Leaves out the second sensors that are not believed.
-void LeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieved,
-              const std::vector<runs::MeasuredRun*>& runs);
+// Takes factor and offset out of the second sensors that are not believed, noise included; without them, a
+// sensor is left out. So a fine speed beside a coarse angle still says how the speed changes.
+void CorrectOrLeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieved,
+                       const std::vector<runs::MeasuredRun*>& runs);
 
 }  // namespace hydro::diagnose

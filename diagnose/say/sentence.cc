@@ -41,12 +41,13 @@ std::vector<std::string> EffectsOf(const Diagnosis& d) {
   return names;
 }
 
-// What is said where the runs show no value by itself: of a single one its name, of several only that.
+// What is said where the runs show no value by itself.
 std::string NotShownAlone(const Diagnosis& d) {
   std::vector<std::string> names = d.unsure;
   for (const ChangedParameter& changed : d.parameters) names.push_back(changed.fitted.name);
-  return names.size() == 1 ? names.front() + ", which these runs do not show by itself (see the remarks)"
-                           : "several together, none of which these runs show alone (see the remarks)";
+  return names.size() == 1
+             ? names.front() + ", which these runs do not show by itself (see the remarks)"
+             : Enumerated(names) + " together, none of which these runs show alone (see the remarks)";
 }
 
 std::vector<std::string> ParametersOf(const Diagnosis& d) {

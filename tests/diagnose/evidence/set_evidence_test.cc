@@ -229,6 +229,32 @@ TEST(SetEvidenceTest, OrderDoesNotMatter) {
   }
 }
 
+// Tests that a change of several times its usual size is found on few rows, at the odds of such a size, and
+// that its amount is hardly shrunk; one of the usual size has the evidence of the usual prior.
+TEST(SetEvidenceTest, LargeChanges) {
+  const auto with_sd = [](Rows rows, double sd) {
+    const int drag = ColumnOf(rows, "pump.drag:k");
+    rows.columns[static_cast<size_t>(drag)].sd *= sd;
+    rows.prior(drag, drag) *= sd * sd;
+    return rows;
+  };
+  const double sd = MakeRows({}).columns[static_cast<size_t>(ColumnOf(MakeRows({}), "pump.drag:k"))].sd;
+  const Rows rows =
+      MakeRows({.truth = {{"pump.drag:k", 8 * sd}}, .runs = 1, .rows = 8, .deviations = {sd, sd}});
+  const SetEvidence evidence(rows);
+  const double gain = evidence.Log({"pump.drag"}) - evidence.Log({});
+  // With a prior ten times as wide the amount is within one standard deviation: no other size is tried.
+  const double ten = SetEvidence(with_sd(rows, 10)).Log({"pump.drag"}) - std::log(10);
+  EXPECT_NEAR(evidence.Log({"pump.drag"}), ten, 1e-9);
+  EXPECT_GT(gain, 5);
+  EXPECT_NEAR(AmountOf(rows, evidence.Fit({"pump.drag"}), "pump.drag:k"), 8 * sd, sd);
+
+  const Rows usual = MakeRows({.truth = {{"pump.drag:k", 0.5 * sd}}});
+  const SetFit fit = SetEvidence(usual).Fit({"pump.drag"});
+  EXPECT_LT(std::abs(AmountOf(usual, fit, "pump.drag:k")), sd);
+  EXPECT_GT(fit.log_evidence, SetEvidence(with_sd(usual, 10)).Log({"pump.drag"}) - std::log(10));
+}
+
 // Tests that leaving out a run is as if it had not been there, with changes that only it could show.
 TEST(SetEvidenceTest, ARunLeftOut) {
   Rows rows = MakeRows({.truth = {{"pump.drag:k", 0.1}}});

@@ -99,13 +99,37 @@ TEST(SecondSensors, SpeedOfAnotherFactor) {
     std::smatch line;
     ASSERT_TRUE(std::regex_search(said, line, std::regex(R"(column = "rpm", scale = ([0-9.]+))"))) << said;
     EXPECT_NEAR(std::stod(line[1]), 0.1 / factor, 1e-3 * 0.1 / factor);
-    LeaveOut(compared.unbelieved, {&runs[0], &runs[1]});
-    for (const Measured& run : runs) {
-      EXPECT_FALSE(run.motor_speed.measured());
-      EXPECT_TRUE(run.motor_angle.measured());
-    }
+    const double before = runs[0].motor_speed.values[100];
+    CorrectOrLeaveOut(compared.unbelieved, {&runs[0], &runs[1]});
+    for (const Measured& run : runs)
+      EXPECT_NEAR(run.motor_speed.values[100], before / factor, 0.02 * std::abs(before));
     EXPECT_THAT(CompareSensors(runs).remarks, IsEmpty());
   }
+}
+
+// Tests that a sensor whose factor is not known as well as sensors agree anyway is left out, and one with an
+// offset is corrected by it, with its noise.
+TEST(SecondSensors, CorrectedOnlyWhereItsFactorIsKnown) {
+  Measured run = SwingOf({{1.2, 4, 0}, {}, {}, 2e-3, 5});
+  run.motor_speed.noise = 1.2;
+  const std::vector<double> recorded = run.motor_speed.values;
+  const auto motor_speed = &Measured::motor_speed;
+  CorrectOrLeaveOut({{0, motor_speed, diagnose::SecondSensor{.factor = 1.2, .offset = 4}}}, {&run});
+  for (size_t k = 0; k < recorded.size(); k += 1000)
+    EXPECT_DOUBLE_EQ(run.motor_speed.values[k], (recorded[k] - 4) / 1.2);
+  EXPECT_DOUBLE_EQ(*run.motor_speed.noise, 1);
+  CorrectOrLeaveOut({{0, motor_speed, std::nullopt}}, {&run});
+  EXPECT_FALSE(run.motor_speed.measured());
+
+  // A speed as noisy as it is large: nobody knows its factor to 2 %.
+  Measured noisy = SwingOf({{1.5, 0, 0}, {}, {}, 2e-3, 5});
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 300);
+  for (double& value : noisy.motor_speed.values) value += normal(random);
+  const ComparedSensors compared = CompareSensors({noisy});
+  ASSERT_EQ(compared.unbelieved.size(), 1u);
+  EXPECT_FALSE(compared.unbelieved[0].reads.has_value());
+  EXPECT_THAT(compared.remarks[0], HasSubstr("and the speed is left out"));
 }
 
 // Tests that of a late speed the time is said, with its interval, and that both sensors stay: the catalogue

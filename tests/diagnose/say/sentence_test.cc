@@ -56,8 +56,8 @@ TEST(Sentence, ValuesThatExplainAPart) {
   EXPECT_THAT(Said(d), StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
 }
 
-// Tests that of a single value that the runs do not show, its name is said, and "several together" of several
-// only; and that a value with an interval that shows nothing is not said to be another.
+// Tests that of values that the runs do not show, the names are said; and that a value with an interval that
+// shows nothing is not said to be another.
 TEST(Sentence, ValuesThatTheRunsDoNotShow) {
   diagnose::Diagnosis d = With(Verdict::kPartly);
   d.effects.clear();
@@ -68,7 +68,8 @@ TEST(Sentence, ValuesThatTheRunsDoNotShow) {
   EXPECT_THAT(Said(d), StartsWith("Other values explain part of the gap: b, which these runs do not show by "
                                   "itself (see the remarks);"));
   d.unsure = {"T_s"};
-  EXPECT_THAT(Said(d), HasSubstr("several together, none of which these runs show alone (see the remarks)"));
+  EXPECT_THAT(Said(d),
+              HasSubstr("T_s and b together, none of which these runs show alone (see the remarks)"));
   d.parameters.clear();
   EXPECT_THAT(Said(d), HasSubstr("gap: T_s, which these runs do not show by itself"));
   d.parameters = {b};
