@@ -44,9 +44,9 @@ class FaultLines {
  private:
   struct Lines {
     int left = kAtOnce;
-    bus::Clock::TimePoint filled;  // when `left` was last raised
+    bus::Clock::TimePoint filled{};  // when `left` was last raised
     int64_t hidden = 0;
-    bus::Clock::TimePoint hidden_since, changed;
+    bus::Clock::TimePoint hidden_since{}, changed{};
     bus::Clock::TimePoint said = bus::Clock::TimePoint::min();
   };
   static bus::Clock::TimePoint DueOf(const Lines& lines);
