@@ -21,8 +21,8 @@ using namespace std::chrono_literals;
 using bus::Clock;
 using testing::HasSubstr;
 
-// Tests that a fault that comes and goes for ten minutes, at whatever pace, gets a few lines at once and two in
-// each ten seconds after that, and that none of its changes is missing from the sum.
+// Tests that a fault that comes and goes for ten minutes, at whatever pace, gets a few lines at once and two
+// in each ten seconds after that, and that none of its changes is missing from the sum.
 TEST(FaultLinesTest, Bounded) {
   for (const auto pace : {10ms, 100ms, 1100ms, 3000ms}) {
     FaultLines lines;
