@@ -180,10 +180,8 @@ std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   const std::string first = arguments[1];
   std::vector<std::string> verbs;
   for (const auto& [verb, flag] : kVerbs) {
-    if (first == verb) {
-      CheckHasName(first, argc, argv);
-      arguments[1] = flag;
-    }
+    if (first == verb || first == flag) CheckHasName(verb, argc, argv);
+    if (first == verb) arguments[1] = flag;
     verbs.emplace_back(verb);
   }
   if (first != arguments[1] || first.starts_with('-') || std::filesystem::exists(first)) return arguments;

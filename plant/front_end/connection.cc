@@ -339,7 +339,7 @@ LinkTrouble Connection::WhyNot() const {
   }
   if (!elsewhere_.empty()) {
     return {
-        "only answers from " + elsewhere_ + ", which are not used",
+        "answers from " + elsewhere_ + ", which are not used, and no others",
         "a front end that answers from the address that it is asked at: give its own in driver.url, or let "
         "its firmware answer from the port that it listens on"};
   }

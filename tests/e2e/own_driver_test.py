@@ -352,9 +352,10 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertEqual(self.run_program("hydro-launch", "new-driver", name, expect=2).stderr,
                              f'hydro-launch: --new-driver: found "{name}", allowed another name, e.g. my_{name}: CMake has a target or file of this name\n')
             self.assertFalse(os.path.exists(self.path(name)))
-        for arguments in (("new-driver",), ("new-driver", "--quiet"), ("new-controller",)):
+        for arguments in (("new-driver",), ("new-driver", "--quiet"), ("--new-driver",), ("new-controller",)):
             self.assertEqual(self.run_program("hydro-launch", *arguments, expect=2).stderr,
-                             f"hydro-launch: {arguments[0]}: found no NAME, allowed letters, digits and underscores, e.g. hydro-launch {arguments[0]} crane\n")
+                             "hydro-launch: VERB: found no NAME, allowed letters, digits and underscores, e.g. hydro-launch VERB crane\n".replace(
+                                 "VERB", arguments[0].removeprefix("--")))
         for name in ("hydro", "hydro_bus", "socket", "signal"):
             self.assertRegex(self.run_program("hydro-launch", "new-controller", name, expect=2).stderr,
                              f'new-controller: found "{name}", allowed another name, e.g. my_{name}: the controller imports a Python module')

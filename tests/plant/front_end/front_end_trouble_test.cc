@@ -81,7 +81,8 @@ TEST(FrontEndTroubleTest, AnswersFromElsewhere) {
   bench.device_runs = false;
   bench.link->elsewhere = "127.0.0.1:7701";
   EXPECT_FALSE(bench.Connect(200));
-  EXPECT_EQ(bench.rig->connection().WhyNot().found, "only answers from 127.0.0.1:7701, which are not used");
+  EXPECT_EQ(bench.rig->connection().WhyNot().found,
+            "answers from 127.0.0.1:7701, which are not used, and no others");
   EXPECT_THAT(bench.rig->connection().WhyNot().allowed,
               HasSubstr("answers from the address that it is asked at: give its own in driver.url, or let"));
   bench.device_runs = true;
