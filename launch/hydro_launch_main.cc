@@ -139,7 +139,11 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   if (options.doctor) {
     return hydro::launch::RunDoctor(config, options.common.overrides, options.request.host);
   }
-  if (config.empty()) throw hydro::InputError("CONFIG is required; see --help");
+  if (config.empty()) {
+    throw hydro::InputError(
+        "CONFIG: found nothing, allowed FILE (the stack's configuration, TOML), e.g. hydro-launch " +
+        (flag.empty() ? "" : flag.substr(2) + " ") + "config/demo.toml");
+  }
   if (options.make_key) return hydro::launch::MakeKey(options.common);
   if (options.stop) return RunOperatorRequest(options.common, true, false);
   if (options.rearm) return RunOperatorRequest(options.common, false, options.request.json);
@@ -158,6 +162,16 @@ constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
                                                           {"new-controller", "--new-controller"},
                                                           {"new-driver", "--new-driver"}};
 
+// Throws InputError where NAME is missing behind a verb that needs it.
+void CheckHasName(const std::string& verb, int argc, char** argv) {
+  if (!verb.starts_with("new-") || (argc > 2 && argv[2][0] != '-')) return;
+  const std::string help = argc > 2 ? argv[2] : "";
+  if (help == "--help" || help == "-h") return;
+  throw hydro::InputError(verb +
+                          ": found no NAME, allowed letters, digits and underscores, e.g. hydro-launch " +
+                          verb + " crane");
+}
+
 // Turns `hydro-launch stop CONFIG` into `hydro-launch --stop CONFIG`. Throws InputError for a word that is
 // close to a verb and does not name a file: `hydro-launch stopp CONFIG`.
 std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
@@ -166,6 +180,7 @@ std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   const std::string first = arguments[1];
   std::vector<std::string> verbs;
   for (const auto& [verb, flag] : kVerbs) {
+    if (first == verb || first == flag) CheckHasName(verb, argc, argv);
     if (first == verb) arguments[1] = flag;
     verbs.emplace_back(verb);
   }

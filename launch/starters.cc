@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/input_error.h"
@@ -99,6 +100,36 @@ void CheckNewName(const std::string& option, const std::string& name) {
                    "anything after a dot");
 }
 
+// What the driver's program, CMake's target and the file in its folder may not be called: targets that CMake
+// or its generators make, and files that they write where the program would be.
+constexpr std::string_view kTakenByCMake =
+    " ALL_BUILD CMakeFiles INSTALL Makefile PACKAGE RUN_TESTS Testing ZERO_CHECK all clean "
+    "cmake_check_build_system cmake_force codegen default_target depend edit_cache help install "
+    "list_install_components package package_source preinstall rebuild_cache test ";
+
+// A program in Python finds its own file first where it imports a module of the same name: these are those
+// that it imports, and those that these import.
+constexpr std::string_view kTakenByPython =
+    " array collections enum errno hydro hydro_bus io math os re select selectors signal socket struct sys "
+    "time ";
+
+void CheckNewControllerName(const std::string& name) {
+  CheckNewName("--new-controller", name);
+  if (kTakenByPython.find(" " + name + " ") == std::string_view::npos) return;
+  throw InputError("--new-controller: found " + Quoted(name) + ", allowed another name, e.g. my_" + name +
+                   ": the controller imports a Python module of this name");
+}
+
+void CheckNewDriverName(const std::string& name) {
+  CheckNewName("--new-driver", name);
+  const std::string allowed = ", allowed another name, e.g. my_" + name + ": ";
+  if (name == "simulated_device")
+    throw InputError("--new-driver: found " + Quoted(name) + allowed + "the device's program has this one");
+  if (kTakenByCMake.find(" " + name + " ") != std::string_view::npos)
+    throw InputError("--new-driver: found " + Quoted(name) + allowed +
+                     "CMake has a target or file of this name");
+}
+
 // Throws std::logic_error when `old` is not in `text`.
 std::string Replaced(std::string text, const std::string& old, const std::string& by) {
   size_t at = text.find(old);
@@ -179,7 +210,7 @@ int MakeKey(const settings::CommonOptions& options) {
 }
 
 int NewController(const std::string& name) {
-  CheckNewName("--new-controller", name);
+  CheckNewControllerName(name);
   const std::string program = name + ".py", stack = name + ".toml";
   const std::string model = InstalledConfig("models/table1.toml");
   std::string toml =
@@ -200,11 +231,7 @@ int NewController(const std::string& name) {
 }
 
 int NewDriver(const std::string& name) {
-  CheckNewName("--new-driver", name);
-  if (name == "simulated_device") {
-    throw InputError(
-        "--new-driver: found \"simulated_device\", allowed another name: the device's program has this one");
-  }
+  CheckNewDriverName(name);
   const std::string model = InstalledConfig("models/table1.toml");
   const std::string toml = Replaced(Replaced(kDriverStack, kExample, name),
                                     "\"../../../config/models/table1.toml\"", settings::TomlString(model));

@@ -180,6 +180,7 @@ void Participant::PollDue(bus::Clock::TimePoint now) {
   AnswerWithConfiguration();
   if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
   WatchRefusals(now);
+  if (now >= lines_.due()) SayLeftOut(false);
   next_poll_ = NextPoll();
 }
 
@@ -187,7 +188,7 @@ void Participant::PollDue(bus::Clock::TimePoint now) {
 bus::Clock::TimePoint Participant::NextPoll() const {
   constexpr auto kAtOnce = bus::Clock::TimePoint::min();
   if (configuration_asked_ || unsent_.active() || undecodable_.active() || refusals_.active()) return kAtOnce;
-  auto next = statistics_.report_due();
+  auto next = std::min(statistics_.report_due(), lines_.due());
   if (!simulated_) next = std::min(next, statistics_.histogram_due());
   if (state_ == process_status_t::READY) next = std::min(next, next_announcement_);
   if (state_ == process_status_t::RUNNING && !simulated_ && !agreement_.own().empty()) {
@@ -221,8 +222,23 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
   active_[code] = fault;
   latched_ += latched ? 1 : 0;
   PublishFault(fault);
-  if (!simulated_) spdlog::error("fault {}{}: {}", code, Where(channels_), text);
+  if (ShowLine(fault)) spdlog::error("fault {}{}: {}", code, Where(channels_), text);
   return true;
+}
+
+// A latched fault ends when a person re-arms, or not at all: each one has its lines.
+bool Participant::ShowLine(const fault_t& fault) {
+  if (simulated_) return false;
+  return fault.latched || lines_.Show(fault.code, clock_.Now());
+}
+
+void Participant::SayLeftOut(bool at_end) {
+  for (const FaultLines::LeftOut& left_out : lines_.TakeDue(clock_.Now(), at_end)) {
+    const auto found = active_.find(left_out.code);
+    spdlog::error("fault {}{} comes and goes; lines about it that were not shown: {}; now {}", left_out.code,
+                  Where(channels_), left_out.lines,
+                  found == active_.end() ? "it has gone" : "it is there: " + found->second.text);
+  }
 }
 
 void Participant::Clear(const std::string& code) {
@@ -233,24 +249,26 @@ void Participant::Clear(const std::string& code) {
 void Participant::Clear(const std::string& code, const std::string& text, double value) {
   const auto found = active_.find(code);
   if (found == active_.end()) return;
-  if (found->second.text != text && !simulated_) spdlog::error("{}", text);
+  const bool says_more = found->second.text != text;
   found->second.text = text;
   found->second.value = value;
-  Clear(code);
+  if (!found->second.latched) End(code, says_more);
 }
 
 void Participant::Release(const std::string& code) {
   if (active_.contains(code)) End(code);
 }
 
-void Participant::End(const std::string& code) {
+void Participant::End(const std::string& code, bool says_more) {
   const auto found = active_.find(code);
   fault_t fault = found->second;
   active_.erase(found);
   latched_ -= fault.latched ? 1 : 0;
   fault.active = false;
   PublishFault(fault);
-  if (!simulated_) spdlog::info("fault {}{} has gone", code, Where(channels_));
+  if (!ShowLine(fault)) return;
+  if (says_more) spdlog::error("{}", fault.text);
+  spdlog::info("fault {}{} has gone", code, Where(channels_));
 }
 
 std::string Participant::NameOf(std::optional<int64_t> session) const {
@@ -309,12 +327,14 @@ void Participant::Stop(int64_t addressee, const std::string& source, const std::
 }
 
 bool Participant::SaidAsFault(const std::string& reason) const {
-  return std::any_of(active_.begin(), active_.end(),
-                     [&](const auto& fault) { return reason.ends_with(fault.second.text); });
+  return std::any_of(active_.begin(), active_.end(), [&](const auto& fault) {
+    return reason.ends_with(fault.second.text) && !lines_.hides(fault.first);
+  });
 }
 
 int Participant::Leave(const std::string& failure) {
   if (!simulated_) {
+    SayLeftOut(true);
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
     bus_.Publish(channels_.Of<loop_statistics_t>(), total);

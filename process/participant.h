@@ -18,6 +18,7 @@
 #include "bus/clock.h"
 #include "process/agreement.h"
 #include "process/counted_warning.h"
+#include "process/fault_lines.h"
 #include "process/refusal_watch.h"
 #include "process/timing/loop_statistics.h"
 
@@ -78,7 +79,8 @@ class Participant {
   int64_t tick() const { return tick_; }
 
   // Begins a fault and publishes it once. The fault stays active until Clear(code), a latched one until
-  // Release(code). Returns true when it was not active before.
+  // Release(code). Returns true when it was not active before. The terminal gets a line at the beginning and
+  // at the end; of a fault that comes and goes, it gets some of them and the number of those left out.
   bool Raise(const std::string& code, const std::string& text, double value, double limit, bool latched);
   void Clear(const std::string& code);
   // Does the same, with the values known at the fault's end.
@@ -133,7 +135,9 @@ class Participant {
   void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
   void PublishActiveFaults();
-  void End(const std::string& code);
+  void End(const std::string& code, bool says_more = false);
+  bool ShowLine(const fault_t& fault);
+  void SayLeftOut(bool at_end);
   void WatchRefusals(bus::Clock::TimePoint now);
   void Publish(loop_histogram_t* histogram);
 
@@ -160,6 +164,7 @@ class Participant {
   int active_faults_left_ = 0;  // messages still to be sent; more than 0 while a fault lasts
   int latched_ = 0;             // active faults that are latched
   std::map<std::string, fault_t> active_;
+  FaultLines lines_;                      // about them, on the terminal
   std::map<int64_t, std::string> names_;  // names of the processes that were heard, by session
   CountedWarning undecodable_;
   CountedWarning unsent_;

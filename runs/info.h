@@ -101,6 +101,24 @@ LogInfo Summarise(const RunLog& log, bool si);
 // The number of messages that are missing from the log, over all channels.
 int64_t MissingMessages(const LogInfo& info);
 
+// How many lines of one list a person reads. A device that flickers has thousands of faults; JSON has them
+// all.
+inline constexpr size_t kListed = 40;
+
+// Appends the text of each of the items, one a line: of more than kListed the first and the last, and how
+// many lie between them.
+template <class Items, class TextOf>
+void AppendListed(const Items& items, TextOf text_of, std::string* text) {
+  const size_t left_out = items.size() > kListed ? items.size() - kListed : 0;
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (left_out > 0 && i == kListed / 2) {
+      *text += "... and " + std::to_string(left_out) + " more ...\n";
+      i += left_out;
+    }
+    *text += text_of(items[i]) + "\n";
+  }
+}
+
 // Several lines for people to read.
 std::string InfoText(const LogInfo& info);
 

@@ -158,10 +158,13 @@ void AppendLoops(const LogInfo& info, std::string& text) {
 std::string TickText(int64_t tick) { return tick >= 0 ? "tick " + std::to_string(tick) + ": " : ""; }
 
 void AppendEnds(const LogInfo& info, std::string& text) {
-  for (const fault_t& fault : info.faults) {
-    Append(text, "fault: {}{}: {} {}: {}\n", TickText(fault.tick), fault.source, fault.code,
-           fault.active != 0 ? "begins" : "has gone", bus::ReasonText(fault.text));
-  }
+  AppendListed(
+      info.faults,
+      [](const fault_t& fault) {
+        return fmt::format("fault: {}{}: {} {}: {}", TickText(fault.tick), fault.source, fault.code,
+                           fault.active != 0 ? "begins" : "has gone", bus::ReasonText(fault.text));
+      },
+      &text);
   if (info.faults.empty()) text += "faults: none\n";
   for (const stop_t& stop : info.stops) {
     Append(text, "stop: {}{}: {} (exit code {})\n", TickText(stop.tick), stop.source,

@@ -45,8 +45,6 @@ void AddEvents(const JointInfo& joint, LogInfo* limb) {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kListed = 40;  // faults and outputs that are listed; the rest are only counted
-
 // The codes of the joint's faults, each once.
 std::string Faults(const JointInfo& joint) {
   std::string codes;
@@ -111,12 +109,6 @@ std::string HintOf(const LimbInfo& info) {
                      Printable(info.joints.front().name));
 }
 
-template <class Items, class TextOf>
-void AppendList(const Items& items, TextOf text_of, std::string* text) {
-  for (size_t i = 0; i < std::min(items.size(), kListed); ++i) *text += text_of(items[i]) + "\n";
-  if (items.size() > kListed) *text += fmt::format("... and {} more\n", items.size() - kListed);
-}
-
 Json TrackingOf(const JointInfo& joint) { return Json::parse(SummaryJson(joint.tracking, joint.info)); }
 
 std::string Dump(const Json& json) { return JsonText(json, 2) + "\n"; }
@@ -158,11 +150,11 @@ std::string LimbSummaryText(const LimbInfo& info) {
   const std::string caution = log::Caution(info.limb.verdict);
   if (!caution.empty()) text += "log: " + caution + "\n";
   text += LoopsText(info.limb);
-  AppendList(info.limb.faults, FaultText, &text);
-  AppendList(
+  AppendListed(info.limb.faults, FaultText, &text);
+  AppendListed(
       info.limb.tunings,
       [](const TuningStep& tuning) { return "tuned: " + Printable(DescribeTuning(tuning)); }, &text);
-  AppendList(
+  AppendListed(
       info.limb.outputs_left, [](const output_left_t& left) { return Printable(bus::OutputLeftText(left)); },
       &text);
   return text;

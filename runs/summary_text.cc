@@ -175,7 +175,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     }
   }
   text += LoopsText(info);
-  for (const fault_t& fault : info.faults) line("{}", FaultText(fault));
+  AppendListed(info.faults, FaultText, &text);
   for (const TuningStep& tuning : info.tunings) line("tuned: {}", Printable(DescribeTuning(tuning)));
   for (const output_left_t& left : info.outputs_left) line("{}", Printable(bus::OutputLeftText(left)));
   return text;

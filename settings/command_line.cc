@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
+#include <string_view>
 
 #include "base/input_error.h"
 #include "base/new_file.h"
@@ -68,8 +70,30 @@ std::vector<std::string> OptionNames(const CLI::App& app) {
   return names;
 }
 
-// Words CLI11's messages in this project's form: what was found, what is allowed.
-std::string Message(const CLI::ParseError& error, const CLI::App& app) {
+// "FILE (where to record the run)": what stands for a value, and what it is for.
+std::string ValueOf(const CLI::Option* option) {
+  return option == nullptr ? "one" : option->get_type_name() + " (" + option->get_description() + ")";
+}
+
+// ", e.g. PROGRAM ...": the first of the program's examples, without what is said about it, and the option
+// behind it if the example lacks it.
+std::string Example(const CLI::App& program, const CLI::Option* option) {
+  std::istringstream footer(program.get_footer());
+  std::string line, first;
+  const std::string name = option == nullptr || option->get_positional() ? "" : option->get_name();
+  while (std::getline(footer, line)) {
+    if (!line.starts_with("  ")) continue;
+    line = line.substr(2, line.find("  ", 2) - 2);
+    if (!name.empty() && line.find(name + " ") != std::string::npos) return ", e.g. " + line;
+    if (first.empty()) first = line;
+  }
+  if (first.empty()) return "";
+  return ", e.g. " + first + (name.empty() ? "" : " " + name + " " + option->get_type_name());
+}
+
+// Words CLI11's messages in this project's form: what was found, what is allowed. `app` is the program, or
+// the verb whose options were read.
+std::string Message(const CLI::ParseError& error, const CLI::App& app, const CLI::App& program) {
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
@@ -83,8 +107,8 @@ std::string Message(const CLI::ParseError& error, const CLI::App& app) {
     const std::string name = text.substr(0, text.find(" is required"));
     if (name == "A subcommand") return "verb: found nothing, allowed one of those that --help lists";
     const CLI::Option* option = app.get_option_no_throw(name);
-    return name + ": found nothing, allowed " +
-           (option == nullptr ? "one" : option->get_type_name() + " " + option->get_description());
+    return name + ": found nothing, allowed " + ValueOf(option) +
+           (&app == &program ? Example(app, option) : "");
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const std::string name = text.substr(0, text.find(':'));
@@ -92,8 +116,13 @@ std::string Message(const CLI::ParseError& error, const CLI::App& app) {
       return name + ": found it more than once, allowed once";
     }
     const CLI::Option* option = app.get_option_no_throw(name);
-    return name + ": found no value, allowed " +
-           (option == nullptr ? "one" : option->get_type_name() + " " + option->get_description());
+    return name + ": found no value, allowed " + ValueOf(option) +
+           (&app == &program ? Example(app, option) : "");
+  }
+  constexpr std::string_view kConversion = "Could not convert: ", kIs = " = ";  // of a flag with a value
+  if (const size_t at = text.find(kIs); text.starts_with(kConversion) && at != std::string::npos) {
+    return text.substr(kConversion.size(), at - kConversion.size()) + ": found " +
+           Quoted(text.substr(at + kIs.size())) + " after =, allowed the option alone";
   }
   return text;
 }
@@ -322,7 +351,7 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     const std::string verb_name = verb().empty() ? "" : " " + verb();
     std::fprintf(stderr, "%s%s: %s\n", program.c_str(), verb_name.c_str(),
-                 Message(error, impl_->Current()).c_str());
+                 Message(error, impl_->Current(), app).c_str());
     return 2;
   }
   return std::nullopt;

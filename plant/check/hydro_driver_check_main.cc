@@ -98,8 +98,8 @@ int main(int argc, char** argv) {
   hydro::settings::CommonOptions options;
   hydro::plant::TrialSettings settings;
   std::vector<std::string> only;
-  line.AddPositional("CONFIG", &options.config, "the stack's configuration");
-  line.AddOption("--set", &options.overrides, "section.key=value changes the configuration");
+  line.AddPositional("CONFIG", &options.config, "FILE the stack's configuration");
+  line.AddOption("--set", &options.overrides, "SECTION.KEY=VALUE changes one key of CONFIG");
   line.AddOption("--only", &only, "CASE only this one, a name of the table's first column");
   line.AddFlag("--verbose", &settings.verbose, "show what the driver prints");
   if (const auto code = line.Parse(argc, argv)) return *code;

@@ -54,7 +54,7 @@ struct Reading {
 };
 
 struct DeviceReadings {
-  std::vector<Reading> inputs;  // one for each of DeviceDescription::inputs
+  std::vector<Reading> inputs;  // one for each of DeviceDescription::inputs; it has that size already
   Reading output;     // what the output holds, if the device reports it with each reading; NaN: it does not
   std::string fault;  // the device's own description of its fault; empty: none
 };

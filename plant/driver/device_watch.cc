@@ -20,7 +20,10 @@ void DeviceWatch::OnDriven(double output, bus::Clock::TimePoint now) {
 
 bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now,
                        std::vector<RigFault>* faults) {
-  for (const Reading& reading : readings.inputs) heard_ = std::max(heard_, reading.at);
+  // A reading from the future is a wrong clock of the driver; it would hide the silence of its device.
+  for (const Reading& reading : readings.inputs) {
+    if (reading.at - now <= patience_) heard_ = std::max(heard_, reading.at);
+  }
   const bool silent = now - heard_ > patience_;
   if (silent) {
     const double allowed = bus::ToSeconds(patience_), found = bus::ToSeconds(now - heard_);

@@ -65,7 +65,7 @@ void Connection::Poll(TimePoint now) {
   link_->Flush();
   counts_.damaged = damaged_before_ + receiver_.bad;
   counts_.left_out = link_->frames_left_out();
-  if (phase_ == Phase::kHello && Due(now, kRequestPeriod)) Send(HYDRO_HELLO);
+  if (phase_ == Phase::kHello && Due(now, kRequestPeriod)) Greet();
   if (phase_ == Phase::kSettings && Due(now, kRequestPeriod)) {
     hydro_frame frame{};
     frame.kind = HYDRO_SETTINGS;
@@ -73,8 +73,15 @@ void Connection::Poll(TimePoint now) {
     Send(&frame);
   }
   // No samples come: the device may have reset itself, and then knows no session until it is greeted.
-  if (phase_ == Phase::kUp && now - sampled_at_ > kRequestPeriod && Due(now, kRequestPeriod))
-    Send(HYDRO_HELLO);
+  if (phase_ == Phase::kUp && now - sampled_at_ > kRequestPeriod && Due(now, kRequestPeriod)) Greet();
+}
+
+// What has come from elsewhere since the HELLO before answers it, and tells where the device is.
+void Connection::Greet() {
+  const std::string from = link_->HeardElsewhere();
+  if (greeted_ && !from.empty()) elsewhere_ = from;
+  greeted_ = true;
+  Send(HYDRO_HELLO);
 }
 
 void Connection::Reopen(TimePoint now) {
@@ -234,6 +241,8 @@ void Connection::OnSample(const hydro_sample& sample, TimePoint now) {
   sampled_ = true;
   sampled_at_ = now;
   was_up_ = true;
+  greeted_ = false;
+  elsewhere_.clear();
   ++counts_.samples;
 }
 
@@ -327,6 +336,12 @@ LinkTrouble Connection::WhyNot() const {
   if (echoes_ > 0) {
     return {"only what this computer itself had sent",
             "a front end, and not a cable that leads back or a terminal that echoes"};
+  }
+  if (!elsewhere_.empty()) {
+    return {
+        "answers from " + elsewhere_ + ", which are not used, and no others",
+        "a front end that answers from the address that it is asked at: give its own in driver.url, or let "
+        "its firmware answer from the port that it listens on"};
   }
   if (bytes_ > 0) {
     return {fmt::format("{} bytes that are no frames", bytes_),

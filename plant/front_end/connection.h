@@ -75,6 +75,10 @@ class Connection {
   // Why there is no connection yet, for a message: what was found and what is allowed.
   LinkTrouble WhyNot() const;
 
+  // From where answers have come, since the device was asked in vain, that are not used: "127.0.0.1:7701".
+  // Empty: from nowhere.
+  const std::string& elsewhere() const { return elsewhere_; }
+
   // Asks the device to arm, unless it was asked a moment ago. The device arms only if it has tripped exactly
   // `trips` times.
   void AskToArm(TimePoint now, uint32_t trips);
@@ -92,6 +96,7 @@ class Connection {
   enum class Phase { kHello, kSettings, kUp };
 
   void Reopen(TimePoint now);
+  void Greet();
   void Receive(TimePoint now);
   void Take(const hydro_frame& frame, TimePoint now);
   bool IsNewer(const hydro_frame& frame, TimePoint now);
@@ -130,7 +135,9 @@ class Connection {
       far_;  // of a frame that came later, with a number that the device cannot have reached
   std::pair<uint32_t, uint32_t> jump_{};
   int64_t bytes_ = 0;
-  int64_t echoes_ = 0;          // our own frames that came back
+  int64_t echoes_ = 0;    // our own frames that came back
+  bool greeted_ = false;  // since the newest sample
+  std::string elsewhere_;
   uint8_t other_protocol_ = 0;  // of the device that answers; 0: it is ours
 
   hydro_identity identity_{};

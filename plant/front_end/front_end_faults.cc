@@ -65,7 +65,11 @@ bool FrontEndRig::FindSilence() {
   }
   if (connection_.is_up() && now_ - connection_.sampled_at() <= stale_time_) return false;
   // What answers instead, if it is not a device that has just fallen silent.
-  const std::string instead = connection_.is_up() ? "" : "; found " + connection_.WhyNot().found;
+  const std::string& elsewhere = connection_.elsewhere();
+  const std::string instead = !connection_.is_up() ? "; found " + connection_.WhyNot().found
+                              : !elsewhere.empty()
+                                  ? "; found answers from " + elsewhere + ", which are not used"
+                                  : "";
   Add("device_silent",
       fmt::format("no sample from {} for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s){}", url,
                   1e3 * silence, 1e3 * allowed, instead),
@@ -124,7 +128,8 @@ void FrontEndRig::FindSensorFaults(const hydro_sample& sample) {
                             sample.value[i], SensorName(i)));
     }
     // No process shall take this value for a signal.
-    if (!std::isfinite(sample.value[i])) read_.value[i] = std::numeric_limits<float>::quiet_NaN();
+    if (kind == HYDRO_SENSOR_NONE || !std::isfinite(sample.value[i]))
+      read_.value[i] = std::numeric_limits<float>::quiet_NaN();
     HoldSensorFault(i, faults_before);
   }
 }

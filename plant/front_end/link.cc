@@ -32,6 +32,11 @@ bool Link::Open() {
 }
 
 void Link::Close() {
+  CloseDescriptor();
+  CloseBeside();
+}
+
+void Link::CloseDescriptor() {
   if (descriptor_ >= 0) close(descriptor_);
   descriptor_ = -1;
   begun_.clear();

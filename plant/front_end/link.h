@@ -25,7 +25,7 @@ class Link {
   enum class Kind { kPort, kStream, kDatagrams };
 
   explicit Link(Kind kind) : kind_(kind) {}
-  virtual ~Link() { Close(); }
+  virtual ~Link() { CloseDescriptor(); }
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
@@ -57,17 +57,24 @@ class Link {
   // the rest. For signal handlers, too.
   void AwaitGone() const noexcept;
 
+  // Of datagrams that have come from an address other than the one that was asked, which are not used: where
+  // the newest is from, "127.0.0.1:7701"; empty: none has come since the last call. Takes a bounded number.
+  virtual std::string HeardElsewhere() { return ""; }
+
   // Frames that Write() had to leave out because the link was too slow for them.
   int64_t frames_left_out() const { return frames_left_out_; }
 
  protected:
   // The open, non-blocking descriptor; -1 after Trouble().
   virtual int OpenDescriptor() = 0;
+  // Closes what OpenDescriptor() has opened beside it.
+  virtual void CloseBeside() {}
   // Bytes that the kernel still has to send; 0 where it does not tell.
   virtual size_t BytesOnTheirWay(int) const noexcept { return 0; }
   int Trouble(std::string found, std::string allowed);
 
  private:
+  void CloseDescriptor();
   size_t TakeRest(std::span<uint8_t> into);
   void Send(std::span<const uint8_t> bytes);
   ssize_t Put(std::span<const uint8_t> bytes) const noexcept;

@@ -140,7 +140,25 @@ class UdpLink : public Link {
   UdpLink(std::string host, std::string port)
       : Link(Kind::kDatagrams), host_(std::move(host)), port_(std::move(port)) {}
   ~UdpLink() override {
+    UdpLink::CloseBeside();
     if (addresses_ != nullptr) freeaddrinfo(addresses_);
+  }
+
+  std::string HeardElsewhere() override {
+    constexpr int kMost = 64;
+    sockaddr_storage from = {};
+    socklen_t size = 0;
+    bool heard = false;
+    for (int i = 0; i < kMost && strangers_ >= 0; ++i) {
+      sockaddr_storage sender = {};
+      socklen_t length = sizeof sender;
+      char none = 0;
+      if (recvfrom(strangers_, &none, 1, 0, reinterpret_cast<sockaddr*>(&sender), &length) < 0) break;
+      from = sender;
+      size = length;
+      heard = true;
+    }
+    return heard ? NameOf(from, size) : "";
   }
 
  protected:
@@ -157,10 +175,43 @@ class UdpLink : public Link {
           AllowedAfter(error, "an address that this machine has a route to; ip route get " + host_));
     }
     setsockopt(opened, SOL_SOCKET, SO_PRIORITY, &kPriority, sizeof kPriority);
+    ListenForStrangers(opened);
     return opened;
   }
 
+  void CloseBeside() override {
+    if (strangers_ >= 0) close(strangers_);
+    strangers_ = -1;
+  }
+
  private:
+  // What the kernel would drop comes to a second socket on the same port, to tell from where a device answers
+  // that has another address than it was asked at. Without it nothing is missing but these words.
+  void ListenForStrangers(int opened) {
+    CloseBeside();
+    sockaddr_storage here = {};
+    socklen_t size = sizeof here;
+    if (getsockname(opened, reinterpret_cast<sockaddr*>(&here), &size) != 0) return;
+    strangers_ = socket(here.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int yes = 1, no = 0;
+    setsockopt(opened, SOL_SOCKET, SO_REUSEPORT, &yes, sizeof yes);
+    setsockopt(strangers_, SOL_SOCKET, SO_REUSEPORT, &yes, sizeof yes);
+    const bool bound = bind(strangers_, reinterpret_cast<const sockaddr*>(&here), size) == 0;
+    // Nobody else shall share the port.
+    setsockopt(opened, SOL_SOCKET, SO_REUSEPORT, &no, sizeof no);
+    setsockopt(strangers_, SOL_SOCKET, SO_REUSEPORT, &no, sizeof no);
+    if (!bound) CloseBeside();
+  }
+
+  static std::string NameOf(const sockaddr_storage& address, socklen_t size) {
+    char host[NI_MAXHOST], port[NI_MAXSERV];
+    const int error = getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host, sizeof host, port,
+                                  sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
+    if (error != 0) return "an address without a name";
+    const bool v6 = address.ss_family == AF_INET6;
+    return (v6 ? "[" : "") + std::string(host) + (v6 ? "]:" : ":") + port;
+  }
+
   bool LookUp() {
     addrinfo hints = {};
     hints.ai_socktype = SOCK_DGRAM;
@@ -175,6 +226,7 @@ class UdpLink : public Link {
   std::string host_;
   std::string port_;
   addrinfo* addresses_ = nullptr;
+  int strangers_ = -1;  // on the port of the link
 };
 
 class UnixLink : public Link {

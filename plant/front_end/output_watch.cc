@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace hydro::plant {
 namespace {
@@ -22,11 +24,28 @@ bool Acts(const hydro_sample& sample) {
   return sample.state == HYDRO_ARMED && sample.source != HYDRO_SOURCE_ZERO;
 }
 
-// Where its range ends, a device may put out less than it was told, and reports that; it never puts out more,
-// and never the other sign.
-bool IsLess(const hydro_sample& sample, double told) {
-  const auto voltage = static_cast<double>(sample.voltage);
-  return sample.saturated != 0 && voltage * told >= 0 && std::fabs(voltage) <= std::fabs(told);
+// Of the largest terms: a few steps of single precision, in which another processor may round otherwise.
+constexpr double kRounding = 1e-6;
+
+// What a device puts out that is asked for so much, V of eq. (1). Both sides know its limits: the settings
+// have the voltage limit, and its IDENTITY has the range of its output.
+double Limited(double asked, const hydro_voltage_range& range) {
+  return std::clamp(asked, static_cast<double>(range.low), static_cast<double>(range.high));
+}
+
+// Adds the fault of a device that says falsely whether its limits have made its voltage smaller.
+void LookAtSaturated(const hydro_sample& sample, double asked, const hydro_voltage_range& range,
+                     double rounding, std::vector<RigFault>* faults) {
+  const bool beyond = asked < range.low - rounding || asked > range.high + rounding;
+  const bool within = asked > range.low + rounding && asked < range.high - rounding;
+  if (sample.saturated != 0 ? !within : !beyond) return;
+  faults->push_back(
+      {"output_differs",
+       fmt::format("the front end says that its limits {} its voltage (saturated is {}); it was asked for "
+                   "{:.4g} V, and its limits are {:.4g} and {:.4g} V",
+                   sample.saturated != 0 ? "reduce" : "do not reduce", sample.saturated, asked, range.low,
+                   range.high),
+       asked, asked < 0 ? range.low : range.high});
 }
 
 // What eq. (16) gives for the readings of a sample, and by how much rounding on another processor may change
@@ -36,7 +55,6 @@ struct Computed {
   double rounding;
 };
 Computed ByEq16(const hydro_sample& sample, float pressure_ref, const hydro_gains& gains) {
-  constexpr double kRounding = 1e-6;  // of the largest terms: a few steps of single precision
   const hydro_law_input input = {.pressure_ref = pressure_ref,
                                  .p1 = sample.value[HYDRO_P1],
                                  .p2 = sample.value[HYDRO_P2],
@@ -92,6 +110,9 @@ void OutputWatch::OnTold(uint32_t sequence, float pressure_ref, const hydro_gain
 }
 
 void OutputWatch::Keep(const Told& told) {
+  constexpr uint32_t kFarthest = std::numeric_limits<uint32_t>::max() / 2;  // that is older, and not newer
+  if (!first_ || told.sequence - *first_ > kFarthest)
+    first_ = first_ ? told.sequence - kFarthest : told.sequence;
   told_.push_back(told);
   Forget(&told_, told.at - patience_);
 }
@@ -127,7 +148,7 @@ void OutputWatch::Look(const hydro_sample& sample, const hydro_voltage_range& ra
   if (told != nullptr && told->by_law) {
     LookAtLaw(sample, *told->by_law, range, now, faults);
   } else {
-    LookAtReport(sample, faults);
+    LookAtReport(sample, range, faults);
   }
   if (faults->size() == before) LookAtReadBack(sample, interval, now, faults);
 }
@@ -144,7 +165,27 @@ bool OutputWatch::MayPutOut(const hydro_sample& sample) const {
 // Whether the command that a sample names may have been sent before those that are kept: as the rig's check
 // of its age sees too. A device cannot act by one that comes later, or that is missing among those kept.
 bool OutputWatch::IsOld(const hydro_sample& sample) const {
-  return static_cast<int32_t>(sample.command_sequence - told_.front().sequence) < 0;
+  return first_ && sample.command_sequence - *first_ < told_.front().sequence - *first_;
+}
+
+// A device that names a command which was never sent obeys another computer, or invents what it says.
+void OutputWatch::LookAtUnsent(const hydro_sample& sample, std::vector<RigFault>* faults) const {
+  const auto same = std::find_if(told_.begin(), told_.end(),
+                                 [&](const Told& told) { return told.sequence == sample.command_sequence; });
+  const std::string found = fmt::format("the front end says that it puts out {:.4g} V by command {}",
+                                        sample.voltage, sample.command_sequence);
+  const std::string newest =
+      told_.empty() ? "none was sent yet" : fmt::format("the newest has number {}", told_.back().sequence);
+  faults->push_back(
+      {"output_differs",
+       same != told_.end()
+           ? fmt::format("{} as its source {}, and that command told it {}", found, sample.source,
+                         same->by_law ? "a reference for its law (source 2)" : "a voltage (source 1)")
+           : fmt::format("{}, which was never sent: {}. It obeys another program, or its firmware makes up "
+                         "the number; allowed is the number of a command that was sent",
+                         found, newest),
+       static_cast<double>(sample.command_sequence),
+       told_.empty() ? NAN : static_cast<double>(told_.back().sequence)});
 }
 
 bool OutputWatch::AChangePasses(bus::Clock::TimePoint now) const {
@@ -168,7 +209,7 @@ void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const
                             bus::Clock::TimePoint now, std::vector<RigFault>* faults) {
   const auto voltage = static_cast<double>(sample.voltage);
   const auto [law, rounding] = ByEq16(sample, told.pressure_ref, told.gains);
-  const double expected = std::clamp(law, static_cast<double>(range.low), static_cast<double>(range.high));
+  const double expected = Limited(law, range);
   const double most = MostTransfer(sample, told, now);
   if (sample.pressure_ref != told.pressure_ref) {
     faults->push_back(
@@ -183,26 +224,40 @@ void OutputWatch::LookAtLaw(const hydro_sample& sample, const ByLaw& told, const
                      most == 0 ? std::string("they have not changed")
                                : fmt::format("theirs explains at most {:.4g} V", most)),
          sample.transfer, most});
-  } else if (!(std::fabs(voltage - expected) <= rounding) && !IsLess(sample, law)) {
+  } else if (!(std::fabs(voltage - expected) <= rounding)) {
     faults->push_back(
         {"output_differs",
          fmt::format("the front end says that it puts out {:.4g} V; eq. (16) gives {:.4g} V for the readings "
                      "that it sends",
                      voltage, expected),
          voltage, expected});
+  } else {
+    LookAtSaturated(sample, law, range, rounding, faults);
   }
 }
 
-void OutputWatch::LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const {
+// A voltage within the limits comes back as it was sent, to the bit; an end of them, to rounding.
+void OutputWatch::LookAtReport(const hydro_sample& sample, const hydro_voltage_range& range,
+                               std::vector<RigFault>* faults) const {
   const auto voltage = static_cast<double>(sample.voltage);
   const Told* const found = Find(sample);
-  if (Acts(sample) && found == nullptr && MayPutOut(sample) && IsOld(sample)) return;
+  if (Acts(sample) && found == nullptr) {
+    if (!IsOld(sample)) return LookAtUnsent(sample, faults);
+    if (MayPutOut(sample)) return;
+  }
   const double told = found != nullptr ? found->voltage : 0;
-  if (voltage == told || IsLess(sample, told)) return;
-  faults->push_back(
-      {"output_differs",
-       fmt::format("the front end says that it puts out {:.4g} V; it was told {:.4g} V", voltage, told),
-       voltage, told});
+  const double expected = Limited(told, range);
+  const double rounding = kRounding * (1 + std::fabs(told));
+  if (expected == told ? voltage == told : std::fabs(voltage - expected) <= rounding) {
+    if (found != nullptr) LookAtSaturated(sample, told, range, rounding, faults);
+    return;
+  }
+  const std::string limits =
+      expected != told ? fmt::format(", and its limits allow {:.4g} V", expected) : std::string();
+  faults->push_back({"output_differs",
+                     fmt::format("the front end says that it puts out {:.4g} V; it was told {:.4g} V{}",
+                                 voltage, told, limits),
+                     voltage, expected});
 }
 
 // The read-back was measured before the device put out the voltage of this sample. The output takes a while

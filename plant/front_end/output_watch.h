@@ -31,7 +31,8 @@ class OutputWatch {
 
   // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
   // told, of a loop on the device what eq. (16) gives for the readings of that very sample; or not zero
-  // though the device is not armed or no command of late can have made it so; or while the output reads back
+  // though the device is not armed or no command of late can have made it so; or that command was never sent;
+  // or `saturated` is not what the limits make of it; or while the output reads back
   // a voltage that was not put out within the patience: twice in a row where it is known what it held, else
   // for as long as the patience. `range`: what the device can put out. `interval`: ticks of the device from
   // one sample to the next.
@@ -67,7 +68,9 @@ class OutputWatch {
 
   void Keep(const Told& told);
   const Told* Find(const hydro_sample& sample) const;
-  void LookAtReport(const hydro_sample& sample, std::vector<RigFault>* faults) const;
+  void LookAtReport(const hydro_sample& sample, const hydro_voltage_range& range,
+                    std::vector<RigFault>* faults) const;
+  void LookAtUnsent(const hydro_sample& sample, std::vector<RigFault>* faults) const;
   void LookAtLaw(const hydro_sample& sample, const ByLaw& told, const hydro_voltage_range& range,
                  bus::Clock::TimePoint now, std::vector<RigFault>* faults);
   // Whether a change of gains may still be passing.
@@ -86,6 +89,7 @@ class OutputWatch {
   const bus::Clock::Duration patience_, transfer_;
   const double tolerance_;            // V of eq. (1)
   std::deque<Told> told_;             // within the patience, and the one before
+  std::optional<uint32_t> first_;     // the first number that was told, or the oldest that counts as older
   std::optional<hydro_gains> gains_;  // told last
   std::optional<bus::Clock::TimePoint> gains_changed_at_;
   // The gains before the change, by how much it may move the voltage, and what changes before it have left.

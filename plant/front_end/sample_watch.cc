@@ -26,8 +26,8 @@ constexpr double kSlowest = 0.55, kFastest = 1.8;
 constexpr double kSinglePrecision = 1e-6;  // of the terms: a few steps
 constexpr double kSlackCounts = 4;         // an encoder that trembles on an edge
 
-// What is wrong with what the device says of itself; empty: nothing.
-std::string WrongSelf(const hydro_sample& s, const hydro_settings& settings) {
+// What no such field holds; empty: nothing.
+std::string WrongField(const hydro_sample& s) {
   if (s.state < HYDRO_READY || s.state > HYDRO_TRIPPED) {
     return fmt::format(
         "says that its state is {}, allowed are 1 (ready), 2 (armed) and 3 (tripped) while it "
@@ -41,15 +41,20 @@ std::string WrongSelf(const hydro_sample& s, const hydro_settings& settings) {
         s.source);
   }
   if (s.saturated > 1) return fmt::format("says {} for saturated, allowed are 0 and 1", s.saturated);
-  if ((s.sensor_faults & ~kKnownSensors) != 0) {
-    return fmt::format(
-        "names sensors that it does not have among those at fault (0x{:02x}), allowed are the "
-        "bits of 0x{:02x}",
-        s.sensor_faults, kKnownSensors);
-  }
+  if ((s.sensor_faults & ~kKnownSensors) == 0) return "";
+  return fmt::format(
+      "names sensors that it does not have among those at fault (0x{:02x}), allowed are the "
+      "bits of 0x{:02x}",
+      s.sensor_faults, kKnownSensors);
+}
+
+// Which fields contradict each other about what it does and by which command; empty: none.
+std::string WrongAction(const hydro_sample& s, const hydro_settings& settings) {
   const bool armed = s.state == HYDRO_ARMED, commanded = s.command_age != kNoCommand;
   if (!armed && s.source != HYDRO_SOURCE_ZERO)
     return fmt::format("says that it acts by source {} and that it is not armed", s.source);
+  if (s.source == HYDRO_SOURCE_LAW && settings.mode != HYDRO_LOOP_ON_DEVICE)
+    return "says that its voltage comes from its law (source 2), and its mode has none: allowed are 0 and 1";
   if (armed && s.source != HYDRO_SOURCE_ZERO && !commanded)
     return "says that it acts by a command and that it has none";
   if (armed && s.source == HYDRO_SOURCE_ZERO && commanded)
@@ -60,7 +65,49 @@ std::string WrongSelf(const hydro_sample& s, const hydro_settings& settings) {
         "after {} (driver.watchdog_s)",
         s.command_age, settings.watchdog_ticks);
   }
+  if (!armed && commanded) return "says that it has a command and that it is not armed";
+  if (!commanded && (s.command_sequence != 0 || s.host_tick != 0)) {
+    return fmt::format("says that it has no command, and names command {} for tick {}; allowed are 0 and 0",
+                       s.command_sequence, s.host_tick);
+  }
+  if (armed && s.faults_latched != 0) {
+    return fmt::format("says that it is armed and that it has tripped: {}",
+                       DescribeDeviceFaults(s.faults_latched));
+  }
   return "";
+}
+
+// Which field holds something though it means nothing in this mode, source or wiring; empty: none.
+std::string WrongUnused(const hydro_sample& s, const hydro_settings& settings) {
+  if (s.source == HYDRO_SOURCE_ZERO && s.saturated != 0)
+    return "says that it puts out zero volts and that its limits allow no more (saturated is 1)";
+  if (s.source != HYDRO_SOURCE_LAW && !(s.pressure_ref == 0 && s.transfer == 0)) {
+    return fmt::format(
+        "gives {:.6g} for pressure_ref and {:.6g} for transfer; allowed are 0 and 0 while its voltage does "
+        "not come from its law",
+        s.pressure_ref, s.transfer);
+  }
+  for (int i = 0; i < HYDRO_SENSORS; ++i) {
+    if (settings.sensors[i].kind == HYDRO_SENSOR_NONE && !std::isnan(s.value[i])) {
+      return fmt::format("gives {:.6g} for {}, which it was not told to measure; allowed is NaN", s.value[i],
+                         SensorName(i));
+    }
+  }
+  const auto wrong = [&](int angle, int32_t count) {
+    return settings.sensors[angle].kind == HYDRO_SENSOR_COUNTER || count == 0
+               ? std::string()
+               : fmt::format("gives a count of {} for {}, which it has no counter for; allowed is 0", count,
+                             SensorName(angle));
+  };
+  const std::string motor = wrong(HYDRO_MOTOR_ANGLE, s.motor_count);
+  return motor.empty() ? wrong(HYDRO_ARM_ANGLE, s.arm_count) : motor;
+}
+
+// What is wrong with what the device says of itself; empty: nothing.
+std::string WrongSelf(const hydro_sample& sample, const hydro_settings& settings) {
+  std::string wrong = WrongField(sample);
+  if (wrong.empty()) wrong = WrongAction(sample, settings);
+  return wrong.empty() ? WrongUnused(sample, settings) : wrong;
 }
 
 constexpr std::array<int, 2> kAngles = {HYDRO_MOTOR_ANGLE, HYDRO_ARM_ANGLE};

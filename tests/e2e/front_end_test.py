@@ -1,11 +1,13 @@
 """hydro-driver with the whole stack on a front end: the firmware as a process, over a pseudo terminal, a Unix socket and UDP."""
 
+import contextlib
 import json
 import os
 import re
 import signal
 import socket
 import struct
+import threading
 import time
 
 import event_log
@@ -485,6 +487,23 @@ class FrontEndInputTest(FrontEndCase):
             line = self.refused("udp://127.0.0.1:%d" % silent.getsockname()[1], "time.start_timeout_s=0.3")
         self.assertIn("found nothing that answers at udp://127.0.0.1:", line)
         self.assertIn("within 0.3 s (time.start_timeout_s), allowed a front end", line)
+
+    # Tests that a device which answers from another port than the one that it is asked at is named as that, and is not used.
+    def test_answers_from_another_port(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as answers:
+            asked.bind(("127.0.0.1", 0))
+            answers.bind(("127.0.0.1", 0))
+            asked.settimeout(5)
+
+            def echo():
+                with contextlib.suppress(OSError):
+                    while True:
+                        answers.sendto(*asked.recvfrom(1000))
+
+            threading.Thread(target=echo, daemon=True).start()
+            line = self.refused("udp://127.0.0.1:%d" % asked.getsockname()[1], "time.start_timeout_s=1")
+            self.assertIn("driver.url: found answers from 127.0.0.1:%d, which are not used, and no others at udp://127.0.0.1:%d within 1 s" %
+                          (answers.getsockname()[1], asked.getsockname()[1]), line)
 
     # Tests that under hydro-launch, too, what a missing device calls for is said by the driver, and by nobody else that the driver is not
     # ready.

@@ -248,7 +248,10 @@ class OwnDriverInputTest(OwnDriverCase):
                 ((('input = "encoder"', 'input = "ai1"'),), 'driver.motor_angle.input: found "ai1", allowed "encoder"'),
                 ((('answer_ms = 1000', 'answer_ms = 0'),), "driver.own.answer_ms: found 0, allowed"),
                 ((('answer_ms = 1000', 'anser_ms = 1000'),), 'driver.own: "anser_ms": found an unknown key, allowed "answer_ms"'),
-                ((('device = "udp://127.0.0.1:', 'device = "udp:/127.0.0.1:'),), "driver.device: found .*allowed udp://HOST:PORT")):
+                ((('device = "udp://127.0.0.1:', 'device = "udp:/127.0.0.1:'),), "driver.device: found .*allowed udp://HOST:PORT"),
+                *(((("device = \"udp://127.0.0.1:%d" % self.port, f'device = "udp://127.0.0.1:{port}'),),
+                   rf'driver.device: found "udp://127.0.0.1:{re.escape(port)}", allowed udp://HOST:PORT.*, with PORT from 1 to 65535$')
+                  for port in ("70000", "0", "-1", "65536", "x", "", "5005x", "99999999999"))):
             process = subprocess.run([os.path.join(TOOLS, "udp_box"), self.config("udp_box", *changes), "--set", f"bus.url={self.url}"],
                                      capture_output=True, text=True, timeout=30, check=False)
             self.assertEqual(process.returncode, 2, process.stderr)
@@ -344,6 +347,18 @@ class OwnDriverInputTest(OwnDriverCase):
         for name in ("a/b", "1st", "", "simulated_device"):
             self.assertRegex(self.run_program("hydro-launch", "--new-driver", name, expect=2).stderr, "--new-driver.*allowed|new-driver")
         self.assertFalse(os.path.exists(self.path("simulated_device")))
+        # CMake has a target or a file of these names; and each name that is missing is asked for, with an example.
+        for name in ("test", "all", "install", "clean", "package", "help", "edit_cache", "rebuild_cache", "depend", "Makefile", "CMakeFiles"):
+            self.assertEqual(self.run_program("hydro-launch", "new-driver", name, expect=2).stderr,
+                             f'hydro-launch: --new-driver: found "{name}", allowed another name, e.g. my_{name}: CMake has a target or file of this name\n')
+            self.assertFalse(os.path.exists(self.path(name)))
+        for arguments in (("new-driver",), ("new-driver", "--quiet"), ("--new-driver",), ("new-controller",)):
+            self.assertEqual(self.run_program("hydro-launch", *arguments, expect=2).stderr,
+                             "hydro-launch: VERB: found no NAME, allowed letters, digits and underscores, e.g. hydro-launch VERB crane\n".replace(
+                                 "VERB", arguments[0].removeprefix("--")))
+        for name in ("hydro", "hydro_bus", "socket", "signal"):
+            self.assertRegex(self.run_program("hydro-launch", "new-controller", name, expect=2).stderr,
+                             f'new-controller: found "{name}", allowed another name, e.g. my_{name}: the controller imports a Python module')
         # It also runs where it is built, because the configuration names the place where CMake puts it.
         os.mkdir(self.path("mine/build"))
         shutil.copy(os.path.join(TOOLS, "udp_box"), self.path("mine/build/mine"))

@@ -8,6 +8,7 @@ namespace hydro::runs {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class InfoTest : public log::LogTest {
  protected:
@@ -162,6 +163,32 @@ TEST_F(InfoTest, Texts) {
   const LogInfo nothing = Summarise(ReadRunLog(Path("empty")), false);
   EXPECT_THAT(InfoText(nothing), HasSubstr("0 messages"));
   EXPECT_THAT(InfoJson(nothing), HasSubstr("\"messages\": 0"));
+}
+
+// Tests that of a fault that came and went thousands of times the texts have the first and the last lines and
+// how many lie between them, and JSON all.
+TEST_F(InfoTest, FaultsOfADeviceThatFlickers) {
+  LogInfo info = InfoOf(log::SampleRun(11));
+  info.faults.clear();
+  for (int i = 0; i < 5000; ++i) {
+    fault_t fault{};
+    fault.tick = i;
+    fault.source = "driver";
+    fault.code = "device_fault";
+    fault.active = i % 2 == 0;
+    info.faults.push_back(fault);
+  }
+  const std::string text = InfoText(info);
+  for (const char* part :
+       {"fault: tick 19: driver: device_fault has gone: ", "\n... and 4960 more ...\nfault: tick 4980: ",
+        "fault: tick 4999: driver: device_fault has gone: "}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  EXPECT_THAT(text, Not(HasSubstr("fault: tick 20:")));
+  EXPECT_THAT(text, Not(HasSubstr("fault: tick 4979:")));
+  EXPECT_THAT(InfoJson(info), HasSubstr("\"tick\": 2500"));
+  info.faults.resize(kListed);
+  EXPECT_THAT(InfoText(info), Not(HasSubstr(" more ...")));
 }
 
 }  // namespace

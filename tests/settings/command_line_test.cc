@@ -109,6 +109,35 @@ TEST(CommandLineTest, BadUsage) {
   }
 }
 
+// Tests that what is missing is named, with what it is for and an example: the one that has the option, or
+// the first one with the option behind it.
+TEST(CommandLineTest, MissingWithAnExample) {
+  const struct {
+    std::vector<const char*> arguments;
+    std::string says;
+  } usages[] = {
+      {{}, "CONFIG: found nothing, allowed FILE (the stack's configuration, TOML), e.g. hydro-test a.toml"},
+      {{"a.toml", "--only"},
+       "--only: found no value, allowed CASE (one of them), e.g. hydro-test a.toml --only x -v"},
+      {{"a.toml", "--set"},
+       "--set: found no value, allowed SECTION.KEY=VALUE (changes one key of CONFIG, e.g. "
+       "pressure.damping_ratio=0.7), e.g. hydro-test a.toml --set SECTION.KEY=VALUE"},
+      {{"a.toml", "--flag=foo"}, "--flag: found \"foo\" after =, allowed the option alone"},
+  };
+  for (const auto& usage : usages) {
+    Common common;
+    std::string only;
+    bool flag = false;
+    common.line.AddOption("--only", &only, "CASE one of them");
+    common.line.AddFlag("--flag", &flag, "a flag");
+    common.line.AddExamples({"hydro-test a.toml     all of it", "hydro-test a.toml --only x -v"},
+                            "docs/a.md");
+    const Outcome outcome = Parse(common.line, usage.arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "hydro-test: " + usage.says + "\n");
+  }
+}
+
 // Tests a program's own options of each type, and that those not given keep their values.
 TEST(CommandLineTest, OwnOptions) {
   CommandLine line("hydro-test", "Does nothing.");
@@ -140,7 +169,7 @@ TEST(CommandLineTest, OwnOptions) {
 
   CommandLine other("hydro-test", "Does nothing.");
   other.AddOption("-o,--out", &out, "FILE where to write", true);
-  EXPECT_THAT(Parse(other, {}).err, HasSubstr("--out: found nothing, allowed FILE where to write"));
+  EXPECT_THAT(Parse(other, {}).err, HasSubstr("--out: found nothing, allowed FILE (where to write"));
 }
 
 // Tests that an empty text is a value where a program says that it is one, and that what was given is known.
@@ -182,8 +211,8 @@ TEST(CommandLineTest, Verbs) {
   } usages[] = {
       {{}, "hydro-test: verb: found nothing, allowed \"info\" or \"export\""},
       {{"inof"}, "hydro-test: verb: found \"inof\", allowed \"info\" or \"export\", did you mean \"info\"?"},
-      {{"info"}, "hydro-test info: LOG: found nothing, allowed FILE a log"},
-      {{"export"}, "hydro-test export: --out: found nothing, allowed FILE the table"},
+      {{"info"}, "hydro-test info: LOG: found nothing, allowed FILE (a log)"},
+      {{"export"}, "hydro-test export: --out: found nothing, allowed FILE (the table"},
       {{"info", "a", "--x"}, "hydro-test info: found the unexpected argument \"--x\""},
       {{"--x"}, "hydro-test: "},
   };

@@ -13,6 +13,7 @@
 
 #include "frames.h"
 #include "plant/driver/driver_main.h"
+#include "settings/urls.h"
 
 namespace {
 
@@ -25,23 +26,25 @@ constexpr int kMostAtOnce = 64;       // datagrams that one turn takes, however 
 // The socket to "udp://HOST:PORT". Throws InputError.
 int Connect(const hydro::plant::DeviceSettings& settings) {
   const std::string& url = settings.device;
-  const size_t colon = url.rfind(':');
-  const auto refuse = [&](const std::string& why) {
-    return hydro::settings::KeyError(settings.config.file, "driver.device", "\"" + url + "\"" + why,
-                                     "udp://HOST:PORT, e.g. udp://192.168.1.7:5005");
+  const auto refuse = [&](const std::string& why, const std::string& allowed) {
+    return hydro::settings::KeyError(settings.config.file, "driver.device", "\"" + url + "\"" + why, allowed);
   };
-  if (!url.starts_with("udp://") || colon < 7) throw refuse("");
+  const std::string usual = "udp://HOST:PORT, e.g. udp://192.168.1.7:5005";
+  if (!url.starts_with("udp://")) throw refuse("", usual);
+  hydro::settings::FrontEndUrl address;
+  const std::string allowed = hydro::settings::WhatIsWrongWithFrontEndUrl(url, &address);
+  if (!allowed.empty()) throw refuse("", allowed);
   addrinfo hints{}, *found = nullptr;
   hints.ai_socktype = SOCK_DGRAM;
-  const int error = getaddrinfo(url.substr(6, colon - 6).c_str(), url.c_str() + colon + 1, &hints, &found);
-  if (error != 0) throw refuse(std::string(" (") + gai_strerror(error) + ")");
+  const int error = getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found);
+  if (error != 0) throw refuse(std::string(" (") + gai_strerror(error) + ")", usual);
   const int socket = ::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const bool connected = socket >= 0 && connect(socket, found->ai_addr, found->ai_addrlen) == 0;
   freeaddrinfo(found);
   if (connected) return socket;
   const int reason = errno;
   if (socket >= 0) close(socket);
-  throw refuse(std::string(" (") + std::strerror(reason) + ")");
+  throw refuse(std::string(" (") + std::strerror(reason) + ")", usual);
 }
 
 class UdpBox : public hydro::plant::Device {

@@ -67,7 +67,7 @@ static int64_t now_ns(void) {
 }
 
 static int refuse(const char* option, const char* found, const char* allowed) {
-  fprintf(stderr, "hydro-front-end: %s: found %s, allowed is %s; see --help\n", option, found, allowed);
+  fprintf(stderr, "hydro-front-end: %s: found %s, allowed %s; see --help\n", option, found, allowed);
   return 2;
 }
 
@@ -78,33 +78,38 @@ static int say(const char* text) {
   return 1;
 }
 
+static const char kRates[] = "are 1 to 20000 ticks a second, e.g. --rate 5000";
+
 static int read_options(int argc, char** argv, const char** link, const char** converter_link) {
   for (int i = 1; i < argc; ++i) {
-    const char* value = i + 1 < argc ? argv[i + 1] : NULL;
+    const char* value = i + 1 < argc && argv[i + 1][0] != '-' ? argv[i + 1] : NULL;
     if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
       exit(say(kHelp));
     } else if (strcmp(argv[i], "--version") == 0) {
       exit(say("hydro-front-end " HYDRO_VERSION "\n"));
     } else if (strcmp(argv[i], "--converters") == 0) {
-      if (!value) return refuse("--converters", "nothing", "a link");
+      if (!value) return refuse("--converters", "no LINK", "one to a simulator, e.g. --converters udp:7701");
       *converter_link = argv[++i];
     } else if (strcmp(argv[i], "--rate") == 0) {
-      if (!value) return refuse("--rate", "nothing", "1 to 20000");
+      if (!value) return refuse("--rate", "no number", kRates);
       char* end = NULL;
       rate_hz = strtoul(argv[++i], &end, 10);
       const bool number = argv[i][0] >= '0' && argv[i][0] <= '9' && *end == '\0';
-      if (!number || rate_hz < 1 || rate_hz > 20000) return refuse("--rate", argv[i], "1 to 20000");
+      if (!number || rate_hz < 1 || rate_hz > 20000) return refuse("--rate", argv[i], kRates);
     } else if (strcmp(argv[i], "--tick-by-converters") == 0) {
       tick_by_converters = true;
     } else if (argv[i][0] == '-' || *link) {
-      return refuse("arguments", argv[i], "one LINK, --converters, --rate, --tick-by-converters");
+      return refuse("arguments", argv[i], "are one LINK, --converters, --rate, --tick-by-converters");
     } else {
       *link = argv[i];
     }
   }
-  if (!*link) return refuse("arguments", "no LINK", "pty, pty:PATH, unix:PATH or udp:PORT");
+  if (!*link)
+    return refuse(
+        "LINK", "nothing",
+        "are pty, pty:PATH, unix:PATH, udp:PORT and udp:ADDRESS:PORT, e.g. hydro-front-end udp:7700");
   if (tick_by_converters && !*converter_link)
-    return refuse("--tick-by-converters", "no --converters", "both");
+    return refuse("--tick-by-converters", "no --converters", "are both together");
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,7 +10,9 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "base/input_error.h"
 #include "plant/driver/check_sensors.h"
@@ -44,7 +47,8 @@ class FakeDevice : public Device {
                        {.name = "p2", .unit = "mA", .low = 0, .high = 22},
                        {.name = "motor_angle", .kind = DeviceInput::Kind::kCount, .highest_count = 0xffff},
                        {.name = "motor_speed", .unit = "mA"}},
-            .output = {.unit = "mA", .low = -20, .high = 20, .tolerance = 0.1}};
+            .output = described_output,
+            .files = files};
   }
   void Read(DeviceReadings& into) override {
     if (!unfit.empty()) throw InputError(unfit);
@@ -52,6 +56,7 @@ class FakeDevice : public Device {
       for (Reading& reading : readings.inputs) reading.at = clock_.Now();
     }
     into = readings;
+    for (Reading& reading : into.inputs) reading.at += ahead;
     if (tells_output) into.output = {lies.value_or(shared_->output), clock_.Now()};
   }
   void Drive(double output) override {
@@ -66,7 +71,10 @@ class FakeDevice : public Device {
   }
   double ReadBack() noexcept override { return lies.value_or(shared_->output); }
 
+  DeviceOutput described_output{.unit = "mA", .low = -20, .high = 20, .tolerance = 0.1};
+  std::vector<int> files;
   DeviceReadings readings;
+  bus::Clock::Duration ahead{};  // of the clock, in what it says of its readings' times
   bool silent = false;
   std::string unfit;
   bool answers_when_driven = false;
@@ -105,15 +113,16 @@ class DeviceRigTest : public ::testing::Test {
     return section;
   }
 
-  std::unique_ptr<DeviceRig> Open() {
+  std::unique_ptr<DeviceRig> Open(const std::function<void(FakeDevice&)>& change = nullptr) {
     auto device = std::make_unique<FakeDevice>(shared_, clock_);
     device_ = device.get();
+    if (change) change(*device);
     return std::make_unique<DeviceRig>(config_, clock_, std::move(device));
   }
 
-  std::string OpenError() {
+  std::string OpenError(const std::function<void(FakeDevice&)>& change = nullptr) {
     try {
-      Open();
+      Open(change);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -158,6 +167,62 @@ TEST_F(DeviceRigTest, ScalesAndZero) {
   rig->Drive(5);
   rig.reset();
   EXPECT_EQ(shared_->output, -2);
+}
+
+// Tests that an output whose range is none, with which no limit would hold, and a file that is not open, with
+// which no guardian could write a zero, are refused before anything is put out.
+TEST_F(DeviceRigTest, DescriptionsThatCannotBe) {
+  for (const auto& range : {std::pair<double, double>{NAN, NAN}, {-20, NAN}, {20, -20}, {0, 0}}) {
+    const auto describe = [&](FakeDevice& device) {
+      device.described_output.low = range.first;
+      device.described_output.high = range.second;
+    };
+    EXPECT_THAT(OpenError(describe),
+                HasSubstr("as its driver describes it, allowed one whose lower end is below"))
+        << range.first << " " << range.second;
+  }
+  for (const int file : {-1, 1'000'000}) {
+    EXPECT_THAT(
+        OpenError([&](FakeDevice& device) {
+          device.files = {STDERR_FILENO, file};
+        }),
+        HasSubstr("driver.device: found the descriptor " + std::to_string(file) + ", which is not open"));
+  }
+  EXPECT_EQ(shared_->zeros, 0);
+}
+
+// Tests that a driver that gives fewer or more readings than it has described ends the run, in words that say
+// so.
+TEST_F(DeviceRigTest, ReadingsThatAreMissing) {
+  for (const size_t count : {0U, 1U, 5U}) {
+    const auto rig = Open();
+    Read(*rig);
+    device_->readings.inputs.resize(count);
+    try {
+      Read(*rig);
+      ADD_FAILURE() << count;
+    } catch (const DeviceError& error) {
+      EXPECT_EQ(error.what(),
+                fmt::format("fake gives {} readings; allowed are 4, one for each input that its "
+                            "driver describes",
+                            count));
+    }
+  }
+}
+
+// Tests that a reading from the future, of a driver that takes another clock, is a fault, and hides no
+// silence of its device.
+TEST_F(DeviceRigTest, ReadingsFromTheFuture) {
+  const auto rig = Open();
+  Read(*rig);
+  ASSERT_THAT(Codes(*rig), IsEmpty());
+  device_->ahead = 1h;
+  EXPECT_TRUE(std::isnan(Read(*rig).p1));
+  EXPECT_THAT(Codes(*rig), ElementsAre("sensor_p1", "sensor_p2", "sensor_motor_speed"));
+  EXPECT_THAT(rig->faults().front().text,
+              HasSubstr("p1 has a reading from 3600 s in the future; allowed is"));
+  Read(*rig, 101ms);
+  EXPECT_EQ(Codes(*rig).front(), "device_silent") << "nothing that counts has come since";
 }
 
 // Tests that a run that begins late, when the loops have kept the driver waiting, begins with a reading of

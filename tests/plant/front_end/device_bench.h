@@ -60,6 +60,8 @@ class TestLink : public Link {
   ~TestLink() override { Unplug(); }
   bool plugged = true;
   int other_end = -1;
+  std::string elsewhere;  // from where answers come that are not used
+  std::string HeardElsewhere() override { return elsewhere; }
 
   void Unplug() {
     plugged = false;

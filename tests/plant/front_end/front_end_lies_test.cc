@@ -1,6 +1,7 @@
 // What a rig does with samples that cannot be true: values that nothing gives, fields that contradict each
 // other, a clock that does not go on.
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <cstring>
 #include <utility>
@@ -129,6 +130,8 @@ TEST(FrontEndLiesTest, FieldsThatCannotBe) {
          sample.source = HYDRO_SOURCE_ZERO;
          sample.voltage = 0;
          sample.command_age = UINT32_MAX;
+         sample.command_sequence = 0;
+         sample.host_tick = 0;
        },
        "not armed any more, and counts no trip"},
       {[](auto& sample) { sample.command_age = UINT32_MAX; }, "acts by a command and that it has none"},
@@ -141,6 +144,19 @@ TEST(FrontEndLiesTest, FieldsThatCannotBe) {
        "its watchdog must trip after 250 (driver.watchdog_s)"},
       {[](auto& sample) { sample.faults_present = HYDRO_FAULT_SENSOR; }, "a sensor that is not credible"},
       {[](auto& sample) { sample.faults_present = 0x4000; }, "a fault that this version does not know"},
+      {[](auto& sample) { sample.source = HYDRO_SOURCE_LAW; },
+       "from its law (source 2), and its mode has none"},
+      {[](auto& sample) { sample.transfer = 7; },
+       "gives 0 for pressure_ref and 7 for transfer; allowed are 0"},
+      {[](auto& sample) { sample.transfer = NAN; }, "gives 0 for pressure_ref and nan for transfer"},
+      {[](auto& sample) { sample.pressure_ref = 100; }, "gives 100 for pressure_ref and 0 for transfer"},
+      {[](auto& sample) { sample.pressure_ref = NAN; }, "gives nan for pressure_ref"},
+      {[](auto& sample) { sample.faults_latched = 1; },
+       "says that it is armed and that it has tripped: no valid command within driver.watchdog_s"},
+      {[](auto& sample) { sample.value[HYDRO_ARM_SPEED] = 5; },
+       "gives 5 for arm_speed, which it was not told to measure; allowed is NaN"},
+      {[](auto& sample) { sample.arm_count = 3; },
+       "gives a count of 3 for arm_angle, which it has no counter for; allowed is 0"},
   };
   for (const Case& each : cases) {
     DeviceBench bench;
@@ -151,6 +167,102 @@ TEST(FrontEndLiesTest, FieldsThatCannotBe) {
     bench.lie = nullptr;
     bench.Ticks(200, 3);
     EXPECT_TRUE(bench.rig->faults().empty()) << each.says << ": " << bench.rig->faults().front().text;
+  }
+}
+
+// Tests that a device which is not armed names no command, and that a voltage of zero is no end of its range.
+TEST(FrontEndLiesTest, FieldsOfADeviceAtRest) {
+  const std::pair<Falsify, const char*> cases[] = {
+      {[](auto& sample) { sample.command_age = 3; }, "says that it has a command and that it is not armed"},
+      {[](auto& sample) { sample.command_sequence = 9; },
+       "says that it has no command, and names command 9 for tick 0"},
+      {[](auto& sample) { sample.host_tick = 9; }, "names command 0 for tick 9"},
+      {[](auto& sample) { sample.saturated = 1; }, "puts out zero volts and that its limits allow no more"},
+  };
+  for (const auto& [lie, says] : cases) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    for (int i = 0; i < 20; ++i) bench.Tick(0, /*obeys=*/false);
+    ASSERT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    bench.lie = lie;
+    for (int i = 0; i < 2; ++i) bench.Tick(0, /*obeys=*/false);
+    EXPECT_THAT(bench.Fault("device_fault"), HasSubstr(says));
+  }
+}
+
+// Tests that a value of a signal that is not measured is passed on to nobody.
+TEST(FrontEndLiesTest, ValueOfNoSensor) {
+  DeviceBench bench;
+  Lied(&bench, [](hydro_sample& sample) { sample.value[HYDRO_ARM_SPEED] = 5; });
+  EXPECT_TRUE(std::isnan(bench.measured.arm_speed));
+}
+
+// Tests that "saturated" excuses what the limits explain that both sides know, driver.voltage.limit_V (8 V)
+// and the range of the output, and nothing else; and that it may not be missing there.
+TEST(FrontEndLiesTest, SaturatedWithoutALimit) {
+  struct Case {
+    double told;
+    Falsify lie;
+    const char* says;  // empty: no fault
+  };
+  const auto voltage = [](float volts, uint8_t saturated) {
+    return [=](hydro_sample& sample) {
+      if (sample.state == HYDRO_ARMED) sample.voltage = volts, sample.saturated = saturated;
+    };
+  };
+  const Case cases[] = {
+      {3, voltage(2, 1), "puts out 2 V; it was told 3 V"},
+      {3, voltage(0, 1), "puts out 0 V; it was told 3 V"},
+      {3, voltage(3, 1),
+       "limits reduce its voltage (saturated is 1); it was asked for 3 V, and its limits are "
+       "-5 and 5 V"},
+      {7, voltage(5, 1), ""},
+      {-7, voltage(-5, 1), ""},
+      {7, voltage(5, 0), "limits do not reduce its voltage (saturated is 0); it was asked for 7 V"},
+      {7, voltage(4, 1), "puts out 4 V; it was told 7 V, and its limits allow 5 V"},
+      {7, voltage(0, 1), "puts out 0 V; it was told 7 V, and its limits allow 5 V"},
+      {7, voltage(7, 1), "limits allow 5 V"},
+      {7, voltage(-5, 1), "limits allow 5 V"},
+  };
+  for (const Case& each : cases) {
+    DeviceBench bench;
+    bench.facts.output_min_V =
+        -2.5;  // at the terminal; V of eq. (1) are twice as many, and the other way round
+    bench.facts.output_max_V = 2.5;
+    hydro_device_begin(&bench.device, &bench.facts);
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, each.told);
+    ASSERT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+    bench.lie = each.lie;
+    bench.Ticks(2, each.told);
+    if (each.says[0] == '\0') {
+      EXPECT_TRUE(bench.rig->faults().empty()) << bench.rig->faults().front().text;
+      continue;
+    }
+    EXPECT_THAT(bench.Fault("output_differs"), HasSubstr(each.says));
+    EXPECT_EQ(bench.volts, 0) << each.says;
+  }
+}
+
+// Tests that a device which names a command that was never sent is at fault, whatever voltage it reports, in
+// words that say what was found, what was sent and what it means.
+TEST(FrontEndLiesTest, CommandThatWasNeverSent) {
+  for (const uint32_t number : {100'000U, 0x80000000U, UINT32_MAX}) {
+    for (const float volts : {3.0F, 0.0F}) {
+      DeviceBench bench;
+      Lied(&bench, [&](hydro_sample& sample) {
+        if (sample.state == HYDRO_ARMED) sample.command_sequence = number, sample.voltage = volts;
+      });
+      EXPECT_THAT(
+          bench.Fault("output_differs"),
+          AllOf(HasSubstr(fmt::format("puts out {:.4g} V by command {}, which was never sent: the newest "
+                                      "has number 15",
+                                      volts, number)),
+                HasSubstr("It obeys another program, or its firmware makes up the number; allowed is")))
+          << number;
+      EXPECT_EQ(bench.volts, 0) << number;
+      EXPECT_EQ(bench.Fault("device_silent"), "") << number;
+    }
   }
 }
 

@@ -231,7 +231,9 @@ TEST(FrontEndRigTest, OutputByNoCommand) {
       sample.voltage = 10;
     };
     bench.Ticks(2, 0);
-    EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 10 V; it was told 0 V"));
+    EXPECT_THAT(
+        bench.Fault("output_differs"),
+        HasSubstr("puts out 10 V by command 4294967280, which was never sent: the newest has number"));
   }
 }
 
@@ -243,9 +245,11 @@ TEST(FrontEndRigTest, CommandsThatWereNeverSent) {
     const char* code;
     const char* text;
   };
-  for (const Lie& lie : {Lie{100000, 0, "output_differs", "says that it puts out 9 V; it was told 0 V"},
-                         Lie{0, 10000, "output_differs", "acts by a command for tick"},
-                         Lie{-4000, 0, "device_silent", "acts by a command that was sent more than"}}) {
+  for (const Lie& lie :
+       {Lie{100000, 0, "output_differs", "puts out 9 V by command 100155, which was never sent"},
+        Lie{0, 10000, "output_differs", "acts by a command for tick"},
+        Lie{-4000, 0, "output_differs", ", which was never sent: the newest has number 15"},
+        Lie{-140, 0, "device_silent", "acts by a command that was sent more than"}}) {
     DeviceBench bench;
     ASSERT_TRUE(bench.Connect());
     bench.Ticks(150, 3);
@@ -313,8 +317,7 @@ TEST(FrontEndRigTest, ArmedUnasked) {
 }
 
 // Tests that the driver compares too: a device that says that it puts out something else than it was told,
-// less where it names the limit, and one whose output reads back what nobody has put out, whatever it says of
-// it.
+// and one whose output reads back what nobody has put out, whatever it says of it.
 TEST(FrontEndRigTest, OutputDiffers) {
   DeviceBench bench;
   bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = bench.device.written_volts; };
@@ -331,17 +334,6 @@ TEST(FrontEndRigTest, OutputDiffers) {
   bench.lie = nullptr;
   bench.Ticks(150, 3);
   EXPECT_TRUE(bench.rig->faults().empty());
-  bench.lie = [](hydro_sample& sample) {
-    sample.voltage = 2;
-    sample.saturated = 1;
-  };
-  bench.Ticks(5, 3);
-  EXPECT_TRUE(bench.rig->faults().empty()) << "an end of its range";
-  bench.Ticks(2, 1);
-  EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("puts out 2 V; it was told 1 V"));
-
-  bench.lie = nullptr;
-  bench.Ticks(150, 3);
   bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = -2.5; };
   bench.Ticks(3, 3);
   EXPECT_THAT(bench.Fault("output_differs"), HasSubstr("reads back 5 V; 3 V was put out"));

@@ -74,6 +74,31 @@ TEST(FrontEndTroubleTest, DamageChangesNothingButCounts) {
   }
 }
 
+// Tests that a front end which answers from another address than the one that is asked is found, at the start
+// and in the run, in words that name it; and that what came from there before the device fell silent is none.
+TEST(FrontEndTroubleTest, AnswersFromElsewhere) {
+  DeviceBench bench;
+  bench.device_runs = false;
+  bench.link->elsewhere = "127.0.0.1:7701";
+  EXPECT_FALSE(bench.Connect(200));
+  EXPECT_EQ(bench.rig->connection().WhyNot().found,
+            "answers from 127.0.0.1:7701, which are not used, and no others");
+  EXPECT_THAT(bench.rig->connection().WhyNot().allowed,
+              HasSubstr("answers from the address that it is asked at: give its own in driver.url, or let"));
+  bench.device_runs = true;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(150, 3);
+  EXPECT_EQ(bench.rig->connection().elsewhere(), "");
+  bench.link->elsewhere.clear();
+  bench.device_runs = false;
+  bench.Ticks(150, 3);
+  EXPECT_THAT(bench.Fault("device_silent"), ::testing::EndsWith("(limits.stale_input_s)"));
+  bench.link->elsewhere = "[::1]:7702";
+  bench.Ticks(150, 3);
+  EXPECT_THAT(bench.Fault("device_silent"),
+              ::testing::EndsWith("; found answers from [::1]:7702, which are not used"));
+}
+
 // Tests the same with errors in each bit: at 1e-2 no frame arrives, and that is silence, not a wrong one.
 TEST(FrontEndTroubleTest, BitErrors) {
   for (const double rate : {1e-5, 1e-4, 1e-3}) {

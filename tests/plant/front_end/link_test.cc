@@ -218,6 +218,13 @@ TEST(LinkTest, Udp) {
   const auto send_to_driver = [&](int from, const Bytes& bytes) {
     sendto(from, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&driver), sizeof driver);
   };
+  EXPECT_EQ(link->HeardElsewhere(), "");
+  send_to_driver(stranger, {66});
+  sockaddr_in elsewhere = {};
+  ASSERT_EQ(getsockname(stranger, reinterpret_cast<sockaddr*>(&elsewhere), &length), 0);
+  const std::string from = "127.0.0.1:" + std::to_string(ntohs(elsewhere.sin_port));
+  EXPECT_EQ(link->HeardElsewhere(), from) << "it is known from where it came, and not used";
+  EXPECT_EQ(link->HeardElsewhere(), "") << "once";
   send_to_driver(stranger, {66});
   send_to_driver(device, {1, 2});
   send_to_driver(device, {});
@@ -255,6 +262,11 @@ TEST(LinkTest, Udp) {
     EXPECT_EQ(link->Read(some), 0U);
   }
   EXPECT_TRUE(link->is_open());
+  const int thief = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int shares = 1;
+  setsockopt(thief, SOL_SOCKET, SO_REUSEPORT, &shares, sizeof shares);
+  EXPECT_NE(bind(thief, reinterpret_cast<sockaddr*>(&driver), sizeof driver), 0) << "nobody shares the port";
+  close(thief);
   const auto nowhere = LinkTo("udp://no-such-host.invalid:7");
   EXPECT_FALSE(nowhere->Open());
   EXPECT_THAT(nowhere->trouble().found, HasSubstr("\"no-such-host.invalid\" ("));
