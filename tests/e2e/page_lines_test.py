@@ -186,7 +186,16 @@ PAGES = {
     "studies.md": (None, f"cp -r {ROOT}/examples .\nsed -i 's/^draws = 4$/draws = 1/' examples/studies/position_gains.toml\n", {
         "build/bin/hydro-batch examples/studies/position_gains.toml --out out/gains --slurm": Not("needs a Slurm cluster", "slurm"),
     }),
-    "tuning_gains.md": (None, "", {}),
+    # What a whole search finds is the subject of tune_program_test and e2e.tune.
+    "tuning_gains.md": (None, "", {
+        "build/bin/hydro-tune config/paper.toml      ": As("build/bin/hydro-tune config/paper.toml --goal step=0.1 --samples 0", SHORT),
+        "mkdir -p out; build/bin/hydro-tune config/paper.toml -o": As("mkdir -p out; build/bin/hydro-tune config/paper.toml --goal step=0.1 "
+                                                                   "--samples 0 -o out/tuned.toml --out out/tune", SHORT),
+        "build/bin/hydro-tune config/paper.toml --goal": As("build/bin/hydro-tune config/paper.toml --goal overshoot_percent=1 --goal settling_s=0.6 "
+                                                           "--goal step=0.1 --samples 0", SHORT),
+        "build/bin/hydro-tune config/realtime.toml": As("build/bin/hydro-tune config/realtime.toml --interval 0.002 --noise --goal step=0.1 "
+                                                        "--samples 0", SHORT),
+    }),
 }
 
 
