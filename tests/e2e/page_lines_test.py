@@ -116,6 +116,8 @@ PAGES = {
         "hydro-launch rearm config/limb.toml      ": As("hydro-launch rearm config/limb.toml", "none runs", 1),
         "hydro-launch rearm config/limb.toml --joint": As("hydro-launch rearm config/limb.toml --joint knee", "none runs", 1),
         "hydro-launch stop config/limb.toml": As("hydro-launch stop config/limb.toml", "none runs", 1),
+        "hydro-tune config/limb.toml --joint knee --fixed-gains -o out/knee.toml":
+            As("hydro-tune config/limb.toml --joint knee --fixed-gains --goal step=0.1 --samples 0 -o out/knee.toml", SHORT),
     }),
     "network.md": (None, "", {
         "hydro-launch CONFIG --doctor  ": As("hydro-launch config/demo.toml --doctor || test $? = 1", "a machine may have problems", 0, "multicast route"),
@@ -180,10 +182,20 @@ PAGES = {
         "$ hydro-set config/demo.toml position.c2=9000": Prints("UNSTABLE", 1),
         "hydro-launch config/demo.toml --set position.c2=350": Not("25 s of a stack while one runs; its log is that of the summary below"),
     }),
-    "studies.md": (None, f"cp -r {ROOT}/examples .\n", {
+    # With one draw in place of four: a quarter of the cases.
+    "studies.md": (None, f"cp -r {ROOT}/examples .\nsed -i 's/^draws = 4$/draws = 1/' examples/studies/position_gains.toml\n", {
         "build/bin/hydro-batch examples/studies/position_gains.toml --out out/gains --slurm": Not("needs a Slurm cluster", "slurm"),
     }),
-    "tuning_gains.md": (None, "", {}),
+    # What a whole search finds is the subject of tune_program_test and e2e.tune.
+    "tuning_gains.md": (None, "", {
+        "build/bin/hydro-tune config/paper.toml      ": As("build/bin/hydro-tune config/paper.toml --goal step=0.1 --samples 0", SHORT),
+        "mkdir -p out; build/bin/hydro-tune config/paper.toml -o": As("mkdir -p out; build/bin/hydro-tune config/paper.toml --goal step=0.1 "
+                                                                   "--samples 0 -o out/tuned.toml --out out/tune", SHORT),
+        "build/bin/hydro-tune config/paper.toml --goal": As("build/bin/hydro-tune config/paper.toml --goal overshoot_percent=1 --goal settling_s=0.6 "
+                                                           "--goal step=0.1 --samples 0", SHORT),
+        "build/bin/hydro-tune config/realtime.toml": As("build/bin/hydro-tune config/realtime.toml --interval 0.002 --noise --goal step=0.1 "
+                                                        "--samples 0", SHORT),
+    }),
 }
 
 

@@ -25,7 +25,7 @@ EXEMPT = {
     "diagnose/evidence/grams.h": "inside of SetEvidence",
     "diagnose/say/found_values.h": "a part of what found.h describes, which found_test and diagnose_test read as a whole",
     "diagnose/prove/whole_runs.h": "a stage of prove.h: gap_closed_test and own_effect_test read what it finds",
-    "diagnose/prove/proof_sets.h": "what prove.h chooses among: prove_test reads what comes of it",
+    "diagnose/prove/proof_sets.h": "what prove.h chooses among: whole_proofs_test reads what comes of it",
     "diagnose/evidence/late_signals.h": "what clocks.h estimates with: clocks_test reads the clocks",
     "diagnose/evidence/run_values.h": "what per_run.h judges: per_run_test reads the values of runs",
     "diagnose/prove/progress.h": "one struct without a function",

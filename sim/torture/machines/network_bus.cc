@@ -83,10 +83,7 @@ void NetworkBus::PublishRaw(const std::string& channel, const void* data, int si
 
 void NetworkBus::Arrive(PacketPtr packet) {
   const size_t size = packet->bytes.size() + kPacketOverhead;
-  if (inbox_bytes_ + size > kReceiveBuffer) {
-    ++overflowed_;
-    return;
-  }
+  if (inbox_bytes_ + size > kReceiveBuffer) return;
   inbox_bytes_ += size;
   inbox_.push_back(std::move(packet));
 }

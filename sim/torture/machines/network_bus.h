@@ -61,7 +61,6 @@ class NetworkBus : public bus::Bus {
   // Puts an arrived packet into the receive buffer. A full buffer loses it, as the kernel's does.
   void Arrive(PacketPtr packet);
   bool has_waiting() const { return !inbox_.empty(); }
-  int64_t overflowed() const { return overflowed_; }
   // From now on, nothing that it publishes leaves the process.
   void Disconnect() { connected_ = false; }
 
@@ -101,7 +100,6 @@ class NetworkBus : public bus::Bus {
   std::deque<std::function<void(const bus::RawMessage&)>> taps_;
   std::deque<PacketPtr> inbox_;
   size_t inbox_bytes_ = 0;
-  int64_t overflowed_ = 0;
 };
 
 }  // namespace hydro::torture

@@ -1,0 +1,89 @@
+// Tests that exact simulation on held-out runs chooses what is true, on made-up rigs. Under the sanitizers
+// each takes a minute or more, so prove_test has there those that end sooner.
+#include <gmock/gmock.h>
+
+#include "diagnose/prove/blind_changes.h"
+#include "diagnose/say/conclusion.h"
+#include "tests/diagnose/prove/made_proofs.h"
+
+namespace hydro::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// Tests that a true effect that is proposed with a wrong amount is chosen, with the amount mended, before an
+// effect that is not there, and that the verdict names it alone.
+TEST_F(ProveTest, TrueEffectWithAWrongAmountWins) {
+  Record(Table1With({Drag(2e-4)}));
+  const Proof proved =
+      Prove({Proposed({}, {}), Proposed({kBias}, {Bias(0.5)}), Proposed({kDrag}, {Drag(1.6e-4)})});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+  EXPECT_NEAR(ValueOf(proved, "pump.quadratic_drag", "k"), 2e-4, 1e-5);
+  EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
+  EXPECT_LT(NearGap(proved, {kDrag}), 0.8 * NearGap(proved, {}));
+  const diagnose::Diagnosis d = diagnose::Conclude(context_, proved);
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
+  ASSERT_EQ(d.effects.size(), 1u);
+  EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
+  EXPECT_LE(d.effects[0].parameters[0].low, 2e-4);
+  EXPECT_GE(d.effects[0].parameters[0].high, 2e-4);
+}
+
+// Tests that both of two true effects are kept.
+TEST_F(ProveTest, BothOfTwoAreKept) {
+  Record(Table1With({Drag(2e-4), Bias(0.6)}));
+  const Proof proved =
+      Prove({Proposed({kDrag}, {Drag(2e-4)}), Proposed({kDrag, kBias}, {Drag(1.9e-4), Bias(0.5)})});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag, kBias));
+}
+
+// Tests that a wrong value is said as a value, although an effect was proposed for it.
+TEST_F(ProveTest, ValueIsAValue) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.b *= 1.6;
+  Record(truth);
+  const Proof proved = Prove({Proposed({kDrag}, {Drag(2e-5)})});
+  EXPECT_THAT(proved.Found().changes, IsEmpty());
+  EXPECT_NEAR(proved.Found().model.parameters.b, truth.parameters.b, 0.03 * truth.parameters.b);
+}
+
+// Tests that an effect that no balance shows is found by racing it, once the best proposal leaves a gap.
+TEST_F(ProveTest, BlindEffectIsRaced) {
+  Record(Table1With({{"valve.relief", {{"set", 700}, {"conductance", 2e-3}}, {}}}));
+  const Proof proved = Prove({}, diagnose::BlindChanges(context_));
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kRelief));
+  EXPECT_NEAR(ValueOf(proved, "valve.relief", "set"), 700, 20);
+}
+
+// Tests that runs are held out in turn where none is named: every other window judges.
+TEST_F(ProveTest, InTurn) {
+  Record(Table1With({Drag(2e-4)}));
+  context_.held_out.clear();
+  Proposal drag = Proposed({kDrag}, {Drag(1.8e-4)});
+  drag.without.assign(3, drag.model);
+  const Proof proved = Prove({drag});
+  EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+  EXPECT_THAT(proved.runs, ::testing::Contains(runs_[0].name));
+}
+
+// Tests that an effect that is not there is left out though it is proposed beside one that is, and no set
+// without it was proposed, and that one and two threads give the same bits.
+TEST_F(ProveTest, FurtherEffectIsVetoedByAnyNumberOfJobs) {
+  Record(Table1With({Drag(2e-4)}));
+  std::vector<double> gaps[2];
+  double amounts[2] = {};
+  for (const int jobs : {1, 2}) {
+    context_.jobs = jobs;
+    const Proof proved = Prove({Proposed({kBias, kDrag}, {Bias(0.05), Drag(1.9e-4)})});
+    EXPECT_THAT(proved.Found().changes, ElementsAre(kDrag));
+    EXPECT_LT(NearGap(proved, {kDrag}), 1.2);
+    for (const ProvedSet& one : proved.sets) gaps[jobs - 1].push_back(TypicalGap(one.near));
+    amounts[jobs - 1] = ValueOf(proved, "pump.quadratic_drag", "k");
+  }
+  EXPECT_EQ(gaps[0], gaps[1]);
+  EXPECT_EQ(amounts[0], amounts[1]);
+}
+
+}  // namespace
+}  // namespace hydro::testing
