@@ -278,17 +278,13 @@ void OutputWatch::LookAtReadBack(const hydro_sample& sample, uint32_t interval, 
   if (!Differs(read_back, nearest, next && (interval == 1 || sample.source != HYDRO_SOURCE_LAW), now)) return;
   faults->push_back(
       {"output_differs",
-       std::isnan(read_back)
-           ? std::string("the front end has read its output back before, and does not any more (NaN)")
-           : fmt::format("the front end's output reads back {:.4g} V; {:.4g} V was put out", read_back,
-                         nearest),
+       fmt::format("the front end's output reads back {:.4g} V; {:.4g} V was put out", read_back, nearest),
        read_back, nearest});
 }
 
 bool OutputWatch::Differs(double read_back, double nearest, bool held_is_known, bus::Clock::TimePoint now) {
-  // NaN alone says that the board cannot read its output; not one that has read it before.
-  reads_back_ = reads_back_ || std::isfinite(read_back);
-  if ((std::isnan(read_back) && !reads_back_) || std::fabs(read_back - nearest) <= tolerance_) {
+  // NaN alone says that the board cannot read its output.
+  if (std::isnan(read_back) || std::fabs(read_back - nearest) <= tolerance_) {
     differing_ = 0;
     differs_since_.reset();
     return false;

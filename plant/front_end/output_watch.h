@@ -33,9 +33,9 @@ class OutputWatch {
   // told, of a loop on the device what eq. (16) gives for the readings of that very sample; or not zero
   // though the device is not armed or no command of late can have made it so; or that command was never sent;
   // or `saturated` is not what the limits make of it; or while the output reads back
-  // a voltage that was not put out within the patience, or no number any more: twice in a row where it is
-  // known what it held, else for as long as the patience. `range`: what the device can put out. `interval`:
-  // ticks of the device from one sample to the next.
+  // a voltage that was not put out within the patience: twice in a row where it is known what it held, else
+  // for as long as the patience. `range`: what the device can put out. `interval`: ticks of the device from
+  // one sample to the next.
   void Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
             bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
@@ -99,7 +99,6 @@ class OutputWatch {
   std::optional<uint64_t> last_tick_;  // of the sample before
   int differing_ = 0;  // readings in a row, among those for which the earlier voltage is known
   std::optional<bus::Clock::TimePoint> differs_since_;
-  bool reads_back_ = false;  // a number was read back before
 };
 
 }  // namespace hydro::plant

@@ -340,18 +340,7 @@ TEST(FrontEndRigTest, OutputDiffers) {
   EXPECT_EQ(bench.volts, 0);
   bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = NAN; };
   bench.Ticks(5, 3);
-  EXPECT_THAT(bench.Fault("output_differs"),
-              HasSubstr("has read its output back before, and does not any more"));
-}
-
-// Tests that a board that cannot read its output back says so by NaN, and by nothing else.
-TEST(FrontEndRigTest, OutputIsNotReadBack) {
-  DeviceBench bench;
-  bench.before_tick = [&](uint64_t) { bench.readings.read_back_V = NAN; };
-  ASSERT_TRUE(bench.Connect());
-  bench.Ticks(100, 3);
-  EXPECT_EQ(bench.volts, -1.5F);
-  EXPECT_TRUE(bench.rig->faults().empty());
+  EXPECT_TRUE(bench.rig->faults().empty()) << "a board that cannot read back";
   bench.before_tick = nullptr;
   bench.lie = [](hydro_sample& sample) { sample.read_back = INFINITY; };
   bench.Ticks(5, 3);
