@@ -148,10 +148,10 @@ class LinksTest(BoardTest):
     # Tests that each wrong argument is one line and exit code 2.
     def test_bad_arguments(self):
         taken = self.udp().socket.getpeername()[1]
-        for arguments, words in (([], "no LINK"), (["tcp:1"], "udp:PORT"), (["udp:x"], "65535"), (["udp:70000"], "65535"), (["udp:nowhere:1"], "IPv4"),
+        for arguments, words in (([], "LINK: found nothing"), (["tcp:1"], "udp:PORT"), (["udp:x"], "65535"), (["udp:70000"], "65535"), (["udp:nowhere:1"], "IPv4"),
                                  ([f"udp:{taken}"], "in use"), (["unix:/no/such/folder/x"], "No such file"), (["unix:"], "107"),
                                  (["pty:/no/such/folder/x"], "No such file"), (["pty", "--rate", "0"], "20000"), (["pty", "--rate", "1e3"], "20000"),
-                                 (["pty", "--rate"], "nothing"), (["pty", "pty"], "one LINK"), (["--fast", "pty"], "--fast"),
+                                 (["pty", "--rate"], "--rate: found no number"), (["pty", "pty"], "one LINK"), (["--fast", "pty"], "--fast"),
                                  (["pty", "--tick-by-converters"], "--converters"), (["pty", "--converters", "x"], "pty:PATH")):
             with self.subTest(arguments):
                 process = self.run_program("hydro-front-end", *arguments, expect=2)
