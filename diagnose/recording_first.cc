@@ -73,8 +73,8 @@ std::vector<runs::MeasuredRun> OnOneClock(const std::vector<AlignedRun>& aligned
 
 // Corrects or leaves out sensors that are not believed, and says so.
 std::vector<std::string> CorrectSensors(std::vector<runs::MeasuredRun>* runs,
-                                           std::vector<runs::MeasuredRun>* held_out,
-                                           std::vector<AlignedRun>* aligned) {
+                                        std::vector<runs::MeasuredRun>* held_out,
+                                        std::vector<AlignedRun>* aligned) {
   std::vector<runs::MeasuredRun*> recorded, prepared;
   std::vector<runs::MeasuredRun> all;
   for (auto* some : {runs, held_out}) {
