@@ -15,9 +15,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The size of a change is known to an order of magnitude only: three and ten times the usual one are as many
-// times rarer, so that the prior falls as the square of the size. With a normal distribution alone, a weight
-// that is all of a motor's torque costs 50 nats, and a short recording cannot show it.
+// The size of a change without a shape is known to an order of magnitude only: three and ten times the usual
+// one are as many times rarer, so that the prior falls as the square of the size. With a normal distribution
+// alone, a weight that is all of a motor's torque costs 50 nats, and a short recording cannot show it.
 constexpr double kSizes[] = {3, 10};
 
 // Whether the change is a curve or has a shape on a grid. Such a change at a wrong shape is large where the
@@ -159,16 +159,12 @@ SetFit SetEvidence::Fit(const ChangeSet& set) const {
   return fit;
 }
 
-// How large a change's amounts are, in their usual size.
-double SetEvidence::SizeIn(const Solution& solution, const std::vector<int>& its) const {
-  double squares = 0;
-  for (size_t i = always_.size(); i < solution.columns.size(); ++i) {
-    const int column = solution.columns[i];
-    if (std::binary_search(its.begin(), its.end(), column))
-      squares += std::pow(
-          solution.amounts[static_cast<Index>(i)] / grams_->columns[static_cast<size_t>(column)].sd, 2);
-  }
-  return std::sqrt(squares / static_cast<double>(its.size()));
+// The places of a change's columns among those of a set.
+std::vector<Index> SetEvidence::PlacesOf(const std::string& name, const std::vector<int>& columns) const {
+  std::vector<Index> places;
+  for (size_t i = 0; i < columns.size(); ++i)
+    if (grams_->columns[static_cast<size_t>(columns[i])].set == name) places.push_back(static_cast<Index>(i));
+  return places;
 }
 
 SetEvidence::Solution SetEvidence::SolveFor(const ChangeSet& set) const {
@@ -176,13 +172,18 @@ SetEvidence::Solution SetEvidence::SolveFor(const ChangeSet& set) const {
   const auto count = static_cast<Index>(columns.size());
   Solution best = Solve(columns, VectorXd::Ones(count), start_weights_, kMostFromNull);
   for (const std::string& name : set) {
-    const std::vector<int> its = ColumnsOf({name});
-    if (HasShape(name) || SizeIn(best, its) <= 1) continue;
+    if (HasShape(name)) continue;
+    const std::vector<Index> places = PlacesOf(name, columns);
+    double squares = 0;
+    for (const Index i : places) {
+      const double sd = grams_->columns[static_cast<size_t>(columns[static_cast<size_t>(i)])].sd;
+      squares += std::pow(best.amounts.tail(count)[i] / sd, 2);
+    }
+    if (squares <= static_cast<double>(places.size())) continue;  // the usual size, root mean square
     VectorXd scales = best.scales;
     const double log_size = best.log_size;
     for (const double size : kSizes) {
-      for (Index i = 0; i < count; ++i)
-        if (std::binary_search(its.begin(), its.end(), columns[static_cast<size_t>(i)])) scales[i] = size;
+      scales(places).setConstant(size);
       Solution larger = Solve(columns, scales, start_weights_, kMostFromNull);
       larger.log_size = log_size - std::log(size);
       if (LogOf(larger) > LogOf(best)) best = std::move(larger);

@@ -5,7 +5,8 @@
 //   log E = -sum_g (a + n_g / 2) ln((b_g + RSS_g / 2) / f_g) - amounts' P^-1 amounts / 2 - ln|P A| / 2
 // This holds at the amounts and variances that agree with each other. Corrections are made for noise in the
 // columns, for the Jacobian where a disturbance moves the shaft, and for amounts that cannot be negative.
-// A change may be three or ten times as large as usual, at odds of 1/3 and 1/10.
+// A change that is no curve and has no shape on a grid may be three or ten times as large as usual, at odds
+// of 1/3 and 1/10.
 #pragma once
 
 #include <Eigen/Core>
@@ -71,8 +72,8 @@ class SetEvidence {
   Eigen::VectorXd InertiaSquares() const;
 
   std::vector<int> ColumnsOf(const ChangeSet& set) const;
-  double SizeIn(const Solution& solution, const std::vector<int>& its) const;
-  // With the likeliest size of each change whose amounts are beyond the usual one.
+  std::vector<Eigen::Index> PlacesOf(const std::string& name, const std::vector<int>& columns) const;
+  // With the likeliest size of each change without a shape whose amounts are beyond the usual one.
   Solution SolveFor(const ChangeSet& set) const;
   // Iterates between amounts and variances, starting from `weights`, at most `most` times. `scales`: factors
   // on the standard deviations of the changes' amounts.

@@ -94,10 +94,13 @@ std::optional<SecondSensor> Compared(const SensorBlocks& blocks) {
   const std::optional<FittedBlocks> fit =
       FitBlocks({blocks.first, std::vector<double>(blocks.first.size(), 1.0), blocks.rate}, blocks.second);
   if (!fit.has_value() || !(fit->value[0] > 0)) return std::nullopt;
-  const double factor = fit->value[0];
+  const double factor = fit->value[0], offset = fit->value[1];
+  // An offset that is small beside the quantity is none.
+  const bool off =
+      std::abs(offset) > std::max(fit->half[1], kSensorFactor / 2 * RootMeanSquare(blocks.first));
   return SecondSensor{.factor = factor,
                       .factor_half = fit->half[0],
-                      .offset = fit->value[1],
+                      .offset = off ? offset : 0,
                       .offset_half = fit->half[1],
                       .late = fit->value[2] / factor,
                       .late_half = fit->half[2] / factor};
@@ -108,17 +111,14 @@ const runs::SignalName& NameOfSignal(SignalOfRun signal) {
                        [&](const runs::SignalName& one) { return one.signal == signal; });
 }
 
-// `size` is the root mean square of the quantity. An offset that is small beside it is not worth a word.
-std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& second, double size,
-                 SensorsDiffer differ) {
+std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& second, SensorsDiffer differ) {
   const runs::SignalName& name = NameOfSignal(pair.second);
   std::string text = name.ours;
   if (differ == SensorsDiffer::kInTime)
     return text + " is " + WithHalfWidth(std::abs(second.late), second.late_half) + " s " +
            (second.late > 0 ? "later" : "earlier") + " than " + pair.first_name + ": " + pair.believed;
   text += " is " + WithHalfWidth(second.factor, second.factor_half) + " times " + pair.what;
-  const bool off = std::abs(second.offset) > std::max(second.offset_half, kSensorFactor / 2 * size);
-  if (off) {
+  if (second.offset != 0) {
     text += " and " + WithHalfWidth(std::abs(second.offset), second.offset_half) + " " +
             runs::UnitIn(run, name) + (second.offset > 0 ? " more" : " less");
   }
@@ -129,8 +129,7 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
   runs::ColumnSource agrees = (run.*pair.second).source;
   if (agrees.column.empty()) return text;
   agrees.scale /= second.factor;
-  agrees.offset /= second.factor;
-  if (off) agrees.offset -= second.offset / second.factor;
+  agrees.offset = (agrees.offset - second.offset) / second.factor;
   return text + ". This makes the two agree: " + LineOf(run, pair.second, agrees);
 }
 
@@ -181,7 +180,7 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
           compared.unbelieved.push_back({r, pair.second, IsKnown(*second) ? second : std::nullopt});
       }
       compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " +
-                                 Text(pair, runs[recorder.runs.front()], *second, size, differ));
+                                 Text(pair, runs[recorder.runs.front()], *second, differ));
     }
   }
   return compared;

@@ -32,10 +32,10 @@ class OutputWatch {
   // Adds "output_differs" while the voltage that a sample reports is not what the command that it names has
   // told, of a loop on the device what eq. (16) gives for the readings of that very sample; or not zero
   // though the device is not armed or no command of late can have made it so; or that command was never sent;
-  // or `saturated` is not what the limits make of it; or while the output reads back
-  // a voltage that was not put out within the patience: twice in a row where it is known what it held, else
-  // for as long as the patience. `range`: what the device can put out. `interval`: ticks of the device from
-  // one sample to the next.
+  // or `saturated` is not what the limits make of it; or while the output reads back a voltage that was not
+  // put out within the patience: twice in a row where it is known what it held, else for as long as the
+  // patience. `range`: what the device can put out. `interval`: ticks of the device from one sample to the
+  // next.
   void Look(const hydro_sample& sample, const hydro_voltage_range& range, uint32_t interval,
             bus::Clock::TimePoint now, std::vector<RigFault>* faults);
 
