@@ -40,8 +40,8 @@ std::vector<DriverCase> Chosen(const std::vector<std::string>& only) {
     const auto& all = hydro::plant::DriverCases();
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& c) { return name == c.name; });
     if (found == all.end()) {
-      std::vector<std::string> names;
-      for (const DriverCase& known : all) names.emplace_back(known.name);
+      std::vector<std::string> names(all.size());
+      std::transform(all.begin(), all.end(), names.begin(), [](const auto& known) { return known.name; });
       throw hydro::InputError("--only: found " + hydro::Quoted(name) + ", allowed " +
                               hydro::QuotedList(names));
     }
