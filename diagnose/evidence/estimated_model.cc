@@ -21,6 +21,9 @@ constexpr double kLeastPart = 0.05;
 // The step along a whole effect's shape by which its size is seen to change.
 constexpr double kMoveStep = 0.1;
 
+// A limit that is not allowed itself is missed by this part of it: all of a sensor's scale but a millionth.
+constexpr double kAboveTheLeast = 1e-6;
+
 // Whether any balance of the runs has the column. A column that no balance has may still seem to move,
 // together with others that share its yardstick.
 bool Acts(const Rows& rows, int column) {
@@ -102,7 +105,8 @@ void SetBase(const ScanRuns& runs, const Rows& rows, const SetFit& fit, Estimate
 }
 
 double Bounded(const model::ParameterInfo& info, double value) {
-  const double least = info.min_allowed ? info.min : std::max(info.min, std::numeric_limits<double>::min());
+  const double above = std::max(kAboveTheLeast * std::abs(info.min), std::numeric_limits<double>::min());
+  const double least = info.min_allowed ? info.min : info.min + above;
   return std::clamp(value, least, info.max);
 }
 

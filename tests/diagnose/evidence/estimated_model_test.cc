@@ -94,6 +94,16 @@ TEST(EstimatedModel, Amount) {
   EXPECT_THAT(estimated.changes, ::testing::ElementsAre(diagnose::Change{"pump.quadratic_drag", {}, ""}));
 }
 
+// Tests that an amount below 0 is estimated, too, where its least value is below 0 and not allowed.
+TEST(EstimatedModel, AmountBelowNothing) {
+  constexpr double kGain = -0.15;
+  const Scanned scanned(
+      ClampedPair(Table1With({{"sensor.pressure_gain", {{"gain", kGain}}, {}}}), kSeconds, 8),
+      {"sensor.pressure_gain"});
+  const EstimatedModel estimated = ModelOf(scanned, {"sensor.pressure_gain"});
+  EXPECT_NEAR(ValueOf(estimated, "sensor.pressure_gain", "gain"), kGain, 0.3 * -kGain);
+}
+
 // Tests that an effect as a whole is moved along its shape, from its grid towards a truth between two points.
 // The move is coarse: it goes by how large the effect is at all frequencies, and the balances show the low
 // ones; simulation refines it.
