@@ -171,6 +171,46 @@ Bytes Encoded(hydro_frame frame) {
   return Bytes(wire, wire + count);
 }
 
+// How many ZEROs the rig sends when it is asked for zero volts at once.
+int ZerosAtOnce(DeviceBench* bench) {
+  Bytes packet(512);
+  const auto receive = [&] { return recv(bench->link->other_end, packet.data(), packet.size(), MSG_DONTWAIT); };
+  while (receive() > 0) {
+  }
+  bench->rig->ZeroAtOnce();
+  int zeros = 0;
+  while (receive() > 0) ++zeros;
+  return zeros;
+}
+
+// Tests that a program which is refused because another one commands the device does not take that one's volts
+// away, and that whoever has commanded it once asks for zero, though another session has taken over.
+TEST(FrontEndTroubleTest, LeavesWhatAnotherCommands) {
+  uint32_t sequence = 100;
+  const auto say = [&](DeviceBench& bench, uint32_t session) {
+    hydro_frame frame{};
+    frame.kind = HYDRO_IDENTITY;
+    frame.sequence = ++sequence;
+    frame.body.identity.session_in_charge = session;
+    bench.SendToComputer(Encoded(frame));
+    bench.rig->Poll();
+  };
+  DeviceBench refused;
+  refused.device_runs = false;
+  refused.rig->Poll();
+  EXPECT_EQ(ZerosAtOnce(&refused), 1);  // nobody is known to be in charge
+  say(refused, 0x99);
+  EXPECT_EQ(ZerosAtOnce(&refused), 0);
+  say(refused, 0);
+  EXPECT_EQ(ZerosAtOnce(&refused), 1);
+
+  DeviceBench taken;
+  ASSERT_TRUE(taken.Connect());
+  EXPECT_EQ(ZerosAtOnce(&taken), 1);
+  say(taken, 0x99);
+  EXPECT_EQ(ZerosAtOnce(&taken), 1);
+}
+
 // Tests what is said when no front end answers, or one that is not ours to command.
 TEST(FrontEndTroubleTest, NobodyOrSomebodyElse) {
   EXPECT_THAT(WhyNot([](DeviceBench& bench) { bench.device_runs = false; }),
