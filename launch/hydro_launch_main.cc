@@ -164,7 +164,7 @@ constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
 
 // Throws InputError where NAME is missing behind a verb that needs it.
 void CheckHasName(const std::string& verb, int argc, char** argv) {
-  if (!verb.starts_with("new-") || (argc > 2 && argv[2][0] != '-')) return;
+  if (!verb.starts_with("new-") || (argc > 2 && argv[2][0] != '-' && argv[2][0] != '\0')) return;
   const std::string help = argc > 2 ? argv[2] : "";
   if (help == "--help" || help == "-h") return;
   throw hydro::InputError(verb +
@@ -178,9 +178,11 @@ std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   std::vector<const char*> arguments(argv, argv + argc);
   if (argc < 2) return arguments;
   const std::string first = arguments[1];
+  const std::string second = argc > 2 ? arguments[2] : "";
   std::vector<std::string> verbs;
   for (const auto& [verb, flag] : kVerbs) {
     if (first == verb || first == flag) CheckHasName(verb, argc, argv);
+    if (first == verb && (second == "--help" || second == "-h")) return {argv[0], argv[2]};
     if (first == verb) arguments[1] = flag;
     verbs.emplace_back(verb);
   }
@@ -209,7 +211,7 @@ int main(int argc, char** argv) {
   AddOptions(&line, &options);
   return hydro::settings::RunProgram("hydro-launch", [&] {
     const std::vector<const char*> arguments = WithFlagForVerb(argc, argv);
-    if (const auto code = line.Parse(argc, arguments.data())) return *code;
+    if (const auto code = line.Parse(static_cast<int>(arguments.size()), arguments.data())) return *code;
     return Run(line, options);
   });
 }

@@ -52,7 +52,7 @@ CheckedDevice::CheckedDevice(const settings::StackConfig& config)
     End();
     throw InputError(config.file + ": " + kKey + ": found " + name_ + ", which " + instead +
                      ", allowed a program that says \"ready\" within " + std::to_string(kStart.count()) +
-                     " s (docs/own_driver.md)");
+                     " s: start it by hand to see why (docs/own_driver.md)");
   }
 }
 

@@ -37,7 +37,7 @@ constexpr int kExit_ms = 1000;             // its time to end
 class StandIn {
  public:
   // If the configuration names a program, starts it in the configuration's folder and waits for its line
-  // "ready". Throws InputError when there is no such program, RigError when it does not become ready.
+  // "ready". Throws InputError when there is no such program, or when it does not become ready.
   explicit StandIn(const settings::StackConfig& config);
   ~StandIn() { End(); }
   StandIn(const StandIn&) = delete;
@@ -76,9 +76,9 @@ StandIn::StandIn(const settings::StackConfig& config) {
   close(ends[0]);  // the program ignores SIGPIPE; its further output is lost
   if (!instead.empty()) {
     End();
-    throw DeviceError("driver.simulated_device: " + command.front() + " must say \"ready\" within " +
-                      std::to_string(kStart.count()) + " s, but " + instead +
-                      "; start it by hand to see why");
+    throw settings::KeyError(config.file, "driver.simulated_device", command.front() + ", which " + instead,
+                             "a program that says \"ready\" within " + std::to_string(kStart.count()) +
+                                 " s: start it by hand to see why (docs/own_driver.md)");
   }
   spdlog::warn("{} stands for the device (driver.simulated_device): nothing real moves", command.front());
 }

@@ -89,8 +89,9 @@ class Connection {
   void AskForZero(TimePoint now);
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);
-  // Asks for zero volts until re-armed. Asks nothing of a device that another session has commanded ever since
-  // it was found: this one has no volts there to take back, and would stop the other's run. Async-signal-safe.
+  // Asks for zero volts until re-armed. Asks nothing of a device that another session has commanded ever
+  // since it was found: this one has no volts there to take back, and would stop the other's run.
+  // Async-signal-safe.
   void Zero() const noexcept {
     if (!is_anothers_) link_->WriteAtOnce({zero_frame_.data(), zero_bytes_});
   }

@@ -328,8 +328,8 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertRegex(check.stderr, rf'driver.simulated_device: found \S+, which {instead}, allowed a program that says "ready" within 10 s')
             driver = subprocess.run([os.path.join(TOOLS, "udp_box"), config, "--set", f"bus.url={self.url}", *device], capture_output=True,
                                     text=True, timeout=30, check=False)
-            self.assertEqual(driver.returncode, 1, driver.stderr)
-            self.assertRegex(driver.stderr, rf'driver.simulated_device: \S+ must say "ready" within 5 s, but {instead}; start it by hand')
+            self.assertEqual(driver.returncode, 2, driver.stderr)
+            self.assertRegex(driver.stderr, rf'driver.simulated_device: found \S+, which {instead}, allowed a program that says "ready" within 5 s: start it')
 
     # Tests what new-driver writes, that it overwrites nothing, and bad names.
     def test_new_driver(self):
@@ -347,6 +347,9 @@ class OwnDriverInputTest(OwnDriverCase):
         for name in ("a/b", "1st", "", "simulated_device"):
             self.assertRegex(self.run_program("hydro-launch", "--new-driver", name, expect=2).stderr, "--new-driver.*allowed|new-driver")
         self.assertFalse(os.path.exists(self.path("simulated_device")))
+        self.assertIn("found no NAME, allowed letters", self.run_program("hydro-launch", "new-driver", "", expect=2).stderr)
+        self.assertIn("allowed up to 64 letters", self.run_program("hydro-launch", "new-driver", "n" * 65, expect=2).stderr)
+        self.assertIn("new-driver NAME", self.run_program("hydro-launch", "new-driver", "--help").stdout)
         # CMake has a target or a file of these names; and each name that is missing is asked for, with an example.
         for name in ("test", "all", "install", "clean", "package", "help", "edit_cache", "rebuild_cache", "depend", "Makefile", "CMakeFiles"):
             self.assertEqual(self.run_program("hydro-launch", "new-driver", name, expect=2).stderr,

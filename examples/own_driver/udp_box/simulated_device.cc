@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <limits>
 #include <numbers>
@@ -45,7 +46,10 @@ void Run(int port, const char* model) {
   here.sin_port = htons(static_cast<uint16_t>(port));
   here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (bind(socket, reinterpret_cast<sockaddr*>(&here), sizeof here) != 0) {
-    std::perror("cannot take the port");
+    std::fprintf(stderr,
+                 "simulated_device: port %d of 127.0.0.1 cannot be taken: %s; end what has it, or give "
+                 "another one here and in driver.device\n",
+                 port, std::strerror(errno));
     std::exit(2);
   }
   device.SayReady();

@@ -72,7 +72,9 @@ static bool open_pty(struct link* link, const char* name, const char* url) {
     const char* path = url + 4;
     if (strlen(path) >= sizeof link->path) return fails(name, url, "the path is too long");
     if (symlink(terminal, path) != 0)
-      return fails(name, url, "the symbolic link cannot be made; allowed is a path where nothing is");
+      return fails(
+          name, url,
+          "the symbolic link cannot be made; allowed is a path where nothing is, in a folder that is there");
     remember(link, path);
     terminal = path;
   }
@@ -117,13 +119,16 @@ static bool open_udp(struct link* link, const char* name, const char* url) {
     memcpy(host, url + 4, host_length);
     host[host_length] = '\0';
   }
-  if (inet_pton(AF_INET, host, &address.sin_addr) != 1) return fails(name, url, "no IPv4 address");
+  if (inet_pton(AF_INET, host, &address.sin_addr) != 1)
+    return fails(name, url, "no IPv4 address; allowed are udp:PORT and udp:ADDRESS:PORT");
   address.sin_port = htons((uint16_t)port);
   link->fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   socklen_t size = sizeof address;
   if (link->fd < 0 || bind(link->fd, (struct sockaddr*)&address, sizeof address) != 0 ||
       getsockname(link->fd, (struct sockaddr*)&address, &size) != 0) {
-    return fails(name, url, "the port cannot be opened");
+    return fails(name, url,
+                 "the port cannot be opened; allowed is an address of this computer with a port that nobody "
+                 "has (0: any)");
   }
   printf("%s udp:%s:%d\n", name, host, ntohs(address.sin_port));
   return true;

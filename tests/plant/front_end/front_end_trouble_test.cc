@@ -174,7 +174,9 @@ Bytes Encoded(hydro_frame frame) {
 // How many ZEROs the rig sends when it is asked for zero volts at once.
 int ZerosAtOnce(DeviceBench* bench) {
   Bytes packet(512);
-  const auto receive = [&] { return recv(bench->link->other_end, packet.data(), packet.size(), MSG_DONTWAIT); };
+  const auto receive = [&] {
+    return recv(bench->link->other_end, packet.data(), packet.size(), MSG_DONTWAIT);
+  };
   while (receive() > 0) {
   }
   bench->rig->ZeroAtOnce();
@@ -183,8 +185,8 @@ int ZerosAtOnce(DeviceBench* bench) {
   return zeros;
 }
 
-// Tests that a program which is refused because another one commands the device does not take that one's volts
-// away, and that whoever has commanded it once asks for zero, though another session has taken over.
+// Tests that a program which is refused because another one commands the device does not take that one's
+// volts away, and that whoever has commanded it once asks for zero, though another session has taken over.
 TEST(FrontEndTroubleTest, LeavesWhatAnotherCommands) {
   uint32_t sequence = 100;
   const auto say = [&](DeviceBench& bench, uint32_t session) {
