@@ -137,6 +137,12 @@ Fitted WithHeld(const Fitted& fitted, const std::vector<const RunData*>& runs, i
   return Fit(all, runs, StartsOf(fitted), held);
 }
 
+// The free numbers within the limits of physics alone: how far a fit may move a value is no knowledge of it.
+std::vector<FreeParameter> WithinPhysics(Hypothesis hypothesis) {
+  hypothesis.reach = nullptr;
+  return hypothesis.Free();
+}
+
 Interval Around(const FreeParameter& parameter, double variance, double sample) {
   const double unseen =
       std::hypot(kIdealised * parameter.value, parameter.role == model::Role::kTime ? kInstant * sample : 0);
@@ -173,7 +179,7 @@ std::vector<bool> RestOnKnown(const Fitted& fitted) {
 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs,
                                 double temperature) {
-  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  const std::vector<FreeParameter> free = WithinPhysics(fitted.hypothesis);
   const double discrepancy = temperature * DiscrepancyOf(fitted, runs, jobs);
   const double sample = MedianInterval(runs.front()->stimulus.time);
   Fitted all = WithHeld(fitted, runs, jobs);

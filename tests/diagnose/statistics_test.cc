@@ -139,6 +139,21 @@ TEST(Intervals, StayWithinPhysics) {
   EXPECT_GT(intervals[0].high, 0);
 }
 
+// Tests that an interval is not cut off where the fit was not allowed to go.
+TEST(Intervals, ReachBeyondTheFit) {
+  const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.5, 1);
+  model::ModelDescription low = Table1With();
+  low.parameters.T_s *= 0.4;
+  diagnose::Hypothesis hypothesis = WithFree(low, {"T_s"});
+  hypothesis.reach =
+      std::make_shared<const diagnose::ValueReach>(diagnose::ReachOf(low.parameters, low.parameters));
+  const diagnose::Fitted fitted = diagnose::Fit(hypothesis, PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  const double most = 2 * low.parameters.T_s;
+  EXPECT_NEAR(fitted.hypothesis.model.parameters.T_s, most, 1e-3 * most);
+  EXPECT_GT(diagnose::Intervals(fitted, PointersTo(runs), 1).at(0).high, 1.005 * most);
+}
+
 // The given model with every base parameter free, held to what is known of it.
 diagnose::Fitted FitAll(const model::ModelDescription& given, const std::vector<diagnose::RunData>& runs) {
   diagnose::Hypothesis hypothesis = WithFree(given, {});
