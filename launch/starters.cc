@@ -95,9 +95,9 @@ void CheckNewName(const std::string& option, const std::string& name) {
                                  [](unsigned char c) { return (c < 0x80 && std::isalnum(c)) || c == '_'; });
   if (plain && !name.empty() && name.size() <= 64 && !std::isdigit(static_cast<unsigned char>(name[0])))
     return;
-  throw InputError(
-      option + ": found " + Quoted(name) +
-      ", allowed up to 64 letters, digits and underscores, no digit first, and no ending (.py, .cc)");
+  throw InputError(option + ": found " + Quoted(name) +
+                   ", allowed a name of at most 64 letters, digits and underscores, no digit first, and no "
+                   "ending (.py, .cc)");
 }
 
 // What the driver's program, CMake's target and the file in its folder may not be called: targets that CMake

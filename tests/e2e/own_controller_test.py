@@ -203,7 +203,7 @@ class OwnControllerTest(fault_case.FaultCase):
     def test_launched_hangs(self):
         launch = self.launch(self.config_of('["sleep", "60"]'), "--set", "time.start_timeout_s=0.5")
         self.assertEqual(launch.wait(60), 1, launch.report())
-        self.assertRegex(launch.stderr, r"not ready (within|after) 0\.\d+ s \(time\.start_timeout_s\): (sleep 60 \()?position_ctrl")
+        self.assertRegex(launch.stderr, r"not ready (within|after) 0\.\d+ s \(time\.start_timeout_s\): (.*, )?(sleep 60 \()?position_ctrl")
         text = "sys.exit(hydro_bus.Loop("
         self.variant("deaf.py", text, "import signal, threading\nhydro_bus.Loop._on_signal = lambda *_: None\n"
                                      "hydro_bus.Loop._on_stop = lambda *_: None\n" + text)
@@ -253,7 +253,7 @@ class OwnControllerTest(fault_case.FaultCase):
         again = self.run_program("hydro-launch", "--new-controller", "mine", expect=2)
         self.assertEqual(again.stderr, "hydro-launch: mine.toml: is there already and is not overwritten; give another name, or move it away\n")
         self.assertFalse(os.path.exists(self.path("mine.py")))
-        self.assertIn('found "a/b", allowed a name of letters', self.run_program("hydro-launch", "new-controller", "a/b", expect=2).stderr)
+        self.assertIn('found "a/b", allowed a name of at most 64 letters', self.run_program("hydro-launch", "new-controller", "a/b", expect=2).stderr)
 
     # Tests a pressure loop of the user's own: two lockstep runs are identical, and the replay uses what it
     # had heard.

@@ -348,7 +348,7 @@ class OwnDriverInputTest(OwnDriverCase):
             self.assertRegex(self.run_program("hydro-launch", "--new-driver", name, expect=2).stderr, "--new-driver.*allowed|new-driver")
         self.assertFalse(os.path.exists(self.path("simulated_device")))
         self.assertIn("found no NAME, allowed letters", self.run_program("hydro-launch", "new-driver", "", expect=2).stderr)
-        self.assertIn("allowed up to 64 letters", self.run_program("hydro-launch", "new-driver", "n" * 65, expect=2).stderr)
+        self.assertIn("allowed a name of at most 64 letters", self.run_program("hydro-launch", "new-driver", "n" * 65, expect=2).stderr)
         self.assertIn("new-driver NAME", self.run_program("hydro-launch", "new-driver", "--help").stdout)
         # CMake has a target or a file of these names; and each name that is missing is asked for, with an example.
         for name in ("test", "all", "install", "clean", "package", "help", "edit_cache", "rebuild_cache", "depend", "Makefile", "CMakeFiles"):
