@@ -165,8 +165,6 @@ constexpr std::pair<const char*, const char*> kVerbs[] = {{"stop", "--stop"},
 // Throws InputError where NAME is missing behind a verb that needs it.
 void CheckHasName(const std::string& verb, int argc, char** argv) {
   if (!verb.starts_with("new-") || (argc > 2 && argv[2][0] != '-' && argv[2][0] != '\0')) return;
-  const std::string help = argc > 2 ? argv[2] : "";
-  if (help == "--help" || help == "-h") return;
   throw hydro::InputError(verb +
                           ": found no NAME, allowed letters, digits and underscores, e.g. hydro-launch " +
                           verb + " crane");
@@ -181,8 +179,10 @@ std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   const std::string second = argc > 2 ? arguments[2] : "";
   std::vector<std::string> verbs;
   for (const auto& [verb, flag] : kVerbs) {
-    if (first == verb || first == flag) CheckHasName(verb, argc, argv);
-    if (first == verb && (second == "--help" || second == "-h")) return {argv[0], argv[2]};
+    if (first == verb || first == flag) {
+      if (second == "--help" || second == "-h") return {argv[0], argv[2]};
+      CheckHasName(verb, argc, argv);
+    }
     if (first == verb) arguments[1] = flag;
     verbs.emplace_back(verb);
   }

@@ -7,6 +7,7 @@
 
 #include "diagnose/evidence/estimated_closure.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/fit/hypothesis.h"
 #include "model/effects/catalogue.h"
 
 namespace hydro::diagnose {
@@ -20,9 +21,6 @@ using MeaningKind = ColumnMeaning::Kind;
 constexpr double kLeastPart = 0.05;
 // The step along a whole effect's shape by which its size is seen to change.
 constexpr double kMoveStep = 0.1;
-
-// A limit that is not allowed itself is missed by this part of it: all of a sensor's scale but a millionth.
-constexpr double kAboveTheLeast = 1e-6;
 
 // Whether any balance of the runs has the column. A column that no balance has may still seem to move,
 // together with others that share its yardstick.

@@ -105,7 +105,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
       parameter.low = value / kReach;
       parameter.high = std::min(info.max, value * kReach);
     } else if (!info.min_allowed && std::isfinite(info.min)) {
-      parameter.low = info.min + 1e-6 * std::max(1.0, std::abs(info.min));
+      parameter.low = info.min + kAboveTheLeast * std::max(1.0, std::abs(info.min));
     }
     if (parameter.role == model::Role::kFrequency && parameter.low < highest_frequency)
       parameter.high = std::min(parameter.high, highest_frequency);

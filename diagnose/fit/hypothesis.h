@@ -49,6 +49,10 @@ struct FreeParameter {
 // Data sheets and drawings are not wrong by a larger factor, so a value that moves farther is implausible.
 inline constexpr double kImplausible = 2;
 
+// By how much of a limit that is not allowed itself a number stays above it: all of a sensor's scale but a
+// millionth.
+inline constexpr double kAboveTheLeast = 1e-6;
+
 // How far fits may move base values; infinite where only physics limits them.
 struct ValueReach {
   model::Parameters low, high;

@@ -180,8 +180,6 @@ void Connection::OnIdentity(const hydro_frame& frame, TimePoint now) {
   }
   identified_ = true;
   identity_ = identity;
-  was_in_charge_ = was_in_charge_ || identity.session_in_charge == session_;
-  is_anothers_ = !was_in_charge_ && identity.session_in_charge != 0;
   if (identity.session_in_charge != session_) {
     phase_ = Phase::kHello;
     return;

@@ -89,11 +89,12 @@ class Connection {
   void AskForZero(TimePoint now);
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);
-  // Asks for zero volts until re-armed. Asks nothing of a device that another session has commanded ever
-  // since it was found: this one has no volts there to take back, and would stop the other's run.
-  // Async-signal-safe.
+  // Asks for zero volts until re-armed. Asks nothing of a device that another session commands where this one
+  // was never up: it has no volts there to take back, and would stop the other's run. Async-signal-safe.
   void Zero() const noexcept {
-    if (!is_anothers_) link_->WriteAtOnce({zero_frame_.data(), zero_bytes_});
+    const uint32_t in_charge = identity_.session_in_charge;
+    if (was_up_ || in_charge == 0 || in_charge == session_)
+      link_->WriteAtOnce({zero_frame_.data(), zero_bytes_});
   }
 
  private:
@@ -148,8 +149,6 @@ class Connection {
   hydro_identity fitting_{};  // the newest for which there are settings
   std::string unfit_, change_;
   bool identified_ = false;
-  bool is_anothers_ = false;  // another session is in charge, and this one never was
-  bool was_in_charge_ = false;
   bool compared_ = false;  // the device has said that it holds the settings of `fingerprint_`
   hydro_settings settings_{};
   uint32_t fingerprint_ = 0;

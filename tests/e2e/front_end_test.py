@@ -63,9 +63,10 @@ class FrontEndCase(stack.TestCase):
             self.skip_if_commands_are_late(log_file)
             self.fail(f"{error}, at last {front.shown()[-3:]}\n{launch.report()}")
         launch.send(signal.SIGINT)
-        if launch.wait(60) != 0:
+        code = launch.wait(60)
+        if code != 0:
             front.skip_if_ticks_are_missed()
-        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assertEqual(code, 0, launch.report())
         return launch
 
 
