@@ -127,7 +127,10 @@ model::Measurement DeviceRig::Read(int64_t /*tick*/) {
   return measured;
 }
 
-bool DeviceRig::WriteZero() noexcept { return WriteZeroTo(*device_, zero_); }
+// Where this process's own descriptors of the device are of no use, its guardian has its copies of them.
+bool DeviceRig::WriteZero() noexcept {
+  return WriteZeroTo(*device_, zero_) || (guardian_ && guardian_->WriteZero());
+}
 
 // An output behind a filter settles soon. One that still holds something else has not taken the zero,
 // whatever the device says.

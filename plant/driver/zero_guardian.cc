@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
+#include <poll.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +14,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -118,8 +121,9 @@ void DisarmZero() { armed.store(nullptr); }
 
 namespace {
 
-constexpr char kDismissed = 'd';
-constexpr int kExitTimeout_ms = 500;  // for a dismissed guardian
+// What the driver tells its guardian.
+constexpr char kDismissed = 'd', kWriteZero = 'z';
+constexpr int kExitTimeout_ms = 500;  // for a guardian that was told something
 
 // Closes every descriptor but these, which are in rising order: a pipe or socket that the guardian held open
 // would make the driver look alive.
@@ -133,49 +137,64 @@ void CloseAllBut(const std::vector<int>& files) {
   close_range(next, ~0U, 0);
 }
 
+// What the driver says; nothing once it has gone. A child of the driver may hold the pipe open for longer
+// than the driver lives, so the end of the driver itself is watched too (`driver`). What it said before
+// counts.
+char Word(int pipe, int driver) {
+  pollfd watched[] = {{.fd = pipe, .events = POLLIN, .revents = 0},
+                      {.fd = driver, .events = POLLIN, .revents = 0}};
+  while (poll(watched, 2, -1) < 0 && (errno == EINTR || errno == EAGAIN)) {
+  }
+  char word = 0;
+  ssize_t got = 0;
+  do {
+    got = read(pipe, &word, 1);
+  } while (got < 0 && errno == EINTR);
+  return got == 1 ? word : '\0';
+}
+
 // Runs in the fork of a process that may have threads, so only system calls are allowed from here on.
-[[noreturn]] void Guard(Device& device, const std::vector<int>& files, double zero, int pipe) {
+[[noreturn]] void Guard(Device& device, const std::vector<int>& files, double zero, int pipe, int driver) {
   prctl(PR_SET_NAME, "hydro-zero");
   // Only the end of the driver may end the guardian.
   for (int signal = 1; signal < NSIG; ++signal) {
     if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
   }
   CloseAllBut(files);
-  char word = 0;
-  ssize_t got = 0;
-  do {
-    got = read(pipe, &word, 1);
-  } while (got < 0 && errno == EINTR);
-  if (got != 1 || word != kDismissed) WriteZeroTo(device, zero);
-  _exit(0);
+  const bool taken = Word(pipe, driver) == kDismissed || WriteZeroTo(device, zero);
+  _exit(taken ? 0 : 1);
 }
 
 }  // namespace
 
 ZeroGuardian::ZeroGuardian(Device& device, const std::vector<int>& files, double zero) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
+  if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
     throw std::runtime_error("cannot create the output guardian's pipe: " + process::ReasonOf(errno));
   }
-  std::vector<int> kept = files;  // the child allocates nothing
-  kept.push_back(ends[0]);
-  std::sort(kept.begin(), kept.end());
-  pid_ = fork();
+  // Opened before the fork: afterwards this number might be another process's.
+  const auto driver = static_cast<int>(syscall(SYS_pidfd_open, getpid(), 0));
+  if (driver >= 0) {
+    std::vector<int> kept = files;  // the child allocates nothing
+    kept.insert(kept.end(), {ends[0], driver});
+    std::sort(kept.begin(), kept.end());
+    pid_ = fork();
+    if (pid_ == 0) {
+      close(ends[1]);
+      Guard(device, kept, zero, ends[0], driver);
+    }
+  }
+  const int error = errno;
+  if (driver >= 0) close(driver);
+  close(ends[0]);
   if (pid_ < 0) {
-    const int error = errno;
-    close(ends[0]);
     close(ends[1]);
     throw std::runtime_error("cannot start the output guardian: " + process::ReasonOf(error));
-  }
-  if (pid_ == 0) {
-    close(ends[1]);
-    Guard(device, kept, zero, ends[0]);
   }
   // The guardian must survive a SIGTERM to this process's group, and the SIGKILL with which a launcher ends
   // the remaining processes of a user's own program. The parent sets the group because the child may not run
   // for a while.
   setpgid(pid_, pid_);
-  close(ends[0]);
   pipe_ = ends[1];
 }
 
@@ -199,24 +218,40 @@ void ZeroGuardian::Require() {
       "stands still; allowed is a run with one: find out what ended it, and start again");
 }
 
-void ZeroGuardian::Dismiss() {
-  if (pipe_ < 0) return;
+void ZeroGuardian::Dismiss() noexcept {
+  if (pipe_ < 0 || Tell(kDismissed) || pid_ < 0) return;
+  kill(pid_, SIGKILL);  // it was stopped from outside
+  waitpid(pid_, nullptr, 0);
+}
+
+bool ZeroGuardian::WriteZero() noexcept {
+  if (pipe_ < 0) return wrote_zero_;
+  if (pid_ >= 0) kill(pid_, SIGCONT);  // it may have been stopped from outside
+  const std::optional<int> status = Tell(kWriteZero);
+  return wrote_zero_ = status && WIFEXITED(*status) && WEXITSTATUS(*status) == 0;
+}
+
+// Tells the guardian the one thing that it is ever told. Returns the status with which it ended then; nothing
+// if it had gone before, or has not ended in time.
+std::optional<int> ZeroGuardian::Tell(char word) noexcept {
+  watches_ = false;
   // When the guardian no longer exists, SIGPIPE must not end this process.
   struct sigaction ignore = {}, before = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, &before);
-  const ssize_t written = write(pipe_, &kDismissed, 1);
+  const ssize_t written = write(pipe_, &word, 1);
   static_cast<void>(written);
   sigaction(SIGPIPE, &before, nullptr);
   close(pipe_);
   pipe_ = -1;
-  if (pid_ < 0) return;
-  for (int i = 0; i < kExitTimeout_ms; ++i) {
-    if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
+  int status = 0;
+  for (int i = 0; i < kExitTimeout_ms && pid_ >= 0; ++i) {
+    const pid_t ended = waitpid(pid_, &status, WNOHANG);
+    if (ended == pid_) return status;
+    if (ended < 0) break;
     usleep(1000);
   }
-  kill(pid_, SIGKILL);  // it was stopped from outside
-  waitpid(pid_, nullptr, 0);
+  return std::nullopt;
 }
 
 }  // namespace hydro::plant

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <vector>
 
 #include "plant/driver/device.h"
@@ -25,7 +26,8 @@ void DisarmZero();
 // or _exit().
 class ZeroGuardian {
  public:
-  // Forks a child that shares the open device and sleeps until this process has gone. The child then has
+  // Forks a child that shares the open device and sleeps until this process has gone, whatever children of
+  // its own remain. The child then has
   // `device` put out `zero`, unless Dismiss() was called before, and exits. It outlives this process by no
   // more than that. It ignores signals, also those to this process's group, and keeps none of this process's
   // descriptors except `files`. Throws std::runtime_error when the child cannot be started.
@@ -42,12 +44,19 @@ class ZeroGuardian {
   void Require();
 
   // Ends the guardian: the output is at zero and the device is about to be closed.
-  void Dismiss();
+  void Dismiss() noexcept;
+
+  // Has the guardian write the zero now, and end: for a process whose own descriptors of the device are of no
+  // use. Returns whether the device took it. Called again, it says the same.
+  bool WriteZero() noexcept;
 
   pid_t pid() const { return pid_; }
 
  private:
+  std::optional<int> Tell(char word) noexcept;
+
   pid_t pid_ = -1;
+  bool wrote_zero_ = false;
   bool watches_ = true;
   int pipe_ = -1;
 };

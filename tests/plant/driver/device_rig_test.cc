@@ -32,6 +32,7 @@ struct Shared {
   double output = 7;  // as a program that crashed has left it
   int zeros = 0;
   bool refuses_zero = false;
+  pid_t refuses_zero_of = -1;  // of that process only: its own descriptor has gone
 };
 
 // A device whose readings the test sets, and which measures now unless told otherwise.
@@ -64,7 +65,7 @@ class FakeDevice : public Device {
     driven_ = true;
   }
   bool Zero(double output) noexcept override {
-    if (shared_->refuses_zero) return false;
+    if (shared_->refuses_zero || shared_->refuses_zero_of == getpid()) return false;
     shared_->output = output;
     ++shared_->zeros;
     return true;
@@ -471,6 +472,58 @@ TEST_F(DeviceRigTest, GuardianSurvivesItsGroup) {
   for (int i = 0; i < 10000 && shared_->zeros == 0; ++i) usleep(1000);
   EXPECT_EQ(shared_->output, 0);
   EXPECT_EQ(shared_->zeros, 1);
+}
+
+// Tests that the guardian zeroes the device of a process that was killed and has left a child behind, which
+// holds all that the process had open.
+TEST_F(DeviceRigTest, GuardianOfAProcessThatForked) {
+  const pid_t parent = fork();
+  if (parent == 0) {
+    auto rig = Open();
+    rig->Drive(5);
+    shared_->zeros = 0;
+    if (fork() != 0) shared_->output = 11;  // from here on, there is a child
+    for (;;) pause();
+  }
+  setpgid(parent, parent);
+  for (int i = 0; i < 10000 && shared_->output != 11; ++i) usleep(1000);
+  ASSERT_EQ(shared_->output, 11);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  for (int i = 0; i < 10000 && shared_->zeros == 0; ++i) usleep(1000);
+  EXPECT_EQ(shared_->output, 0);
+  EXPECT_EQ(shared_->zeros, 1);
+  kill(-parent, SIGKILL);
+}
+
+// Tests that the guardian writes the zero that this process cannot write any more, at once and once.
+TEST_F(DeviceRigTest, GuardianWritesWhatTheDriverCannot) {
+  auto rig = Open();
+  rig->Drive(5);
+  shared_->zeros = 0;
+  shared_->refuses_zero_of = getpid();
+  EXPECT_TRUE(rig->Zero().accepted);
+  EXPECT_EQ(shared_->output, 0);
+  EXPECT_THROW(rig->Drive(5), RigError) << "nobody would zero it now";
+  EXPECT_EQ(shared_->output, 0);
+  rig.reset();
+  EXPECT_EQ(shared_->zeros, 1);
+}
+
+// Tests the same where only the end of the rig writes the zero, and that a guardian which stands still is
+// woken for it.
+TEST_F(DeviceRigTest, GuardianWritesAtTheEnd) {
+  for (const bool stopped : {false, true}) {
+    auto rig = Open();
+    rig->Drive(5);
+    shared_->zeros = 0;
+    if (stopped) kill(rig->guardian(), SIGSTOP);
+    shared_->refuses_zero_of = getpid();
+    rig.reset();
+    EXPECT_EQ(shared_->output, 0);
+    EXPECT_EQ(shared_->zeros, 1);
+    shared_->refuses_zero_of = -1;
+  }
 }
 
 }  // namespace
