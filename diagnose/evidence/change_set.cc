@@ -29,6 +29,8 @@ ChangeSet ChangesOf(const ChangeSet& set) {
 
 bool IsMissingTerm(std::string_view name) { return !name.starts_with("value.") && !name.starts_with("run."); }
 
+bool HasCurve(const ChangeSet& set) { return std::any_of(set.begin(), set.end(), IsClosureEffect); }
+
 ChangeSet WithChange(const ChangeSet& set, const std::string& name) {
   ChangeSet with = set;
   with.insert(std::lower_bound(with.begin(), with.end(), name), name);

@@ -24,8 +24,7 @@ class SetSearch {
  public:
   explicit SetSearch(SetScores* scores) : scores_(*scores) {}
 
-  void Search() {
-    const std::vector<std::string>& names = scores_.evidence().names();
+  void Search(const std::vector<std::string>& names) {
     Extend({ChangeSet()}, names);
     for (size_t changes = 1; changes < kMostOfASet; ++changes) {
       // Pairs are searched from every single. From then on each further change must have been a gain.
@@ -128,7 +127,11 @@ std::vector<ScoredSet> SetScores::Leaders(size_t changes, size_t most) const {
 
 SetScores ScanSets(const SetEvidence& evidence, const std::vector<ChangeSet>& also, int jobs) {
   SetScores scores(evidence, jobs);
-  SetSearch(&scores).Search();
+  // Where curves lead, sets of named changes would not be extended: they are searched by themselves first.
+  std::vector<std::string> named = evidence.names();
+  std::erase_if(named, [](const std::string& name) { return HasCurve({name}); });
+  SetSearch(&scores).Search(named);
+  SetSearch(&scores).Search(evidence.names());
   scores.Try(also);
   return scores;
 }

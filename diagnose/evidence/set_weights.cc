@@ -8,7 +8,6 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "diagnose/fit/closure.h"
 #include "diagnose/fit/intervals.h"
 
 namespace hydro::diagnose {
@@ -49,11 +48,7 @@ std::vector<ChangeSet> SubsetsOf(const ChangeSet& set) {
 // empty set.
 std::vector<ScoredSet> Finalists(SetScores* scores, bool curves) {
   std::vector<ScoredSet> tried = scores->BestFirst();
-  if (!curves) {
-    std::erase_if(tried, [](const ScoredSet& one) {
-      return std::any_of(one.set.begin(), one.set.end(), IsClosureEffect);
-    });
-  }
+  if (!curves) std::erase_if(tried, [](const ScoredSet& one) { return HasCurve(one.set); });
   std::set<ChangeSet> chosen = {ChangeSet()};
   std::set<ChangeSet> named;
   std::map<std::string, size_t> singles;

@@ -84,7 +84,8 @@ std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
       if (!counts || fitted == free.end()) continue;
       const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
       ++amounts;
-      if (interval.low <= 0 && interval.high >= 0) ++none;
+      // An interval that is not known, as that of a number at its bound, excludes nothing.
+      if (!(interval.low > 0 || interval.high < 0)) ++none;
     }
     if (amounts > 0 && none == amounts) may_be_none.push_back(change);
   }

@@ -56,44 +56,44 @@ std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
   return models;
 }
 
-// The sets that may be proposed, in this order: the empty set, the likeliest explanations, the best set by
-// score, the sets with one change less than the first explanation, and each single change at its best shape.
-std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& weights,
+// The sets that may be proposed, in this order: the empty set, the likeliest named explanations, the best
+// named set by score, the likeliest explanation of all if it has a curve, the sets with one change less than
+// the first explanation, and each single change at its best shape.
+std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const ExplanationWeights& weights,
                                      const std::vector<ScoredSet>& scores) {
   std::vector<ChangeSet> sets = {{}};
   // Values for each run come from the runs that they predict, so no simulation can compare them with values
   // common to all runs. The balances decide whether they are tried.
-  const bool runs_first = !weights.explanations.empty() && NamesARun(weights.explanations.front().set);
+  const bool runs_first = !named.explanations.empty() && NamesARun(named.explanations.front().set);
   const auto add = [&](const ChangeSet& set) {
-    if (NamesARun(set) && !(runs_first && set == weights.explanations.front().set)) return;
+    if (NamesARun(set) && !(runs_first && set == named.explanations.front().set)) return;
     if (std::find(sets.begin(), sets.end(), set) == sets.end()) sets.push_back(set);
   };
-  for (size_t i = 0; i < std::min(kMostExplanations, weights.explanations.size()); ++i)
-    add(weights.explanations[i].set);
-  if (!scores.empty()) add(scores.front().set);
-  if (!weights.explanations.empty()) {
-    const ChangeSet& first = weights.explanations.front().set;
+  const auto add_best = [&](const auto& is) {
+    const auto best = std::find_if(scores.begin(), scores.end(), is);
+    if (best != scores.end()) add(best->set);
+  };
+  for (size_t i = 0; i < std::min(kMostExplanations, named.explanations.size()); ++i)
+    add(named.explanations[i].set);
+  add_best([](const ScoredSet& one) { return !HasCurve(one.set); });
+  if (!weights.explanations.empty() && HasCurve(weights.explanations.front().set))
+    add(weights.explanations.front().set);
+  if (!named.explanations.empty()) {
+    const ChangeSet& first = named.explanations.front().set;
     for (size_t without = 0; without < first.size(); ++without) {
       ChangeSet less = first;
       less.erase(less.begin() + static_cast<std::ptrdiff_t>(without));
       add(less);
     }
   }
+  const auto is_single = [](const ScoredSet& one) { return one.set.size() == 1; };
   // Wrong values are the likeliest cause of all: the best set of values is tried by itself.
-  for (const ScoredSet& scored : scores) {
-    if (scored.set.size() != 1 || !scored.set[0].starts_with("value.")) continue;
-    add(scored.set);
-    break;
-  }
+  add_best([&](const ScoredSet& one) { return is_single(one) && one.set[0].starts_with("value."); });
   // The best curve without a known effect is also tried. Without it, the nearest effect would take its place.
-  for (const ScoredSet& scored : scores) {
-    if (scored.set.size() != 1 || !IsClosureEffect(scored.set[0])) continue;
-    add(scored.set);
-    break;
-  }
+  add_best([&](const ScoredSet& one) { return is_single(one) && HasCurve(one.set); });
   std::vector<std::string> alone;
   for (const ScoredSet& scored : scores) {
-    if (scored.set.size() != 1 || !IsMissingTerm(scored.set[0])) continue;
+    if (!is_single(scored) || !IsMissingTerm(scored.set[0])) continue;
     const std::string change(ChangeOf(scored.set[0]));
     if (std::find(alone.begin(), alone.end(), change) != alone.end()) continue;
     alone.push_back(change);
@@ -229,7 +229,9 @@ void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
     for (const std::string& name : set) refined.emplace_back(ChangeOf(name));
     RefinedShapes(runs, *rows, set).Keep(rows);
   };
-  if (!scores.empty()) refine(scores.front().set);
+  const auto named = std::find_if(scores.begin(), scores.end(),
+                                  [](const ScoredSet& one) { return !HasCurve(one.set); });
+  if (named != scores.end()) refine(named->set);
   for (const ScoredSet& one : scores) {
     if (one.set.size() == 1) refine(one.set);
   }
@@ -302,7 +304,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   const SetEvidence evidence(rows);
   SetScores scores = ScanSets(evidence, {}, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);
-  proposed.said.weights = SaidOf(proposed.weights, WeighExplanations(&scores, context.seed, false));
+  const ExplanationWeights named = WeighExplanations(&scores, context.seed, false);
+  proposed.said.weights = SaidOf(proposed.weights, named);
   proposed.scores = scores.BestFirst();
   const double nothing = scores.Score({});
   for (ScoredSet& one : proposed.scores) one.score -= nothing;
@@ -312,7 +315,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
   const std::set<std::string> oil = runs.OilOnly();
   for (const ChangeSet& set :
-       oil.empty() ? SetsToPropose(proposed.weights, proposed.scores) : SetsWithout(oil, proposed.weights)) {
+       oil.empty() ? SetsToPropose(named, proposed.weights, proposed.scores) : SetsWithout(oil, proposed.weights)) {
     if (proposed.proposals.size() >= kMostProposals) break;
     const RefinedShapes shaped(&runs, rows, set);
     const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;
@@ -328,7 +331,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
                       estimated->deviation,
                       {},
                       fit.log_evidence - own.Log({}) + scores.odds().LogOdds(set),
-                      WeightOf(proposed.weights, set)};
+                      WeightOf(HasCurve(set) ? proposed.weights : named, set)};
     if (context.held_out.empty() && context.runs.size() > 1) {
       for (size_t r = 0; r < context.runs.size(); ++r) {
         const SetEvidence others = own.Without({r});

@@ -142,7 +142,8 @@ class Prover {
   }
 
   // Adds the effect that the balances find more likely than not, where windows neither confirm nor deny it: a
-  // small error of a gain, or a ripple, hardly changes predictions over the length of a window. The effect is
+  // small error of a gain, or a ripple, hardly changes predictions over the length of a window. Both witnesses
+  // together have to speak for it. The effect is
   // reported as tied with the set that does without it.
   size_t WithWhatBalancesSay(size_t place) const {
     size_t with = place;
@@ -153,7 +154,9 @@ class Prover {
       if (more.size() != 1 || sets_[i].Effects().size() != sets_[place].Effects().size() + 1) continue;
       const double said = sets_.SaidOf(more.front());
       const GapFall fall = FallOf(sets_[place].near, sets_[i].near);
-      if (said <= most || fall.logarithm < -std::max(kEqual, fall.error)) continue;
+      const double values = sets_[i].price_of_values - sets_[place].price_of_values;
+      const bool paid = fall.logarithm >= sets_.PriceOf(more.front()) + values;
+      if (said <= most || !paid || fall.logarithm < -std::max(kEqual, fall.error)) continue;
       most = said;
       with = i;
     }
