@@ -63,13 +63,18 @@ static void read_machine(struct hydro_device* device, const struct hydro_reading
   device->faults_present = present_faults(device, readings);
 }
 
-/* Counts the ticks since the newest command, and trips when the device must not go on. */
+/* Counts the ticks since the newest command, and trips when the device must not go on. A command that comes
+ * now does not excuse the ticks that were missed before: in them the one before grew too old, and this one
+ * may have waited as long. */
 static void watch(struct hydro_device* device, const struct hydro_readings* readings) {
   struct hydro_obeyed* obeyed = &device->obeyed;
-  obeyed->age_ticks = obeyed->fresh ? 0 : obeyed->age_ticks + readings->elapsed_ticks;
+  const uint32_t elapsed = readings->elapsed_ticks;
+  const uint32_t missed = elapsed > 0 ? elapsed - 1 : 0;
+  const uint32_t oldest = obeyed->age_ticks + (obeyed->fresh ? missed : elapsed);
+  obeyed->age_ticks = obeyed->fresh ? 0 : oldest;
   obeyed->fresh = false;
-  if (device->heard_ticks < device->facts.tick_rate_hz) device->heard_ticks += readings->elapsed_ticks;
-  if (device->state == HYDRO_ARMED && obeyed->age_ticks >= device->settings.watchdog_ticks) {
+  if (device->heard_ticks < device->facts.tick_rate_hz) device->heard_ticks += elapsed;
+  if (device->state == HYDRO_ARMED && oldest >= device->settings.watchdog_ticks) {
     hydro_device_trip(device, HYDRO_FAULT_WATCHDOG);
   }
   if (readings->overrun) hydro_device_trip(device, HYDRO_FAULT_OVERRUN);

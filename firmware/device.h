@@ -18,7 +18,7 @@ struct hydro_obeyed {
   bool fresh;     /* a command, or the arming, came after the last tick */
   uint8_t source; /* enum hydro_source */
   uint32_t sequence;
-  uint32_t age_ticks; /* counts from the arming until a command comes */
+  uint32_t age_ticks; /* at the last tick; counts from the arming until a command comes */
   struct hydro_command command;
 };
 

@@ -108,6 +108,7 @@ static void take_command(struct hydro_device* device, const struct hydro_frame* 
                             .fresh = true,
                             .source = frame->kind == HYDRO_VOLTAGE ? HYDRO_SOURCE_VOLTAGE : HYDRO_SOURCE_LAW,
                             .sequence = frame->sequence,
+                            .age_ticks = device->obeyed.age_ticks, /* for the watchdog, of the one before */
                             .command = frame->body.command};
 }
 

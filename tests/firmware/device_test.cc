@@ -107,6 +107,26 @@ TEST(DeviceTest, WatchdogFromArmingOn) {
   }
 }
 
+// Tests that commands which waited while the board stood still do not excuse the ticks that it missed: it
+// trips as it would have, and puts none of them out. One tick less, and it goes on.
+TEST(DeviceTest, WatchdogAcrossAFreeze) {
+  for (const uint32_t before : {0U, 15U}) {
+    for (const uint32_t missed : {19U - before, 20U - before, 1000U}) {
+      DeviceBench bench;
+      bench.Armed();
+      bench.Send(bench.Voltage(3));
+      for (uint32_t tick = 0; tick <= before; ++tick) bench.Tick();
+      bench.readings.elapsed_ticks = missed + 1;
+      bench.Send(bench.Voltage(4));
+      bench.Send(bench.Voltage(5));
+      const bool trips = before + missed >= 20;
+      EXPECT_FLOAT_EQ(bench.Tick(), trips ? bench.Zero() : -2.25F) << before << ", " << missed;
+      EXPECT_EQ(bench.sample.state, trips ? HYDRO_TRIPPED : HYDRO_ARMED);
+      EXPECT_EQ(bench.sample.faults_latched, trips ? HYDRO_FAULT_WATCHDOG : 0);
+    }
+  }
+}
+
 // Tests each cause: zero volts in the tick that finds it, the fault latched, no obedience afterwards, no
 // re-arm while it is present, and obedience after a re-arm once it has gone.
 TEST(DeviceTest, CausesOfZeroVolts) {
