@@ -23,13 +23,15 @@ double GuardedFrontEnd::Drive(double voltage) {
   return FrontEndRig::Drive(voltage);
 }
 
-// A guardian that held a cut link open would keep its port from being opened again.
+// A guardian that held a cut link open would keep its port from being opened again. Until the device is up
+// there are no volts of this driver's, and what a guardian took away would be those of another, for whose
+// device this one waits.
 void GuardedFrontEnd::OnLink(int descriptor) {
-  if (descriptor == guarded_) return;
+  const int now = connection().was_up() ? descriptor : -1;
+  if (now == guarded_) return;
   guardian_.reset();
-  if (descriptor >= 0)
-    guardian_ = std::make_unique<ZeroGuardian>(guardians_zero_, std::vector{descriptor}, 0);
-  guarded_ = descriptor;
+  if (now >= 0) guardian_ = std::make_unique<ZeroGuardian>(guardians_zero_, std::vector{now}, 0);
+  guarded_ = now;
 }
 
 std::function<void()> LeadLoopOnDevice(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,

@@ -45,7 +45,7 @@ class GuardedFrontEnd : public FrontEndRig {
   };
 
   ZeroRequest zero_{*this, false}, guardians_zero_{*this, true};
-  std::unique_ptr<ZeroGuardian> guardian_;  // while the link is open
+  std::unique_ptr<ZeroGuardian> guardian_;  // while the link is open, once the device was up
   int guarded_ = -1;                        // its descriptor
 };
 

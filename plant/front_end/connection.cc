@@ -17,7 +17,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kRequestPeriod = 50ms;  // for requests that are repeated until the answer comes
 constexpr auto kOpenPeriod = 100ms;
-constexpr auto kKeepAlivePeriod = 100ms;  // the device gives up on a session after 250 ms
+constexpr auto kKeepAlivePeriod = 100ms;
+constexpr auto kFreeAfter = 250ms;  // the device gives up on a session that it has not heard for so long
 constexpr size_t kChunk = 4096;
 constexpr int kMostChunks = 64;  // in one call: a flood on the link must not stop the loop
 // Of the frames that a device can have sent within a time: its clock may be faster, and a second may have
@@ -305,9 +306,15 @@ uint32_t Connection::CommandPressure(int64_t host_tick, float pressure_ref, cons
 }
 
 void Connection::AskForZero(TimePoint now) {
-  if (now < next_zero_) return;
+  if (now < next_zero_ || IsAnothers(now)) return;
   next_zero_ = now + kRequestPeriod;
   Send(HYDRO_ZERO);
+}
+
+bool Connection::IsAnothers(TimePoint now) const {
+  const uint32_t in_charge = identity_.session_in_charge;
+  if (in_charge == 0 || in_charge == session_) return false;
+  return !was_up_ || sample_.state != HYDRO_ARMED || now - sampled_at_ >= kFreeAfter;
 }
 
 void Connection::KeepAlive(TimePoint now) {
@@ -323,6 +330,10 @@ LinkTrouble Connection::WhyNot() const {
     return {fmt::format("a front end that speaks protocol {}", other_protocol_),
             fmt::format("protocol {}: give it the firmware of this version (docs/front_end.md)",
                         int{HYDRO_PROTOCOL})};
+  }
+  if (identified_ && identity_.session_in_charge == 0) {
+    return {"a front end that no session commands, and that does not take this one",
+            "one whose firmware takes the session of a HELLO (docs/front_end.md)"};
   }
   if (identified_ && identity_.session_in_charge != session_) {
     return {fmt::format("a front end that another program commands (its session is {:08x})",

@@ -45,6 +45,7 @@ class Connection {
 
   // Whether the device holds the settings and has sent a sample since.
   bool is_up() const { return link_->is_open() && phase_ == Phase::kUp && sampled_; }
+  bool was_up() const { return was_up_; }
   bool link_is_open() const { return link_->is_open(); }
 
   // These are meaningful once is_up() was true.
@@ -85,8 +86,11 @@ class Connection {
   // Commands for the computer's tick. The device's samples name them by the sequence that is returned.
   uint32_t CommandVoltage(int64_t host_tick, float voltage);
   uint32_t CommandPressure(int64_t host_tick, float pressure_ref, const hydro_gains& gains);
-  // Asks the device to disarm, unless it was asked a moment ago.
+  // Asks the device to disarm, unless it was asked a moment ago, or its volts are another session's.
   void AskForZero(TimePoint now);
+  // Whether the device says that another session is in charge and may be believed. A device that was armed
+  // for this one a moment ago may not: no session can take it over so soon.
+  bool IsAnothers(TimePoint now) const;
   // Keeps the session in charge while there is nothing to command.
   void KeepAlive(TimePoint now);
   // Asks for zero volts until re-armed. Asks nothing of a device that another session commands where this one

@@ -64,15 +64,20 @@ bool FrontEndRig::FindSilence() {
     return true;
   }
   if (connection_.is_up() && now_ - connection_.sampled_at() <= stale_time_) return false;
-  // What answers instead, if it is not a device that has just fallen silent.
+  if (!connection_.is_up()) {
+    Add("device_silent",
+        fmt::format(
+            "no sample from {} for {:.0f} ms; found {}; it {}; allowed is one that goes on as it began", url,
+            1e3 * silence, connection_.WhyNot().found,
+            connection_.IsAnothers(now_) ? "is left to that program" : "was sent a ZERO"),
+        silence, allowed);
+    return true;
+  }
   const std::string& elsewhere = connection_.elsewhere();
-  const std::string instead = !connection_.is_up() ? "; found " + connection_.WhyNot().found
-                              : !elsewhere.empty()
-                                  ? "; found answers from " + elsewhere + ", which are not used"
-                                  : "";
   Add("device_silent",
       fmt::format("no sample from {} for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s){}", url,
-                  1e3 * silence, 1e3 * allowed, instead),
+                  1e3 * silence, 1e3 * allowed,
+                  elsewhere.empty() ? "" : "; found answers from " + elsewhere + ", which are not used"),
       silence, allowed);
   return true;
 }
@@ -175,6 +180,7 @@ void FrontEndRig::FindDeviceFaults(const hydro_sample& sample) {
   const auto reasons = static_cast<uint16_t>(others | (tripped ? sample.faults_latched : 0U));
   // A ZERO leads to READY and latches nothing; a fault leads to TRIPPED.
   const bool told = reasons == 0 && sample.state == HYDRO_READY;
+  if (told && asked_for_zero_) return;  // by this driver, for a fault that has its own name
   Add("device_fault",
       told ? "the front end has gone to zero volts: it was sent a ZERO, as anyone may do"
            : fmt::format("the front end {}: {}", tripped ? "put out zero volts by itself" : "reports",

@@ -27,6 +27,7 @@ constexpr auto kZeroRepeat = 10ms;    // a lost ZERO is sent again
 constexpr auto kZeroTimeout = 500ms;  // a busy computer may be late by more than a tenth of this
 constexpr auto kForeign = 300ms;      // a device asked this long answers several times
 constexpr double kNearZero = 0.05;    // V; offsets of converters are below it
+constexpr int64_t kTicksToZero = 5;   // after any fault (docs/safety.md)
 constexpr double kSampleBytes = 107;  // on the wire
 constexpr double kBitsPerByte = 10;   // of a serial line, with start and stop bits
 
@@ -160,10 +161,11 @@ model::Measurement FrontEndRig::Read(int64_t tick) {
   return Measured();
 }
 
-// Takes a turn within the run. What cannot be driven shall be at zero volts, whatever it is.
+// Takes a turn within the run. What cannot be driven shall be at zero volts, whatever it is: a device that is
+// not up may hold its last ones.
 void FrontEndRig::TakeTurn() {
   Poll();
-  if (!connection_.unfit().empty()) connection_.AskForZero(now_);
+  if (!connection_.is_up()) AskForZero();
   if (beside_) beside_();
 }
 
@@ -210,6 +212,23 @@ model::Measurement FrontEndRig::Measured() {
   return measured;
 }
 
+void FrontEndRig::AskForZero() {
+  connection_.AskForZero(now_);
+  asked_for_zero_ = true;
+}
+
+// Whether an armed device goes on with volts though only zero is commanded: some of the faults say so, and of
+// all of them zero must follow soon.
+bool FrontEndRig::Disregards(bool commanded) {
+  if (commanded || !Armed()) zero_since_.reset();
+  if (!commanded && Armed() && !zero_since_) zero_since_ = tick_;
+  if (!zero_since_ || !HoldsVolts(read_)) return false;
+  const bool found = std::any_of(faults_.begin(), faults_.end(), [](const RigFault& fault) {
+    return fault.code == "output_differs" || fault.code == "device_silent";
+  });
+  return found || tick_ - *zero_since_ > kTicksToZero;
+}
+
 double FrontEndRig::Drive(double voltage) {
   // The motor command of a loop on the device is its answer to the very state that was read.
   acting_command_tick_ = output_.ActsByLaw(read_) ? tick_ : output_.CommandTick(read_);
@@ -225,16 +244,17 @@ double FrontEndRig::Drive(double voltage) {
     // and this is not the place to decide whether to go on.
     connection_.AskToArm(now_, read_.trips);
     asked_to_arm_at_ = now_;
+    asked_for_zero_ = false;
   } else {
     arming_since_.reset();
   }
-  if (armed && !asked_to_arm_at_) connection_.AskForZero(now_);
+  if ((armed && !asked_to_arm_at_) || Disregards(obeys)) AskForZero();
   if (!armed) driving_since_.reset();
   if (armed && !driving_since_) driving_since_ = tick_;
   if (!armed && !obeys) {
     // A device that was asked to arm may say falsely that it is not armed, and hold its last voltage. Whoever
     // sees volts that nobody commands asks for zero.
-    if ((asked_to_arm_at_ && !faults_.empty()) || HoldsVolts(read_)) connection_.AskForZero(now_);
+    if ((asked_to_arm_at_ && !faults_.empty()) || HoldsVolts(read_)) AskForZero();
     connection_.KeepAlive(now_);
   } else if (armed && obeys && followed_) {
     if (!followed_->sent) SendFollowed();

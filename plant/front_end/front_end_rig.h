@@ -113,6 +113,8 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   void CheckSpeed() const;
   bool MayDrive() const { return command_tick_ >= 0 && faults_.empty(); }
   bool Armed() const { return connection_.is_up() && read_.state == HYDRO_ARMED; }
+  void AskForZero();
+  bool Disregards(bool commanded);
   hydro_voltage_range Range() const;
   void SendVoltage(double voltage);
   void SendFollowed();
@@ -152,9 +154,11 @@ class FrontEndRig : public Rig, public Pacemaker, public pressure_ctrl::DeviceLo
   std::optional<int64_t> driving_since_;  // tick of the first command since the device was last armed
   std::optional<bus::Clock::TimePoint> arming_since_;
   std::optional<bus::Clock::TimePoint> asked_to_arm_at_;  // of late; while it is armed, when that was
-  std::optional<uint32_t> trips_;                         // of the device, at the last reading
-  int64_t resets_ = 0, jumps_ = 0;                        // at the last reading
-  bool has_read_back_ = false;                            // a sample has said what the output holds
+  bool asked_for_zero_ = false;                           // since it was last asked to arm
+  std::optional<int64_t> zero_since_;  // tick of the first command of zero since the last of volts
+  std::optional<uint32_t> trips_;      // of the device, at the last reading
+  int64_t resets_ = 0, jumps_ = 0;     // at the last reading
+  bool has_read_back_ = false;         // a sample has said what the output holds
   // A sensor's newest fault, and its good readings in a row since; it ends with kGoodReadings of them.
   struct SensorFault {
     std::optional<RigFault> fault;

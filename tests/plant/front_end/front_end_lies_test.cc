@@ -441,6 +441,31 @@ TEST(FrontEndLiesTest, UnfitDeviceStays) {
   EXPECT_FALSE(bench.rig->Zero().accepted) << "nobody knows what its output holds";
 }
 
+// Tests that a device which goes on by an old command, whatever it is told, is sent a ZERO: in the tick that
+// finds it, and a few ticks after any other fault; and that the driver does not wonder who has sent it.
+TEST(FrontEndLiesTest, GoesOnByAnOldCommand) {
+  for (const bool other_fault : {false, true}) {
+    DeviceBench bench(settings::Replaced(kFrontEndText, "watchdog_s = 0.05", "watchdog_s = 1"));
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    const hydro_obeyed kept = bench.device.obeyed;
+    bench.before_tick = [&](uint64_t) {
+      if (bench.device.state != HYDRO_ARMED) return;
+      bench.device.obeyed = kept;
+      bench.device.obeyed.fresh = true;
+    };
+    if (other_fault) bench.lie = [](hydro_sample& sample) { sample.sensor_faults = 1; };
+    int ticks = 0;
+    while (bench.rig->faults().empty() && ++ticks < 200) bench.Tick(3);
+    ASSERT_FALSE(bench.rig->faults().empty());
+    EXPECT_LT(ticks, 110);
+    bench.Ticks(other_fault ? 7 : 0, 3);
+    EXPECT_EQ(bench.volts, 0) << other_fault;
+    bench.Tick(3);
+    EXPECT_EQ(bench.Fault("device_fault"), "");
+  }
+}
+
 // Tests that a jump of the device's numbers that no loss explains is a fault of its own and no loss, that one
 // which a loss explains is a loss, and that numbers which begin anew are a reset.
 TEST(FrontEndLiesTest, NumbersThatJump) {

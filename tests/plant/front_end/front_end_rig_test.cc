@@ -246,7 +246,7 @@ TEST(FrontEndRigTest, CommandsThatWereNeverSent) {
     const char* text;
   };
   for (const Lie& lie :
-       {Lie{100000, 0, "output_differs", "puts out 9 V by command 100155, which was never sent"},
+       {Lie{100000, 0, "output_differs", "puts out 9 V by command 100154, which was never sent"},
         Lie{0, 10000, "output_differs", "acts by a command for tick"},
         Lie{-4000, 0, "output_differs", ", which was never sent: the newest has number 15"},
         Lie{-140, 0, "device_silent", "acts by a command that was sent more than"}}) {
@@ -259,7 +259,7 @@ TEST(FrontEndRigTest, CommandsThatWereNeverSent) {
       sample.host_tick += lie.host_tick;
       if (lie.sequence != 0) sample.voltage = 9;
     };
-    bench.Ticks(3, 3);
+    for (int i = 0; i < 3 && bench.rig->faults().empty(); ++i) bench.Tick(3);
     EXPECT_THAT(bench.Fault(lie.code), HasSubstr(lie.text)) << lie.sequence;
     EXPECT_EQ(bench.volts, 0);
   }

@@ -213,6 +213,75 @@ TEST(FrontEndTroubleTest, LeavesWhatAnotherCommands) {
   EXPECT_EQ(ZerosAtOnce(&taken), 1);
 }
 
+// Says in the device's place who it is, as the newest of its frames.
+void Identify(DeviceBench* bench, uint32_t session_in_charge, uint32_t boot) {
+  hydro_frame frame{};
+  frame.kind = HYDRO_IDENTITY;
+  frame.session = 0x1234;
+  frame.sequence = bench->device.sent++;
+  frame.body.identity = bench->rig->connection().identity();
+  frame.body.identity.session_in_charge = session_in_charge;
+  frame.body.identity.boot = boot;
+  bench->SendToComputer(Encoded(frame));
+}
+
+// Tests that a device which drives and says that no session commands it, or another one, or that it has
+// restarted, is at zero volts in the tick that finds it, and as long as it says so.
+TEST(FrontEndTroubleTest, ZeroWhileItIsNotUp) {
+  struct Case {
+    uint32_t session, boot;
+    const char* code;
+    const char* says;
+  };
+  for (const Case& each : {Case{0, 7, "device_silent", "no session commands"},
+                           Case{0x99, 7, "device_silent", "another program commands"},
+                           Case{0x1234, 8, "device_fault", "has reset itself"}}) {
+    DeviceBench bench;
+    ASSERT_TRUE(bench.Connect());
+    bench.Ticks(150, 3);
+    ASSERT_EQ(bench.volts, -1.5F);
+    for (uint32_t i = 0; i < 10; ++i) {
+      Identify(&bench, each.session, each.boot + (each.boot != 7 ? i : 0));
+      bench.Tick(3);
+      EXPECT_THAT(bench.Fault(each.code), HasSubstr(each.says));
+      EXPECT_EQ(bench.volts, 0) << each.says << ", " << i;
+    }
+  }
+}
+
+// How many ZEROs the rig sends in so many ticks to a device that says nothing.
+int ZerosWithin(DeviceBench* bench, int ticks) {
+  bench->device_runs = false;
+  int zeros = 0;
+  for (int i = 0; i < ticks; ++i) {
+    bench->Tick(3);
+    hydro_receiver receiver{};
+    hydro_frame frame{};
+    Bytes packet(512);
+    ssize_t got = 0;
+    while ((got = recv(bench->link->other_end, packet.data(), packet.size(), MSG_DONTWAIT)) > 0) {
+      for (ssize_t byte = 0; byte < got; ++byte) {
+        if (hydro_receive(&receiver, packet[static_cast<size_t>(byte)], &frame))
+          zeros += frame.kind == HYDRO_ZERO;
+      }
+    }
+  }
+  return zeros;
+}
+
+// Tests that a device which another session commands is sent ZEROs while it may still act by this one's last
+// command, and is left to the other program afterwards.
+TEST(FrontEndTroubleTest, LeavesWhatAnotherHasTakenOver) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.Connect());
+  bench.Ticks(150, 3);
+  Identify(&bench, 0x99, 7);
+  EXPECT_EQ(ZerosWithin(&bench, 240), 5) << "each 50 ms";
+  EXPECT_EQ(ZerosWithin(&bench, 20), 0);
+  EXPECT_THAT(bench.Fault("device_silent"), HasSubstr("it is left to that program"));
+  EXPECT_EQ(ZerosWithin(&bench, 500), 0);
+}
+
 // Tests what is said when no front end answers, or one that is not ours to command.
 TEST(FrontEndTroubleTest, NobodyOrSomebodyElse) {
   EXPECT_THAT(WhyNot([](DeviceBench& bench) { bench.device_runs = false; }),
