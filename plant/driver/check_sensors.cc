@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "plant/driver/described_device.h"
 #include "plant/driver/device_watch.h"
 #include "process/stop_signal.h"
 
@@ -47,7 +48,7 @@ std::string DescribeReading(const DeviceSensor& sensor, double value, const Unit
 }
 
 int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock, Device& device) {
-  const DeviceDescription description = device.Describe();
+  const DeviceDescription description = Described(device, config.file);
   DeviceSensors sensors(description, config);
   std::printf("%s: sensors only, the output is not touched\n", description.name.c_str());
   const auto start = clock.Now();
@@ -58,7 +59,7 @@ int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock, D
   auto next_table = start + kTablePeriod;
   bool fault = false;
   for (bool last = false; !last;) {
-    device.Read(readings);
+    ReadDevice(device, description, readings);
     const auto now = clock.Now();
     std::vector<RigFault> faults;
     const bool silent = watch.Look(readings, now, &faults);

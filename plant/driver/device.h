@@ -3,6 +3,7 @@
 // rates, limits, faults, and zero volts on every way out.
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -53,16 +54,22 @@ struct Reading {
   std::optional<int64_t> raw = std::nullopt;  // the device's own number, for --check-sensors
 };
 
+// How far the time of a reading may lie ahead of the clock: a device's own time that its driver converts can
+// be off by so much. What lies ahead hides the device's silence as long, so this is a small part of a tick.
+inline constexpr bus::Clock::Duration kClockError = std::chrono::milliseconds(1);
+
 struct DeviceReadings {
   std::vector<Reading> inputs;  // one for each of DeviceDescription::inputs; it has that size already
-  Reading output;     // what the output holds, if the device reports it with each reading; NaN: it does not
+  // What the output holds, if the device reports it with each reading; NaN: it does not. Without a time, it
+  // is of now.
+  Reading output;
   std::string fault;  // the device's own description of its fault; empty: none
 };
 
 // The device does not answer, or refuses: the run ends with zero volts and the fault "board_error".
 class DeviceError : public RigError {
  public:
-  explicit DeviceError(const std::string& text) : RigError("board_error", text) {}
+  explicit DeviceError(const std::string& text);
 };
 
 class Device {

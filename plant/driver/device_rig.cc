@@ -1,8 +1,5 @@
 #include "plant/driver/device_rig.h"
 
-#include <fcntl.h>
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +7,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "plant/driver/described_device.h"
 #include "plant/driver/zero_guardian.h"
 #include "settings/toml/section_reader.h"
 
@@ -30,26 +28,6 @@ void InTheRun(const Step& step) {
   }
 }
 
-// What a driver says of its device is its author's word. With an output that has no range, no limit would
-// hold; without an open file, the guardian could write no zero.
-void CheckDescription(const DeviceDescription& device, const std::string& file) {
-  const DeviceOutput& output = device.output;
-  if (!(output.low < output.high)) {
-    throw settings::KeyError(file, "driver.device",
-                             "an output from " + ShortestNumber(output.low) + " to " +
-                                 ShortestNumber(output.high) + " " + output.unit +
-                                 ", as its driver describes it",
-                             "one whose lower end is below its upper one (DeviceOutput::low, high)");
-  }
-  for (const int each : device.files) {
-    if (fcntl(each, F_GETFD) >= 0) continue;
-    throw settings::KeyError(
-        file, "driver.device",
-        "the descriptor " + std::to_string(each) + ", which is not open, among the files of " + device.name,
-        "those that its Zero() needs, opened before (DeviceDescription::files)");
-  }
-}
-
 }  // namespace
 
 DeviceRig::DeviceRig(const settings::StackConfig& config, const bus::Clock& clock,
@@ -57,11 +35,10 @@ DeviceRig::DeviceRig(const settings::StackConfig& config, const bus::Clock& cloc
     : amplifier_(config.driver->voltage),
       clock_(clock),
       device_(std::move(device)),
-      description_(device_->Describe()),
+      description_(Described(*device_, config.file)),
       sensors_(description_, config),
       watch_(description_, bus::FromSeconds(config.limits.stale_input_s), clock.Now()),
       zero_(Terminal(0)) {
-  CheckDescription(description_, config.file);
   readings_.inputs.resize(description_.inputs.size());
   const DeviceOutput& output = description_.output;
   if (zero_ < output.low || zero_ > output.high) {
@@ -92,22 +69,12 @@ DeviceRig::~DeviceRig() {
   guardian_->Dismiss();
 }
 
-void DeviceRig::ReadDevice() {
-  device_->Read(readings_);
-  const size_t given = readings_.inputs.size(), described = description_.inputs.size();
-  if (given == described) return;
-  readings_.inputs.resize(described);
-  throw DeviceError(
-      fmt::format("{} gives {} readings; allowed are {}, one for each input that its driver describes",
-                  description_.name, given, described));
-}
-
 // Since the rig was made, this process may have waited long for the loops. Many devices answer only when
 // something is put out.
 void DeviceRig::AwaitReadings() {
   const auto fresh = [&](const Reading& reading) { return clock_.Now() - reading.at <= watch_.patience(); };
   for (int i = 0; i < kFirstTries; ++i) {
-    ReadDevice();
+    ReadDevice(*device_, description_, readings_);
     if (std::all_of(readings_.inputs.begin(), readings_.inputs.end(), fresh)) return;
     device_->Drive(zero_);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -115,7 +82,8 @@ void DeviceRig::AwaitReadings() {
 }
 
 model::Measurement DeviceRig::Read(int64_t /*tick*/) {
-  InTheRun([&] { std::exchange(begun_, true) ? ReadDevice() : AwaitReadings(); });
+  InTheRun(
+      [&] { std::exchange(begun_, true) ? ReadDevice(*device_, description_, readings_) : AwaitReadings(); });
   faults_.clear();
   const bus::Clock::TimePoint now = clock_.Now();
   const bool silent = watch_.Look(readings_, now, &faults_);
@@ -138,10 +106,11 @@ OutputLeft DeviceRig::Zero() noexcept {
   OutputLeft left{.accepted = WriteZero(), .voltage = NAN};
   double held = device_->ReadBack();
   const auto elsewhere = [&] {
-    return std::isfinite(held) && std::fabs(held - zero_) > description_.output.tolerance;
+    return !std::isnan(held) && std::fabs(held - zero_) > description_.output.tolerance;
   };
   for (int i = 0; i < kSettlingTries && elsewhere(); ++i) {
     std::this_thread::sleep_for(kSettlingTry);
+    if (when_late_ && 2 * i * kSettlingTry > watch_.patience()) std::exchange(when_late_, {})();
     left.accepted = WriteZero();
     held = device_->ReadBack();
   }

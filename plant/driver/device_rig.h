@@ -39,7 +39,6 @@ class DeviceRig : public Rig {
  private:
   double Terminal(double voltage) const { return (voltage - amplifier_.offset) / amplifier_.scale; }
   bool WriteZero() noexcept;
-  void ReadDevice();
   void AwaitReadings();
 
   settings::AmplifierSection amplifier_;

@@ -78,12 +78,12 @@ double DeviceSensor::Signal(const DeviceReadings& readings, bus::Clock::TimePoin
                                    name_, bus::ToSeconds(patience_)),
                        bus::ToSeconds(now - reading_.at), bus::ToSeconds(patience_));
   }
-  if (reading_.at - now > patience_) {
+  if (reading_.at - now > kClockError) {
     return NotCredible(
         fmt::format("{} has a reading from {:.4g} s in the future; allowed is its time on the driver's clock "
                     "(DeviceSettings::clock)",
                     name_, bus::ToSeconds(reading_.at - now)),
-        bus::ToSeconds(now - reading_.at), bus::ToSeconds(patience_));
+        bus::ToSeconds(reading_.at - now), bus::ToSeconds(kClockError));
   }
   if (!std::isfinite(reading_.value)) {
     return NotCredible(fmt::format("{} reads {}, which is no number", name_, reading_.value), reading_.value,

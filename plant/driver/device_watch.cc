@@ -22,7 +22,7 @@ bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now
                        std::vector<RigFault>* faults) {
   // A reading from the future is a wrong clock of the driver; it would hide the silence of its device.
   for (const Reading& reading : readings.inputs) {
-    if (reading.at - now <= patience_) heard_ = std::max(heard_, reading.at);
+    if (reading.at - now <= kClockError) heard_ = std::max(heard_, std::min(reading.at, now));
   }
   const bool silent = now - heard_ > patience_;
   if (silent) {
@@ -44,8 +44,9 @@ bool DeviceWatch::Look(const DeviceReadings& readings, bus::Clock::TimePoint now
 
 void DeviceWatch::LookAtOutput(const Reading& output, bus::Clock::TimePoint now,
                                std::vector<RigFault>* faults) {
-  if (!std::isfinite(output.value) || driven_.empty()) return;
-  if (now - output.at > patience_) return;  // what a silent device said last is no reading
+  if (std::isnan(output.value) || driven_.empty()) return;
+  const bool timed = output.at != bus::Clock::TimePoint{};
+  if (timed && now - output.at > patience_) return;  // what a silent device said last is no reading
   // A device answers a little later, so it may hold any output that was put out within the patience.
   while (driven_.size() > 1 && now - driven_[1].first > patience_) driven_.pop_front();
   const auto [least, most] = std::minmax_element(

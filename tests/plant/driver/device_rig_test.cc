@@ -226,6 +226,22 @@ TEST_F(DeviceRigTest, ReadingsFromTheFuture) {
   EXPECT_EQ(Codes(*rig).front(), "device_silent") << "nothing that counts has come since";
 }
 
+// Tests that readings which are ahead by less than the patience are the same fault, and that those which a
+// clock's error explains are none, and hide silence for no longer than that.
+TEST_F(DeviceRigTest, ReadingsALittleAhead) {
+  const auto rig = Open();
+  Read(*rig);
+  device_->ahead = 90ms;
+  Read(*rig);
+  EXPECT_THAT(Codes(*rig), ElementsAre("sensor_p1", "sensor_p2", "sensor_motor_speed"));
+  device_->ahead = 1ms;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(Read(*rig).p1, 100);
+  EXPECT_THAT(Codes(*rig), IsEmpty());
+  device_->silent = true;
+  Read(*rig, 102ms);
+  EXPECT_EQ(Codes(*rig).front(), "device_silent");
+}
+
 // Tests that a run that begins late, when the loops have kept the driver waiting, begins with a reading of
 // now of a device that answers only to what is put out.
 TEST_F(DeviceRigTest, LateBeginning) {
@@ -388,6 +404,17 @@ TEST_F(DeviceRigTest, OutputDiffers) {
   device_->lies.reset();
   Read(*rig);
   EXPECT_THAT(Codes(*rig), IsEmpty());
+  // No number that can be, and one without a time, which is of now.
+  device_->lies = std::numeric_limits<double>::infinity();
+  Read(*rig);
+  EXPECT_THAT(Codes(*rig), ElementsAre("output_differs"));
+  device_->tells_output = false;
+  device_->readings.output = {13, {}};
+  clock_.AdvanceTo(clock_.Now() + 10s);
+  rig->Drive(5);
+  Read(*rig);
+  EXPECT_THAT(Codes(*rig), ElementsAre("output_differs"));
+  device_->tells_output = true;
   // Zero volts that have no effect.
   device_->lies = 10;
   for (int i = 0; i < 101; ++i) {
@@ -429,10 +456,15 @@ TEST_F(DeviceRigTest, RefusedZero) {
 TEST_F(DeviceRigTest, OutputThatStays) {
   const auto rig = Open();
   EXPECT_TRUE(rig->Zero().accepted);
+  int told = 0;
+  rig->set_when_late([&] { ++told; });
   device_->lies = 3;
   const OutputLeft left = rig->Zero();
+  EXPECT_EQ(told, 1) << "the loops hear why no states come before they miss them";
   EXPECT_FALSE(left.accepted);
   EXPECT_EQ(left.voltage, 1.5);
+  device_->lies = -std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(rig->Zero().accepted);
   device_->lies = std::nan("");  // it does not say
   EXPECT_TRUE(rig->Zero().accepted);
   device_->lies.reset();
