@@ -116,6 +116,21 @@ void CheckDerivative(const SectionReader& section, const std::string& speed, con
                       "[driver." + angle + "] beside it, or source = \"analog\"");
 }
 
+// Two pressures of one sensor differ by nothing, whatever the load: the pressure loop would push without end.
+void CheckPressures(const SectionReader& section, const DriverSection& driver) {
+  const auto refuse = [&](const std::string& key, const std::string& found) {
+    return section.Error(key, found + ", which [driver.p1] reads, too", "another than that of p1");
+  };
+  const SensorSection &p1 = driver.p1, &p2 = driver.p2;
+  if (driver.kind != DriverKind::kOwn) {
+    if (p1.line.subdevice == p2.line.subdevice && p1.line.channel == p2.line.channel)
+      throw refuse("p2.channel", std::to_string(p2.line.channel));
+    return;
+  }
+  const std::string first = p1.input.empty() ? "p1" : p1.input, second = p2.input.empty() ? "p2" : p2.input;
+  if (first == second) throw refuse("p2.input", Quoted(second));
+}
+
 // Reads the keys that only a driver of the user's own has.
 void ReadOwn(SectionReader& section, DriverSection* driver) {
   section.Require("device", "what the driver opens, e.g. \"can0\" or \"udp://192.168.1.7:5000\"");
@@ -189,6 +204,7 @@ DriverSection ReadDriver(SectionReader section) {
   driver.motor_speed = ReadSensor(std::move(motor_speed), driver.kind, {analog, derivative});
   if (has_arm_angle) driver.arm_angle = ReadSensor(std::move(arm_angle), driver.kind, {analog, counter});
   if (has_arm_speed) driver.arm_speed = ReadSensor(std::move(arm_speed), driver.kind, {analog, derivative});
+  CheckPressures(section, driver);
   CheckDerivative(section, "motor_speed", driver.motor_speed, "motor_angle", driver.motor_angle);
   CheckDerivative(section, "arm_speed", driver.arm_speed, "arm_angle", driver.arm_angle);
   return driver;

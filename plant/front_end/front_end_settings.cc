@@ -34,6 +34,19 @@ float RoundedDown(double limit) {
   return static_cast<double>(rounded) > limit ? std::nextafter(rounded, 0.0F) : rounded;
 }
 
+// The device computes in single precision. What that cannot hold would be another setting there: none, or no
+// limit.
+float Single(const settings::StackConfig& config, const std::string& key, double value) {
+  using Limits = std::numeric_limits<float>;
+  const double size = std::fabs(value);
+  if (value == 0 || (size >= double{Limits::min()} && size <= double{Limits::max()}))
+    return static_cast<float>(value);
+  throw KeyError(config.file, key, ShortestNumber(value),
+                 fmt::format("a magnitude of {:.2g} to {:.2g}, which single precision holds: the front end "
+                             "computes in it",
+                             Limits::min(), Limits::max()));
+}
+
 uint8_t KindOf(Source source) {
   switch (source) {
     case Source::kAnalog:
@@ -57,6 +70,19 @@ void CheckChannel(const settings::StackConfig& config, const std::string& name, 
                      : fmt::format("0 to {}: the front end has {} {}s", channels - 1, channels, what));
 }
 
+// The share of a new reading in the filtered one.
+float LowPassShare(const settings::StackConfig& config, const std::string& key, double corner_hz,
+                   const hydro_identity& identity) {
+  if (corner_hz == 0) return 1;
+  const double share = -std::expm1(-2 * std::numbers::pi * corner_hz / identity.tick_rate_hz);
+  constexpr double kLeastShare = std::numeric_limits<float>::min();
+  if (share >= kLeastShare) return static_cast<float>(share);
+  throw KeyError(
+      config.file, key, ShortestNumber(corner_hz),
+      fmt::format("0 for none, or at least {:.2g}, with which a reading counts in single precision",
+                  kLeastShare * identity.tick_rate_hz));
+}
+
 hydro_sensor_settings SensorSettings(const settings::StackConfig& config, const std::string& name,
                                      const settings::SensorSection& section, const hydro_identity& identity) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -70,12 +96,14 @@ hydro_sensor_settings SensorSettings(const settings::StackConfig& config, const 
     sensor.counter_bits = static_cast<uint8_t>(section.counter_bits);
   }
   sensor.channel = static_cast<uint8_t>(section.line.channel);
-  sensor.scale = static_cast<float>(section.scale);
-  sensor.offset = static_cast<float>(section.offset);
-  const double corner = 2 * std::numbers::pi * section.low_pass_hz / identity.tick_rate_hz;
-  sensor.low_pass_share = section.low_pass_hz > 0 ? static_cast<float>(-std::expm1(-corner)) : 1.0F;
-  sensor.minimum_V = std::isnan(section.minimum) ? -kInfinity : static_cast<float>(section.minimum);
-  sensor.maximum_V = std::isnan(section.maximum) ? kInfinity : static_cast<float>(section.maximum);
+  const std::string key = "driver." + name + ".";
+  sensor.scale = Single(config, key + "scale", section.scale);
+  sensor.offset = Single(config, key + "offset", section.offset);
+  sensor.low_pass_share = LowPassShare(config, key + "low_pass_hz", section.low_pass_hz, identity);
+  sensor.minimum_V =
+      std::isnan(section.minimum) ? -kInfinity : Single(config, key + "minimum_V", section.minimum);
+  sensor.maximum_V =
+      std::isnan(section.maximum) ? kInfinity : Single(config, key + "maximum_V", section.maximum);
   return sensor;
 }
 
@@ -91,6 +119,10 @@ void CheckMode(const settings::StackConfig& config, const hydro_identity& identi
 }
 
 uint16_t SampleInterval(const settings::StackConfig& config, const hydro_identity& identity) {
+  if (identity.tick_rate_hz == 0) {
+    throw KeyError(config.file, "driver.url", "a front end of 0 ticks per second, as it says",
+                   "one that says how many it takes: give its board's firmware the rate of its timer");
+  }
   const double ticks = identity.tick_rate_hz / config.plant.rate_hz;
   const double whole = std::round(ticks);
   if (whole >= 1 && whole <= 65535 && std::fabs(ticks - whole) < 1e-9 * whole)
@@ -133,6 +165,7 @@ void SetLimits(const settings::StackConfig& config, hydro_settings* settings) {
   const auto& driver = *config.driver;
   const model::Parameters& parameters = config.model.description.parameters;
   const bool loop = settings->mode == HYDRO_LOOP_ON_DEVICE;
+  if (std::isfinite(driver.voltage.limit_V)) Single(config, "driver.voltage.limit_V", driver.voltage.limit_V);
   settings->voltage_limit = RoundedDown(std::min(driver.voltage.limit_V, parameters.T_pmax / parameters.k_1));
   settings->pressure_limit = RoundedUp(config.limits.pressure_psi);
   settings->motor_speed_limit = RoundedUp(config.limits.motor_speed_rad_s);
@@ -163,9 +196,10 @@ hydro_settings FrontEndSettings(const settings::StackConfig& config, const hydro
       static_cast<uint32_t>(std::min(std::round(config.limits.transfer_s * identity.tick_rate_hz), 4e9));
   CheckOutput(config, identity);
   SetLimits(config, &settings);
-  settings.output_scale = static_cast<float>(driver.voltage.scale);
-  settings.output_offset = static_cast<float>(driver.voltage.offset);
-  settings.read_back_tolerance = static_cast<float>(driver.front_end.read_back_tolerance_V);
+  settings.output_scale = Single(config, "driver.voltage.scale", driver.voltage.scale);
+  settings.output_offset = Single(config, "driver.voltage.offset", driver.voltage.offset);
+  settings.read_back_tolerance =
+      Single(config, "driver.read_back_tolerance_V", driver.front_end.read_back_tolerance_V);
   const auto sections = SensorSections(driver);
   for (int i = 0; i < HYDRO_SENSORS; ++i) {
     settings.sensors[i] = SensorSettings(config, SensorName(i), *sections[static_cast<size_t>(i)], identity);

@@ -35,25 +35,25 @@ struct Refusal {
 Refusal RefusalOf(uint8_t refused) {
   switch (refused) {
     case HYDRO_REFUSED_ARMED:
-      return {"url", "it is armed; settings change at zero volts only"};
+      return {"driver.url", "it is armed; settings change at zero volts only"};
     case HYDRO_REFUSED_MODE:
-      return {"mode", "its firmware does not have this mode"};
+      return {"driver.mode", "its firmware does not have this mode"};
     case HYDRO_REFUSED_INTERVAL:
-      return {"url", "it cannot send samples this rarely: raise plant.rate_hz"};
+      return {"plant.rate_hz", "it cannot send samples this rarely: raise it"};
     case HYDRO_REFUSED_WATCHDOG:
-      return {"watchdog_s", "it takes from one of its ticks to a second"};
+      return {"driver.watchdog_s", "it takes from one of its ticks to a second"};
     case HYDRO_REFUSED_LIMIT:
-      return {"url", "a limit of [limits] or driver.voltage.limit_V is not a number above 0 to it"};
+      return {"limits", "one of them or driver.voltage.limit_V is not a number above 0 to it"};
     case HYDRO_REFUSED_OUTPUT:
-      return {"voltage", "scale, offset or driver.read_back_tolerance_V is not one that it can use"};
+      return {"driver.voltage", "scale, offset or driver.read_back_tolerance_V is not one that it can use"};
     case HYDRO_REFUSED_SENSOR:
-      return {"url", "of a sensor, it has no such channel, or cannot use these numbers"};
+      return {"driver.url", "of a sensor, it has no such channel, or cannot use these numbers"};
     case HYDRO_REFUSED_MISSING:
-      return {"url", "a sensor is missing that the mode or a limit needs"};
+      return {"driver", "a sensor is missing that the mode or a limit needs"};
     case HYDRO_REFUSED_ZERO:
-      return {"voltage.offset", "its output cannot reach zero volts"};
+      return {"driver.voltage.offset", "its output cannot reach zero volts"};
     default:
-      return {"url", "for a reason that this version does not know: is its firmware newer?"};
+      return {"driver.url", "for a reason that this version does not know: is its firmware newer?"};
   }
 }
 
@@ -77,8 +77,8 @@ InputError RefusalError(const std::string& file, const hydro_settings_held& held
   const Refusal refusal = RefusalOf(held.refused);
   std::string key = refusal.key;
   if (held.refused == HYDRO_REFUSED_SENSOR && held.refused_part < HYDRO_SENSORS)
-    key = SensorName(held.refused_part);
-  return settings::KeyError(file, "driver." + key,
+    key = std::string("driver.") + SensorName(held.refused_part);
+  return settings::KeyError(file, key,
                             fmt::format("settings that the front end refuses (its number {})", held.refused),
                             std::string("those that it takes: ") + refusal.why);
 }

@@ -180,6 +180,20 @@ TEST(DriverSectionTest, OwnDriver) {
               HasSubstr("driver.kind: found \"comedi\", allowed \"own\" with ./crane (driver)"));
 }
 
+// Tests that two pressures are not read from one input of a driver of the user's own, named or by default.
+TEST(DriverSectionTest, OwnDriverWithOnePressure) {
+  const std::string text = std::string(kConfigText) + kOwnDriver;
+  const auto of = [&](const std::string& p1, const std::string& p2) {
+    return InputErrorOf([&] {
+      Parsed(Replaced(Replaced(text, "input = \"ai1\"", "input = \"" + p1 + "\""), "[driver.p2]\n",
+                      "[driver.p2]\ninput = \"" + p2 + "\"\n"));
+    });
+  };
+  EXPECT_THAT(of("ai1", "ai1"), HasSubstr("driver.p2.input: found \"ai1\", which [driver.p1] reads, too"));
+  EXPECT_THAT(of("p2", ""), HasSubstr("driver.p2.input: found \"p2\""));
+  EXPECT_EQ(of("p2", "p1"), "");
+}
+
 // Tests that what only a board has, and what only another device has, is refused with the other.
 TEST(DriverSectionTest, KeysOfTheOtherKind) {
   const std::string own = std::string(kConfigText) + kOwnDriver;
@@ -246,6 +260,8 @@ TEST(DriverSectionTest, Errors) {
        "driver.voltage.reference: found \"earth\""},
       {changed("channel = 1\n", ""), "driver.p2.channel: found nothing, allowed the number of the channel"},
       {changed("channel = 1\n", "channel = -1\n"), "driver.p2.channel: found -1"},
+      {changed("channel = 1\n", "channel = 0\n"),
+       "driver.p2.channel: found 0, which [driver.p1] reads, too, allowed another than that of p1"},
       {changed("channel = 1\n", "channel = 1\nlow_pass_hz = -5\n"), "driver.p2.low_pass_hz: found -5"},
       {changed("channel = 1\n", "channel = 1\nminimum_V = 2\nmaximum_V = 2\n"),
        "driver.p2.minimum_V: found 2, allowed below maximum_V = 2"},

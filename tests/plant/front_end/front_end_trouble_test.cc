@@ -376,6 +376,42 @@ TEST(FrontEndTroubleTest, WrongDevice) {
   EXPECT_EQ(Wrong(changed("0.05", "0.0001")),
             "stack.toml: driver.watchdog_s: found 0.0001, allowed 0.0002 to 1: from one tick of the front "
             "end to a second");
+  EXPECT_EQ(
+      Wrong(text, [](auto& facts) { facts.tick_rate_hz = 0; }),
+      "stack.toml: driver.url: found a front end of 0 ticks per second, as it says, allowed one that says "
+      "how many it takes: give its board's firmware the rate of its timer");
+}
+
+// Tests that numbers which single precision cannot hold are refused by their key before the device gets them
+// as 0 or infinity.
+TEST(FrontEndTroubleTest, NumbersBeyondSinglePrecision) {
+  const std::string size = ", allowed a magnitude of 1.2e-38 to 3.4e+38, which single precision holds: ";
+  const auto found = [](const std::string& section, const std::string& line) {
+    std::string text = kFrontEndText;
+    const size_t at = text.find("[driver" + section + "]\n") + section.size() + 9;
+    const std::string key = line.substr(0, line.find(' '));
+    if (const size_t old = text.find("\n" + key, at - 1); old < text.find("\n[", at))
+      text.erase(old, text.find('\n', old + 1) - old);
+    return Wrong(text.insert(at, line + "\n"));
+  };
+  for (const char* value : {"1e-60", "-1e-60", "1e+39", "-1e+300"}) {
+    const auto says = [&](const std::string& key) {
+      return "stack.toml: driver." + key + ": found " + value + size;
+    };
+    const auto line = [&](const std::string& key) { return key + " = " + value; };
+    EXPECT_THAT(found(".p1", line("scale")), HasSubstr(says("p1.scale")));
+    EXPECT_THAT(found(".arm_angle", line("offset")), HasSubstr(says("arm_angle.offset")));
+    EXPECT_THAT(found(".motor_angle", line("scale")), HasSubstr(says("motor_angle.scale")));
+    EXPECT_THAT(found(".p2", line("minimum_V")), HasSubstr(says("p2.minimum_V")));
+    if (value[0] == '-') continue;
+    EXPECT_THAT(found("", line("read_back_tolerance_V")), HasSubstr(says("read_back_tolerance_V")));
+    EXPECT_THAT(found(".voltage", line("scale")), HasSubstr(says("voltage.scale")));
+    EXPECT_THAT(found(".voltage", line("limit_V")), HasSubstr(says("voltage.limit_V")));
+  }
+  EXPECT_THAT(found(".p1", "low_pass_hz = 1e-300"),
+              HasSubstr("driver.p1.low_pass_hz: found 1e-300, allowed 0 for none, or at least 5.9e-35"));
+  EXPECT_EQ(found(".p1", "low_pass_hz = 1"), "");
+  EXPECT_EQ(found(".p2", "minimum_V = 0"), "");
 }
 
 // Tests that a serial line that is too slow for the samples is refused before anything is sent.
