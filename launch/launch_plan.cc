@@ -84,6 +84,20 @@ void CheckHost(const settings::StackConfig& config, const LaunchRequest& request
   }
 }
 
+// The loops of a stack that drives a machine would wait for its driver without end. Joints of a limb may be
+// driven from elsewhere.
+void CheckDriverIsStarted(const settings::StackConfig& config, const LaunchRequest& request) {
+  const bool starts = std::any_of(config.processes.begin(), config.processes.end(),
+                                  [](const auto& process) { return process::IsPlant(RoleOf(process)); });
+  if (!config.driver || !config.joints.empty() || starts) return;
+  throw settings::KeyError(request.config_file, "process", "none that drives the machine of [driver]",
+                           config.driver->kind == settings::DriverKind::kOwn
+                               ? "a section [[process]] with command = [...] and role = \"driver\", or with "
+                                 "program = \"hydro-plant\" for the model instead"
+                               : "a section [[process]] with program = \"hydro-driver\", or \"hydro-plant\" "
+                                 "for the model instead");
+}
+
 // The processes of this host, in the configuration's order; adds remarks on those that run elsewhere.
 std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig& config,
                                                     const LaunchRequest& request,
@@ -181,6 +195,7 @@ LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& 
   plan.timing_file = request.timing_file;
   const std::vector<settings::ProcessSection> here = ProcessesHere(config, request, &plan.remarks);
   CheckHost(config, request);
+  CheckDriverIsStarted(config, request);
   if (here.empty()) {
     throw InputError(request.config_file + ": nothing to start" +
                      (request.host.empty() ? "" : " on host " + request.host) +

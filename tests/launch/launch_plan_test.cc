@@ -161,6 +161,23 @@ TEST_F(LaunchPlanTest, ChecksTheDriver) {
   EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
 }
 
+// Tests that a stack which drives a machine is not started without its driver, for which the loops would wait
+// without end; that any host may have it, and the model may stand for it.
+TEST_F(LaunchPlanTest, ADriverIsMissing) {
+  Processes({{"hydro-pressure-ctrl", ""}, {"hydro-position-ctrl", ""}});
+  EXPECT_EQ(Error(), "no error");
+  config_.driver.emplace().kind = settings::DriverKind::kOwn;
+  EXPECT_EQ(Error(),
+            "stack.toml: process: found none that drives the machine of [driver], allowed a section "
+            "[[process]] with command = [...] and role = \"driver\", or with program = \"hydro-plant\" for "
+            "the model instead");
+  config_.driver->kind = settings::DriverKind::kComedi;
+  EXPECT_THAT(Error(), HasSubstr("allowed a section [[process]] with program = \"hydro-driver\", or"));
+  Processes({{"hydro-plant", "rig"}});
+  request_.host = "localhost";
+  EXPECT_EQ(Error(), "no error");
+}
+
 // Tests that a driver of the user's own is refused where the configuration is none for it, and else told to
 // wait for the logger where there is one.
 TEST_F(LaunchPlanTest, StartsADriverOfTheUsersOwn) {
