@@ -20,7 +20,9 @@ std::string ReadTextFile(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
     throw InputError(file + ": cannot be read: " + std::strerror(errno) +
-                     (errno == EMFILE ? "; a larger limit (ulimit -n) is needed" : ""));
+                     (errno == EMFILE   ? "; a larger limit (ulimit -n) is needed"
+                      : errno == ENOENT ? "; is its path right?"
+                                        : ""));
   }
   std::string text;
   char block[65536];

@@ -67,10 +67,10 @@ int Run(const hydro::plant::TrialSettings& settings, const std::vector<std::stri
   const std::vector<DriverCase> cases = Chosen(only);
   hydro::process::CatchStopSignals();
   int count[3] = {};
-  std::printf("%-17s %-41s %-9s  found\n", "what happens", "promised", "");
   for (const DriverCase& which : cases) {
     const CaseResult result = hydro::plant::RunDriverCase(which, settings);
     if (hydro::process::StopSignal() != 0) return 1;
+    if (&which == &cases.front()) std::printf("%-17s %-41s %-9s  found\n", "what happens", "promised", "");
     ++count[static_cast<int>(result.verdict)];
     std::printf("%-17s %-41s %-9s  %s\n", which.name, which.promised, Word(result.verdict),
                 hydro::Printable(result.found).c_str());

@@ -296,6 +296,7 @@ class OwnDriverInputTest(OwnDriverCase):
                 ((config, "--set", 'driver.simulated_device=["./nothing"]'), "driver.simulated_device: found \"./nothing\", and there is no program"),
                 ((stack.config("demo.toml"),), "process: found no driver")):
             process = self.check(*arguments, expect=2)
+            self.assertEqual(process.stdout, "", "no table of nothing")
             self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
             self.assertIn(says, process.stderr)
 

@@ -296,7 +296,8 @@ using ModelFileFolderTest = FolderTest;
 // Tests that files that cannot be read are named with the reason.
 TEST_F(ModelFileFolderTest, NamesUnreadableFiles) {
   const std::string none = (folder_ / "none.toml").string();
-  EXPECT_EQ(InputErrorOf([&] { LoadModelFile(none); }), none + ": cannot be read: No such file or directory");
+  EXPECT_EQ(InputErrorOf([&] { LoadModelFile(none); }),
+            none + ": cannot be read: No such file or directory; is its path right?");
   EXPECT_THAT(InputErrorOf([&] { LoadModelFile(folder_.string()); }),
               HasSubstr("found a folder, allowed: a file"));
   EXPECT_EQ(LoadModelFile(Write("m.toml", kModelText)).parameters.k_2, 3.68);
