@@ -248,7 +248,7 @@ std::optional<int> ZeroGuardian::Tell(char word) noexcept {
   for (int i = 0; i < kExitTimeout_ms && pid_ >= 0; ++i) {
     const pid_t ended = waitpid(pid_, &status, WNOHANG);
     if (ended == pid_) return status;
-    if (ended < 0) break;
+    if (ended < 0) pid_ = -1;  // somebody else has waited for it: the number may be another process's by now
     usleep(1000);
   }
   return std::nullopt;

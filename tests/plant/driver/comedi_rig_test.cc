@@ -387,6 +387,17 @@ TEST_F(ComediRigTest, StoppedGuardian) {
   EXPECT_EQ(kill(guardian.pid(), 0), -1) << "it has gone";
 }
 
+// Tests that a guardian whose end somebody else has waited for is forgotten: its number may be another's.
+TEST_F(ComediRigTest, GuardianThatIsWaitedForElsewhere) {
+  ComediDevice board(config_, clock_, true);
+  ZeroGuardian guardian(board, board.Describe().files, 0);
+  kill(guardian.pid(), SIGKILL);
+  waitpid(guardian.pid(), nullptr, 0);
+  guardian.Dismiss();
+  EXPECT_EQ(guardian.pid(), -1);
+  EXPECT_FALSE(guardian.WriteZero());
+}
+
 // Tests the lines of --check-sensors, and that it leaves the board alone.
 TEST_F(ComediRigTest, CheckSensorsLines) {
   UseEncoder();
