@@ -30,8 +30,8 @@ std::string EffectOf(std::string_view name);
 // value of something that the model already has.
 bool IsMissingTerm(std::string_view name);
 
-// Whether one of the changes is an unknown curve. A curve can imitate most effects and names none, so it is no
-// rival of a name.
+// Whether one of the changes is an unknown curve. A curve can imitate most effects and names none, so it is
+// no rival of a name.
 bool HasCurve(const ChangeSet& set);
 
 // Returns `set` with `name` added, sorted.

@@ -229,8 +229,8 @@ void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
     for (const std::string& name : set) refined.emplace_back(ChangeOf(name));
     RefinedShapes(runs, *rows, set).Keep(rows);
   };
-  const auto named = std::find_if(scores.begin(), scores.end(),
-                                  [](const ScoredSet& one) { return !HasCurve(one.set); });
+  const auto named =
+      std::find_if(scores.begin(), scores.end(), [](const ScoredSet& one) { return !HasCurve(one.set); });
   if (named != scores.end()) refine(named->set);
   for (const ScoredSet& one : scores) {
     if (one.set.size() == 1) refine(one.set);
@@ -314,8 +314,8 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   for (const auto& [effect, value] : runs.doubles()) proposed.said.unlikely.push_back(EffectOf(effect));
   proposed.unjudged = UnjudgedOf(context, runs, evidence.names());
   const std::set<std::string> oil = runs.OilOnly();
-  for (const ChangeSet& set :
-       oil.empty() ? SetsToPropose(named, proposed.weights, proposed.scores) : SetsWithout(oil, proposed.weights)) {
+  for (const ChangeSet& set : oil.empty() ? SetsToPropose(named, proposed.weights, proposed.scores)
+                                          : SetsWithout(oil, proposed.weights)) {
     if (proposed.proposals.size() >= kMostProposals) break;
     const RefinedShapes shaped(&runs, rows, set);
     const SetEvidence own = shaped.any() ? SetEvidence(shaped.rows()) : evidence;

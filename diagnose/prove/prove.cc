@@ -142,9 +142,9 @@ class Prover {
   }
 
   // Adds the effect that the balances find more likely than not, where windows neither confirm nor deny it: a
-  // small error of a gain, or a ripple, hardly changes predictions over the length of a window. Both witnesses
-  // together have to speak for it. The effect is
-  // reported as tied with the set that does without it.
+  // small error of a gain, or a ripple, hardly changes predictions over the length of a window. Both
+  // witnesses together have to speak for it. The effect is reported as tied with the set that does without
+  // it.
   size_t WithWhatBalancesSay(size_t place) const {
     size_t with = place;
     double most = 0.5;
