@@ -235,6 +235,7 @@ struct Diagnosis {
   std::vector<ValueByRun> per_run;
   std::vector<SignalGap> signals;
   BeforeAfter fit, held_out;
+  double noise_shown = 1;            // what the samples' own noise leaves, in noise units (NoiseShown())
   std::vector<HorizonGap> horizons;  // the shortest first
   std::vector<Closure> closures;     // usually none; else of different balances, largest first
   NextExperiment next;

@@ -1,6 +1,7 @@
 #include "diagnose/recording/noise_remarks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -79,7 +80,10 @@ std::string RemarkOn(const Group& group, size_t runs) {
     lines.push_back(name + " = " + ShortNumber(shown, 3));
   }
   return RunsNamed(group.runs, runs) +
-         ": the samples show another noise than is stated, and the stated one counts: " +
+         (group.noisier
+              ? ": the samples show more noise than is stated; gaps count in the stated one, and are "
+                "closed where only what the samples show is left: "
+              : ": the samples show another noise than is stated, and the stated one counts: ") +
          Joined(found, "; ") +
          (group.sidecar
               ? "; this in " + (group.sidecars.empty() ? "the sidecar" : Enumerated(group.sidecars)) +
@@ -88,6 +92,18 @@ std::string RemarkOn(const Group& group, size_t runs) {
 }
 
 }  // namespace
+
+double NoiseShown(const std::vector<const RunData*>& runs) {
+  double sum = 0, count = 0;
+  for (const RunData* run : runs) {
+    for (const SignalData& signal : run->signals) {
+      const double shown = IsNoisierThanStated(signal) ? signal.estimated_noise / signal.stated_noise : 1;
+      sum += shown * shown;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : 1;
+}
 
 std::vector<std::string> NoiseRemarks(const std::vector<const RunData*>& runs) {
   std::vector<Group> groups;

@@ -8,6 +8,7 @@
 
 #include "base/number_text.h"
 #include "diagnose/fit/closure.h"
+#include "diagnose/recording/noise_remarks.h"
 #include "diagnose/say/candidates.h"
 #include "diagnose/say/found.h"
 #include "diagnose/say/gaps.h"
@@ -99,6 +100,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   const WholeRuns whole = OverWholeRuns(context, proof);
   DescribeGaps(context, whole, &d);
   d.horizons = HorizonGaps(context, proof);
+  d.noise_shown = NoiseShown(context.runs);
   d.verdict = VerdictOn(d, proof, proposed.scores, ExactSensors(context.runs), SampleInterval(context.runs));
   if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
     // Other values that are not clearly different stay as given.

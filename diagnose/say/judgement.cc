@@ -35,11 +35,11 @@ const HorizonGap* DecidingHorizon(const Diagnosis& d) {
   return near;
 }
 
-// Whether a gap is closed: it is not above `limit`. If all sensors are exact, what is left is compared with
-// what there was before.
-bool IsClosed(const BeforeAfter& gap, double limit, bool exact) {
+// Whether a gap is closed: it is not above `limit` times the noise that the samples show. If all sensors are
+// exact, what is left is compared with what there was before.
+bool IsClosed(const Diagnosis& d, const BeforeAfter& gap, double limit, bool exact) {
   const double left = gap.after * gap.after - 1, before = gap.before * gap.before - 1;
-  return gap.after <= limit || (exact && left <= kNearlyNothing * before);
+  return gap.after <= limit * d.noise_shown || (exact && left <= kNearlyNothing * before);
 }
 
 // The first horizon that leaves more than noise; null: none. Errors of values grow at most in proportion to
@@ -49,14 +49,14 @@ const HorizonGap* OpenHorizon(const Diagnosis& d, const HorizonGap& near, bool e
   const double beside = std::sqrt(kNoiseAndAsMuchAgain - 1);
   const auto open = std::find_if(d.horizons.begin(), d.horizons.end(), [&](const HorizonGap& one) {
     if (one.seconds < near.seconds || !std::isfinite(one.typical.after)) return false;
-    return !IsClosed(one.typical, std::hypot(1, beside * one.seconds / near.seconds), exact);
+    return !IsClosed(d, one.typical, std::hypot(1, beside * one.seconds / near.seconds), exact);
   });
   return open == d.horizons.end() ? nullptr : &*open;
 }
 
 bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
   const bool whole =
-      IsClosed(d.held_out, kWholeRunsAtTheNoise, exact) && IsClosed(d.fit, kWholeRunsAtTheNoise, exact);
+      IsClosed(d, d.held_out, kWholeRunsAtTheNoise, exact) && IsClosed(d, d.fit, kWholeRunsAtTheNoise, exact);
   const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
   if (near == nullptr) return whole;
   // "Nothing is missing" has to hold over whole runs too, where the model can follow them, because slow
@@ -137,8 +137,8 @@ ComparedGap GapToCompare(const Diagnosis& d, const Proof& proof) {
   const HorizonGap* open = OpenHorizon(d, *near, false);
   if (open != nullptr) return {open->typical, open->seconds};
   if (!d.closures.empty()) return {near->typical, near->seconds, true};
-  if (d.held_out.after > kWholeRunsAtTheNoise) return {d.held_out, 0};
-  if (d.fit.after > kWholeRunsAtTheNoise) return {d.fit, 0, false, true};
+  if (!IsClosed(d, d.held_out, kWholeRunsAtTheNoise, false)) return {d.held_out, 0};
+  if (!IsClosed(d, d.fit, kWholeRunsAtTheNoise, false)) return {d.fit, 0, false, true};
   return {near->typical, near->seconds, true};
 }
 
@@ -163,7 +163,7 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<Scor
   const bool one_witness = HasOneWitness(d, scores);
   // If a model leaves only noise, its other values are no finding, unless one of them has clearly changed.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
-                      !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain));
+                      !(GapToCompare(d, proof).gap.before <= std::sqrt(kNoiseAndAsMuchAgain) * d.noise_shown);
   const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
   // A curve is no cause, so what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;

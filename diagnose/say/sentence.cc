@@ -86,6 +86,11 @@ std::string OverWhat(const Diagnosis& d, const ComparedGap& compared) {
   return d.horizons.empty() ? "" : " over whole runs";
 }
 
+// Where the samples are noisier than is stated, a gap of more than 1 may be their noise alone.
+std::string NoiseShown(const Diagnosis& d) {
+  return d.noise_shown > 1 ? "; the noise that the samples show makes " + ShortNumber(d.noise_shown, 3) : "";
+}
+
 std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   const BeforeAfter& gap = compared.gap;
   const std::string over = OverWhat(d, compared), which = compared.of_fitted ? "fitted" : "held-out";
@@ -96,13 +101,13 @@ std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   }
   if (!std::isfinite(gap.before)) {
     return " (the model as given cannot follow the " + which + " runs" + over + "; " + after +
-           " noise units are left).";
+           " noise units are left" + NoiseShown(d) + ").";
   }
   const std::string of = which + " gap" + over;
-  if (before == after) return " (the " + of + " stays at " + before + " noise units).";
+  if (before == after) return " (the " + of + " stays at " + before + " noise units" + NoiseShown(d) + ").";
   if (gap.after > gap.before)
-    return " (the " + of + " rises from " + before + " to " + after + " noise units).";
-  return " (" + of + " " + before + " to " + after + " noise units).";
+    return " (the " + of + " rises from " + before + " to " + after + " noise units" + NoiseShown(d) + ").";
+  return " (" + of + " " + before + " to " + after + " noise units" + NoiseShown(d) + ").";
 }
 
 // The text after what was found, for a verdict that leaves something open.
@@ -151,7 +156,8 @@ std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
     case Verdict::kNothingMissing:
       return "Nothing is missing: the model as given explains the data to " +
              ShortNumber(compared.gap.before, 3) + " noise units" +
-             (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s." : ".");
+             (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "") +
+             NoiseShown(d) + ".";
     case Verdict::kParameters:
       if (Falls(compared.gap))
         return "The equations suffice with other values: " + Enumerated(parameters) + gap;

@@ -37,7 +37,7 @@ TEST(SetScanTest, TheTruthIsFirst) {
       {"motor.cogging|7", {{"motor.cogging|7:c", 0.3}}},
       {"value.J", {{"wide.J", 0.3}}},
       {"run.T_s", {{"run.T_s[0]", -0.5}, {"run.T_s[1]", 0.5}}},
-      {"closure.torque(speed)", {{"closure.torque(speed):2", 0.3}}}};
+      {"closure.torque(speed)", {{"closure.torque(speed):2", 0.4}}}};
   for (const auto& [set, truth] : cases) {
     const SetEvidence evidence(MakeRows({.truth = truth}));
     SetScores scores = ScanSets(evidence);
@@ -73,6 +73,20 @@ TEST(SetScanTest, SeveralChanges) {
   const SetScores scores = ScanSets(evidence);
   EXPECT_THAT(scores.BestFirst().front().set,
               ElementsAre("motor.cogging|7", "pump.drag", "pump.stribeck|0.1", "run.T_s"));
+}
+
+// Tests that a set of named changes is tried although a curve beside them gains far more: a curve names
+// nothing.
+TEST(SetScanTest, CurvesDoNotHideNames) {
+  const SetEvidence evidence(MakeRows({.truth = {{"closure.torque(speed):2", 0.4},
+                                                 {"pump.drag:k", 0.3},
+                                                 {"motor.cogging|7:s", 0.2},
+                                                 {"pump.stribeck|0.1:x", 0.4},
+                                                 {"run.T_s[0]", 0.5}}}));
+  const SetScores scores = ScanSets(evidence);
+  EXPECT_TRUE(diagnose::HasCurve(scores.BestFirst().front().set));
+  EXPECT_FALSE(diagnose::HasCurve({"motor.cogging|7", "run.T_s"}));
+  EXPECT_TRUE(scores.Has({"motor.cogging|7", "pump.drag", "pump.stribeck|0.1", "run.T_s"}));
 }
 
 // Tests that sets asked for are scored, except what the runs cannot show and two variants of one effect.

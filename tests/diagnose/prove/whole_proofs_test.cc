@@ -1,5 +1,7 @@
 // Tests that exact simulation on held-out runs chooses what is true, on made-up rigs. Under the sanitizers
 // each takes a minute or more, so prove_test has there those that end sooner.
+#include "diagnose/prove/chooser.h"
+
 #include <gmock/gmock.h>
 
 #include "diagnose/prove/blind_changes.h"
@@ -46,6 +48,28 @@ TEST_F(ProveTest, ValueIsAValue) {
   const Proof proved = Prove({Proposed({kDrag}, {Drag(2e-5)})});
   EXPECT_THAT(proved.Found().changes, IsEmpty());
   EXPECT_NEAR(proved.Found().model.parameters.b, truth.parameters.b, 0.03 * truth.parameters.b);
+}
+
+// Tests that the gain of the pressures is said, and nothing of the values, where eight values that are off
+// alike would do what it does: torques and flows have no unit of their own.
+TEST_F(ProveTest, OneGainForManyValues) {
+  constexpr double kGain = 0.05;
+  const Change gain = {"sensor.pressure_gain", {}, ""};
+  const model::EffectDescription effect = {gain.effect, {{"gain", kGain}}, {}};
+  Record(Table1With({effect}));
+  Proposal values = Proposed({}, {});
+  values.base.clear();
+  for (const char* name : {"k_1", "T_pmax", "J", "b", "T_s", "beta", "p_3", "J_a", "mgl", "c_E", "c_I"}) {
+    const size_t place = model::BasePlace(name);
+    const double by = name[0] == 'c' ? 1 / (1 + kGain) : 1 + kGain;
+    values.model.parameters.*model::BaseParameters()[place].member *= by;
+    values.base.push_back(place);
+  }
+  const Proof proved = Prove({values, Proposed({gain}, {effect})});
+  EXPECT_LT(NearGap(proved, {}), 1.2);
+  EXPECT_THAT(proved.Found().changes, ElementsAre(gain));
+  EXPECT_THAT(proved.Found().base, IsEmpty());
+  EXPECT_NEAR(ValueOf(proved, gain.effect, "gain"), kGain, 0.002);
 }
 
 // Tests that an effect that no balance shows is found by racing it, once the best proposal leaves a gap.

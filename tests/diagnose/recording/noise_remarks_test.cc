@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 
 namespace hydro::diagnose {
@@ -39,7 +40,9 @@ TEST(NoiseRemarks, SayHowManyTimesAndWhatMendsIt) {
   EXPECT_THAT(
       NoiseRemarks({&a, &b}),
       ElementsAre(
-          "every run: the samples show another noise than is stated, and the stated one counts: "
+          "every run: the samples show more noise than is stated; gaps count in the stated one, and are "
+          "closed "
+          "where only what the samples show is left: "
           "motor_speed 0.9 rad/s, 3 times the stated 0.3; p1 4.5 psi, 3 times the stated 1.5; this in "
           "the sidecar, under [noise], mends it: motor_speed = 0.9; p1 = 4.5"));
 }
@@ -58,6 +61,17 @@ TEST(NoiseRemarks, OtherSignalsAndOtherWays) {
       ElementsAre(AllOf(HasSubstr("runs both and one: "), HasSubstr("p1 6 psi, 4 times the stated 1.5"),
                         Not(HasSubstr("p2"))),
                   AllOf(HasSubstr("run both: "), HasSubstr("p2 0.5 psi, 0.33 times the stated 1.5"))));
+}
+
+// Tests what the samples' own noise leaves: of a quarter of the signals that are three times as noisy as is
+// stated, the root of (9 + 3) / 4; what is quieter, or within a factor of two, counts as stated.
+TEST(NoiseShown, IsARootMeanSquareOfAllSignals) {
+  const RunData noisy =
+      RunWith("noisy", {Signal(model::Channel::kP1, 1.5, 4.5), Signal(model::Channel::kP2, 1.5, 0.5)});
+  const RunData good =
+      RunWith("good", {Signal(model::Channel::kP1, 1.5, 2.9), Signal(model::Channel::kP2, NAN, 4)});
+  EXPECT_NEAR(NoiseShown({&noisy, &good}), std::sqrt(3.0), 1e-12);
+  EXPECT_EQ(NoiseShown({&good}), 1);
 }
 
 // Tests that nothing is said where nothing is stated, and of a log, which has no sidecar, no line.

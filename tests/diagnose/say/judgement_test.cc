@@ -126,6 +126,19 @@ TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
 
+// Tests that what is left is nothing where it is the noise that the samples show, and no more than that,
+// though the stated noise is a third of it.
+TEST(VerdictOn, NoiseThatTheSamplesShow) {
+  Judged one({2.9, 2.9, 2.9}, {2.9, 2.9, 2.9});
+  one.FindNoEffect({});
+  one.d.fit = one.d.held_out = {2.9, 2.9, 2.9};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  one.d.noise_shown = 2.85;
+  EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
+  one.d.fit = one.d.held_out = {3.4, 3.4, 3.4};
+  EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+}
+
 // Tests that a curve is a part of the gap and no cause: beside an effect a part is found, alone nothing is
 // explained.
 TEST(VerdictOn, AClosureIsAPart) {

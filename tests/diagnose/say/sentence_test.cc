@@ -82,7 +82,9 @@ TEST(Sentence, NoImprovementIsClaimed) {
   diagnose::Diagnosis d = With(Verdict::kUnexplained);
   d.held_out = {0.9981, 0.998, 0.9979};
   EXPECT_THAT(Said(d), AllOf(HasSubstr("takes nothing of the held-out gap"),
-                             HasSubstr("the held-out gap stays at 0.998 noise units")));
+                             HasSubstr("the held-out gap stays at 0.998 noise units)")));
+  d.noise_shown = 2.9;
+  EXPECT_THAT(Said(d), HasSubstr("at 0.998 noise units; the noise that the samples show makes 2.9)"));
 }
 
 // Tests that a value which the runs do not show apart from others is left to its remark.
