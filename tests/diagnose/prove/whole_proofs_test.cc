@@ -1,10 +1,9 @@
 // Tests that exact simulation on held-out runs chooses what is true, on made-up rigs. Under the sanitizers
 // each takes a minute or more, so prove_test has there those that end sooner.
-#include "diagnose/prove/chooser.h"
-
 #include <gmock/gmock.h>
 
 #include "diagnose/prove/blind_changes.h"
+#include "diagnose/prove/chooser.h"
 #include "diagnose/say/conclusion.h"
 #include "tests/diagnose/prove/made_proofs.h"
 
