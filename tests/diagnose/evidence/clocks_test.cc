@@ -132,8 +132,9 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
   for (size_t i = 1000; i < 1500; ++i) run.p2.values[i] = NAN;
   const RunData bad = PrepareRun(run, testing::Table1());
   EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
-              ElementsAre(HasSubstr("the samples show another noise"), HasSubstr("1 gap in time, up to 3"),
-                          HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
+              ElementsAre(HasSubstr("the samples show more noise than is stated"),
+                          HasSubstr("1 gap in time, up to 3"), HasSubstr("p2 is missing in 10 % of the rows"),
+                          HasSubstr("one way only")));
   for (size_t i = 100; i < 130; ++i)
     run.motor_speed.values[i] *= -1;  // an overshoot says nothing about the other way
   const RunData overshoots = PrepareRun(run, testing::Table1());
