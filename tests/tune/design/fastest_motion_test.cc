@@ -51,7 +51,7 @@ TEST(FastMotionRemark, RefusesWhatNoMachineDoes) {
   settings::StackConfig heavy = With(23.3, 2.47e5), sprung = heavy;
   heavy.model.description.parameters.mgl = 9.2e18;
   sprung.model.description.effects.push_back(
-      {.id = "load.spring", .parameters = {{"stiffness", 1e18}, {"rest", 1}}});
+      {.id = "load.spring", .parameters = {{"stiffness", 1e18}, {"rest", 1}}, .names = {}});
   for (const settings::StackConfig& config : {With(1e-12, 2.47e5), heavy, sprung}) {
     EXPECT_THAT(refusal(config), AllOf(HasSubstr("model.toml: parameters and effects: found a machine that "
                                                  "oscillates at "),
