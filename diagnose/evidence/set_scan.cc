@@ -125,14 +125,13 @@ std::vector<ScoredSet> SetScores::Leaders(size_t changes, size_t most) const {
   return leaders;
 }
 
-SetScores ScanSets(const SetEvidence& evidence, const std::vector<ChangeSet>& also, int jobs) {
+SetScores ScanSets(const SetEvidence& evidence, int jobs) {
   SetScores scores(evidence, jobs);
   // Where curves lead, sets of named changes would not be extended: they are searched by themselves first.
   std::vector<std::string> named = evidence.names();
   std::erase_if(named, [](const std::string& name) { return HasCurve({name}); });
   SetSearch(&scores).Search(named);
   SetSearch(&scores).Search(evidence.names());
-  scores.Try(also);
   return scores;
 }
 

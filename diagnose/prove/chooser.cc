@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "diagnose/fit/closure.h"
 #include "diagnose/prove/proof_context.h"
 
 namespace hydro::diagnose {
@@ -30,12 +29,6 @@ std::vector<Change> Beyond(const ProvedSet& set, const ProvedSet& other) {
   std::vector<Change> effects = set.Effects();
   std::erase_if(effects, [&](const Change& change) { return other.hypothesis.Has(change); });
   return effects;
-}
-
-bool HasACurve(const ProvedSet& set) {
-  const std::vector<Change> effects = set.Effects();
-  return std::any_of(effects.begin(), effects.end(),
-                     [](const Change& change) { return IsClosureEffect(change.effect); });
 }
 
 }  // namespace
@@ -84,7 +77,7 @@ size_t Chooser::WithFewerNumbers(size_t place) const {
     if (sets_[i].Effects().empty() || NumbersOf(sets_[i]) >= NumbersOf(sets_[fewest])) continue;
     const GapFall worth = WorthOf(sets_[i], sets_[place]);
     // A curve fits anything, so it has to gain as much more as an effect.
-    const bool curve = HasACurve(sets_[place]) && !HasACurve(sets_[i]);
+    const bool curve = sets_[place].HasCurve() && !sets_[i].HasCurve();
     if (worth.logarithm <= std::max(curve ? kPartOfAnEffect : kPartOfValues, worth.error)) fewest = i;
   }
   return fewest;
@@ -129,7 +122,7 @@ size_t Chooser::OneNumberForManyValues(size_t place) {
   if (place == kGiven || !sets_[place].Effects().empty()) return place;
   size_t one = place;
   for (size_t i = 0, size = sets_.size(); i < size; ++i) {
-    const bool single = sets_[i].tested() && sets_[i].Effects().size() == 1 && !HasACurve(sets_[i]);
+    const bool single = sets_[i].tested() && sets_[i].Effects().size() == 1 && !sets_[i].HasCurve();
     if (!single || NumbersOf(sets_[i]) != 1 || sets_[place].hypothesis.base.size() < 2) continue;
     // With its own values no better than this, it is none with given ones.
     if (!IsAlike(place, i)) continue;
@@ -143,7 +136,7 @@ size_t Chooser::WithWhatBalancesSay(size_t place) const {
   size_t with = place;
   double most = 0.5;
   for (size_t i = 0; i < sets_.size(); ++i) {
-    if (!sets_[i].tested() || HasACurve(sets_[i])) continue;
+    if (!sets_[i].tested() || sets_[i].HasCurve()) continue;
     const std::vector<Change> more = Beyond(sets_[i], sets_[place]);
     if (more.size() != 1 || sets_[i].Effects().size() != sets_[place].Effects().size() + 1) continue;
     const double said = sets_.SaidOf(more.front());

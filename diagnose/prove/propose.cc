@@ -217,7 +217,7 @@ std::vector<std::string> UnlikelyEffects(const std::vector<ScoredSet>& scores) {
 // another because it lies between two points of its grid.
 void RefineLeaders(ScanRuns* runs, Rows* rows, int jobs) {
   std::vector<std::string> refined;
-  const std::vector<ScoredSet> scores = ScanSets(SetEvidence(*rows), {}, jobs).BestFirst();
+  const std::vector<ScoredSet> scores = ScanSets(SetEvidence(*rows), jobs).BestFirst();
   const auto refine = [&](const ChangeSet& set) {
     if (refined.size() >= kMostLeaders) return;
     const bool fresh = std::any_of(set.begin(), set.end(), [&](const std::string& name) {
@@ -302,7 +302,7 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   proposed.remarks = RemarksOn(runs);
   RefineLeaders(&runs, &rows, context.jobs);
   const SetEvidence evidence(rows);
-  SetScores scores = ScanSets(evidence, {}, context.jobs);
+  SetScores scores = ScanSets(evidence, context.jobs);
   proposed.weights = WeighExplanations(&scores, context.seed);
   const ExplanationWeights named = WeighExplanations(&scores, context.seed, false);
   proposed.said.weights = SaidOf(proposed.weights, named);

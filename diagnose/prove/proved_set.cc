@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/maths/spread.h"
+#include "diagnose/fit/closure.h"
 
 namespace hydro::diagnose {
 
@@ -57,6 +58,11 @@ std::vector<Change> ProvedSet::Effects() const {
     if (!change.effect.empty()) effects.push_back(change);
   }
   return effects;
+}
+
+bool ProvedSet::HasCurve() const {
+  return std::any_of(hypothesis.changes.begin(), hypothesis.changes.end(),
+                     [](const Change& change) { return IsClosureEffect(change.effect); });
 }
 
 void JudgeSet(const ProofWindows& windows, int jobs, ProvedSet* set) {

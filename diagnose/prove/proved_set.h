@@ -25,6 +25,7 @@ struct ProvedSet {
 
   bool tested() const { return IsTested(near); }
   std::vector<Change> Effects() const;  // the changes other than values
+  bool HasCurve() const;                // whether one of them is an unknown curve
   const model::ModelDescription& ModelOf(size_t run) const {
     return without.empty() ? hypothesis.model : without[run];
   }

@@ -94,11 +94,12 @@ std::string InPlace(const ProvedSet& other, const ProvedSet& best) {
 // Whether the set is an explanation that may be true. A curve can imitate most effects, so that its equally
 // good fit is no reason to doubt their names.
 bool MayBeTrue(const ProvedSet& set, const Diagnosis& d) {
-  const std::vector<Change> effects = set.Effects();
-  const auto any = [&](const auto& is) { return std::any_of(effects.begin(), effects.end(), is); };
-  if (any([](const Change& change) { return IsClosureEffect(change.effect); })) return false;
+  if (set.HasCurve()) return false;
   if (d.explanations.empty()) return true;
-  if (any([](const Change& change) { return IsUnseenByBalances(change.effect); })) return true;
+  const std::vector<Change> effects = set.Effects();
+  const bool unseen = std::any_of(effects.begin(), effects.end(),
+                                  [](const Change& change) { return IsUnseenByBalances(change.effect); });
+  if (unseen) return true;
   const std::string claim = ClaimOf(set.hypothesis);
   for (size_t i = 0; i < std::min(d.set_90, d.explanations.size()); ++i) {
     const std::string said = ClaimOfSet(d.explanations[i].changes);

@@ -87,7 +87,7 @@ std::string OverWhat(const Diagnosis& d, const ComparedGap& compared) {
 }
 
 // Where the samples are noisier than is stated, a gap of more than 1 may be their noise alone.
-std::string NoiseShown(const Diagnosis& d) {
+std::string OfTheSamples(const Diagnosis& d) {
   return d.noise_shown > 1 ? "; the noise that the samples show makes " + ShortNumber(d.noise_shown, 3) : "";
 }
 
@@ -101,13 +101,13 @@ std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
   }
   if (!std::isfinite(gap.before)) {
     return " (the model as given cannot follow the " + which + " runs" + over + "; " + after +
-           " noise units are left" + NoiseShown(d) + ").";
+           " noise units are left" + OfTheSamples(d) + ").";
   }
   const std::string of = which + " gap" + over;
-  if (before == after) return " (the " + of + " stays at " + before + " noise units" + NoiseShown(d) + ").";
+  if (before == after) return " (the " + of + " stays at " + before + " noise units" + OfTheSamples(d) + ").";
   if (gap.after > gap.before)
-    return " (the " + of + " rises from " + before + " to " + after + " noise units" + NoiseShown(d) + ").";
-  return " (" + of + " " + before + " to " + after + " noise units" + NoiseShown(d) + ").";
+    return " (the " + of + " rises from " + before + " to " + after + " noise units" + OfTheSamples(d) + ").";
+  return " (" + of + " " + before + " to " + after + " noise units" + OfTheSamples(d) + ").";
 }
 
 // The text after what was found, for a verdict that leaves something open.
@@ -157,7 +157,7 @@ std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
       return "Nothing is missing: the model as given explains the data to " +
              ShortNumber(compared.gap.before, 3) + " noise units" +
              (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "") +
-             NoiseShown(d) + ".";
+             OfTheSamples(d) + ".";
     case Verdict::kParameters:
       if (Falls(compared.gap))
         return "The equations suffice with other values: " + Enumerated(parameters) + gap;

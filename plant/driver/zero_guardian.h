@@ -27,10 +27,10 @@ void DisarmZero();
 class ZeroGuardian {
  public:
   // Forks a child that shares the open device and sleeps until this process has gone, whatever children of
-  // its own remain. The child then has
-  // `device` put out `zero`, unless Dismiss() was called before, and exits. It outlives this process by no
-  // more than that. It ignores signals, also those to this process's group, and keeps none of this process's
-  // descriptors except `files`. Throws std::runtime_error when the child cannot be started.
+  // its own remain. The child then has `device` put out `zero`, unless Dismiss() was called before, and
+  // exits. It outlives this process by no more than that. It ignores signals, also those to this process's
+  // group, and keeps none of this process's descriptors except `files`. Throws std::runtime_error when the
+  // child cannot be started.
   ZeroGuardian(Device& device, const std::vector<int>& files, double zero);
   ~ZeroGuardian() { Dismiss(); }
   ZeroGuardian(const ZeroGuardian&) = delete;

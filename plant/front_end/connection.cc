@@ -312,9 +312,7 @@ void Connection::AskForZero(TimePoint now) {
 }
 
 bool Connection::IsAnothers(TimePoint now) const {
-  const uint32_t in_charge = identity_.session_in_charge;
-  if (in_charge == 0 || in_charge == session_) return false;
-  return !was_up_ || sample_.state != HYDRO_ARMED || now - sampled_at_ >= kFreeAfter;
+  return AnotherIsInCharge() && (!was_up_ || sample_.state != HYDRO_ARMED || now - sampled_at_ >= kFreeAfter);
 }
 
 void Connection::KeepAlive(TimePoint now) {
@@ -335,7 +333,7 @@ LinkTrouble Connection::WhyNot() const {
     return {"a front end that no session commands, and that does not take this one",
             "one whose firmware takes the session of a HELLO (docs/front_end.md)"};
   }
-  if (identified_ && identity_.session_in_charge != session_) {
+  if (identified_ && AnotherIsInCharge()) {
     return {fmt::format("a front end that another program commands (its session is {:08x})",
                         identity_.session_in_charge),
             "one that nobody else commands: end that program, or cut the device's power for a moment"};

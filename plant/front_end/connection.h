@@ -96,12 +96,14 @@ class Connection {
   // Asks for zero volts until re-armed. Asks nothing of a device that another session commands where this one
   // was never up: it has no volts there to take back, and would stop the other's run. Async-signal-safe.
   void Zero() const noexcept {
-    const uint32_t in_charge = identity_.session_in_charge;
-    if (was_up_ || in_charge == 0 || in_charge == session_)
-      link_->WriteAtOnce({zero_frame_.data(), zero_bytes_});
+    if (was_up_ || !AnotherIsInCharge()) link_->WriteAtOnce({zero_frame_.data(), zero_bytes_});
   }
 
  private:
+  // Whether the device says so; one that has said nothing yet does not.
+  bool AnotherIsInCharge() const noexcept {
+    return identity_.session_in_charge != 0 && identity_.session_in_charge != session_;
+  }
   enum class Phase { kHello, kSettings, kUp };
 
   void Reopen(TimePoint now);

@@ -93,9 +93,9 @@ TEST(SetScanTest, CurvesDoNotHideNames) {
 TEST(SetScanTest, SetsAskedFor) {
   const SetEvidence evidence(MakeRows({.seed = 3}));
   const ChangeSet asked = {"closure.torque(speed)", "motor.cogging|7", "run.T_s", "value.J"};
-  EXPECT_FALSE(ScanSets(evidence).Has(asked));
-  const SetScores scores =
-      ScanSets(evidence, {asked, {"unheard_of"}, {"pump.stribeck|0.1", "pump.stribeck|0.3"}});
+  SetScores scores = ScanSets(evidence);
+  EXPECT_FALSE(scores.Has(asked));
+  scores.Try({asked, {"unheard_of"}, {"pump.stribeck|0.1", "pump.stribeck|0.3"}});
   EXPECT_NEAR(scores.Score(asked), evidence.Log(asked) + scores.odds().LogOdds(asked), 1e-12);
   EXPECT_FALSE(scores.Has({"unheard_of"}));
   EXPECT_FALSE(scores.Has({"pump.stribeck|0.1", "pump.stribeck|0.3"}));
@@ -104,7 +104,7 @@ TEST(SetScanTest, SetsAskedFor) {
 // Tests that any number of threads gives the same bits.
 TEST(SetScanTest, JobsDoNotMatter) {
   const SetEvidence evidence(MakeRows({.truth = {{"pump.stribeck|0.1:x", 0.05}, {"wide.J", 0.1}}}));
-  SetScores one = ScanSets(evidence, {}, 1), two = ScanSets(evidence, {}, 2);
+  SetScores one = ScanSets(evidence, 1), two = ScanSets(evidence, 2);
   ASSERT_EQ(one.size(), two.size());
   for (const diagnose::ScoredSet& set : one.BestFirst()) EXPECT_EQ(set.score, two.Score(set.set));
   const ExplanationWeights first = WeighExplanations(&one), second = WeighExplanations(&two);
