@@ -10,7 +10,8 @@ def explains(key, changes):
     """Whether a set of changes is what is in the rig; None where that cannot be said.
 
     Effects must be the true ones, no more and no fewer, and closures none. Other values, and values of runs, are neither right nor wrong: every
-    number of a rig's model is. Outside the catalogue a closure on the right element, and no effect, is right where a closure can be.
+    number of a rig's model is. Outside the catalogue a closure on the right element, and no effect, is right where a closure can be, and so is
+    the effect that has said what it is since the rigs were written ("catalogue").
     """
     ids = [change.replace(" ", "") for change in names_of(changes)]
     closures = {change.split("(")[0].removeprefix("closure.") for change in ids if change.startswith("closure.")}
@@ -18,6 +19,8 @@ def explains(key, changes):
     if key["class"] == "newcomer" or key["outside"] and not key["outside"]["function_of"]:
         return None
     if key["outside"]:
+        if not closures and effects == [key["outside"].get("catalogue")]:
+            return True
         one_flow = lambda balance: "flow" if balance.startswith("flow_") else balance  # leakage between the sides is in both
         return not effects and {one_flow(c) for c in closures} == {one_flow(key["outside"]["balance"])}
     said = sorted(effect.split("(")[0] for effect in effects)

@@ -227,7 +227,7 @@ const std::vector<OutsideForm>& OutsideForms() {
       {"hoses that creep", "flow_2", "", 0.003, 2, &Outside::hose_creep},
       {"a centre of mass off the arm's axis", "arm_torque", "arm_angle", 1, 2500, &Outside::gravity_offset},
       {"a film of oil: friction as the root of speed", "pump_torque", "motor_speed", 0.01, 8,
-       &Outside::film_friction},
+       &Outside::film_friction, "pump.shear_thinning"},
       {"a floor that shakes", "arm_torque", "", 1, 3000, &Outside::floor_shake},
       {"cushions near the ends", "arm_torque", "arm_angle", 10, 300000, &Outside::end_cushion},
       {"a case that stretches", "pump_torque", "dp", 5e-4, 0.4, &Outside::case_stretch},

@@ -38,6 +38,7 @@ struct OutsideForm {
   std::string function_of;  // measured signals, "" where it depends on more than those
   double smallest, largest;
   double Outside::*value;
+  std::string catalogue = "";  // the effect that has said what it is since; it may be named
 };
 const std::vector<OutsideForm>& OutsideForms();
 

@@ -91,7 +91,7 @@ class Rules(unittest.TestCase):
 
     # Tests that only `named` is a confident wrong name, and what a closure takes of the squared gap.
     def test_outside(self):
-        k = key("outside", outside={"what": "a spring", "function_of": "arm_angle"})
+        k = key("outside", outside={"what": "a spring", "balance": "arm_torque", "function_of": "arm_angle"})
         self.assertTrue(scored(k, report("named", [("amp.lag", [])]))["confident_wrong"])
         self.assertFalse(scored(k, report("partly", [("amp.lag", [])]))["confident_wrong"])
         closed = scored(k, report("unexplained", closure={"id": "closure.arm_torque", "held_out": {"before": 10, "after": 5}}))
@@ -157,6 +157,13 @@ class Rules(unittest.TestCase):
         outside = key("outside", outside={"what": "a worn place", "balance": "flow_1", "function_of": "arm_angle, dp"})
         self.assertTrue(foreign_explanations.explains(outside, ["closure.flow_2(dp)"]))
         self.assertFalse(foreign_explanations.explains(outside, ["closure.arm_torque(arm_angle)"]))
+        film = key("outside", outside={"what": "a film", "balance": "pump_torque", "function_of": "motor_speed", "catalogue": "pump.shear_thinning"})
+        for said, right in ((["pump.shear_thinning"], True), (["closure.pump_torque(motor_speed)"], True), (["amp.lag"], False),
+                            (["pump.shear_thinning", "amp.lag"], False)):
+            self.assertEqual(foreign_explanations.explains(film, said), right, said)
+            found = [(one, []) for one in said if not one.startswith("closure.")]
+            outcome = scored(film, report("named", found))
+            self.assertEqual(outcome["confident_wrong"], bool(found) and not right, said)
         self.assertFalse(foreign_explanations.explains(outside, ["closure.flow_1(dp)", "amp.lag"]))
         self.assertIsNone(foreign_explanations.explains(key("outside", outside={"what": "play", "balance": "arm_torque", "function_of": ""}), []))
         self.assertIsNone(foreign_explanations.explains(key("newcomer", what="bar"), []))

@@ -2,6 +2,7 @@
 // what the catalogue calls by that name, although in another form.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -190,6 +191,33 @@ INSTANTIATE_TEST_SUITE_P(
       for (char& c : name) c = c == '.' ? '_' : c;
       return name;
     });
+
+// Tests that the effect of the catalogue that a rig's form outside it names explains most of what that form
+// does, with some of its numbers: whoever says that effect is right.
+TEST(OutsideForms, AreWhatTheCatalogueHasSaidSince) {
+  for (const OutsideForm& form : OutsideForms()) {
+    if (form.catalogue.empty()) continue;
+    ASSERT_EQ(form.catalogue, "pump.shear_thinning");
+    Rig rig;
+    rig.values = DrawValues(kSeed);
+    hydro::model::ModelDescription model;
+    model.parameters = ModelParameters(rig.values);
+    rig.outside.*form.value = 2;
+    const std::vector<Plan> plans = SomePlans(false);
+    const std::vector<Window> windows = RunWindows(rig, plans, kSeconds, 0.1);
+    const double without = Error(model, windows);
+    double least = without;
+    for (const double viscous : {0.05, 0.1, 0.2, 0.4}) {
+      for (const double speed : {1.0, 3.0, 10.0, 30.0}) {
+        hydro::model::ModelDescription with = model;
+        with.effects.push_back({form.catalogue, {{"viscous", viscous}, {"speed", speed}}, {}});
+        least = std::min(least, Error(with, windows));
+      }
+    }
+    EXPECT_GT(without, 1);
+    EXPECT_LT(least, 0.4 * without) << form.what;
+  }
+}
 
 }  // namespace
 }  // namespace foreign_rig

@@ -95,7 +95,7 @@ void WriteKey(const Case& c, const Solved& s, const std::string& file) {
   if (c.outside >= 0) {
     const OutsideForm& form = OutsideForms()[c.outside];
     out << "{\"what\": " << Quoted(form.what) << ", \"balance\": " << Quoted(form.balance)
-        << ", \"function_of\": " << Quoted(form.function_of)
+        << ", \"function_of\": " << Quoted(form.function_of) << ", \"catalogue\": " << Quoted(form.catalogue)
         << ", \"size\": " << Number(s.rig.outside.*form.value) << "}";
   } else {
     out << "null";
