@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <optional>
 #include <string>
 
 #include "diagnose/balances/make_rows.h"
@@ -16,20 +14,29 @@ namespace {
 
 // The amounts in the value's own columns, converted to its unit: for all runs and one run together; with
 // `run` below 0, for all runs alone.
-Eigen::VectorXd PartsOf(const ScanRuns& runs, const SetFit& fit, size_t base, double given, int run) {
+Eigen::VectorXd PartsOf(const ScanRuns& runs, const SetFit& fit, double given, int run) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(fit.amounts.size());
   for (Eigen::Index i = 0; i < parts.size(); ++i) {
     const ColumnMeaning& meaning = runs.meaning()[static_cast<size_t>(fit.columns[static_cast<size_t>(i)])];
-    const bool own = meaning.kind == ColumnMeaning::Kind::kBase && meaning.base == base;
-    if (own && (meaning.run < 0 || meaning.run == run)) parts[i] = meaning.unit * (given != 0 ? given : 1);
+    if (meaning.kind == ColumnMeaning::Kind::kBase && (meaning.run < 0 || meaning.run == run))
+      parts[i] = meaning.unit * (given != 0 ? given : 1);
   }
   return parts;
 }
 
-// The value of each run, and one for all, where only this value is free.
-std::optional<RunValues> ValuesIn(const ScanRuns& scan, const Rows& rows,
-                                  const model::ModelDescription& model, size_t base, size_t runs) {
+}  // namespace
+
+std::optional<RunValues> ValuesOfRuns(const model::ModelDescription& model,
+                                      const std::vector<const RunData*>& runs, size_t base, int jobs) {
   const model::BaseParameter& parameter = model::BaseParameters()[base];
+  ScanOptions options;
+  options.jobs = jobs;
+  options.allowed = {base};
+  options.per_run = {parameter.info.name};
+  options.hold_effects = true;
+  ScanRuns scan(model, runs, options);
+  const Rows rows = scan.MakeRows({});
+  if (rows.blocks.empty()) return std::nullopt;
   const SetEvidence evidence(rows);
   const std::string name = "run." + parameter.info.name;
   if (!evidence.Shows({name})) return std::nullopt;
@@ -42,9 +49,9 @@ std::optional<RunValues> ValuesIn(const ScanRuns& scan, const Rows& rows,
   const auto bounded = [&](double value) {
     return std::clamp(value, parameter.info.min, parameter.info.max);
   };
-  values.common = bounded(given + PartsOf(scan, one, base, given, -1).dot(one.amounts));
-  for (size_t run = 0; run < runs; ++run) {
-    const Eigen::VectorXd parts = PartsOf(scan, own, base, given, static_cast<int>(run));
+  values.common = bounded(given + PartsOf(scan, one, given, -1).dot(one.amounts));
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const Eigen::VectorXd parts = PartsOf(scan, own, given, static_cast<int>(run));
     const double value = given + parts.dot(own.amounts);
     const double reach = 1.96 * std::sqrt(std::max(0.0, parts.dot(own.covariance * parts)));
     values.value.push_back(bounded(value));
@@ -52,33 +59,6 @@ std::optional<RunValues> ValuesIn(const ScanRuns& scan, const Rows& rows,
     values.high.push_back(bounded(value + reach));
   }
   return values;
-}
-
-}  // namespace
-
-std::vector<RunValues> ValuesOfRuns(const model::ModelDescription& model,
-                                    const std::vector<const RunData*>& runs, const std::vector<size_t>& bases,
-                                    int jobs) {
-  ScanOptions options;
-  options.jobs = jobs;
-  options.allowed = bases;
-  for (const size_t base : bases) options.per_run.push_back(model::BaseParameters()[base].info.name);
-  options.hold_effects = true;
-  ScanRuns scan(model, runs, options);
-  Rows rows = scan.MakeRows({});
-  std::vector<RunValues> all;
-  if (rows.blocks.empty()) return all;
-  const std::vector<int> columns = rows.base;
-  for (const size_t base : bases) {
-    // The other values stay as they are.
-    rows.base.clear();
-    std::ranges::copy_if(columns, std::back_inserter(rows.base), [&](int column) {
-      return scan.meaning()[static_cast<size_t>(column)].base == base;
-    });
-    if (const std::optional<RunValues> values = ValuesIn(scan, rows, model, base, runs.size()))
-      all.push_back(*values);
-  }
-  return all;
 }
 
 std::vector<size_t> ValuesOfADay(const std::vector<size_t>& allowed) {

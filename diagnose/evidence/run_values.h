@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/recording/run_data.h"
@@ -19,11 +20,9 @@ struct RunValues {
   std::vector<double> value, low, high;  // of each run, with 95 % intervals
 };
 
-// The values of each of these parameters, indices in BaseParameters(). Without those that no balance of the
-// runs has, and those that balances are measured by (k_1, k_2).
-std::vector<RunValues> ValuesOfRuns(const model::ModelDescription& model,
-                                    const std::vector<const RunData*>& runs, const std::vector<size_t>& bases,
-                                    int jobs);
+// None where no balance of the runs has the parameter, or where balances are measured by it (k_1, k_2).
+std::optional<RunValues> ValuesOfRuns(const model::ModelDescription& model,
+                                      const std::vector<const RunData*>& runs, size_t base, int jobs);
 
 // Parameters that may differ from day to day: friction with the temperature, the load, the charge pressure.
 // Indices in BaseParameters(), from those `allowed`.

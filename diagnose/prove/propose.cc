@@ -47,13 +47,11 @@ std::vector<model::ModelDescription> ModelsOfRuns(const ProofContext& context,
                                                   const model::ModelDescription& model,
                                                   const ChangeSet& set) {
   std::vector<model::ModelDescription> models(context.predicted().size(), model);
-  std::vector<size_t> named = ValuesOfADay(allowed);
-  std::erase_if(named, [&](size_t place) {
-    return std::ranges::find(set, "run." + model::BaseParameters()[place].info.name) == set.end();
-  });
-  for (const RunValues& values : ValuesOfRuns(model, context.predicted(), named, context.jobs)) {
-    const auto member = model::BaseParameters()[values.base].member;
-    for (size_t r = 0; r < models.size(); ++r) models[r].parameters.*member = values.value[r];
+  for (const size_t place : ValuesOfADay(allowed)) {
+    const model::BaseParameter& base = model::BaseParameters()[place];
+    if (std::find(set.begin(), set.end(), "run." + base.info.name) == set.end()) continue;
+    const std::optional<RunValues> values = ValuesOfRuns(model, context.predicted(), place, context.jobs);
+    for (size_t r = 0; r < models.size() && values; ++r) models[r].parameters.*base.member = values->value[r];
   }
   return models;
 }

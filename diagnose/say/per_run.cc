@@ -136,7 +136,11 @@ std::vector<ValueByRun> ValuesByRun(const ProofContext& context, const model::Mo
   std::vector<size_t> places(asked.size());
   std::ranges::transform(asked, places.begin(), model::BasePlace);
   if (asked.empty()) places = ValuesOfADay(allowed);
-  const std::vector<RunValues> all = ValuesOfRuns(model, PointersTo(cut.rest), places, context.jobs);
+  std::vector<RunValues> all;
+  for (const size_t base : places) {
+    if (const std::optional<RunValues> values = ValuesOfRuns(model, PointersTo(cut.rest), base, context.jobs))
+      all.push_back(*values);
+  }
   std::vector<ValueByRun> values;
   if (!asked.empty()) {
     for (const RunValues& one : all) values.push_back(Judged(cut, model, one, context.jobs));
