@@ -1,7 +1,9 @@
 #include "diagnose/fit/turn.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -11,7 +13,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr int kAngles = 12;  // tried in each period
+constexpr size_t kAngles = 4;  // tried in each period: four show one wave
 
 // The longest period of the effects that repeat with the shaft, rad; 0 if there are none.
 double PeriodOf(const model::ModelDescription& model) {
@@ -36,16 +38,23 @@ model::StartState AtBestTurn(const model::ModelDescription& model, const RunData
   const double period = turn.has_value() ? PeriodOf(model) : 0;
   if (!(period > 0)) return start;
   model::StartState best = start;
-  double least = SumOfSquares(model, run, start);
-  for (int k = 1; k < kAngles; ++k) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto sum_at = [&](double part) {
     model::StartState turned = start;
-    turned[*turn] += k * period / kAngles;
+    turned[*turn] += part * period;
     const double sum = SumOfSquares(model, run, turned);
     if (sum < least) {
       least = sum;
       best = turned;
     }
-  }
+    return sum;
+  };
+  std::array<double, kAngles> sums;
+  for (size_t k = 0; k < kAngles; ++k) sums[k] = sum_at(static_cast<double>(k) / kAngles);
+  // What repeats adds a wave to the prediction, so that the sum follows one wave over the turn.
+  const double cosine = sums[0] - sums[2], sine = sums[1] - sums[3];
+  if (std::isfinite(cosine) && std::isfinite(sine))
+    sum_at(std::atan2(-sine, -cosine) / (2 * std::numbers::pi));
   return best;
 }
 
