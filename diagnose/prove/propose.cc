@@ -259,20 +259,32 @@ double WeightOf(const ExplanationWeights& weights, const ChangeSet& set) {
   return 0;
 }
 
-// The rows of the runs at the torque limit that their balances show, with everything else as given.
-Rows RowsAtTheLimit(const ProofContext& context, const ScanOptions& options, ScanRuns* runs) {
-  Rows rows = runs->MakeRows({});
+// The runs as the scan reads them: at the torque limit that their balances show, with pressures that were not
+// measured marched with the values that they show. Neither needs the columns of effects, which take most of
+// the work.
+ScanRuns SettledRuns(const ProofContext& context, ScanOptions options) {
+  ScanOptions bare = options;
+  bare.only_always = true;
   model::ModelDescription given = context.given;
-  for (int again = 0; again < kLimitsAgain && !rows.blocks.empty(); ++again) {
-    const std::optional<EstimatedModel> values = ModelOf(*runs, rows, {}, SetEvidence(rows).Fit({}));
-    if (!values) break;
+  const auto values_of = [&](ScanRuns& runs) -> std::optional<EstimatedModel> {
+    const Rows rows = runs.MakeRows({});
+    return rows.blocks.empty() ? std::nullopt : ModelOf(runs, rows, {}, SetEvidence(rows).Fit({}));
+  };
+  ScanRuns runs(given, context.runs, bare);
+  std::optional<EstimatedModel> values = values_of(runs);
+  for (int again = 0; again < kLimitsAgain && values; ++again) {
     const double limit = values->model.parameters.T_pmax;
     if (!(limit > 0) || std::abs(limit / given.parameters.T_pmax - 1) <= kLimitOff) break;
     given.parameters.T_pmax = limit;
-    *runs = ScanRuns(given, context.runs, options);
-    rows = runs->MakeRows({});
+    runs = ScanRuns(given, context.runs, bare);
+    values = values_of(runs);
   }
-  return rows;
+  for (int again = 0; again < kMarchesAgain && runs.HasLatent() && values; ++again) {
+    options.marched = bare.marched = values->model;
+    runs = ScanRuns(given, context.runs, bare);
+    values = values_of(runs);
+  }
+  return {given, context.runs, options};
 }
 
 }  // namespace
@@ -284,18 +296,12 @@ Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed
   options.allowed = allowed;
   options.changes = context.changes;
   options.inverted = inverted;
-  ScanRuns runs(context.given, context.runs, options);
-  Rows rows = RowsAtTheLimit(context, options, &runs);
+  ScanRuns runs = SettledRuns(context, options);
+  Rows rows = runs.MakeRows({});
   Proposed proposed;
   if (rows.blocks.empty()) {
     proposed.unjudged = UnjudgedOf(context, runs, {});
     return proposed;
-  }
-  for (int again = 0; again < kMarchesAgain && runs.HasLatent(); ++again) {
-    const std::optional<EstimatedModel> values = ModelOf(runs, rows, {}, SetEvidence(rows).Fit({}));
-    options.marched = values->model;
-    runs = ScanRuns(runs.setup().given, context.runs, options);
-    rows = runs.MakeRows({});
   }
   const std::vector<int> periods = LikelyPeriods(runs, rows, SetEvidence(rows), context.jobs);
   if (!periods.empty()) rows = runs.MakeRows(periods);
