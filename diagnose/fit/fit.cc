@@ -106,8 +106,7 @@ class FitProblem {
     solver.parameter_tolerance = 1e-7;
     solver.initial_trust_region_radius = options.first_radius;
     solver.gradient_tolerance = 0;
-    // Steps end at the bounds; a line search along them would take as many derivatives again.
-    solver.max_num_line_search_step_size_iterations = 0;
+    if (!options.line_search) solver.max_num_line_search_step_size_iterations = 0;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

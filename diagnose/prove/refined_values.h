@@ -21,13 +21,14 @@ std::vector<RunData> WithDiscrepancy(const std::vector<const RunData*>& windows,
 // the refinement, so each round weighs the knowledge anew.
 struct Refinement {
   int rounds = 0;
-  int steps = 0;  // in each round
+  int steps = 0;            // in each round
+  bool line_search = true;  // as FitOptions has it
 };
 // For comparing a set with the set without an effect. Estimates lie near the end of a fit; one that needs
 // more steps is wandering off.
-inline constexpr Refinement kComparedValues = {2, 3};
+inline constexpr Refinement kComparedValues = {2, 3, false};
 // For values that are reported.
-inline constexpr Refinement kReportedValues = {3, 8};
+inline constexpr Refinement kReportedValues = {3, 8, true};
 
 // Fits the set's values by a few steps from where they are, and takes the fit if it predicts the judging
 // windows better. `fitted` has windows made by WithDiscrepancy(). A fit that fails, or that ends no lower
