@@ -98,7 +98,8 @@ def score(key, report, failure, seconds, told=None, sought=None):
         outcome["instead"] = any(not effect["id"].startswith("sensor.") for effect in found)
         outcome["right"] = outcome["remarked"] and not outcome["instead"]
     else:
-        said = [effect["id"] for effect in found] + [closure["id"] for closure in [report.get("closure") or {}] if closure.get("id")]
+        closure = (report.get("closure") or {}).get("id")
+        said = [effect["id"] for effect in found] + ([closure] if closure else [])
         outcome["element"] = bool(foreign_explanations.explains(key, said))
         outcome["confident_wrong"] = verdict == "named" and bool(found) and not outcome["element"]
         outcome["right"] = not outcome["confident_wrong"]

@@ -40,8 +40,8 @@ struct FitOptions {
   double tolerance = 1e-4;    // the fit stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
-  // Whether steps that meet a bound are followed by a line search along it, which takes as many derivatives
-  // again. Without it they end at the bound.
+  // Whether each step is followed by a line search where some number has a bound. It takes as many
+  // derivatives again. Without it, a step that meets a bound ends there.
   bool line_search = true;
 };
 

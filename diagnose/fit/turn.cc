@@ -13,8 +13,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kAngles = 4;  // tried in each period: four show one wave
-
 // The longest period of the effects that repeat with the shaft, rad; 0 if there are none.
 double PeriodOf(const model::ModelDescription& model) {
   double longest = 0;
@@ -49,9 +47,10 @@ model::StartState AtBestTurn(const model::ModelDescription& model, const RunData
     }
     return sum;
   };
-  std::array<double, kAngles> sums;
-  for (size_t k = 0; k < kAngles; ++k) sums[k] = sum_at(static_cast<double>(k) / kAngles);
-  // What repeats adds a wave to the prediction, so that the sum follows one wave over the turn.
+  // What repeats adds a wave to the prediction, so that the sum follows one wave over the turn, which its
+  // quarters show.
+  std::array<double, 4> sums;
+  for (size_t k = 0; k < sums.size(); ++k) sums[k] = sum_at(0.25 * static_cast<double>(k));
   const double cosine = sums[0] - sums[2], sine = sums[1] - sums[3];
   if (std::isfinite(cosine) && std::isfinite(sine))
     sum_at(std::atan2(-sine, -cosine) / (2 * std::numbers::pi));
