@@ -1,4 +1,20 @@
-"""Whether the explanations of a report, and its set that holds the truth nine times in ten, are what is in a rig of tests/foreign_rig."""
+"""Whether the effects of a report, its explanations, and its set that holds the truth nine times in ten, are what is in a rig of tests/foreign_rig."""
+
+import itertools
+
+
+def is_it(true, effect, with_ties=True):
+    """Whether an effect that was found is the true one (its signal too, where there is one), or has it in its tie class."""
+    if effect["id"] == true["id"]:
+        said = [name.split("=")[1].strip() for name in effect.get("names") or [] if name.replace(" ", "").startswith("signal=")]
+        return "signal" not in true or not said or true["signal"] in said
+    return with_ties and true["id"] in (effect.get("tied_with") or [])
+
+
+def are_they(true_effects, found, with_ties):
+    """Whether the effects that were found are the true ones, one for one."""
+    return len(true_effects) == len(found) and any(all(is_it(true, effect, with_ties) for true, effect in zip(order, found))
+                                                   for order in itertools.permutations(true_effects))
 
 
 def names_of(changes):

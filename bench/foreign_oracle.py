@@ -1,4 +1,4 @@
-"""The oracle of bench/gap_score --generation 2: what the same program predicts of a rig when it is told the rig's true form.
+"""The oracle of bench/gap_score: what the same program predicts of a rig when it is told the rig's true form.
 
 It is asked twice, and the better answer counts. *Told*: the model as given with the true effects in it, their parameters those of the key, and nothing
 else to look for: `refit_only` then has the true form and fitted values. *Sought*: the model as given, and only the true effects to look for: `after` then

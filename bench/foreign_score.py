@@ -1,4 +1,4 @@
-"""How bench/gap_score --generation 2 judges: rules, goals and tables for the rigs of tests/foreign_rig.
+"""How bench/gap_score judges: rules, goals and tables for the rigs of tests/foreign_rig.
 
 A report may lack what contract files of later dates have (`partly`, `weight`, `share`, `gap.horizons`, `per_run`, `closure`, `explanations`,
 `set_90`): it is then judged by what it has.
@@ -6,6 +6,7 @@ A report may lack what contract files of later dates have (`partly`, `weight`, `
 
 import math
 
+import foreign_exact
 import foreign_explanations
 import foreign_oracle
 
@@ -15,7 +16,8 @@ QUICK = [
     "pump.flow_ripple-8", "fluid.entrained_air-25", "fluid.warming-8", "line.wave-8", "valve.relief-8", "actuator.seal_friction-8",
     "arm.flexure-8", "sensor.pressure_lag-8", "sensor.skew-8", "pair-1", "pair-2", "pair-3", "values-1", "coloured-1", "daily-1", "daily-2",
     "spikes-1", "filters-1", "bias-8a", "drift-8a", "newcomer-bar-1", "newcomer-voltage_sign-1", "newcomer-ms-1",
-    "outside-2-15", "outside-3-3", "outside-7-15", "outside-8-1.5",
+    "outside-2-15", "outside-3-3", "outside-7-15", "outside-8-1.5", "exact-amp.lag", "exact-sensor.sign-p1", "exact-pair-1", "exact-triple-1",
+    "exact-noise_as_stated-1", "exact-noise_tripled-1", "parameter-b", "parameter-beta",
 ]
 
 CLAIMS = ("named", "tied", "partly")  # verdicts whose effects are said to be there
@@ -25,14 +27,6 @@ WEIGHTS = ((0, 0.1), (0.1, 0.3), (0.3, 0.5), (0.5, 0.7), (0.7, 0.9), (0.9, 1.0))
 
 
 # -- one case ---------------------------------------------------------------------------------------------------------------------------
-
-
-def is_it(true, effect):
-    """Whether an effect that was found is the true one (its signal too, where there is one), or has it in its tie class."""
-    if effect["id"] == true["id"]:
-        said = [name.split("=")[1].strip() for name in effect.get("names") or [] if name.replace(" ", "").startswith("signal=")]
-        return "signal" not in true or not said or true["signal"] in said
-    return true["id"] in (effect.get("tied_with") or [])
 
 
 def remark_found(groups, report):
@@ -74,19 +68,21 @@ def score(key, report, failure, seconds, told=None, sought=None):
                "seconds": seconds, "verdict": None, "said": failure, "right": False, "ended": report is not None, "any_effect": False,
                "instead": False, "confident_wrong": False, "extra": 0, "weights": [], "held_out": None, "horizons": [], "closure": None,
                "function_of": (key["outside"] or {}).get("function_of", ""), "remarked": False, "per_run": [], "explanations": [], "set_90": None,
-               "element": False, "oracle": foreign_oracle.compare(key, report, told, sought)}
+               "element": False, "effects": len(key["effects"]), "oracle": foreign_oracle.compare(key, report, told, sought)}
     if report is None:
         return outcome
     verdict, gap = report["verdict"], report.get("gap") or {}
     found = (report.get("effects") or []) if verdict in CLAIMS else []
-    matched = [any(is_it(true, effect) for effect in found) for true in key["effects"]]
-    extra = [effect for effect in found if not any(is_it(true, effect) for true in key["effects"])]
+    matched = [any(foreign_explanations.is_it(true, effect) for effect in found) for true in key["effects"]]
+    extra = [effect for effect in found if not any(foreign_explanations.is_it(true, effect) for true in key["effects"])]
     outcome.update(verdict=verdict, said=said_text(report), any_effect=bool(found), extra=len(extra), weights=weights(key, report),
                    held_out=gap.get("held_out"), horizons=gap.get("horizons") or [], closure=closure_share(report),
                    per_run=[entry.get("name") for entry in report.get("per_run") or []], explanations=foreign_explanations.weights(key, report),
                    set_90=foreign_explanations.likeliest_set(key, report))
     kind = key["class"]
-    if kind in ("single", "pair", "bias", "drift"):
+    if kind in foreign_exact.CLASSES:
+        outcome.update(foreign_exact.score(key, report, found))
+    elif kind in ("single", "pair", "bias", "drift"):
         outcome["right"] = all(matched)
         outcome["half"] = any(matched)
         outcome["instead"] = kind in ("bias", "drift") and bool(found) and not all(matched)
@@ -112,6 +108,8 @@ def truth_text(key):
         words.append("outside: " + key["outside"]["what"])
     if key["class"] == "newcomer":
         words.append("mistake: " + key["what"])
+    if key["class"] == "parameter":
+        words += [f"{value['name']} {value['model']:.4g} should be {value['true']:.4g}" for value in foreign_exact.wrong_values(key)]
     return " + ".join(words) or f"nothing missing ({key.get('what', '')})"
 
 
@@ -124,8 +122,13 @@ def said_text(report):
     if closure.get("id"):
         words.append(closure["id"])
     if report["verdict"] == "parameters":
-        words += [parameter["name"] for parameter in report.get("parameters") or []]
+        words += [f"{parameter['name']} = {figure(parameter.get('fitted'))}" for parameter in report.get("parameters") or []]
     return report["verdict"] + (": " + " + ".join(words) if words else "")
+
+
+def figure(value):
+    """A number as text; null, which JSON has for what is not a number, as a dash."""
+    return format(value, ".3g") if isinstance(value, (int, float)) else "-"
 
 
 # -- all cases --------------------------------------------------------------------------------------------------------------------------
@@ -183,6 +186,7 @@ def judge(outcomes):
     visible = [o for o in of("outside") if o["gap"] >= 3 and o["function_of"]]
     goal("outside, a function of measured signals, 3 and more: a closure on the right element", visible, lambda o: o["element"], 0.80)
     goal("the same: the closure takes 70 % of the gap", visible, lambda o: (o["closure"] or 0) >= 0.7, 0.90)
+    foreign_exact.goals(outcomes, goal)
     sets = [o for o in outcomes if o["set_90"]]
     goal("sets of 90 % that hold the truth", sets, lambda o: o["set_90"]["holds"], 0.90)
     for what, limit, value in (("explanations in such a set, median", 2.5, median([o["set_90"]["size"] for o in sets])),):
@@ -239,7 +243,7 @@ def table(outcomes, criteria, elapsed):
     if sets:
         held = sum(1 for s in sets if s["holds"])
         lines += ["", f"sets of 90 %: {held} of {len(sets)} hold the truth, {percent(held / len(sets))}; {median([s['size'] for s in sets]):g} explanations (median)"]
-    lines += horizon_lines(outcomes) + miss_lines(outcomes)
+    lines += horizon_lines(outcomes) + miss_lines(outcomes) + foreign_exact.lines(outcomes)
     times = sorted(o["seconds"] for o in outcomes)
     ended = sum(1 for o in outcomes if o["ended"])
     if times:
@@ -258,7 +262,8 @@ def groups_of(outcomes):
     for kind in ("nothing", "newcomer"):
         for what in sorted({o["what"] for o in outcomes if o["class"] == kind}):
             groups.append((f"{kind}, {what}", [o for o in outcomes if o["class"] == kind and o["what"] == what]))
-    return groups + [(f"outside, {title}", [o for o in outcomes if o["class"] == "outside" and low <= o["gap"] < high]) for title, low, high in SIZES]
+    groups += [(f"outside, {title}", [o for o in outcomes if o["class"] == "outside" and low <= o["gap"] < high]) for title, low, high in SIZES]
+    return groups + foreign_exact.groups(outcomes)
 
 
 def class_lines(outcomes):
@@ -300,18 +305,16 @@ def horizon_lines(outcomes):
     rows = by_horizon(outcomes)
     if not rows:
         return ["", "No report has gaps by horizon."]
-    text = lambda v: "-" if v is None else f"{v:.3g}"
     lines = ["", "held-out gap by horizon, medians, noise units: before, refitted, after"]
-    return lines + [f"  {title:10} {s:>6g} s  {n:>4} cases  {text(v[0]):>8} {text(v[1]):>8} {text(v[2]):>8}" for title, s, n, v in rows]
+    return lines + [f"  {title:10} {s:>6g} s  {n:>4} cases  {figure(v[0]):>8} {figure(v[1]):>8} {figure(v[2]):>8}" for title, s, n, v in rows]
 
 
 def miss_lines(outcomes):
     misses = [o for o in outcomes if not o["right"]]
     if not misses:
         return []
-    text = lambda v: format(v, ".3g") if isinstance(v, (int, float)) else "-"
     lines = ["", "Misses: case (gap as made) | truth | what was said | held-out gap before, refitted, after | time"]
     for o in misses:
-        gaps = ", ".join(text((o["held_out"] or {}).get(k)) for k in ("before", "refit_only", "after"))
+        gaps = ", ".join(figure((o["held_out"] or {}).get(k)) for k in ("before", "refit_only", "after"))
         lines.append(f"  {o['name']} ({o['gap']:.3g}) | {o['truth']} | {o['said']} | {gaps} | {o['seconds']:.0f} s")
     return lines

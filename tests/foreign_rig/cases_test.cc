@@ -5,36 +5,21 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "model/effects/catalogue.h"
 #include "model/terms/parameter_info.h"
 #include "runs/measured/measured_run.h"
 #include "settings/model_file.h"
-#include "tests/foreign_rig/write.h"
-#include "tests/rig_folder.h"
+#include "tests/foreign_rig/rig_folder.h"
 
 namespace foreign_rig {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ForeignCases : public hydro::testing::RigFolder {
- protected:
-  ForeignCases() : RigFolder("foreign_") {}
-
-  static Case CaseNamed(const std::string& name) { return CaseIn(AllCases(), name); }
-  Solved Write(const Case& c, const std::string& name) const {
-    const Options options{0.5, 500};
-    const Solved solved = Solve(c, options);
-    WriteRuns(c, solved, options, Folder(name));
-    WriteKey(c, solved, Folder(name) + ".json");
-    return solved;
-  }
-};
+class ForeignCases : public RigFolder {};
 
 // Tests that the five runs and the three held out are read as measured runs of several kinds.
 TEST_F(ForeignCases, RunsAreReadable) {
@@ -125,10 +110,20 @@ TEST_F(ForeignCases, CasesAreComplete) {
   EXPECT_EQ(kinds["bias"], 6);
   EXPECT_EQ(kinds["drift"], 6);
   EXPECT_EQ(kinds["newcomer"], 18);
-  EXPECT_EQ(kinds["outside"], 30);
+  EXPECT_EQ(kinds["outside"], 36);
+  EXPECT_EQ(kinds["exact"], 52);
+  EXPECT_EQ(kinds["parameter"], 16);
   EXPECT_EQ(names.size(), AllCases().size());
   EXPECT_EQ(seeds.size(), AllCases().size());
   for (const EffectForm& form : EffectForms()) EXPECT_TRUE(whats.contains(form.id)) << form.id;
+}
+
+// Tests that cases which were scored before keep their seeds: others come after them.
+TEST_F(ForeignCases, FormerCasesKeepTheirSeeds) {
+  EXPECT_EQ(AllCases()[0].name, "amp.lag-3");
+  EXPECT_EQ(AllCases()[0].seed, 50000u);
+  EXPECT_EQ(AllCases()[165].name, "outside-10-15");
+  EXPECT_EQ(AllCases()[165].seed, 165050495u);
 }
 
 // Tests that every number of the model is off, by no more than twice what its kind is known to.

@@ -8,8 +8,6 @@
 
 namespace foreign_rig {
 
-namespace {
-
 const char* NameOf(Signal signal) {
   switch (signal) {
     case Signal::kMotorSpeed:
@@ -25,6 +23,8 @@ const char* NameOf(Signal signal) {
   }
   return "";
 }
+
+namespace {
 
 Truth Lag(double s, uint64_t, Rig* rig) {
   rig->effects.lag = s;
@@ -231,6 +231,8 @@ const std::vector<OutsideForm>& OutsideForms() {
       {"a floor that shakes", "arm_torque", "", 1, 3000, &Outside::floor_shake},
       {"cushions near the ends", "arm_torque", "arm_angle", 10, 300000, &Outside::end_cushion},
       {"a case that stretches", "pump_torque", "dp", 5e-4, 0.4, &Outside::case_stretch},
+      {"a motor that fades while it is loaded", "pump_torque", "", 1e-3, 3, &Outside::motor_fade},
+      {"a torque on the pump that comes and goes slowly", "pump_torque", "", 0.01, 4, &Outside::slow_torque},
   };
   return forms;
 }

@@ -10,6 +10,9 @@
 
 namespace foreign_rig {
 
+// As model files and reports call it.
+const char* NameOf(Signal signal);
+
 using Named = std::vector<std::pair<std::string, double>>;
 
 struct Truth {

@@ -68,6 +68,8 @@ struct Outside {
   double floor_shake = 0;       // in-lbf on the arm
   double end_cushion = 0;       // in-lbf/rad^2 near the ends
   double case_stretch = 0;      // part of the displacement lost at 1000 psi
+  double motor_fade = 0;        // 1/s, part of the torque lost at its limit
+  double slow_torque = 0;       // in-lbf on the pump, a wave of the day's clock
 };
 
 // Small things that every real machine has, as a whole scaled by one number.

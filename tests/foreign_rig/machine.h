@@ -105,6 +105,7 @@ class Machine {
     kSense1b,
     kSense2a,
     kSense2b,
+    kFade,
     kStates
   };
   using State = std::array<double, kStates>;

@@ -35,6 +35,9 @@ double Machine::Torque(const State& x, double torque) const {
   torque = std::clamp(torque, -limit, limit);
   const double part = torque / v.torque_limit;
   torque *= 1 - rig_.outside.iron_saturation * part * part;
+  if (rig_.outside.motor_fade > 0) torque *= 1 - x[kFade];
+  if (rig_.outside.slow_torque != 0)
+    torque -= rig_.outside.slow_torque * std::sin(0.86 * (time() + day_.clock));
   torque += e.bias;
   if (e.cogging != 0) {
     const double turn = e.slots * x[kTheta] + e.cogging_phase;

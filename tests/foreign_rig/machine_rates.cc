@@ -58,9 +58,11 @@ Machine::Flows Machine::PumpRates(const State& x, double viscosity, State& rate)
     torque = x[kDrive2];
   }
   const double displacement = Displacement(x);
+  const double driven = Torque(x, torque);
   rate[kTheta] = x[kOmega];
-  rate[kOmega] =
-      (Torque(x, torque) - displacement * (pump_2 - pump_1) - PumpLosses(x, viscosity)) / v.rotor_inertia;
+  rate[kOmega] = (driven - displacement * (pump_2 - pump_1) - PumpLosses(x, viscosity)) / v.rotor_inertia;
+  const double load = driven / v.torque_limit;
+  rate[kFade] = rig_.outside.motor_fade * load * load * (1 - x[kFade]);
   const double supply = SupplyPressure(x);
   const double cross = CrossLeakage(x, pump_2 - pump_1, viscosity);
   const double outer_1 = v.outer_leakage / viscosity * (pump_1 - supply);

@@ -1,6 +1,7 @@
 // What a machine that goes on from another one has of it, and what of a start is free.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "tests/foreign_rig/machine.h"
@@ -29,6 +30,29 @@ TEST(MachineStart, TemperatureIsNotHandedOver) {
   Machine also_warm(rig, day);
   also_warm.ContinueFrom(warm);
   EXPECT_EQ(also_warm.celsius(), warm.celsius());
+}
+
+// Tests that a motor at its limit loses torque at the stated rate, slower as it loses, and that a machine
+// whose motor does not fade has all of it, also where it goes on from one whose motor does.
+TEST(MachineStart, FadingIsNotHandedOver) {
+  Rig steady;
+  steady.values.dry_torque = steady.values.viscous_torque = 0.001;
+  Rig fading = steady;
+  fading.outside.motor_fade = 0.5;
+  Day day;
+  day.bypass = true;
+  Machine tired(fading, day);
+  for (int i = 0; i < 25000; ++i) tired.Step(i % 2 == 0 ? 20 : -20);
+  const auto gain_of = [&](const Rig& rig) {
+    Machine machine(rig, day);
+    machine.ContinueFrom(tired);
+    for (int i = 0; i < 50; ++i) machine.Step(20);
+    return machine.motor_speed() - tired.motor_speed();
+  };
+  const double full = steady.values.torque_limit / steady.values.rotor_inertia * 50 * kStep;
+  EXPECT_NEAR(gain_of(steady) / full, 1, 0.01);
+  // dx/dt = 0.5 (1 - x)^3 over 0.5 s.
+  EXPECT_NEAR(gain_of(fading) / full, 1 / std::sqrt(1.5), 0.01);
 }
 
 // Tests which states of a start are free, and that a shift moves what it says.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace foreign_rig {
@@ -213,6 +214,21 @@ TEST(Machine, ContinuesExactly) {
   StepFor(&second, -2, 0.1);
   EXPECT_EQ(first.pressure_2(), second.pressure_2());
   EXPECT_EQ(first.motor_speed(), second.motor_speed());
+}
+
+// Tests that a torque of the day's clock turns the pump one way and, half a wave later, the other way.
+TEST(Machine, SlowTorqueComesAndGoes) {
+  Rig rig;
+  rig.values.dry_torque = 0.01;
+  rig.outside.slow_torque = 1;
+  for (const double clock : {0.0, std::numbers::pi / 0.86}) {
+    Day day;
+    day.bypass = true;
+    day.clock = clock;
+    Machine machine(rig, day);
+    StepFor(&machine, 0, 1);
+    EXPECT_GT(machine.motor_speed() * (clock == 0 ? -1 : 1), 5);
+  }
 }
 
 // Tests that play lets the vane turn freely before it takes the arm along.

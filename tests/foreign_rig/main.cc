@@ -1,5 +1,4 @@
-// hydro-foreign-rig: writes what a rig of the second generation records and, in another place, what was in
-// it.
+// hydro-foreign-rig: writes what a rig records and, in another place, what was in it.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -35,6 +35,7 @@ struct Recorder {
   double dropouts = 0;        // per second, all channels
   enum class Dropout { kMissing, kHeld } dropout = Dropout::kMissing;
   bool motor_speed = true, motor_angle = false;
+  double stated = 0;  // of each noise unit, what the sidecars state; 0: no word
 };
 
 // Of ordinary quality: all of the above in some measure. Rates from `slowest` to 2 kHz.

@@ -30,13 +30,17 @@ bool Compatible(const std::string& a, const std::string& b) {
                       [&](const auto& set) { return set.count(a) && set.count(b); });
 }
 
-std::vector<std::string> DrawPair(uint64_t seed) {
+std::vector<std::string> DrawEffects(uint64_t seed, size_t count) {
   Draw draw(seed, "pair");
-  const int count = static_cast<int>(EffectForms().size());
   for (;;) {
-    const std::string& a = EffectForms()[draw.Index(count)].id;
-    const std::string& b = EffectForms()[draw.Index(count)].id;
-    if (Compatible(a, b)) return {a, b};
+    std::vector<std::string> ids;
+    bool compatible = true;
+    while (ids.size() < count) {
+      const std::string& id = EffectForms()[draw.Index(static_cast<int>(EffectForms().size()))].id;
+      for (const std::string& other : ids) compatible = compatible && Compatible(other, id);
+      ids.push_back(id);
+    }
+    if (compatible) return ids;
   }
 }
 
@@ -109,13 +113,14 @@ void MakeOdd(const std::string& what, uint64_t seed, Solved* s) {
 namespace {
 
 std::vector<std::string> EffectsOf(const Case& c) {
-  if (c.kind == "pair") return DrawPair(c.seed);
-  if (c.kind == "single" || c.kind == "bias" || c.kind == "drift") return {c.what};
+  if (c.kind == "pair" || c.what == "pair") return DrawEffects(c.seed, 2);
+  if (c.what == "triple") return DrawEffects(c.seed, 3);
+  if (c.what.find('.') != std::string::npos) return {c.what};  // as all ids of effects have
   return {};
 }
 
 double SlowestRate(const Case& c, const std::vector<std::string>& ids) {
-  double slowest = c.kind == "newcomer" ? 500 : 200;
+  double slowest = IsExact(c) ? 1000 : c.kind == "newcomer" ? 500 : 200;
   for (const std::string& id : ids) slowest = std::max(slowest, FindEffect(id).slowest_rate);
   return slowest;
 }
@@ -145,6 +150,10 @@ void HideEffects(const Case& c, const std::vector<std::string>& ids, const GapMe
     Sized sized{form.smallest, {0, 0}, true};
     if (form.smallest < form.largest) sized = FindSize(meter, plain, form.smallest, form.largest, c.gap, put);
     s->effects.push_back(form.put(sized.size, c.seed, &s->rig));
+    if (c.inverted != Signal::kNone) {
+      s->rig.effects.inverted = c.inverted;
+      s->effects.back().signal = NameOf(c.inverted);
+    }
     s->reached = s->reached && sized.reached;
   }
 }
@@ -184,6 +193,7 @@ Solved Solve(const Case& c, const Options& options) {
   if (c.kind == "newcomer") s.mistake = FindMistake(c.what);
   if (c.kind == "nothing") MakeOdd(c.what, c.seed, &s);
   ApplyDaily(s.daily, c.seed, &s.plans);
+  if (IsExact(c)) MakeExact(c, &s);
 
   std::array<double, kChannels> noise{};
   for (int i = 0; i < kChannels; ++i) noise[i] = NoiseUnit(s.recorder.channels[i]);
@@ -197,10 +207,11 @@ Solved Solve(const Case& c, const Options& options) {
     s.gap = parts.beyond;
     s.gap_at_truth = parts.gap;
   }
-  Enrich(c, meter, &s);
+  if (!IsExact(c)) Enrich(c, meter, &s);
   Rig as_given = plain;
   as_given.values = s.given;
   s.gap_of_model = meter.Between(s.rig, as_given);
+  if (c.kind == "parameter") s.gap = s.gap_of_model;
   return s;
 }
 

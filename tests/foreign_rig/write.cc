@@ -13,11 +13,12 @@ namespace foreign_rig {
 
 namespace {
 
-void WriteModel(const Values& given, const std::string& file) {
+void WriteModel(const Values& given, bool exact, const std::string& file) {
   std::ofstream out = Open(file);
   out << "# The rig as its makers describe it. Units: in, lbf, s, psi, rad, V.\nname = \"test "
          "rig\"\n\n[parameters]\n";
   for (const ValueForm& form : ValueForms()) out << form.name << " = " << Float(given.*form.value) << "\n";
+  if (exact) return;
   // As DrawGiven() draws them. Of a value that is 0 no part can be known.
   out << "\n[uncertainty]\n";
   for (const ValueForm& form : ValueForms()) {
@@ -87,17 +88,28 @@ void WriteSidecar(const Plan& plan, const Recorder& recorder, const std::string&
     out << "arm_angle_rad = " << Float(std::round(plan.day.arm_angle * 1e4) / 1e4) << "\n";
   out << "bypass = " << (plan.day.bypass ? "true" : "false")
       << "\n\n[columns]\ntime = \"time\"\nvoltage = \"command\"\n";
-  if (recorder.motor_speed) out << "motor_speed = \"speed\"\n";
-  if (recorder.motor_angle) out << "motor_angle = \"shaft\"\n";
-  out << "p1 = \"p_a\"\np2 = \"p_b\"\n";
-  if (!plan.day.clamped) out << "arm_angle = \"arm\"\n";
+  struct Column {
+    std::string signal, name;
+    int channel;
+  };
+  std::vector<Column> columns;
+  if (recorder.motor_speed) columns.push_back({"motor_speed", "speed", kSpeed});
+  if (recorder.motor_angle) columns.push_back({"motor_angle", "shaft", kShaft});
+  columns.insert(columns.end(), {{"p1", "p_a", kSide1}, {"p2", "p_b", kSide2}});
+  if (!plan.day.clamped) columns.push_back({"arm_angle", "arm", kArmAngle});
+  for (const Column& column : columns) out << column.signal << " = " << Quoted(column.name) << "\n";
+  if (recorder.stated == 0) return;
+  out << "\n[noise]\n";
+  for (const Column& column : columns)
+    out << column.signal << " = " << Float(recorder.stated * NoiseUnit(recorder.channels[column.channel]))
+        << "\n";
 }
 
 }  // namespace
 
 void WriteRuns(const Case& c, const Solved& solved, const Options& options, const std::string& folder) {
   std::filesystem::create_directories(folder);
-  WriteModel(solved.given, folder + "/model.toml");
+  WriteModel(solved.given, IsExact(c), folder + "/model.toml");
   const Units units = UnitsOf(solved.mistake);
   for (size_t i = 0; i < solved.plans.size(); ++i) {
     const Plan& plan = solved.plans[i];
