@@ -54,11 +54,14 @@ void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   MatrixXd information = normal.topLeftCorner(p, p);
   VectorXd gradient = normal.topRightCorner(p, 1);
   if (n > p && p > 0) {
-    MatrixXd inner = normal.block(p, p, n - p, n - p);
-    inner.diagonal().array() += 1e-12 * inner.diagonal().maxCoeff() + 1e-300;
+    // Each number of the start is measured by its own size, whatever its unit.
+    const VectorXd scale = (normal.diagonal().segment(p, n - p).array() + 1e-300).rsqrt();
+    MatrixXd inner = scale.asDiagonal() * normal.block(p, p, n - p, n - p) * scale.asDiagonal();
+    inner.diagonal().array() += 1e-12;
+    const MatrixXd cross = normal.block(0, p, p, n - p) * scale.asDiagonal();
     const Eigen::LDLT<MatrixXd> solve(inner);
-    information -= normal.block(0, p, p, n - p) * solve.solve(normal.block(p, 0, n - p, p));
-    gradient -= normal.block(0, p, p, n - p) * solve.solve(normal.block(p, n, n - p, 1));
+    information -= cross * solve.solve(cross.transpose());
+    gradient -= cross * solve.solve(scale.asDiagonal() * normal.block(p, n, n - p, 1));
   }
   run->information.assign(information.data(), information.data() + information.size());
   run->gradient.assign(gradient.data(), gradient.data() + gradient.size());
@@ -103,7 +106,7 @@ class FitProblem {
     if (!free_.empty() && runs_.size() > kFewRuns) EliminateStartsFirst(&solver);
     solver.max_num_iterations = options.most_iterations;
     solver.function_tolerance = options.tolerance;
-    solver.parameter_tolerance = 1e-7;
+    solver.parameter_tolerance = 0;  // the numbers have different units
     solver.initial_trust_region_radius = options.first_radius;
     solver.gradient_tolerance = 0;
     if (!options.line_search) solver.max_num_line_search_step_size_iterations = 0;

@@ -55,9 +55,15 @@ bool RunCost::Evaluate(double const* const* /*parameters*/, double* residuals, d
     out(0) = std::sqrt(normal(normal.rows() - 1, normal.rows() - 1));
     return true;
   }
-  // [J r]' [J r] = V L V'; the rows of L^1/2 V' serve as well as those of [J r].
-  const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(normal);
-  const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
+  // [J r]' [J r] = V L V'; the rows of L^1/2 V' serve as well as those of [J r]. Each column is measured by
+  // its own size: rounding would lose small ones, and in other units others are small.
+  VectorXd size = normal.diagonal().cwiseSqrt();
+  for (double& one : size) one = one > 0 ? one : 1;
+  const VectorXd scale = size.cwiseInverse();
+  const maths::SymmetricEigensystem eigen =
+      maths::SymmetricEigensystemOf(scale.asDiagonal() * normal * scale.asDiagonal());
+  const MatrixXd root =
+      eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose() * size.asDiagonal();
   out = root.col(n);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   int block = 0;

@@ -13,6 +13,7 @@
 #include "diagnose/recording/windows.h"
 #include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
+#include "tests/model_in_units.h"
 
 namespace hydro::testing {
 namespace {
@@ -49,6 +50,51 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_NEAR(ValueOf(fitted, "c_E"), 3e-5, 0.05 * 3e-5);
   EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
   EXPECT_EQ(fitted.runs.size(), runs.size());
+}
+
+// The same run with its pressures in the units of another system.
+void ConvertTo(const UnitSystem& to, diagnose::RunData* run) {
+  const double pressure = Factor("psi", 0, {}, to);
+  for (diagnose::SignalData& signal : run->signals) {
+    if (signal.channel != model::Channel::kP1 && signal.channel != model::Channel::kP2) continue;
+    for (double& value : signal.values) value *= pressure;
+    signal.noise *= pressure;
+  }
+  for (const size_t state : {size_t{model::kP1}, size_t{model::kP2}}) {
+    run->start[state] *= pressure;
+    run->start_error[state] *= pressure;
+  }
+  run->start_error[model::kReturned] *= Factor("in^3", 0, {}, to);
+}
+
+// Tests that a fit ends at the same values in all systems of units: it once stopped early where pressures are
+// large numbers, and what was left was said to be physics.
+TEST(Fit, EndsAtTheSameValuesInAllUnits) {
+  const std::vector<std::string> free = {"k_1", "D", "J", "b", "T_s", "beta", "c", "c_E", "c_I", "p_3"};
+  model::ModelDescription truth = Table1With(), given = truth;
+  given.parameters.k_1 *= 1.03;
+  given.parameters.D *= 0.98;
+  given.parameters.b *= 0.8;
+  given.parameters.c *= 1.02;
+  given.parameters.c_E *= 1.4;
+  const auto fitted_in = [&](const UnitSystem& units) {
+    std::vector<diagnose::RunData> runs = OneOfEach(truth, 0.5, 1);
+    for (diagnose::RunData& run : runs) ConvertTo(units, &run);
+    return FitRuns(WithFree(InUnits(given, units), free), runs);
+  };
+  const diagnose::Fitted paper = fitted_in(kSystems[0]);
+  ASSERT_TRUE(paper.ok()) << paper.failure;
+  for (const UnitSystem& units : kSystems) {
+    const diagnose::Fitted other = fitted_in(units);
+    ASSERT_TRUE(other.ok()) << other.failure;
+    EXPECT_NEAR(other.squared_gap() / paper.squared_gap(), 1, 1e-4) << units.length;
+    for (const std::string& name : free) {
+      const model::ParameterInfo& info = model::BaseParameters()[model::BasePlace(name)].info;
+      const double factor = Factor(info.unit, info.arm, {}, units);
+      EXPECT_NEAR(ValueOf(other, name) / (factor * ValueOf(paper, name)), 1, 2e-3)
+          << name << ", " << units.length;
+    }
+  }
 }
 
 // Tests that a start that has gone where the run says nothing, below p_3, comes back: what was measured holds
