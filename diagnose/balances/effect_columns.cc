@@ -91,7 +91,9 @@ void PutWithMemory(ColumnMaker* maker, size_t v, const std::string& parameter, i
     }
     if (!(largest > 0) || !std::isfinite(largest)) return;
     if (pass == 1 || variant.is_time) return maker->Put(column, run, change, 1 / amount);
-    amount *= kSmallChange / largest;
+    // An effect that hardly acts in this run must not leave the range in which it means something.
+    const model::ParameterInfo& info = ParameterOf(variant.at.id, parameter);
+    amount = std::min(amount * kSmallChange / largest, 0.5 * info.max);
   }
 }
 
