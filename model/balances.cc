@@ -192,16 +192,6 @@ double AboveHeldLevel(const EquationData& m, const KnownMotion& at, const double
   return at.*pressure - (first - flow_1 / slope);
 }
 
-// Whether an ideal one-way valve is open: the pressure is low and falls less than it would with the valve
-// closed. A pressure counts as low if it is above p_3 by no more than an accumulator's pressure changes,
-// which is far below what a pump produces.
-bool PassesOil(const EquationData& m, double pressure, double closed_rate, double rate) {
-  constexpr double kLow = 0.1, kLess = 0.2;
-  if (!m.ideal_valves || pressure > m.parameters.p_3 + kLow * m.parameters.T_pmax / m.parameters.D)
-    return false;
-  return closed_rate < 0 && rate - closed_rate > -kLess * closed_rate;
-}
-
 bool RemembersCommands(const Effect& effect) {
   // An effect that remembers commands waits for the time at which it passes one on.
   return effect.NextStop(-kUnbounded) < kUnbounded;
@@ -244,13 +234,15 @@ void BalanceEquations::CopyStates(const KnownMotion& at, double* state) const {
   std::copy(own_.begin(), own_.end(), state + first_state_);
 }
 
-void BalanceEquations::Start(const KnownMotion& motion) {
+void BalanceEquations::Start(const KnownMotion& motion, bool filled) {
   const EquationData& data = equations_.data();
   double state[kMaxStates], rate[kMaxStates];
   std::fill(own_.begin(), own_.end(), 0.0);
   CopyStates(motion, state);
   Terms<double> x;
   EvaluateMotion<double>(data, data, motion, state, motion.pump_direction < 0 ? -1 : 1, 1, rate, x);
+  const double returned = filled ? -PressedIn(x, data.parameters.p_3) : 0;
+  x.returned = &returned;
   ForEachEffect(data, data, x, [&](const Effect& effect) { effect.Start(x, state); });
   std::copy(state + first_state_, state + data.states, own_.begin());
   since_jacobian_ = kSamplesOfAJacobian;
@@ -264,9 +256,11 @@ void BalanceEquations::OwnRates(const KnownMotion& motion, double* state, double
   EvaluateMotion<double>(data, data, motion, state, pump, arm, rates, x);
   Mode mode;
   mode.pump = static_cast<int8_t>(pump);
-  mode.valve_1 = PassesOil(data, x.p1, x.free_rate_1, motion.p1_rate) ? 1 : 0;
-  mode.valve_2 = PassesOil(data, x.p2, x.free_rate_2, motion.p2_rate) ? 1 : 0;
   x.mode = &mode;
+  // What a side's pressure does not keep has gone to the accumulator: through its one-way valve, or through
+  // what the model lacks. In the sum of both sides the errors of the pump's flow cancel.
+  x.valve_flow_1 += x.V_1 / x.beta_1 * (x.free_rate_1 - motion.p1_rate);
+  x.valve_flow_2 += x.V_2 / x.beta_2 * (x.free_rate_2 - motion.p2_rate);
   x.p_3_rate = 0;
   ForEachEffect(data, data, x, [&](const Effect& effect) { effect.AddBalances(x, rates); });
   std::copy(rates + first_state_, rates + data.states, rate);

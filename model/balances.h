@@ -51,8 +51,9 @@ class BalanceEquations {
   // order.
   bool remembers() const;
 
-  // Sets the states of effects to their values in steady motion at this instant.
-  void Start(const KnownMotion& motion);
+  // Sets the states of effects to their values in steady motion at this instant. `filled`: the accumulator
+  // has filled the sides, from where all pressures were p_3; else it is at p_3 itself.
+  void Start(const KnownMotion& motion, bool filled = false);
   // Advances the states of effects to the next sample. The voltage of `from` is held until then.
   void Advance(const KnownMotion& from, const KnownMotion& to);
   // The motor's torque at an instant before its command acts; `voltage` is the voltage held until then.

@@ -58,8 +58,8 @@ inline constexpr size_t kTurn = 6;
 // psi, four numbers: the waves under way in the lines of line.wave. For each side: the pump's pressure less
 // the actuator's, and the line's flow times its impedance I w.
 inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
-// in^3: the volume that the accumulator of accumulator.stiffness has already taken in, so that its pressure
-// begins above p_3.
+// in^3: the volume by which the accumulator and the sides together hold more oil than where all of them are
+// at p_3. The accumulator's pressure begins where what the sides' oil is compressed by is missing from it.
 inline constexpr size_t kReturned = 11;
 
 struct Response {

@@ -30,10 +30,11 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
   if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
   evaluate();
+  const T returned = base[kReturned] - PressedIn(terms, numbers.parameters.p_3);
   for (const auto& effect : data.effects) {
     terms.own = numbers.own.data() + effect->first_parameter();
     terms.waves = base + kWaves;
-    terms.returned = base + kReturned;
+    terms.returned = &returned;
     effect->Start(terms, state);
     effect->StartMode(terms, &mode);
   }

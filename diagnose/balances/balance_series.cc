@@ -63,7 +63,7 @@ void WalkAlong(const model::ModelDescription& model, const RunMotion& run, size_
                size_t last = std::numeric_limits<size_t>::max()) {
   model::BalanceEquations equations(model, run.options);
   const bool remembers = equations.remembers();
-  if (remembers) equations.Start(run.at.front());
+  if (remembers) equations.Start(run.at.front(), true);  // a recording begins in motion
   for (size_t k = 0; k < std::min(last, run.size()); ++k) {
     if (remembers && k > 0) equations.Advance(run.at[k - 1], run.at[k]);
     if (k % stride == 0) visit(k, equations);

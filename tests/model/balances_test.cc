@@ -101,8 +101,10 @@ struct Left {
   double torque = 0, flow = 0, arm = 0, level = 0, drive = 0, reading = 0;
 };
 
-Left LeftAlong(const model::ModelDescription& description, const model::ActuatorOptions& options) {
-  const std::vector<Sample> samples = Simulated(description, options);
+// What the balances of `description` leave along the motion of `machine`.
+Left LeftAlong(const model::ModelDescription& machine, const model::ModelDescription& description,
+               const model::ActuatorOptions& options) {
+  const std::vector<Sample> samples = Simulated(machine, options);
   model::BalanceEquations equations(description, options);
   equations.Start(samples[0].motion);
   Left most;
@@ -138,7 +140,7 @@ TEST(Balances, VanishAlongTheMotion) {
     const model::ModelDescription machine = effect.id.empty() ? Table1Model() : Table1Model({effect});
     for (const model::ActuatorOptions& options : AllWays()) {
       if (model::BalanceEquations(machine, options).has_states()) continue;
-      const Left left = LeftAlong(machine, options);
+      const Left left = LeftAlong(machine, machine, options);
       const std::string what = effect.id + (options.bypass                         ? " bypass"
                                             : options.shaft == model::Shaft::kFree ? " free"
                                                                                    : " clamped");
@@ -164,7 +166,7 @@ TEST(Balances, FollowTheStatesOfEffects) {
     for (const model::ActuatorOptions& options : AllWays()) {
       if (!model::BalanceEquations(machine, options).has_states()) continue;
       ++tested;
-      const Left left = LeftAlong(machine, options);
+      const Left left = LeftAlong(machine, machine, options);
       const std::string what = info.id + (options.bypass                         ? " bypass"
                                           : options.shaft == model::Shaft::kFree ? " free"
                                                                                  : " clamped");
@@ -177,6 +179,23 @@ TEST(Balances, FollowTheStatesOfEffects) {
     }
   }
   EXPECT_GE(tested, 5 * AllWays().size());
+}
+
+// Tests that an accumulator's pressure is found again where displacement and leakage are wrong: what the
+// pump moves leaves one side and enters the other, so the oil that the sides hold says what the accumulator
+// has.
+TEST(Balances, FollowTheAccumulatorWithWrongFlows) {
+  const model::ModelDescription machine = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
+  model::ModelDescription wrong = machine;
+  wrong.parameters.D *= 1.05;
+  wrong.parameters.c_I *= 2;
+  for (const model::ActuatorOptions& options : AllWays()) {
+    const Left left = LeftAlong(machine, wrong, options);
+    EXPECT_LT(left.level, 2e-2) << options.initial_pressure;
+    if (!options.bypass) {
+      EXPECT_GT(left.flow, 2e-2) << "nothing is wrong";
+    }
+  }
 }
 
 // Expects At's derivative by unknown `u` to be the difference quotient of the machines beside.

@@ -273,17 +273,24 @@ TEST(Response, DerivativesByTheUnseenStart) {
 }
 
 // Tests that an accumulator which has taken in some oil already begins with the pressure of that, holds both
-// sides at it, and has the derivative.
+// sides at it, has the derivative, and lacks what the sides' oil is compressed by.
 TEST(Response, AccumulatorThatBeginsFull) {
   const model::ModelDescription model = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
-  model::StartState start = SomeStart(110, 110);
+  model::StartState start = SomeStart(Table1().p_3, Table1().p_3);
   start[model::kReturned] = 0.02;
   const model::Response full = model::Respond(model, LevelsFor(kHoldings[1]), start, {}, {});
   const auto p1 = static_cast<size_t>(model::Channel::kP1), p2 = static_cast<size_t>(model::Channel::kP2);
   EXPECT_NEAR(full.values[p1][0], Table1().p_3 + 60, 1e-9);
   EXPECT_NEAR(full.values[p2][0], Table1().p_3 + 60, 1e-9);
-  start[model::kReturned] = 0;
+  start = SomeStart(110, 110);
   EXPECT_NEAR(model::Respond(model, LevelsFor(kHoldings[1]), start, {}, {}).values[p1][0], 110, 1e-9);
+  // A side at 1500 psi has pressed in oil that the accumulator lacks, and the other side stands at what is
+  // left.
+  start = SomeStart(1500, 0);
+  start[model::kArmAngle] = 0;
+  const double pressed_in = Table1().V_ms / Table1().beta * (1500 + 0 - 2 * Table1().p_3);
+  EXPECT_NEAR(model::Respond(model, LevelsFor(kHoldings[1]), start, {}, {}).values[p2][0],
+              Table1().p_3 - 3e3 * pressed_in, 1e-9);
   for (const double p : {110.0, 200.0}) {
     start = SomeStart(p, p + 40);
     start[model::kReturned] = 0.02;

@@ -14,22 +14,18 @@ struct LoadedBySpring {
   }
 };
 
-[[maybe_unused]] const bool kAccumulatorStiffnessAdded = AddToCatalogue(
-    {.info = {.id = "accumulator.stiffness",
-              .summary = "the accumulator's pressure rises with what is returned to it",
-              .equation = "p3 rises by stiffness per volume returned to the accumulator",
-              .confused_with = "parameter p3, accumulator.gas",
-              .parameters = {{.name = "stiffness",
-                              .unit = "psi/in^3",
-                              .meaning = "pressure per volume",
-                              // From hardly noticeable to nearly as stiff as the oil. With a stiff
-                              // accumulator the pressure settles where leakage into it equals leakage out of
-                              // it, which a fit with a small stiffness does not predict.
-                              .starts = {0.003, 0.03, 0.3},
-                              .scale = Scale::kOilStiffness,
-                              .example = 3000}},
-              .remembers_flow = true},
-     .make = MakeEffect<Accumulator<LoadedBySpring>>});
+[[maybe_unused]] const bool kAccumulatorStiffnessAdded =
+    AddToCatalogue({.info = {.id = "accumulator.stiffness",
+                             .summary = "the accumulator's pressure rises with what is returned to it",
+                             .equation = "p3 rises by stiffness per volume returned to the accumulator",
+                             .confused_with = "parameter p3, accumulator.gas",
+                             .parameters = {{.name = "stiffness",
+                                             .unit = "psi/in^3",
+                                             .meaning = "pressure per volume",
+                                             .scale = Scale::kOilStiffness,
+                                             .example = 3000}},
+                             .remembers_flow = true},
+                    .make = MakeEffect<Accumulator<LoadedBySpring>>});
 
 }  // namespace
 

@@ -26,8 +26,6 @@ Tolerance ToleranceOf(const std::string& effect, const Comparison& where) {
   // Leakage and friction change exponentially with time, by a half in these runs where they show in the
   // torque.
   if (effect == "fluid.warming") return {.ratio = 0.45};
-  // When exactly a valve opens and closes is lost in the smoothing, and its oil counts from then on.
-  if (effect == "accumulator.stiffness") return {.ratio = 0.1};
   // Except in the slow run, the pump passes the speeds of the excess within the smoothing.
   if (effect == "pump.stribeck" && where.run != "slow") return {.correlation = 0.85, .ratio = 0.2};
   // In the slow run the shaft stops and starts within the smoothing, where friction in proportion to the
