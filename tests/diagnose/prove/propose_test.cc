@@ -157,6 +157,25 @@ TEST(Propose, NothingMissing) {
   for (const char* base : {"k_1", "J", "b", "T_s", "beta", "k_2", "J_a"}) EXPECT_TRUE(shown(base)) << base;
 }
 
+// Tests that an effect of which one amount comes out just below 0, where it can only add, is proposed with
+// that amount at 0: these seals do not resist more at speed, and noise makes that part negative half the
+// time.
+TEST(Propose, AnAmountOfNothing) {
+  const model::ModelDescription truth =
+      Table1With({{"actuator.seal_friction", {{"coulomb", 300}, {"viscous", 0}}, {}}});
+  size_t at_zero = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const std::vector<diagnose::RunData> runs = RunsOf(truth, seed);
+    const Proposed proposed = Propose(ContextOf(runs, {"actuator.seal_friction"}), Allowed());
+    const size_t place = PlaceOf(proposed, "actuator.seal_friction");
+    ASSERT_LT(place, proposed.proposals.size()) << "seed " << seed;
+    const model::ModelDescription& model = proposed.proposals[place].model;
+    EXPECT_NEAR(ValueOf(model, "actuator.seal_friction", "coulomb"), 300, 60);
+    at_zero += ValueOf(model, "actuator.seal_friction", "viscous") == 0 ? 1 : 0;
+  }
+  EXPECT_GT(at_zero, 0) << "no amount was negative: this shows nothing";
+}
+
 // Tests that a bypass whose pressures nobody measured says nothing of the oil, and nothing of the arm.
 TEST(Propose, NoOilWithoutPressures) {
   const std::vector<diagnose::RunData> runs =
