@@ -38,6 +38,7 @@ size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
   for (const Change& change : MayBeNone(sets->context(), proof)) {
     const size_t without = sets->Without(proof.best, change);
     if (without >= sets->size() || without == proof.best) continue;
+    sets->RefineForReport(without);  // as well fitted as what it is to replace
     const GapFall fall = FallOf((*sets)[without].near, (*sets)[proof.best].near);
     if (!fall.Exceeds(kPartOfValues)) return without;
   }
