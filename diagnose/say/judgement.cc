@@ -21,8 +21,10 @@ namespace {
 constexpr double kNoiseAndAsMuchAgain = 2;
 // In noise units, over whole runs, which have many residuals: the noise is known to about 10 %.
 constexpr double kWholeRunsAtTheNoise = 1.15;
-// As a fraction of the squared gap above the noise, for exact sensors.
-constexpr double kNearlyNothing = 0.01;
+// As a fraction of the squared gap above the noise. No machine's equations are true to better than a
+// hundredth, so what is left of a gap beyond that is no finding, however fine the sensors are. Where all of
+// them are exact, a tenth is as good: integrals of values that are off in the fourth digit show.
+constexpr double kNearlyNothing = 1e-4, kNearlyNothingOfExact = 0.01;
 
 // The horizon with a gap that is nearest to 0.4 s, by their ratio; null where no horizon has one.
 const HorizonGap* DecidingHorizon(const Diagnosis& d) {
@@ -35,11 +37,12 @@ const HorizonGap* DecidingHorizon(const Diagnosis& d) {
   return near;
 }
 
-// Whether a gap is closed: it is not above `limit` times the noise that the samples show. If all sensors are
-// exact, what is left is compared with what there was before.
+// Whether a gap is closed: it is not above `limit` times the noise that the samples show, or next to nothing
+// is left of what there was before.
 bool IsClosed(const Diagnosis& d, const BeforeAfter& gap, double limit, bool exact) {
   const double left = gap.after * gap.after - 1, before = gap.before * gap.before - 1;
-  return gap.after <= limit * d.noise_shown || (exact && left <= kNearlyNothing * before);
+  return gap.after <= limit * d.noise_shown ||
+         left <= (exact ? kNearlyNothingOfExact : kNearlyNothing) * before;
 }
 
 // The first horizon that leaves more than noise; null: none. Errors of values grow at most in proportion to

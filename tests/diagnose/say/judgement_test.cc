@@ -53,6 +53,14 @@ TEST(VerdictOn, WindowsDecide) {
   EXPECT_EQ(whole.Of(), Verdict::kPartly) << "where whole runs judge, they are far from the noise";
 }
 
+// Tests that a hundredth of a large gap is no part that is missing: fine sensors see the fourth digit of
+// values, and no machine's equations are truer.
+TEST(VerdictOn, AHundredthIsNothing) {
+  EXPECT_EQ(Judged({348, 60, 1.9}, {2740, 500, 18}).Of(), Verdict::kNamed);
+  EXPECT_EQ(Judged({348, 60, 4}, {2740, 500, 18}).Of(), Verdict::kPartly);
+  EXPECT_EQ(Judged({348, 60, 1.9}, {2740, 500, 40}).Of(), Verdict::kPartly);
+}
+
 // Tests that gaps that are not finite reject nothing.
 TEST(VerdictOn, WhatCannotBeFollowedRejectsNothing) {
   Judged one({kInfinite, std::nan(""), 1.2}, {std::nan(""), std::nan(""), std::nan("")});
