@@ -160,13 +160,39 @@ bool IsMotorAlone(const std::vector<runs::MeasuredRun>& runs) {
   });
 }
 
+// The effects of --effect are looked for beside those of a list.
+void AddOwnIds(std::vector<std::string>* ids) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
+    if (!model::IsBuiltIn(info.id) && std::find(ids->begin(), ids->end(), info.id) == ids->end())
+      ids->push_back(info.id);
+  }
+}
+
+// Torques are measured by k_1 and k_2, so their values in single runs cannot be told.
+std::vector<std::string> SplitPerRun(const std::string& text) {
+  const auto measures = [](const std::string& name) { return name == "k_1" || name == "k_2"; };
+  std::vector<std::string> names = SplitNames("--per-run", text);
+  const auto found = std::find_if(names.begin(), names.end(), measures);
+  if (found == names.end()) return names;
+  std::vector<std::string> allowed;
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
+    if (!measures(parameter.info.name)) allowed.push_back(parameter.info.name);
+  }
+  throw InputError("--per-run: found " + Quoted(*found) +
+                   ", by which torques are measured, allowed names separated by commas, of " +
+                   QuotedList(allowed));
+}
+
 Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const model::ModelDescription& model,
                           const Diagnoser& diagnose, const ProgressCallback& report_progress,
                           bool* motor_alone) {
   DiagnoseOptions options;
-  if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
+  if (!request.effects.empty()) {
+    options.effects = ReadEffectList(request.effects);
+    AddOwnIds(&options.effects);
+  }
   if (!request.free.empty()) options.free = SplitNames("--free", request.free);
-  if (!request.per_run.empty()) options.per_run = SplitNames("--per-run", request.per_run);
+  if (!request.per_run.empty()) options.per_run = SplitPerRun(request.per_run);
   options.jobs = request.jobs;
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
@@ -274,25 +300,27 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   std::vector<runs::MeasuredRun>& runs = fitted.runs;
   runs.insert(runs.end(), held_out.runs.begin(), held_out.runs.end());
   for (const runs::MeasuredRun& run : runs) CheckUsable(run);
+  // Nothing is printed before all of the input was found usable.
+  std::string text;
   for (const runs::MeasuredRun& run : runs) {
-    std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);
+    text += "checklist of run " + Printable(run.name) + "\n";
     for (const ChecklistLine& line : Checklist(model, run, request.si))
-      std::fputs((Printable(Written(line)) + "\n").c_str(), out);
-    std::fputs("\n", out);
+      text += Printable(Written(line)) + "\n";
+    text += "\n";
   }
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
-  for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {
-    for (const std::string& line : *lines) std::fputs((Printable(line) + "\n").c_str(), out);
+  for (const std::vector<std::string>* lines : {&report.wrong, &report.limits, &report.unjudged}) {
+    for (const std::string& line : *lines) text += Printable(line) + "\n";
   }
-  if (!report.judged) {
-    std::fputs("whether these recordings are right cannot be told before the model predicts them\n", out);
+  if (!report.unjudged.empty()) {
+    text += "whether these recordings are right cannot be told from them and this model\n";
   } else if (report.wrong.empty()) {
-    std::fprintf(out,
-                 "nothing %swrong was found in the recordings, as far as the model as given predicts them: a "
-                 "rig that differs much from it can hide a mistake\n",
-                 report.doubtful ? "that is surely " : "");
+    text += std::string("nothing ") + (report.doubtful ? "that is surely " : "") +
+            "wrong was found in the recordings, as far as the model as given predicts them: a rig that "
+            "differs much from it can hide a mistake\n";
   }
-  return report.wrong.empty() && report.judged ? 0 : 1;
+  std::fputs(text.c_str(), out);
+  return report.wrong.empty() && report.unjudged.empty() ? 0 : 1;
 }
 
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err) {

@@ -90,14 +90,41 @@ std::vector<std::string> CorrectSensors(std::vector<runs::MeasuredRun>* runs,
   return std::move(compared.remarks);
 }
 
-std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
-  if (unpredicted.empty()) return "";
-  std::vector<std::string> names;
-  names.reserve(unpredicted.size());
-  for (const size_t r : unpredicted) names.push_back(runs[r].name);
-  return RunsNamed(names) +
-         ": not predicted at all by the model as given, and no known mistake of a recording explains that: "
-         "look at columns, shaft, bypass and the model's units";
+// What the balances of an unbalanced run would need.
+std::string Lacks(const runs::MeasuredRun& run) {
+  if (!run.motor_speed.measured() && !run.motor_angle.measured())
+    return "neither motor_speed nor motor_angle was recorded";
+  if (run.bypass || (run.p1.measured() && run.p2.measured()))
+    return "no stretch of it without gaps is long enough";
+  const bool one = run.p1.measured() || run.p2.measured();
+  return one ? (run.p1.measured() ? "p2 was not recorded" : "p1 was not recorded")
+             : "p1 and p2 were not recorded (of a motor alone, the sidecar says bypass = true)";
+}
+
+std::vector<std::string> UnjudgedLines(const UnjudgedRuns& unjudged,
+                                       const std::vector<runs::MeasuredRun>& runs) {
+  std::vector<std::string> lines;
+  const auto named = [&](const std::vector<size_t>& some) {
+    std::vector<std::string> names;
+    names.reserve(some.size());
+    for (const size_t r : some) names.push_back(runs[r].name);
+    return RunsNamed(names);
+  };
+  if (!unjudged.unpredicted.empty()) {
+    lines.push_back(
+        named(unjudged.unpredicted) +
+        ": not predicted at all by the model as given, and no known mistake of a recording explains that: "
+        "look at columns, shaft, bypass and the model's units");
+  }
+  if (!unjudged.at_rest.empty()) {
+    lines.push_back(named(unjudged.at_rest) +
+                    ": signs, units and columns could not be checked, because the motor hardly turns");
+  }
+  for (const size_t r : unjudged.unbalanced) {
+    lines.push_back(RunNamed(runs[r].name) + ": signs, units and columns could not be checked, because " +
+                    Lacks(runs[r]));
+  }
+  return lines;
 }
 
 std::string MendFirstSentence(const CheckedRecordings& checked) {
@@ -131,13 +158,16 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   CheckedRecordings checked;
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  for (const runs::MeasuredRun& run : all) CheckUsable(run);
+  for (const runs::MeasuredRun& run : all) {
+    CheckUsable(run);
+    RequireArmInStroke(run, model.parameters);
+  }
   checked.load = LoadRemark(all);
   AddVacuumRemarks(model, all, &checked.vacuum, &checked.nearly);
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> repeats = SetAsideRepeats(some);
     checked.repeats.insert(checked.repeats.end(), repeats.begin(), repeats.end());
-    const std::vector<std::string> damage = SetAsideDamage(some);
+    const std::vector<std::string> damage = SetAsideDamage(model.parameters, some);
     checked.damage.insert(checked.damage.end(), damage.begin(), damage.end());
   }
   all = *runs;
@@ -150,18 +180,18 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
       contradicts[r] = true;
     }
   }
-  std::vector<size_t> unpredicted;
+  UnjudgedRuns unjudged;
   checked.aligned = AlignedRuns(model, all, jobs);
   std::vector<runs::MeasuredRun> on_one_clock;
   on_one_clock.reserve(all.size());
   for (const AlignedRun& one : checked.aligned) on_one_clock.push_back(one.run);
   checked.ratios = RatioRemarks(model, on_one_clock);
-  std::vector<RecordingFinding> findings =
-      CheckRecordings(model, on_one_clock, jobs, time_is_up, &unpredicted);
+  std::vector<RecordingFinding> findings = CheckRecordings(model, on_one_clock, jobs, time_is_up, &unjudged);
   // A contradiction that must be corrected first may look like any other mistake.
   std::erase_if(findings, [&](const RecordingFinding& one) { return contradicts[one.run]; });
-  std::erase_if(unpredicted, [&](size_t run) { return contradicts[run]; });
-  checked.unjudged = UnjudgedLine(unpredicted, all);
+  for (std::vector<size_t>* some : {&unjudged.unpredicted, &unjudged.at_rest, &unjudged.unbalanced})
+    std::erase_if(*some, [&](size_t run) { return contradicts[run]; });
+  checked.unjudged = UnjudgedLines(unjudged, all);
   checked.mistakes = contradictions;
   std::vector<std::string>& said = OnlyUnknownUnits(findings) ? checked.factors : checked.mistakes;
   for (std::string& remark : FindingRemarks(findings, all)) said.push_back(std::move(remark));
@@ -233,8 +263,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   if (!checked.load.empty()) report.limits.push_back(checked.load);
   report.limits.insert(report.limits.end(), checked.ratios.begin(), checked.ratios.end());
   report.limits.insert(report.limits.end(), checked.repeats.begin(), checked.repeats.end());
-  report.judged = checked.unjudged.empty();
-  if (!report.judged) report.limits.push_back(checked.unjudged);
+  report.unjudged = checked.unjudged;
   if (checked.mend_first) return report;  // the rest applies to recordings that can be read
   std::vector<ClockDelay> clocks;
   std::vector<RunData> prepared;

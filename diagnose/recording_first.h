@@ -20,15 +20,15 @@ struct CheckedRecordings {
   // Factors that match no known unit, one line each. Oil or a hose may look like such a factor, so the search
   // goes on.
   std::vector<std::string> factors;
-  std::vector<std::string> damage;   // dropouts, spikes, cuts: one line each
-  std::vector<std::string> repeats;  // slow sensors that repeat their values: one line each
-  std::string load;                  // LoadRemark()
-  std::vector<std::string> ratios;   // RatioRemarks()
-  std::vector<std::string> vacuum;   // pressures below absolute zero that noise does not explain
-  std::vector<std::string> nearly;   // and those that noise may explain: one line each
-  CommandRemarks commands;           // RemarksOnCommands()
-  std::vector<std::string> sensors;  // CompareSensors()
-  std::string unjudged;              // runs that the given model does not predict at all; empty: none
+  std::vector<std::string> damage;    // dropouts, spikes, cuts: one line each
+  std::vector<std::string> repeats;   // slow sensors that repeat their values: one line each
+  std::string load;                   // LoadRemark()
+  std::vector<std::string> ratios;    // RatioRemarks()
+  std::vector<std::string> vacuum;    // pressures below absolute zero that noise does not explain
+  std::vector<std::string> nearly;    // and those that noise may explain: one line each
+  CommandRemarks commands;            // RemarksOnCommands()
+  std::vector<std::string> sensors;   // CompareSensors()
+  std::vector<std::string> unjudged;  // runs of which nothing can be said: one line for each kind
   // The mistakes make a search useless, because it would explain them by physics.
   bool mend_first = false;
   // Sensors ("p1") of which only the sign is wrong. The search deals with them.
@@ -59,7 +59,8 @@ struct RecordingReport {
   std::vector<std::string> wrong;  // one line each
   // How tables were read, and what these runs cannot show although nothing is wrong with them.
   std::vector<std::string> limits;
-  bool judged = true;     // false: a limit names runs that the given model does not predict at all
+  // Runs that cannot be judged, and why: one line each.
+  std::vector<std::string> unjudged;
   bool doubtful = false;  // a limit names what may be wrong with the recording, or be the machine
 };
 // Throws InputError for data that cannot be used, unless a mistake explains it.

@@ -70,6 +70,9 @@ std::vector<std::string> Texts(SectionReader& section, const std::string& key, c
 }
 constexpr char kStatements[] = "a statement as \"arm_torque -= stiffness * alpha\", or a list of them";
 
+// The ids of curves through what no known effect explains.
+constexpr char kOfClosures[] = "closure.";
+
 constexpr size_t kMostNames = 256;  // of parameters, states and so on; an effect has a few
 
 // The names of the tables in a table. Throws InputError where there are more than any effect has.
@@ -348,6 +351,11 @@ std::shared_ptr<const model::EffectFormulas> ReadFormulas(const TomlNode& table,
     throw section.Error("id", Quoted(info.id), "two names of a-z, 0-9 and _ with a dot: \"arm.spring\"");
   if (model::IsBuiltIn(info.id)) {
     throw section.Error("id", Quoted(info.id) + ", a built-in effect", "another id");
+  }
+  if (info.id.starts_with(kOfClosures)) {
+    throw section.Error("id", Quoted(info.id),
+                        std::string("an id that does not begin with ") + kOfClosures +
+                            ", because those are the program's own");
   }
   info.equation = JoinedEquation(text);
   if (info.equation.empty()) throw section.Error("equation", "nothing", kStatements);

@@ -68,12 +68,13 @@ class RunChecklist {
     for (size_t i = 1; i < run_.samples(); ++i) longest = std::max(longest, run_.time[i] - run_.time[i - 1]);
     const double interval = seconds / static_cast<double>(run_.samples() - 1);
     const bool even = longest < 1.5 * interval;
-    const bool slow = interval > runs::kSlowestSamples;
-    Add(even && !slow ? State::kGood : State::kLook, "samples",
+    const bool slow = interval > runs::kSlowestSamples, fast = interval < kFastestSamples;
+    Add(even && !slow && !fast ? State::kGood : State::kLook, "samples",
         std::to_string(run_.samples()) + " in " + ShortNumber(seconds) + " s, one each " +
             ShortNumber(1e3 * interval) + " ms" +
             (even ? "" : ", but once none for " + ShortNumber(1e3 * longest) + " ms") +
-            (slow ? ": too slow for such a machine" + runs::TimeUnitHint(interval) : ""));
+            (slow ? ": too slow for such a machine" + runs::TimeUnitHint(interval) : "") +
+            (fast ? ": faster than any recorder of such a machine; is the column in another unit?" : ""));
   }
 
   void AddSignal(const runs::SignalName& name) {
@@ -229,7 +230,9 @@ class RunChecklist {
     const std::string number = " (log odds " + ShortNumber(*gain, 2) + ")";
     if (std::abs(*gain) < ClearGain()) {
       Add(State::kLook, item,
-          *gain == 0 ? "the run moves too little to tell" : "not clear from this run" + number);
+          *gain != 0                                 ? "not clear from this run" + number
+          : mistakes_.moves() && !mistakes_.Formed() ? "what was recorded of the run does not suffice to tell"
+                                                     : "the run moves too little to tell");
     } else {
       Add(*gain < 0 ? State::kGood : State::kLook, item, (*gain < 0 ? good : turned) + number);
     }

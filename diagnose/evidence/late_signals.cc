@@ -188,8 +188,10 @@ class ClockSteps {
   Delays moved_{};
 };
 
+// Means of uneven samples may be few: enough of them have to remain to be a run.
 size_t ToAverage(const Run& run) {
-  return std::max<size_t>(1, static_cast<size_t>(kStep / MedianInterval(run.time) * (1 + 1e-9)));
+  const double most = std::max(1.0, static_cast<double>(run.samples()) / kFewestSamples);
+  return static_cast<size_t>(std::clamp(kStep / MedianInterval(run.time) * (1 + 1e-9), 1.0, most));
 }
 
 }  // namespace

@@ -59,6 +59,8 @@ class RecordingBalances {
   // The balance that closes best leaves open this share of its terms, a ratio of squares. 0 where no balance
   // is formed.
   double LeastLeftOpen() const;
+  // Whether any balance is formed.
+  bool Formed() const { return !balances_.empty(); }
 
  private:
   double EvidenceOf(const TermBalance& balance, const SignalFactors& factors) const;

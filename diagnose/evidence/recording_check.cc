@@ -77,9 +77,9 @@ class Recorder {
       const MistakeTrial* own = own_[r].empty() ? nullptr : &own_[r].front();
       const MistakeTrial* shared = common ? &trials_[r][*common] : nullptr;
       // The recorder's mistake already has its odds counted; a mistake of a single run still has to overcome
-      // its own.
-      const bool follows = shared != nullptr && !shared->mistakes.empty() && shared->gain > -kAlikeMistakes &&
-                           own->Merit() <= shared->gain;
+      // its own. A run at rest has none, and says nothing of the recorder's.
+      const bool follows = own != nullptr && shared != nullptr && !shared->mistakes.empty() &&
+                           shared->gain > -kAlikeMistakes && own->Merit() <= shared->gain;
       if (follows) {
         findings.push_back({r, shared->mistakes, shared->gain, TiedWith(r, *common)});
       } else if (own != nullptr && own->Merit() > ClearGain()) {
@@ -118,10 +118,21 @@ class Recorder {
     return findings;
   }
 
-  // The balances of this check are those of the base equations: what effects of the model's own predict is
-  // not in them.
-  bool PredictsNothing(size_t run) const {
-    return !has_effects_ && checks_[run].has_value() && checks_[run]->LeastLeftOpen() > kPredictsNothing;
+  // Puts the run where it belongs, if nothing can be said of it.
+  void Judge(size_t run, UnjudgedRuns* unjudged) const {
+    if (!checks_[run].has_value()) return;  // cut off
+    const RunMistakes& check = *checks_[run];
+    const bool motor = runs_[run].motor_speed.measured() || runs_[run].motor_angle.measured();
+    const double left = check.LeastLeftOpen();
+    if (motor && !check.moves()) {
+      unjudged->at_rest.push_back(run);
+    } else if (left == 0 && !check.Formed()) {
+      unjudged->unbalanced.push_back(run);
+    } else if (!has_effects_ && left > kPredictsNothing) {
+      // The balances of this check are those of the base equations: what effects of the model's own predict
+      // is not in them.
+      unjudged->unpredicted.push_back(run);
+    }
   }
 
  private:
@@ -175,14 +186,14 @@ class Recorder {
 std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
                                               const std::vector<Run>& runs, int jobs,
                                               const std::function<bool()>& time_is_up,
-                                              std::vector<size_t>* unpredicted) {
+                                              UnjudgedRuns* unjudged) {
   const Recorder recorder(model, runs, jobs, time_is_up);
   std::vector<RecordingFinding> findings = recorder.Findings();
   if (findings.empty()) findings = recorder.UnknownFactors(jobs);
-  for (size_t r = 0; unpredicted != nullptr && r < runs.size(); ++r) {
+  for (size_t r = 0; unjudged != nullptr && r < runs.size(); ++r) {
     const bool said = std::any_of(findings.begin(), findings.end(),
                                   [r](const RecordingFinding& one) { return one.run == r; });
-    if (!said && recorder.PredictsNothing(r)) unpredicted->push_back(r);
+    if (!said) recorder.Judge(r, unjudged);
   }
   return findings;
 }

@@ -21,13 +21,18 @@ struct RecordingFinding {
   std::vector<std::vector<RecordingMistake>> tied = {};
 };
 
-// Returns at most one finding for each run, in the order of the runs. `unpredicted` receives the runs without
-// a finding for which the given model closes no balance at all, so that nothing can be said about them. The
-// results do not depend on `jobs`. Mistakes that `time_is_up` cuts off are not found.
+// Runs without a finding of which nothing can be said.
+struct UnjudgedRuns {
+  std::vector<size_t> unpredicted;  // the given model closes no balance at all
+  std::vector<size_t> at_rest;      // the motor hardly turns: the balances consist of noise
+  std::vector<size_t> unbalanced;   // no stretch long enough for a balance, or without its signals
+};
+
+// Returns at most one finding for each run, in the order of the runs. `unjudged` receives runs without one.
+// The results do not depend on `jobs`. Mistakes that `time_is_up` cuts off are not found.
 std::vector<RecordingFinding> CheckRecordings(
     const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs, int jobs,
-    const std::function<bool()>& time_is_up = [] { return false; },
-    std::vector<size_t>* unpredicted = nullptr);
+    const std::function<bool()>& time_is_up = [] { return false; }, UnjudgedRuns* unjudged = nullptr);
 
 // One line for each kind of finding: what is wrong, in which runs, and which lines of the sidecars correct
 // it.

@@ -19,8 +19,6 @@ using Mistakes = std::vector<RecordingMistake>;
 
 // The number of sets that are tried with one more mistake.
 constexpr size_t kExtended = 16;
-// s between samples: no recorder of such a machine is faster.
-constexpr double kFastest = 5e-6;
 // Whether the motor certainly moves. The balances of a run at rest consist of noise, and any unit explains
 // some of it.
 bool Moves(const Run& run) {
@@ -58,7 +56,7 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
   const double interval = MedianInterval(run_.time);
   std::erase_if(possible_, [&](const RecordingMistake& mistake) {
     const double step = mistake.time_factor * interval;
-    return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < kFastest);
+    return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < kFastestSamples);
   });
   const Mistakes shafts = OtherShafts(run_);
   possible_.insert(possible_.end(), shafts.begin(), shafts.end());
@@ -67,7 +65,7 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
 }
 
 // The balances with the times, the shaft and the signs of these mistakes; null: no recording of such a
-// machine has samples so far apart.
+// machine has samples so far apart, or so close.
 const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
   std::tuple<double, model::Shaft, std::string> reading = {1, run_.shaft, ""};
   for (const RecordingMistake& one : mistakes) {
@@ -75,7 +73,8 @@ const RecordingBalances* RunMistakes::Read(const Mistakes& mistakes) const {
     std::get<model::Shaft>(reading) = one.shaft.value_or(std::get<model::Shaft>(reading));
     if (one.unsigned_signal.has_value()) std::get<std::string>(reading) += NameOf(*one.unsigned_signal);
   }
-  if (std::get<double>(reading) * MedianInterval(run_.time) > runs::kSlowestSamples) return nullptr;
+  const double interval = std::get<double>(reading) * MedianInterval(run_.time);
+  if (interval > runs::kSlowestSamples || interval < kFastestSamples) return nullptr;
   const auto known = readings_.find(reading);
   if (known != readings_.end()) return &known->second;
   Run run = run_;
@@ -140,6 +139,11 @@ std::vector<MistakeTrial> RunMistakes::Search(const std::function<bool()>& time_
   std::stable_sort(all.begin(), all.end(),
                    [](const MistakeTrial& a, const MistakeTrial& b) { return a.Merit() > b.Merit(); });
   return all;
+}
+
+bool RunMistakes::Formed() const {
+  const RecordingBalances* given = Read({});
+  return given != nullptr && given->Formed();
 }
 
 double RunMistakes::LeastLeftOpen() const {

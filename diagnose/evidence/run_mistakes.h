@@ -39,8 +39,13 @@ class RunMistakes {
   // What the log evidence gains by these corrections, which need not be among the known mistakes.
   double Gain(const std::vector<RecordingMistake>& mistakes) const;
   // The share of its terms that the best-closing balance of the run as recorded leaves open. 0: no balance is
-  // formed. 1: the samples are too far apart to form one.
+  // formed. 1: the samples are too far apart, or too close, to form one.
   double LeastLeftOpen() const;
+  // Whether the run as recorded forms any balance. False too where its samples are too far apart or too
+  // close.
+  bool Formed() const;
+  // Whether the motor certainly moves. Nothing is said about a run at rest.
+  bool moves() const { return moves_; }
 
  private:
   const RecordingBalances* Read(const std::vector<RecordingMistake>& mistakes) const;
@@ -49,7 +54,7 @@ class RunMistakes {
   runs::MeasuredRun run_;
   std::vector<RecordingMistake> possible_;
   double as_recorded_ = 0;
-  bool moves_ = false;  // the motor moves: nothing is said about a run at rest
+  bool moves_ = false;
   // By the factor of the times, the shaft, and the signals that are read as signed numbers.
   mutable std::map<std::tuple<double, model::Shaft, std::string>, RecordingBalances> readings_;
 };

@@ -24,6 +24,8 @@ constexpr double kSpike = 8;               // noise units beyond all neighbours
 constexpr double kSpreadOfNeighbours = 2;  // and this many times the neighbours' spread
 constexpr double kChange = 5;              // and this many times the change that 19 of 20 do not reach
 constexpr size_t kNeighbours = 3;          // neighbours on each side
+constexpr double kBeyondAll = 10;          // times all other values: no peak in another unit
+constexpr size_t kMostSpikes = 50;         // one sample in so many; more belong to the signal
 
 struct Stretch {
   size_t first, last;  // [first, last)
@@ -50,6 +52,28 @@ bool HasNoise(const std::vector<double>& values, double noise) {
   return noise >= kAboveSteps * EstimateResolution(values) && noise >= 1e-4 * maths::RangeOf(values).size();
 }
 
+// The noise that moves a signal from sample to sample; 0: none does. A sensor that is stuck for much of a run
+// has its noise in the rest of the run. During such a stretch the command has to change: at rest, a sensor
+// may well repeat itself.
+double MovingNoise(const std::vector<double>& values, const std::vector<double>& command) {
+  const double noise = EstimateNoise(values);
+  if (noise > 0 && HasNoise(values, noise)) return noise;
+  std::vector<double> rest = values;
+  const double step = kStepOfCommand * maths::RangeOf(command).size();
+  std::ptrdiff_t stuck = 0;
+  for (const Stretch& one : EqualValues(values)) {
+    if (one.last - one.first < kShortestHold) continue;
+    if (++stuck > kFew) return 0;
+    const auto from = command.begin() + static_cast<std::ptrdiff_t>(one.first);
+    const auto to = command.begin() + static_cast<std::ptrdiff_t>(one.last);
+    if (!(maths::RangeOf({from, to}).size() > step)) continue;
+    for (size_t i = one.first; i < one.last; ++i) rest[i] = runs::kMissing;
+  }
+  if (CountValid(rest) < kFewestSamples) return 0;
+  const double moving = EstimateNoise(rest);
+  return moving > 0 && HasNoise(rest, moving) ? moving : 0;
+}
+
 // The change between samples that 19 of 20 changes do not exceed.
 double UsualChange(const std::vector<double>& values) {
   std::vector<double> changes;
@@ -73,9 +97,8 @@ bool IsSentinel(const std::vector<double>& values, const Stretch& one, double le
          std::min(std::abs(before), std::abs(after)) > leap + kSpreadOfNeighbours * std::abs(after - before);
 }
 
-std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
-  const double noise = EstimateNoise(values);
-  if (noise <= 0 || !HasNoise(values, noise)) return {};
+std::vector<Stretch> HeldStretches(const std::vector<double>& values, double noise) {
+  if (noise <= 0) return {};
   const std::vector<Stretch> equal = EqualValues(values);
   // How often a value repeats the previous one by chance. A few long stretches are damage; many are the
   // record of a slow sensor.
@@ -113,6 +136,23 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   return held;
 }
 
+// Cells that no sensor of the machine reads: a few beyond what is possible, and far beyond all others.
+std::vector<size_t> ImpossibleCells(const std::vector<double>& values, double possible) {
+  std::vector<size_t> cells;
+  double nearest = possible, largest = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double size = std::abs(values[i]);
+    if (size > possible) {
+      nearest = cells.empty() ? size : std::min(nearest, size);
+      cells.push_back(i);
+    } else if (size > largest) {
+      largest = size;
+    }
+  }
+  const bool few = cells.size() * kMostSpikes <= values.size();
+  return few && nearest > kBeyondAll * largest ? cells : std::vector<size_t>();
+}
+
 // The neighbours of a slow sensor's sample are its own samples, not the empty rows between them.
 std::vector<size_t> Spikes(const std::vector<double>& all) {
   std::vector<size_t> rows;
@@ -137,19 +177,25 @@ std::vector<size_t> Spikes(const std::vector<double>& all) {
     if (beyond > least + kSpreadOfNeighbours * beside.size()) spikes.push_back(rows[i]);
   }
   // If there are many, they belong to the signal.
-  return spikes.size() * 50 > values.size() ? std::vector<size_t>() : spikes;
+  return spikes.size() * kMostSpikes > values.size() ? std::vector<size_t>() : spikes;
 }
 
 // Makes held values and spikes missing, and counts for each row how many sensors hold their value there.
-void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::vector<std::string>* lines) {
+void SetAside(const model::Parameters& model, Run* run, std::vector<size_t>* held_there, size_t* sensors,
+              std::vector<std::string>* lines) {
   for (const runs::SignalName& sensor : runs::kSignals) {
     if (sensor.standard_deviation == nullptr) continue;  // not a sensor's signal
     std::vector<double>& values = (run->*sensor.signal).values;
     if (values.size() < kFewestSamples) continue;
-    const std::vector<Stretch> held = HeldStretches(values);
-    const std::vector<size_t> spikes = Spikes(values);
-    const double noise = EstimateNoise(values);
-    *sensors += noise > 0 && HasNoise(values, noise) ? 1 : 0;
+    // First the impossible: beside it, nothing else in the signal shows.
+    std::vector<size_t> spikes = ImpossibleCells(values, LargestPossible(sensor, model));
+    for (const size_t i : spikes) values[i] = runs::kMissing;
+    const double noise = MovingNoise(values, run->voltage.values);
+    const std::vector<Stretch> held = HeldStretches(values, noise);
+    const std::vector<size_t> others = Spikes(values);
+    spikes.insert(spikes.end(), others.begin(), others.end());
+    std::sort(spikes.begin(), spikes.end());
+    *sensors += noise > 0 ? 1 : 0;
     size_t count = 0;
     for (const Stretch& one : held) {
       for (size_t i = one.first; i < one.last; ++i) {
@@ -227,13 +273,13 @@ std::vector<Run> Cut(const Run& run, const std::vector<Stretch>& lost, std::vect
 
 }  // namespace
 
-std::vector<std::string> SetAsideDamage(std::vector<Run>* runs) {
+std::vector<std::string> SetAsideDamage(const model::Parameters& model, std::vector<Run>* runs) {
   std::vector<std::string> lines;
   std::vector<Run> all;
   for (Run& run : *runs) {
     std::vector<size_t> held_there(run.samples(), 0);
     size_t sensors = 0;
-    SetAside(&run, &held_there, &sensors, &lines);
+    SetAside(model, &run, &held_there, &sensors, &lines);
     const std::vector<Stretch> lost = LostSteps(run, held_there, sensors);
     std::vector<Run> parts;
     if (!lost.empty()) parts = Cut(run, lost, &lines);

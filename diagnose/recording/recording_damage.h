@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "model/terms/description.h"
 #include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
@@ -14,8 +15,9 @@ namespace hydro::diagnose {
 // empty and the runs stay unchanged.
 //
 // A value is held when a signal with noise repeats it for longer than chance allows. An encoder's steps, a
-// slow sensor and the end of a sensor's range do not count as held. A spike is a single sample far outside
-// all of its neighbours.
-std::vector<std::string> SetAsideDamage(std::vector<runs::MeasuredRun>* runs);
+// slow sensor and the end of a sensor's range do not count as held, nor does most of a run during which the
+// command does not change either. A spike is a single sample far outside all of its neighbours, or one of a
+// few cells with a value that no sensor of the machine reads.
+std::vector<std::string> SetAsideDamage(const model::Parameters& model, std::vector<runs::MeasuredRun>* runs);
 
 }  // namespace hydro::diagnose

@@ -35,18 +35,6 @@ constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
                    allowed);
 }
 
-// Values that no actuator reaches, in the model's own units. They are at least twice what its equations could
-// produce, so that only a wrong unit exceeds them and a wrong parameter does not.
-double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
-  const std::string name = row.ours;
-  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
-  if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
-  if (name == "motor_angle") return 1e9;
-  if (name == "arm_angle") return 2 * stroke;
-  if (name == "arm_speed") return 1000 * stroke;
-  return model.beta / 2;  // the oil at half its volume, eq. (5)
-}
-
 void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std::vector<double>& values,
                 double limit, const std::string& unit) {
   for (size_t i = 0; i < values.size(); ++i) {
@@ -193,6 +181,16 @@ std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
 
 }  // namespace
 
+double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
+  const std::string name = row.ours;
+  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
+  if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
+  if (name == "motor_angle") return 1e9;
+  if (name == "arm_angle") return 2 * stroke;
+  if (name == "arm_speed") return 1000 * stroke;
+  return model.beta / 2;  // the oil at half its volume, eq. (5)
+}
+
 const runs::SignalName& SignalOf(model::Channel channel) {
   return *kSignalRows[static_cast<size_t>(channel)];
 }
@@ -287,21 +285,57 @@ void CheckCells(const runs::MeasuredRun& run) {
   }
 }
 
-// The gap between two rows may hold ten times as many samples as the recording has, or as many as a minute
-// has at 2 kHz. Later steps put a recording on an even grid, and a longer gap would make that grid too large.
+// Later steps put a recording on an even grid. What is missing between its rows may be ten times as many as
+// the recording has, or as many as a minute has at 2 kHz: more would make that grid too large.
 void CheckGaps(const runs::MeasuredRun& run) {
   constexpr double kTimesTheRows = 10, kAnyway = 120000;
   const double interval = MedianInterval(run.time), rows = static_cast<double>(run.samples());
+  const double most = interval * (kTimesTheRows * rows + kAnyway);
   for (size_t i = 1; i < run.samples(); ++i) {
     const double gap = run.time[i] - run.time[i - 1];
-    if (gap <= interval * (kTimesTheRows * rows + kAnyway)) continue;
+    if (gap <= most) continue;
     Refuse(run.file, "time",
            "no row between " + ShortNumber(run.time[i - 1]) + " and " + ShortNumber(run.time[i]) + " s",
            "rows without a gap as long: make a table of what is before it and one of what is after it");
   }
+  const double duration = run.time.back() - run.time.front();
+  if (duration <= most + interval * rows) return;
+  Refuse(run.file, "time",
+         "rows of which half are at most " + ShortNumber(interval) + " s apart, and " +
+             std::to_string(run.samples()) + " of them in " + ShortNumber(duration) + " s",
+         "rows that are about equally far apart: where they were taken evenly, set time = { every = " +
+             ShortNumber(duration / (rows - 1), 3) +
+             " } in the sidecar; where they come in stretches, make a table of each");
+}
+
+// Refuses samples so close that their times must be in another unit, and names it where one is likely.
+void RequirePossibleSamples(const runs::MeasuredRun& run) {
+  constexpr double kFastestUsual = 2e-5, kSlowestUsual = 0.1;  // s
+  const double interval = MedianInterval(run.time);
+  if (interval >= kFastestSamples) return;
+  std::string hint = ": is the column in another unit?";
+  for (const auto& [unit, size] : {std::pair("s", 1.0), std::pair("ms", 1e-3), std::pair("us", 1e-6)}) {
+    const double meant = interval / run.time_source.scale * size;
+    if (meant < kFastestUsual || meant > kSlowestUsual) continue;
+    hint = std::string(" (is the column in ") + unit + "? unit = \"" + unit + "\")";
+    break;
+  }
+  Refuse(run.file, "time", "rows " + ShortNumber(interval) + " s apart",
+         "at least " + ShortNumber(kFastestSamples) + " s: no recorder of such a machine is faster" + hint);
 }
 
 }  // namespace
+
+void RequireArmInStroke(const runs::MeasuredRun& run, const model::Parameters& model) {
+  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
+  if (run.shaft != model::Shaft::kClamped || std::abs(run.arm_angle_rad) < stroke) return;
+  const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
+  Refuse(run.sidecar.empty() ? run.file : run.sidecar,
+         run.units.linear_arm ? "arm_angle" : "arm_angle or arm_angle_rad",
+         ShortestNumber(run.arm_angle_rad) + " " + unit + " of a clamped shaft",
+         "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) + " " + unit +
+             ", where the model's V_1 and V_2 are above 0");
+}
 
 void CheckUsable(const runs::MeasuredRun& run) {
   if (run.samples() < kFewestSamples) {
@@ -319,6 +353,8 @@ void CheckUsable(const runs::MeasuredRun& run) {
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   CheckUsable(run);
   runs::RequireFastSamples(run);
+  RequirePossibleSamples(run);
+  RequireArmInStroke(run, model);
   RunData data;
   data.name = run.name;
   data.stimulus = StimulusOf(run);

@@ -68,6 +68,9 @@ const runs::SignalName& SignalOf(model::Channel channel);
 // Whether a simulation of the run is compared with the channel: the channel is measured, and it does not
 // belong to an arm that stands still (clamped) or whose motion is imposed (driven).
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
+// The size that no reading of a channel's sensor exceeds, in the model's own units: at least twice what the
+// model's equations could produce, so that only a wrong unit or a damaged cell does, and no wrong parameter.
+double LargestPossible(const runs::SignalName& row, const model::Parameters& model);
 // The number of values that are not missing.
 size_t CountValid(const std::vector<double>& values);
 // The same over all signals that are compared.
@@ -91,11 +94,15 @@ std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
 inline constexpr size_t kFewestSamples = 100;
 
 // Throws InputError, with run, signal and row, for data that teach nothing in any unit: fewer than 100
-// samples, or a signal that never changes or has hardly any values.
+// samples, times that are far too uneven for an even grid, or a signal that never changes or has hardly any
+// values.
 void CheckUsable(const runs::MeasuredRun& run);
 
-// Throws InputError as CheckUsable() does, and also when no signal can be compared with a model, or when
-// values are impossible (speeds of 1e5 rad/s point to another unit).
+// Throws InputError, with the sidecar and its key, when a clamped arm is held where the model has no volume.
+void RequireArmInStroke(const runs::MeasuredRun& run, const model::Parameters& model);
+
+// Throws InputError as CheckUsable() and RequireArmInStroke() do, and also when no signal can be compared
+// with a model, or when times or values are impossible (speeds of 1e5 rad/s point to another unit).
 RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 
 // Sets the run's start and start_free from its first samples. All other members of `data` must already be

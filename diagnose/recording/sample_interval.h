@@ -5,6 +5,9 @@
 
 namespace hydro::diagnose {
 
+// s between samples. No recorder of such a machine is faster.
+inline constexpr double kFastestSamples = 5e-6;
+
 // The median time between successive samples, s; 1 when there are fewer than two.
 double MedianInterval(const std::vector<double>& time);
 // The same over several recordings together.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/number_text.h"
 #include "base/units.h"
 #include "diagnose/fit/closure.h"
 #include "diagnose/recording/run_data.h"
@@ -57,6 +58,29 @@ void Convert(Closure* closure) {
   for (size_t i = 0; i < closure->knots.size(); ++i)
     Convert(&closure->against_units[i], {&closure->knots[i]});
   closure->resembles = Resemblance(*closure);  // its text may contain a value
+}
+
+// The numbers with a unit of a text such as "p2 - p1 from 100 to 300 psi".
+std::string NumbersInSi(const std::string& text) {
+  static const std::string kNumber = "[+-]?[0-9]+(?:[.][0-9]+)?(?:e[+-]?[0-9]+)?";
+  static const std::regex kWithUnit("(^|[^\\w.])(?:(" + kNumber + ")( to ))?(" + kNumber +
+                                    ") ([A-Za-z][A-Za-z0-9^/().-]*)");
+  std::string converted;
+  auto rest = text.begin();
+  for (std::sregex_iterator found(text.begin(), text.end(), kWithUnit), end; found != end; ++found) {
+    const std::smatch& parts = *found;
+    const double value = std::stod(parts[4]), low = parts[2].matched ? std::stod(parts[2]) : value;
+    const std::optional<SiUnit> to = FindSiUnit(parts[5], std::max(std::abs(value), std::abs(low)));
+    if (!to.has_value()) continue;
+    const auto shown = [&](const std::ssub_match& number) {
+      return (*number.first == '+' ? "+" : "") + ShortNumber(std::stod(number) * to->factor, 3);
+    };
+    converted.append(rest, parts[1].second);
+    if (parts[2].matched) converted += shown(parts[2]) + parts[3].str();
+    converted += shown(parts[4]) + " " + to->to;
+    rest = parts[0].second;
+  }
+  return converted.append(rest, text.end());
 }
 
 void Replace(const std::string& what, const std::string& with, std::string* text) {
@@ -132,6 +156,7 @@ Diagnosis InSi(Diagnosis diagnosis) {
   for (std::vector<MeasuredCurve>* curves : {&diagnosis.missing, &diagnosis.terms, &diagnosis.measured}) {
     for (MeasuredCurve& curve : *curves) Convert(&curve);
   }
+  for (Location& location : diagnosis.location) location.where = NumbersInSi(location.where);
   return diagnosis;
 }
 

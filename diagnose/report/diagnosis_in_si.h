@@ -15,8 +15,8 @@ struct ShownUnit {
 // The unit of a channel: the model's, or SI (kPa).
 ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si);
 
-// Converts parameters, effects and missing terms from the model's units. Signals, curves and sentences stay
-// as they are (see UnitOf).
+// Converts parameters, effects, missing terms and the places of the disagreement from the model's units.
+// Signals, curves and sentences stay as they are (see UnitOf).
 Diagnosis InSi(Diagnosis diagnosis);
 
 // For a motor alone (the bypass is open in all runs, and none has pressures): texts speak of the motor or its

@@ -162,7 +162,8 @@ void RequireIncreasing(const SignalColumn& source, const tables::Table& table) {
         ": the times are rounded; export them with more digits, or, where the rows are evenly spaced, set "
         "time = { "
         "every = " +
-        ShortNumber(even, 3) + " } in the sidecar, s from row to row";
+        (even > 0 ? ShortNumber(even, 3) : "T") + " } in the sidecar, s from row to row" +
+        (even > 0 ? "" : ", T by the recorder's settings");
   } else if (equal == wrong) {
     error += ": take one of the two out";
   } else {

@@ -299,6 +299,12 @@ TEST_F(HydroDiagnoseTest, Errors) {
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,q"; }), HasSubstr("--free: found \"q\", allowed"));
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,"; }), HasSubstr("--free: found \"\""));
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "p3"; }), HasSubstr("did you mean \"p_3\"?"));
+  for (const char* name : {"k_1", "k_2"}) {
+    EXPECT_THAT(
+        error([&](DiagnoseRequest& r) { r.per_run = std::string("T_s,") + name; }),
+        HasSubstr("--per-run: found \"" + std::string(name) +
+                  "\", by which torques are measured, allowed names separated by commas, of \"T_pmax\""));
+  }
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.runs = {Path("none.csv")}; }), HasSubstr("none.csv: "));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.model = Path("a.toml"); }), HasSubstr("a.toml"));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.held_out = {Path("./a.csv")}; }),

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 
 #include "diagnose/recording/recording_remarks.h"
 #include "tests/diagnose/noisy_rig.h"
@@ -53,6 +54,28 @@ TEST(RecordingFirst, Sound) {
   const RecordingReport report = ReportOnRecordings(kGiven, runs, 1);
   EXPECT_THAT(report.wrong, IsEmpty());
   EXPECT_THAT(report.limits, ::testing::ElementsAre(HasSubstr("no pressure was recorded")));
+}
+
+// Tests that a run that cannot be judged is said to be that, and why.
+TEST(RecordingFirst, CannotBeJudged) {
+  EXPECT_THAT(ReportOnRecordings(kGiven, Bench(1, 1), 1).unjudged, IsEmpty());
+  const auto unjudged = [](const std::function<void(runs::MeasuredRun&)>& change) {
+    std::vector<runs::MeasuredRun> runs = Bench(1, 1);
+    change(runs[0]);
+    const RecordingReport report = ReportOnRecordings(kGiven, runs, 1);
+    EXPECT_THAT(report.wrong, IsEmpty());
+    return report.unjudged;
+  };
+  const std::string not_checked = "run bench: signs, units and columns could not be checked, because ";
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) { run.p1 = run.p2 = {}; }),
+              ::testing::ElementsAre(StartsWith(not_checked + "p1 and p2 were not recorded")));
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) { run.p1 = {}; }),
+              ::testing::ElementsAre(not_checked + "p1 was not recorded"));
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) { run.motor_speed = {}; }),
+              ::testing::ElementsAre(not_checked + "neither motor_speed nor motor_angle was recorded"));
+  std::vector<runs::MeasuredRun> bare = {SpeedAndAngle(1)};
+  bare[0].motor_angle = bare[0].p1 = bare[0].p2 = {};
+  EXPECT_THAT(ReportOnRecordings(kGiven, bare, 1).unjudged, IsEmpty()) << "a motor alone";
 }
 
 // Tests that a missing pressure of one side is not passed over in silence.

@@ -131,6 +131,43 @@ TEST(PrepareRun, RefusesTimesWithoutMotion) {
   runs::MeasuredRun slow = WithArm(model::Shaft::kFree);
   for (double& time : slow.time) time *= 1e6;
   EXPECT_THAT(error(slow), HasSubstr("unit = \"us\""));
+  runs::MeasuredRun fast = WithArm(model::Shaft::kFree);
+  for (double& time : fast.time) time *= 1e-9;
+  EXPECT_THAT(error(fast),
+              ::testing::AllOf(HasSubstr("time: found rows 1e-12 s apart, allowed at least 5e-06 s"),
+                               HasSubstr("is the column in another unit?")));
+  fast.time_source.scale = 1e-9;
+  EXPECT_THAT(error(fast), HasSubstr("(is the column in s? unit = \"s\")"));
+}
+
+// Tests that many gaps, none of them long, are as little an even grid as a single long one.
+TEST(PrepareRun, RefusesUnevenTimes) {
+  const auto uneven = [](double often) {
+    return [often](runs::MeasuredRun& run) {
+      for (size_t i = 1; i < run.samples(); ++i) run.time[i] = run.time[i - 1] + (i % 5 < 3 ? often : 0.01);
+    };
+  };
+  EXPECT_EQ(ErrorOf(uneven(1e-3)), "no error");
+  EXPECT_EQ(
+      ErrorOf(uneven(1e-5)),
+      "step.csv: time: found rows of which half are at most 1e-05 s apart, and 500 of them in 2.003 s, "
+      "allowed rows that are about equally far apart: where they were taken evenly, set time = { every = "
+      "0.00401 } in the sidecar; where they come in stretches, make a table of each");
+}
+
+// Tests that a clamped arm beyond the stroke is refused, with the sidecar and its key.
+TEST(PrepareRun, RefusesAnArmBeyondItsStroke) {
+  const auto held_at = [](double angle) {
+    return ErrorOf([angle](runs::MeasuredRun& run) {
+      run.sidecar = "step.toml";
+      run.arm_angle_rad = angle;
+    });
+  };
+  for (const double angle : {10.0, -10.0})
+    EXPECT_THAT(held_at(angle), ::testing::StartsWith("step.toml: arm_angle or arm_angle_rad: found " +
+                                                      std::string(angle > 0 ? "10" : "-10") +
+                                                      " rad of a clamped shaft, allowed angles between -"));
+  EXPECT_EQ(held_at(-0.2), "no error");
 }
 
 // Tests that a free arm is compared, and starts at a speed from the angle's slope.

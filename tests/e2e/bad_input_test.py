@@ -1,9 +1,13 @@
 """Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
 
+import json
+import math
 import os
+import random
 import resource
 import shutil
 import subprocess
+import tomllib
 
 import event_log
 import outcome
@@ -257,6 +261,101 @@ class BadInputTest(stack.TestCase):
                 self.assertIn("--full", process.stderr if code else process.stdout)
                 self.assertEqual(process.stderr.count("\n"), code // 2)
 
+
+
+class DiagnoseInputTest(stack.TestCase):
+    """hydro-diagnose: options and recordings that it cannot use, or cannot judge."""
+
+    SIDECAR = 'shaft = "clamped"\n{}[columns]\ntime = {{ column = "t", unit = "{}" }}\nvoltage = "v"\nmotor_speed = "w"\n'
+    PRESSURES = 'p1 = "p1"\np2 = "p2"\n'
+    MODEL = ("--model", os.path.join(stack.CONFIG, "models", "table1.toml"))
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def table(self, name="bench", first="", unit="s", pressures=PRESSURES, moves=True, voltage=2.0):
+        """A clamped motor that turns against its oil, or rests, with noise."""
+        noise = random.Random(1)
+        rows = ["t,v,w,p1,p2"]
+        for i in range(400):
+            fades = math.exp(-0.02 * i)
+            speed, rise = (40 * fades, 300 * (1 - fades)) if moves else (0, 0)
+            rows.append(f"{0.001 * i:.3f},{voltage if i == 200 else 2.0},{speed + noise.gauss(0, 0.3)},"
+                        f"{100 + noise.gauss(0, 1.5)},{100 + rise + noise.gauss(0, 1.5)}")
+        self.write(name + ".toml", self.SIDECAR.format(first, unit) + pressures)
+        return self.write(name + ".csv", "\n".join(rows) + "\n")
+
+    def motor_alone(self):
+        """A bare motor that follows the model, eq. (4)."""
+        with open(self.MODEL[1], "rb") as file:
+            p = tomllib.load(file)["parameters"]
+        noise, speed, rows = random.Random(2), 0, ["t,v,w"]
+        for i in range(1500):
+            volts = 4.0 if i % 500 < 250 else -3.0
+            rows.append(f"{0.001 * i:.3f},{volts},{speed + noise.gauss(0, 0.3)}")
+            speed += 0.001 / p["J"] * (p["k_1"] * volts - p["b"] * speed - math.copysign(p["T_s"], speed or volts))
+        self.write("bare.toml", self.SIDECAR.format("bypass = true\n", "s"))
+        return self.write("bare.csv", "\n".join(rows) + "\n")
+
+    def refused(self, pattern, *arguments):
+        run = self.run_program("hydro-diagnose", *arguments, expect=2)
+        self.assertRegex(run.stderr, pattern)
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    # Tests that an own effect cannot have an id of the program's own, in a file or in a model.
+    def test_ids_of_closures(self):
+        effect = 'summary = "a drag"\nequation = "load += drag * theta\'"\n[parameters.drag]\nunit = "in-lbf s"\nmeaning = "torque per speed"\n'
+        own = self.write("own.toml", 'id = "closure.foo"\n' + effect)
+        allowed = r'id: found "closure\.foo", allowed an id that does not begin with closure\.'
+        for mode in (("--check",), ("--out", self.path("out"))):
+            self.refused(r"own\.toml:1: " + allowed, self.table(), *self.MODEL, *mode, "--effect", own)
+        with open(self.MODEL[1], encoding="utf-8") as file:
+            model = self.write("model.toml", file.read() + '\n[effects."closure.foo"]\ndefinition = "own.toml"\ndrag = 0.1\n')
+        self.refused(allowed, self.table(), "--model", model, "--check")
+
+    # Tests that an own effect is looked for beside those of a list that does not name it.
+    def test_own_effect_beside_a_list(self):
+        own = self.write("own.toml", 'id = "pump.wind"\nsummary = "air drags"\nequation = "load += drag * theta\' * abs(theta\')"\n'
+                         '[parameters.drag]\nunit = "in-lbf s^2"\nmeaning = "torque per square of speed"\nexample = 1e-4\n')
+        few = self.write("few.toml", 'effects = ["pump.stribeck"]\n')
+        self.run_program("hydro-diagnose", self.motor_alone(), *self.MODEL, "--effects", few, "--effect", own, "--out", self.path("out"), timeout=120)
+        with open(self.path("out/report.json"), encoding="utf-8") as file:
+            candidates = {one["id"].split()[0] for one in json.load(file)["candidates"]}
+        self.assertLessEqual({"pump.wind", "pump.stribeck"}, candidates)
+        self.assertNotIn("pump.quadratic_drag", candidates)
+
+    # Tests that values by which torques are measured cannot be asked for by run.
+    def test_values_that_belong_to_no_run(self):
+        for name in "k_1", "k_2":
+            self.refused(f'--per-run: found "{name}", .*allowed', self.table(), *self.MODEL, "--out", self.path("out"), "--per-run", f"T_s,{name}")
+
+    # Tests that --check prints nothing before it refuses a value, and refuses an arm held where it cannot be.
+    def test_refused_by_check(self):
+        self.refused(r"bench\.csv: line 202: voltage: found 24000 V", self.table(voltage=24000), *self.MODEL, "--check")
+        beyond = self.table(first="arm_angle_rad = 10\n")
+        for mode in (("--check",), ("--out", self.path("out"))):
+            self.refused(r"bench\.toml: .*arm_angle_rad: found 10 rad of a clamped shaft, allowed angles between", beyond, *self.MODEL, *mode)
+
+    # Tests that times in another unit cost no work: the line that mends them, or a refusal.
+    def test_times_in_another_unit(self):
+        for unit in "us", "ns":
+            run = self.start("hydro-diagnose", self.table(unit=unit), *self.MODEL, "--check")
+            self.assertIn(run.wait(timeout=20), (1, 2), run.report())
+            self.assertIn('unit = "s"', run.stdout + run.stderr)
+
+    # Tests the exit code of runs that cannot be judged, and that a motor alone can be.
+    def test_runs_that_cannot_be_judged(self):
+        self.assertIn("nothing wrong", self.run_program("hydro-diagnose", self.motor_alone(), *self.MODEL, "--check").stdout)
+        for name, run, why in (("rest", self.table("rest", moves=False), "the motor hardly turns"),
+                               ("nop", self.table("nop", pressures=""), "p1 and p2 were not recorded")):
+            with self.subTest(name):
+                said = self.run_program("hydro-diagnose", run, *self.MODEL, "--check", expect=1).stdout
+                self.assertRegex(said, f"\nrun {name}: signs, units and columns could not be checked, because {why}")
+                self.assertNotIn("nothing wrong", said)
 
 
 class FileLimitTest(stack.TestCase):

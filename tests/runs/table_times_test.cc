@@ -58,6 +58,7 @@ TEST_F(TableTimesTest, RepeatedRows) {
   EXPECT_THAT(ErrorOf(Rows(4000, [](int row) { return std::floor(row * 0.625) / 1000; })),
               AllOf(HasSubstr("1500 of 4000 rows are like that: the times are rounded"),
                     HasSubstr("every = 0.000625")));
+  EXPECT_THAT(ErrorOf(Rows(4000, [](int) { return 7.0; })), HasSubstr("every = T }"));
   EXPECT_THAT(ErrorOf("0,1,2\n1,1,2\n0,1,3\n"), HasSubstr("where the recorder began again"));
 }
 

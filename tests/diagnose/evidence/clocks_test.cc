@@ -162,5 +162,13 @@ TEST(LayoutRemarks, SayHowTablesWereRead) {
   EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa, 3 times the stated 0.5")));
 }
 
+// Tests that few samples whose times are most uneven say nothing of a clock: their means would be no run.
+TEST(Alignment, LeavesUnevenTimes) {
+  runs::MeasuredRun run = Recorded();
+  run.Keep(0, 220);
+  for (size_t i = 1; i < run.samples(); ++i) run.time[i] = run.time[i - 1] + (i % 5 < 3 ? 3e-5 : 0.03);
+  ExpectLeftAlone(run, "uneven times");
+}
+
 }  // namespace
 }  // namespace hydro::diagnose

@@ -227,15 +227,59 @@ TEST_F(RecordingCheckTest, Millibars) {
 TEST_F(RecordingCheckTest, NotPredictedAtAll) {
   std::vector<runs::MeasuredRun> runs = *recorded_;
   std::swap(runs[1].p1.values, runs[1].motor_speed.values);
-  std::vector<size_t> unpredicted;
+  UnjudgedRuns unjudged;
   const auto findings = CheckRecordings(
-      given_, runs, 2, [] { return false; }, &unpredicted);
+      given_, runs, 2, [] { return false; }, &unjudged);
   EXPECT_THAT(findings, IsEmpty());
-  EXPECT_THAT(unpredicted, ::testing::ElementsAre(1u));
-  unpredicted.clear();
+  EXPECT_THAT(unjudged.unpredicted, ::testing::ElementsAre(1u));
+  UnjudgedRuns sound;
   CheckRecordings(
-      given_, *recorded_, 2, [] { return false; }, &unpredicted);
-  EXPECT_THAT(unpredicted, IsEmpty());
+      given_, *recorded_, 2, [] { return false; }, &sound);
+  for (const std::vector<size_t>& some : {sound.unpredicted, sound.at_rest, sound.unbalanced})
+    EXPECT_THAT(some, IsEmpty());
+}
+
+// Tests that runs of which nothing can be said are told by their reasons: at rest, without the signals of any
+// balance, too short. With the bypass open the pressures are not needed.
+TEST_F(RecordingCheckTest, NothingToJudgeBy) {
+  const auto unjudged = [](const auto& change) {
+    std::vector<runs::MeasuredRun> runs = {recorded_->front()};
+    runs[0].motor_angle = {};
+    change(runs[0]);
+    UnjudgedRuns found;
+    CheckRecordings(
+        given_, runs, 1, [] { return false; }, &found);
+    return std::vector<size_t>{found.unpredicted.size(), found.at_rest.size(), found.unbalanced.size()};
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(unjudged([](runs::MeasuredRun&) {}), ElementsAre(0u, 0u, 0u));
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) {
+                Multiply(&run.motor_speed.values, 1e-4);
+                run.motor_speed.noise = 0.3;
+              }),
+              ElementsAre(0u, 1u, 0u));
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) { run.p1 = run.p2 = {}; }), ElementsAre(0u, 0u, 1u));
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) {
+                run.p1 = run.p2 = {};
+                run.bypass = true;
+              })[2],
+              0u);
+  EXPECT_THAT(unjudged([](runs::MeasuredRun& run) { Multiply(&run.time, 0.01); }), ElementsAre(0u, 0u, 1u));
+}
+
+// Tests that a run at rest says nothing of the mistake that the other runs show.
+TEST_F(RecordingCheckTest, ARunAtRestBesideAMistake) {
+  std::vector<runs::MeasuredRun> runs = *recorded_;
+  for (runs::MeasuredRun& run : runs) Multiply(&run.voltage.values, -1);
+  runs.push_back(runs.front());
+  runs.back().motor_angle = {};
+  runs.back().motor_speed.noise = 0.3;
+  Multiply(&runs.back().motor_speed.values, 1e-4);
+  UnjudgedRuns unjudged;
+  const auto findings = CheckRecordings(
+      given_, runs, 2, [] { return false; }, &unjudged);
+  EXPECT_THAT(findings, SizeIs(recorded_->size()));
+  EXPECT_THAT(unjudged.at_rest, ::testing::ElementsAre(recorded_->size()));
 }
 
 // Tests that times in milliseconds are found, and quickly: a simulation over them would hardly end.

@@ -154,6 +154,19 @@ TEST(RunMistakes, NothingOfARunAtRest) {
   }
 }
 
+// Tests that samples closer than any recorder takes form no balance: the work of one grows with how close
+// they are.
+TEST(RunMistakes, SamplesTooClose) {
+  Recording run = Recorded(model::Shaft::kClamped);
+  EXPECT_TRUE(RunMistakes(kAsGiven, run).Formed());
+  Multiply(&run.time, 1e-3);
+  run.time_source.scale = 1e-3;
+  const RunMistakes close(kAsGiven, run);
+  EXPECT_FALSE(close.Formed());
+  EXPECT_EQ(close.LeastLeftOpen(), 1);
+  EXPECT_EQ(close.Search(NeverUp).front().mistakes.front().what, "time is in s, not in ms");
+}
+
 // Tests that a factor without a unit gains where it is right, and half of it less.
 TEST(RunMistakes, FactorWithoutAUnit) {
   Recording run = Recorded(model::Shaft::kClamped);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/table1.h"
+
 namespace hydro::diagnose {
 namespace {
 
@@ -36,7 +38,9 @@ size_t Missing(const std::vector<double>& values) {
       std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
 }
 
-std::vector<std::string> LinesOf(std::vector<runs::MeasuredRun>* runs) { return SetAsideDamage(runs); }
+std::vector<std::string> LinesOf(std::vector<runs::MeasuredRun>* runs) {
+  return SetAsideDamage(testing::Table1(), runs);
+}
 
 // Tests that a sound recording stays as it is, quantised pressures included.
 TEST(RecordingDamage, NoneInASoundRecording) {
@@ -56,6 +60,56 @@ TEST(RecordingDamage, HeldValues) {
   EXPECT_TRUE(std::isnan(runs[0].p2.values[701]));
   EXPECT_FALSE(std::isnan(runs[0].p2.values[700]));
   EXPECT_EQ(Missing(runs[0].p1.values), 0u);
+}
+
+// Tests that a sensor that is stuck for much of a run is found as well, with its noise or with its steps.
+TEST(RecordingDamage, StuckForMostOfARun) {
+  for (const size_t from : {1500, 1000, 400}) {
+    std::vector<runs::MeasuredRun> runs = {Bench()};
+    for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
+      std::vector<double>& values = (runs[0].*signal).values;
+      std::fill(values.begin() + static_cast<std::ptrdiff_t>(from) + 1, values.end(), values[from]);
+    }
+    EXPECT_THAT(LinesOf(&runs), ElementsAre(HasSubstr("p1 repeats one value in 1 stretch"),
+                                            HasSubstr("p2 repeats one value in 1 stretch")))
+        << from;
+    EXPECT_EQ(Missing(runs[0].p2.values), 1999 - from);
+  }
+}
+
+// Tests that a machine that rests for most of a run is not taken for stuck sensors: a coarse encoder and
+// speed, coarse pressures, and fine sensors that repeat themselves while the command does not change.
+TEST(RecordingDamage, RestsForMostOfARun) {
+  runs::MeasuredRun rests = Bench();
+  const auto steps = [](double value, double step) { return step * std::round(value / step); };
+  for (size_t i = 0; i < 2000; ++i) {
+    const size_t k = std::min<size_t>(i, 800);
+    rests.motor_angle.values.push_back(steps(2 * std::sin(0.009 * static_cast<double>(k)), 0.0015));
+    rests.p1.values[i] = steps(rests.p1.values[k], 12);
+    rests.motor_speed.values[i] = i < 800 ? steps(rests.motor_speed.values[i], 0.8) : 5.6;
+    rests.arm_angle.values.push_back(0.3);
+    if (i < 800) continue;
+    rests.voltage.values[i] = 0;
+    rests.p2.values[i] = rests.p2.values[800];
+  }
+  std::vector<runs::MeasuredRun> runs = {rests};
+  EXPECT_THAT(LinesOf(&runs), IsEmpty());
+}
+
+// Tests that a cell that no sensor reads counts as a spike, however large it is, and that a column in another
+// unit has none.
+TEST(RecordingDamage, ImpossibleCells) {
+  for (const double cell : {2e5, 1e10, 1e14, -1e14}) {
+    std::vector<runs::MeasuredRun> runs = {Bench()};
+    runs[0].p2.values[300] = cell;
+    EXPECT_THAT(LinesOf(&runs),
+                ElementsAre("run bench: p2 has 1 spike, the first at 0.3 s; it counts as missing"))
+        << cell;
+    EXPECT_EQ(Missing(runs[0].p2.values), 1u);
+  }
+  std::vector<runs::MeasuredRun> runs = {Bench()};
+  for (double& value : runs[0].p2.values) value *= 345;  // the highest are just beyond half the bulk modulus
+  EXPECT_THAT(LinesOf(&runs), IsEmpty());
 }
 
 // Tests that readings of 0 in the midst of others become missing, the first one too.

@@ -60,6 +60,21 @@ TEST(InSi, ConvertsParametersAndTerms) {
   EXPECT_EQ(shown.at, term.at);  // rad/s
 }
 
+// Tests that the place of the disagreement is converted: single values, ranges and signs, and no names.
+TEST(InSi, ConvertsWhere) {
+  const auto converted = [](const std::string& where) {
+    diagnose::Diagnosis paper = ExampleDiagnosis(100);
+    paper.location[0].where = where;
+    return diagnose::InSi(paper).location[0].where;
+  };
+  EXPECT_EQ(converted("p2 - p1 from -100 to 300 psi"), "p2 - p1 from -0.689 to 2.07 MPa");
+  EXPECT_EQ(converted("where the valves hold p_3, p1 reads +3.1 psi and p2 -20 psi against the model"),
+            "where the valves hold p_3, p1 reads +21.4 kPa and p2 -138 kPa against the model");
+  for (const char* same : {"|motor_speed| < 5 rad/s, at reversals", "|voltage| > 2.5 V",
+                           "changes with the sign of p1 - 3 sides", "the same everywhere", ""})
+    EXPECT_EQ(converted(same), same);
+}
+
 // Tests that signals and sentences stay as they are.
 TEST(InSi, LeavesSignalsAndSentences) {
   const diagnose::Diagnosis paper = ExampleDiagnosis(100);
