@@ -41,6 +41,13 @@ std::string Where(const std::vector<std::string>& sidecars, const Mistakes& mist
          (columns ? ", under [columns]," : "");
 }
 
+// Units and a value of the model look alike where the same terms of a balance are too large.
+bool HasAFactor(const Mistakes& mistakes) {
+  return std::any_of(mistakes.begin(), mistakes.end(), [](const RecordingMistake& mistake) {
+    return !mistake.IsSign() && !mistake.factors.empty();
+  });
+}
+
 std::string Text(const Remark& remark) {
   const Mistakes& mistakes = remark.finding->mistakes;
   const std::string where = Where(remark.sidecars, mistakes);
@@ -61,6 +68,7 @@ std::string Text(const Remark& remark) {
     }
     text += (other.size() > mistakes.size() ? ": " : "; or this: ") + remark.tied_lines[t];
   }
+  if (HasAFactor(mistakes)) text += ". Where the unit is right, a value of the model is off by as much";
   return text;
 }
 

@@ -64,6 +64,7 @@ TEST_F(RecordingCheckTest, Signs) {
   // Also of the bypassed run, of which a wrong sign of the voltage would explain as much.
   ASSERT_EQ(speed.size(), 1u);
   EXPECT_THAT(speed[0], HasSubstr("every run: motor_speed has the wrong sign"));
+  EXPECT_EQ(speed[0].find("Where the unit is right"), std::string::npos) << "no value has the wrong sign";
 }
 
 // Tests exchanged pressures; with the bypass open there is nothing to tell them by.
@@ -95,6 +96,7 @@ TEST_F(RecordingCheckTest, Units) {
   });
   ASSERT_EQ(one.size(), 1u);
   EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
+  EXPECT_THAT(one[0], HasSubstr("Where the unit is right, a value of the model is off by as much"));
 }
 
 // Tests that a speed that is not the rate of its angle is named with its unit or its sign, and that a sensor
