@@ -8,6 +8,7 @@
 #include "diagnose/report/report.h"
 #include "runs/measured/measured_run.h"
 #include "tests/diagnose/small_runs.h"
+#include "tests/model_in_units.h"
 
 namespace hydro::testing {
 namespace {
@@ -84,6 +85,35 @@ TEST(Diagnose, ItsOwnModelNeedsNothing) {
   const diagnose::Diagnosis d = diagnose::Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_EQ(d.model.effects.size(), 1);
+}
+
+// Tests that a machine whose values are a few per cent off is judged alike in all systems of units. All rigs
+// of the score were in psi, and nobody saw that fits in Pa ended early: healthy machines lacked something.
+TEST(Diagnose, TheSameInAllUnits) {
+  model::ModelDescription given = Table1With();
+  const std::pair<double model::Parameters::*, double> off[] = {
+      {&model::Parameters::k_1, 0.97}, {&model::Parameters::D, 1.02},  {&model::Parameters::J, 0.95},
+      {&model::Parameters::b, 0.8},    {&model::Parameters::T_s, 1.2}, {&model::Parameters::beta, 1.06}};
+  for (const auto& [member, factor] : off) given.parameters.*member *= factor;
+  std::vector<diagnose::Diagnosis> all;
+  for (const UnitSystem& units : kSystems) {
+    std::vector<runs::MeasuredRun> runs = RunsOf(Dragged());
+    const double pressure = Factor("psi", 0, {}, units);
+    for (runs::MeasuredRun& run : runs) {
+      run.units = units;
+      for (double& value : run.p1.values) value *= pressure;
+      for (double& value : run.p2.values) value *= pressure;
+    }
+    all.push_back(diagnose::Diagnose(InUnits(given, units), std::move(runs), {}, {}, {}));
+    const diagnose::Diagnosis &paper = all.front(), &d = all.back();
+    EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << units.length << ": " << d.sentence;
+    ASSERT_EQ(d.effects.size(), 1) << units.length << ": " << d.sentence;
+    EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag") << units.length;
+    EXPECT_EQ(d.set_90, paper.set_90) << units.length;
+    EXPECT_NEAR(d.held_out.after / paper.held_out.after, 1, 0.02) << units.length;
+    const double drag = Factor("in-lbf-s^2", 0, {}, units) * paper.effects.at(0).parameters.at(0).value;
+    EXPECT_NEAR(d.effects[0].parameters.at(0).value / drag, 1, 0.02) << units.length;
+  }
 }
 
 // Tests that a constant torque is found as such: friction that differs between the directions has the same
