@@ -118,21 +118,6 @@ void AtLikeliestScale(const model::ModelDescription& given, EstimatedModel* esti
     estimated->base.push_back(model::BasePlace("k_1"));
 }
 
-// Whether an effect that can only add comes out negative in company with others, in all of its amounts: where
-// one of them does not (a seal's friction, beside what grows with the speed), the others are 0 in the model.
-bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
-  return std::any_of(set.begin(), set.end(), [&](const std::string& change) {
-    bool only_adds = false, adds = false;
-    for (size_t i = 0; i < fit.columns.size(); ++i) {
-      const ScanColumn& column = rows.columns[static_cast<size_t>(fit.columns[i])];
-      if (column.set != change) continue;
-      only_adds |= column.positive;
-      adds |= !column.positive || fit.amounts[static_cast<Eigen::Index>(i)] >= 0;
-    }
-    return only_adds && !adds;
-  });
-}
-
 // If one value is far off, the model with only this value changed: all other values may be right as given.
 std::optional<Proposal> OneValueAlone(const model::ModelDescription& given, const ChangeSet& set,
                                       const Proposal& all) {
@@ -291,6 +276,19 @@ ScanRuns SettledRuns(const ProofContext& context, ScanOptions options) {
 }
 
 }  // namespace
+
+bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit) {
+  return std::any_of(set.begin(), set.end(), [&](const std::string& change) {
+    bool only_adds = false, adds = false;
+    for (size_t i = 0; i < fit.columns.size(); ++i) {
+      const ScanColumn& column = rows.columns[static_cast<size_t>(fit.columns[i])];
+      if (column.set != change) continue;
+      only_adds |= column.positive;
+      adds |= !column.positive || fit.amounts[static_cast<Eigen::Index>(i)] >= 0;
+    }
+    return only_adds && !adds;
+  });
+}
 
 Proposed Propose(const ProofContext& context, const std::vector<size_t>& allowed,
                  const std::vector<std::string>& inverted) {

@@ -11,6 +11,11 @@
 
 namespace hydro::diagnose {
 
+// Whether an effect of the set that can only add comes out negative in company with others, in all of its
+// amounts. Where one of them does not (a seal's friction, beside what grows with the speed), the effect is
+// possible, and the others are 0 in the model.
+bool IsImpossible(const Rows& rows, const ChangeSet& set, const SetFit& fit);
+
 struct Proposed {
   std::vector<Proposal> proposals;  // the likeliest first
   ExplanationWeights weights;       // of all sets that the balances distinguish

@@ -64,7 +64,7 @@ TEST_F(ExactRig, NoiseIsStated) {
     const Solved solved = Write(CaseNamed(std::string("exact-noise_") + name + "-1"), name);
     for (const Plan& plan : solved.plans) {
       const auto run = hydro::runs::ReadMeasuredRun(Folder(name) + "/" + plan.name + ".csv");
-      const auto expect = [&](const std::optional<double>& stated, int channel) {
+      const auto expect = [&, name = name, times = times](const std::optional<double>& stated, int channel) {
         EXPECT_NEAR(stated.value() * times / NoiseUnit(solved.recorder.channels[channel]), 1, 1e-6) << name;
       };
       expect(run.motor_speed.noise, kSpeed);

@@ -157,23 +157,24 @@ TEST(Propose, NothingMissing) {
   for (const char* base : {"k_1", "J", "b", "T_s", "beta", "k_2", "J_a"}) EXPECT_TRUE(shown(base)) << base;
 }
 
-// Tests that an effect of which one amount comes out just below 0, where it can only add, is proposed with
-// that amount at 0: these seals do not resist more at speed, and noise makes that part negative half the
-// time.
-TEST(Propose, AnAmountOfNothing) {
-  const model::ModelDescription truth =
-      Table1With({{"actuator.seal_friction", {{"coulomb", 300}, {"viscous", 0}}, {}}});
-  size_t at_zero = 0;
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
-    const std::vector<diagnose::RunData> runs = RunsOf(truth, seed);
-    const Proposed proposed = Propose(ContextOf(runs, {"actuator.seal_friction"}), Allowed());
-    const size_t place = PlaceOf(proposed, "actuator.seal_friction");
-    ASSERT_LT(place, proposed.proposals.size()) << "seed " << seed;
-    const model::ModelDescription& model = proposed.proposals[place].model;
-    EXPECT_NEAR(ValueOf(model, "actuator.seal_friction", "coulomb"), 300, 60);
-    at_zero += ValueOf(model, "actuator.seal_friction", "viscous") == 0 ? 1 : 0;
-  }
-  EXPECT_GT(at_zero, 0) << "no amount was negative: this shows nothing";
+// Tests that an effect that can only add is impossible where all of its amounts are below 0, and that one of
+// them may be: seals that resist less at speed still resist.
+TEST(IsImpossible, WhereNothingIsAdded) {
+  diagnose::Rows rows;
+  rows.columns = {{"J", ""},
+                  {"seal:coulomb", "seal", 1, true},
+                  {"seal:viscous", "seal", 1, true},
+                  {"bias", "bias"},
+                  {"drag", "drag", 1, true}};
+  diagnose::SetFit fit;
+  fit.columns = {0, 1, 2, 3, 4};
+  fit.amounts = Eigen::VectorXd::Zero(5);
+  fit.amounts << -1, 2, -0.1, -3, -1e-9;
+  EXPECT_FALSE(diagnose::IsImpossible(rows, {"bias", "seal"}, fit));
+  EXPECT_TRUE(diagnose::IsImpossible(rows, {"drag", "seal"}, fit));
+  EXPECT_FALSE(diagnose::IsImpossible(rows, {}, fit));
+  fit.amounts[1] = -2;
+  EXPECT_TRUE(diagnose::IsImpossible(rows, {"bias", "seal"}, fit));
 }
 
 // Tests that a bypass whose pressures nobody measured says nothing of the oil, and nothing of the arm.
