@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "model/actuator.h"
+#include "model/started_actuator.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {
@@ -73,8 +73,9 @@ runs::MeasuredRun Measure(const model::ModelDescription& truth, const CleanRun& 
   options.shaft = how.shaft;
   options.arm_angle = how.arm_angle;
   options.bypass = how.bypass;
-  options.initial_pressure = std::max(how.pressure, truth.parameters.p_3);
-  model::Actuator actuator(truth, options);
+  // As a recording begins: an accumulator has filled the sides.
+  const double pressure = std::max(how.pressure, truth.parameters.p_3);
+  model::StartedActuator actuator(truth, options, {0, 0, pressure, pressure, how.arm_angle, 0}, 0);
   const auto samples = static_cast<size_t>(std::lround(how.duration / kStep));
   for (size_t k = 0; k < samples; ++k) {
     const double t = kStep * static_cast<double>(k);
