@@ -144,10 +144,7 @@ void ProofSets::BeginAtBestValues() {
 void ProofSets::Refine(size_t place) {
   if (place == kGiven || sets_[place].refined) return;
   BeginAtBestValues(&sets_[place]);
-  // Other values are what everything is measured by: a set of them that is fitted badly makes room for a
-  // name.
-  const bool values = sets_[place].Effects().empty();
-  RefineValues(context_, fitted_, windows_, values ? kReportedValues : kComparedValues, &sets_[place]);
+  RefineValues(context_, fitted_, windows_, kComparedValues, &sets_[place]);
   sets_[place].refined = true;
 }
 
