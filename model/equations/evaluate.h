@@ -153,10 +153,12 @@ template <Form kForm, class T>
   return dp;
 }
 
-// The oil, in^3, by which the sides hold more than with both at `p_3`.
+// The oil, in^3, by which the sides hold more than with both at `p_3`. Sides that hold less gave none back:
+// their one-way valves would fill them.
 template <class T>
 T PressedIn(const Terms<T>& x, const T& p_3) {
-  return x.V_1 / x.beta_1 * (x.p1 - p_3) + x.V_2 / x.beta_2 * (x.p2 - p_3);
+  const T oil = x.V_1 / x.beta_1 * (x.p1 - p_3) + x.V_2 / x.beta_2 * (x.p2 - p_3);
+  return oil > T(0.0) ? oil : T(0.0);
 }
 
 // p1' and p2' with closed valves.
