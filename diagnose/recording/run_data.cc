@@ -35,6 +35,9 @@ constexpr const runs::SignalName* kSignalRows[model::kChannels] = {
                    allowed);
 }
 
+// The arm's angle at which V_1 or V_2 is 0, eqs. (6), (7).
+double StrokeOf(const model::Parameters& model) { return model.V_ms / model.c; }
+
 void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std::vector<double>& values,
                 double limit, const std::string& unit) {
   for (size_t i = 0; i < values.size(); ++i) {
@@ -137,7 +140,7 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
   if (run.arm_speed.measured()) speed = MakeSignal(run, model::Channel::kArmSpeed);
   std::unique_ptr<trajectory::Trajectory> motion =
       SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
-  const double stroke = model.V_ms / model.c;
+  const double stroke = StrokeOf(model);
   const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
   CheckRange(run, "arm_angle", angle.values, stroke, unit);
   if (std::max(-motion->Min(), motion->Max()) >= stroke) {
@@ -183,8 +186,8 @@ std::vector<model::Surroundings> SurroundingsOf(const runs::MeasuredRun& run) {
 
 double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
   const std::string name = row.ours;
-  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
-  if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
+  const double stroke = StrokeOf(model);
+  if (name == "motor_speed") return 1e5;  // rad/s in every coherent system
   if (name == "motor_angle") return 1e9;
   if (name == "arm_angle") return 2 * stroke;
   if (name == "arm_speed") return 1000 * stroke;
@@ -327,7 +330,7 @@ void RequirePossibleSamples(const runs::MeasuredRun& run) {
 }  // namespace
 
 void RequireArmInStroke(const runs::MeasuredRun& run, const model::Parameters& model) {
-  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
+  const double stroke = StrokeOf(model);
   if (run.shaft != model::Shaft::kClamped || std::abs(run.arm_angle_rad) < stroke) return;
   const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
   Refuse(run.sidecar.empty() ? run.file : run.sidecar,

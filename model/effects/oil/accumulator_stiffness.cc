@@ -22,7 +22,6 @@ struct LoadedBySpring {
                              .parameters = {{.name = "stiffness",
                                              .unit = "psi/in^3",
                                              .meaning = "pressure per volume",
-                                             .scale = Scale::kOilStiffness,
                                              .example = 3000}},
                              .remembers_flow = true},
                     .make = MakeEffect<Accumulator<LoadedBySpring>>});
