@@ -30,6 +30,14 @@ Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
   return A.ldlt().solve(B);
 }
 
+Eigen::MatrixXd SolveScaled(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double damping) {
+  constexpr double kNothing = 1e-300;  // keeps the scale of an unknown without any information finite
+  const Eigen::VectorXd scale = (A.diagonal().array() + kNothing).rsqrt();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  scaled.diagonal().array() += damping;
+  return scale.asDiagonal() * SolveSymmetric(scaled, scale.asDiagonal() * B);
+}
+
 SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};

@@ -30,6 +30,11 @@ Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, con
 // The X that solves A X = B.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
+// The same for a positive semidefinite A whose unknowns have units of their own: each is measured by the root
+// of its place on the diagonal. `damping`, a part of that place, is added to it, so that an unknown that A
+// does not show stays at 0.
+Eigen::MatrixXd SolveScaled(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double damping);
+
 // A = V diag(values) V' for a symmetric matrix, values in increasing order.
 struct SymmetricEigensystem {
   Eigen::VectorXd values;

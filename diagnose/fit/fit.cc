@@ -4,12 +4,12 @@
 #include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "base/maths/matrix_functions.h"
 #include "base/parallel.h"
 #include "diagnose/fit/run_cost.h"
 #include "diagnose/fit/turn.h"
@@ -54,14 +54,11 @@ void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   MatrixXd information = normal.topLeftCorner(p, p);
   VectorXd gradient = normal.topRightCorner(p, 1);
   if (n > p && p > 0) {
-    // Each number of the start is measured by its own size, whatever its unit.
-    const VectorXd scale = (normal.diagonal().segment(p, n - p).array() + 1e-300).rsqrt();
-    MatrixXd inner = scale.asDiagonal() * normal.block(p, p, n - p, n - p) * scale.asDiagonal();
-    inner.diagonal().array() += 1e-12;
-    const MatrixXd cross = normal.block(0, p, p, n - p) * scale.asDiagonal();
-    const Eigen::LDLT<MatrixXd> solve(inner);
-    information -= cross * solve.solve(cross.transpose());
-    gradient -= cross * solve.solve(scale.asDiagonal() * normal.block(p, n, n - p, 1));
+    MatrixXd right(n - p, p + 1);  // the start's products with the free parameters and with the residuals
+    right << normal.block(0, p, p, n - p).transpose(), normal.block(p, n, n - p, 1);
+    const MatrixXd solved = maths::SolveScaled(normal.block(p, p, n - p, n - p), right, 1e-12);
+    information -= normal.block(0, p, p, n - p) * solved.leftCols(p);
+    gradient -= normal.block(0, p, p, n - p) * solved.rightCols(1);
   }
   run->information.assign(information.data(), information.data() + information.size());
   run->gradient.assign(gradient.data(), gradient.data() + gradient.size());

@@ -89,11 +89,7 @@ MatrixXd InformationOf(const Fitted& fitted, double discrepancy, const std::vect
 }
 
 MatrixXd CovarianceOf(const MatrixXd& information) {
-  const Eigen::VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
-  MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-10;
-  const MatrixXd one = MatrixXd::Identity(scaled.rows(), scaled.cols());
-  return scale.asDiagonal() * maths::SolveSymmetric(scaled, one) * scale.asDiagonal();
+  return maths::SolveScaled(information, MatrixXd::Identity(information.rows(), information.cols()), 1e-10);
 }
 
 // How far the numbers move between windows or runs: the variances of the fit with each left out in turn. What

@@ -113,13 +113,10 @@ class StartFit {
     for (Index i = 0; i < n; ++i) {
       const size_t state = starts_[static_cast<size_t>(i)].index;
       const double weight = std::pow(window_.start_error[state], -2);
-      information(i, i) += weight + 1e-300;
+      information(i, i) += weight;
       gradient(i) += weight * (from[state] - window_.start[state]);
     }
-    const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-    MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    scaled.diagonal().array() += 1e-9;  // numbers that the window cannot show stay where they are
-    return -(scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * gradient));
+    return -maths::SolveScaled(information, gradient, 1e-9);
   }
 
   const RunData& window_;
