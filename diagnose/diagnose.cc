@@ -249,6 +249,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   Hypothesis as_given;
   as_given.model = model;
   as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
+  as_given.highest_speed = context.sizes.speed;
   as_given.longest_time = NearHorizon(context.runs);
   if (report_progress) report_progress({"what the balances of the runs show", 0.2});
   const Proposed proposed = Propose(context, allowed, checked.inverted);

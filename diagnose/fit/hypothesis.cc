@@ -107,6 +107,10 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     } else if (!info.min_allowed && std::isfinite(info.min)) {
       parameter.low = info.min + kAboveTheLeast * std::max(1.0, std::abs(info.min));
     }
+    const bool within_runs = info.scale == model::Scale::kSpeed && !info.starts.empty() &&
+                             *std::max_element(info.starts.begin(), info.starts.end()) < 1;
+    if (within_runs && parameter.low < highest_speed)
+      parameter.high = std::min(parameter.high, highest_speed);
     if (parameter.role == model::Role::kFrequency && parameter.low < highest_frequency)
       parameter.high = std::min(parameter.high, highest_frequency);
     if (parameter.role == model::Role::kTime && std::max(0.0, parameter.low) < longest_time)
@@ -164,28 +168,43 @@ double Sizes::Of(model::Scale scale) const {
   return 1;
 }
 
+namespace {
+
+// The largest magnitude, but for spikes; 0 without values.
+double Largest(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return 0;
+  for (double& value : values) value = std::abs(value);
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+double LargestOf(const SignalData* signal) { return signal == nullptr ? 0 : Largest(signal->values); }
+
+// Of an encoder's angle, over so many samples that its steps count little.
+double LargestRate(const SignalData* angle, const std::vector<double>& time) {
+  constexpr size_t kApart = 10;
+  if (angle == nullptr) return 0;
+  std::vector<double> rates;
+  for (size_t i = kApart; i < angle->values.size(); i += kApart)
+    rates.push_back((angle->values[i] - angle->values[i - kApart]) / (time[i] - time[i - kApart]));
+  return Largest(std::move(rates));
+}
+
+}  // namespace
+
 Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
   Sizes sizes;
   const model::Parameters& p = model.parameters;
   sizes.torque = p.T_pmax;
   sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
-  const auto largest = [](const SignalData* signal, double* size) {
-    if (signal == nullptr) return;
-    std::vector<double> values;
-    for (const double value : signal->values) {
-      if (std::isfinite(value)) values.push_back(std::abs(value));
-    }
-    if (values.empty()) return;
-    // A high quantile instead of the maximum, which could be a single spike.
-    const auto place =
-        values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    *size = std::max(*size, *place);
-  };
   for (const RunData* run : runs) {
-    largest(run->Find(model::Channel::kMotorSpeed), &sizes.speed);
-    largest(run->Find(model::Channel::kP1), &sizes.pressure);
-    largest(run->Find(model::Channel::kP2), &sizes.pressure);
+    sizes.speed = std::max({sizes.speed, LargestOf(run->Find(model::Channel::kMotorSpeed)),
+                            LargestRate(run->Find(model::Channel::kMotorAngle), run->stimulus.time)});
+    sizes.pressure = std::max({sizes.pressure, LargestOf(run->Find(model::Channel::kP1)),
+                               LargestOf(run->Find(model::Channel::kP2))});
   }
   if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
   if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;

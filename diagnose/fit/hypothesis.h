@@ -75,6 +75,9 @@ struct Hypothesis {
   // Hz, the highest frequency that runs sampled this way can show. Beyond half their sampling rate, a
   // resonance fits any stiffness or resistance.
   double highest_frequency = std::numeric_limits<double>::infinity();
+  // rad/s, the largest speed of the motor in the runs. What changes with the speed, by a shape that is sought
+  // below it, cannot be seen to change beyond it: there it is a constant, which is the model's own value.
+  double highest_speed = std::numeric_limits<double>::infinity();
   // s, the longest time by which something can follow what drives it within the windows that judge. A longer
   // lag takes the command away, and a joint that sticks is predicted well by no torque at all.
   double longest_time = std::numeric_limits<double>::infinity();

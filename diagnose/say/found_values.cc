@@ -53,14 +53,17 @@ ChangedParameter DescribeParameter(const OwnNumber& number, const Interval& inte
   return changed;
 }
 
-// Whether the command demands the largest torque in one of the runs, fitted or not.
-bool ReachesTorqueLimit(const ProofContext& context, const model::Parameters& model) {
-  const auto reaches = [&](const RunData* run) {
-    return std::any_of(run->stimulus.voltage.begin(), run->stimulus.voltage.end(),
-                       [&](double volts) { return std::abs(model.k_1 * volts) >= model.T_pmax; });
+// Whether the command demands more than the largest torque in one of the runs, fitted or not. A command that
+// was recorded after it was limited demands just this torque, and does not show a larger one.
+bool ExceedsTorqueLimit(const ProofContext& context, const model::Parameters& model) {
+  constexpr double kRounding = 1e-3;  // of a recorded command
+  const auto exceeds = [&](const RunData* run) {
+    return std::any_of(run->stimulus.voltage.begin(), run->stimulus.voltage.end(), [&](double volts) {
+      return std::abs(model.k_1 * volts) > (1 + kRounding) * model.T_pmax;
+    });
   };
-  return std::any_of(context.runs.begin(), context.runs.end(), reaches) ||
-         std::any_of(context.held_out.begin(), context.held_out.end(), reaches);
+  return std::any_of(context.runs.begin(), context.runs.end(), exceeds) ||
+         std::any_of(context.held_out.begin(), context.held_out.end(), exceeds);
 }
 
 // Which of the free numbers the fitted runs do not show, whatever the others are: nothing in the runs depends
@@ -103,8 +106,8 @@ void DescribeValues(const ProofContext& context, const Proof& proof, const std::
       proof.told.ok() ? RestOnKnown(proof.told) : std::vector<bool>(free.size(), false);
   const std::vector<bool> unseen =
       proof.told.ok() ? Unseen(proof.told) : std::vector<bool>(free.size(), false);
-  const bool limited = ReachesTorqueLimit(context, context.given.parameters) ||
-                       ReachesTorqueLimit(context, hypothesis.model.parameters);
+  const bool limited = ExceedsTorqueLimit(context, context.given.parameters) ||
+                       ExceedsTorqueLimit(context, hypothesis.model.parameters);
   std::vector<std::string> unsure, resting, not_shown;
   for (const OwnNumber& number : OwnNumbers(context.given, hypothesis.model)) {
     const auto it = std::find_if(free.begin(), free.end(),

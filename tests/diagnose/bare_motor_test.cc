@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "diagnose/diagnose.h"
@@ -13,7 +15,10 @@
 namespace hydro::testing {
 namespace {
 
+using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 model::ModelDescription Bare() {
   model::ModelDescription bare = Table1With();
@@ -115,6 +120,32 @@ TEST(BareMotor, FrictionIsMeasuredByTheMotorsTorque) {
   EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
   EXPECT_EQ(Fitted(d, &model::Parameters::k_1), truth.parameters.k_1);
   EXPECT_NEAR(Fitted(d, &model::Parameters::b), truth.parameters.b, 0.05 * truth.parameters.b);
+  EXPECT_NEAR(Fitted(d, &model::Parameters::T_s), truth.parameters.T_s, 0.05 * truth.parameters.T_s);
+}
+
+// Tests that no effect of oil is tried on a motor that has none.
+TEST(BareMotor, HasNoOil) {
+  const diagnose::Diagnosis d = diagnose::Diagnose(Bare(), RunsOf(Bare(), 8, 2), {}, {}, {});
+  std::vector<std::string> ids;
+  for (const diagnose::Candidate& candidate : d.candidates) ids.push_back(candidate.id);
+  EXPECT_THAT(ids, Contains("pump.stribeck"));
+  for (const char* oil : {"pump.pressure_friction", "pump.flow_ripple", "valve.relief", "fluid.stiffening",
+                          "accumulator.stiffness", "actuator.seal_friction"})
+    EXPECT_THAT(ids, Not(Contains(HasSubstr(oil))));
+}
+
+// Tests that a command that was recorded after it was limited shows no other limit.
+TEST(BareMotor, ALimitedCommandShowsNoOtherLimit) {
+  model::ModelDescription truth = Bare(), given = Bare();
+  const double limit = truth.parameters.T_pmax / truth.parameters.k_1;
+  given.parameters.T_s *= 1.5;
+  std::vector<runs::MeasuredRun> runs = RunsOf(truth, 1.3 * limit, 3);
+  for (runs::MeasuredRun& run : runs) {
+    for (double& volts : run.voltage.values) volts = std::clamp(volts, -limit, limit);
+  }
+  const diagnose::Diagnosis d = diagnose::Diagnose(given, std::move(runs), {}, {}, {});
+  EXPECT_THAT(d.effects, IsEmpty()) << d.sentence;
+  EXPECT_EQ(Fitted(d, &model::Parameters::T_pmax), truth.parameters.T_pmax);
   EXPECT_NEAR(Fitted(d, &model::Parameters::T_s), truth.parameters.T_s, 0.05 * truth.parameters.T_s);
 }
 

@@ -75,7 +75,8 @@ class SealFriction : public EffectOf<SealFriction> {
                                              .unit = "in-lbf-s",
                                              .meaning = "viscous friction on the arm",
                                              .arm = -2,
-                                             .example = 50}}},
+                                             .example = 50}},
+                             .needs_oil = true},
                     .make = MakeEffect<SealFriction>});
 
 }  // namespace

@@ -70,7 +70,8 @@ class Flexure : public EffectOf<Flexure> {
                                              .scale = Scale::kArmDamping,
                                              .example = 60}},
                              // The angle of the actuator's own shaft is not measured.
-                             .unseen_by_balances = true},
+                             .unseen_by_balances = true,
+                             .needs_oil = true},
                     .make = MakeEffect<Flexure>});
 
 }  // namespace

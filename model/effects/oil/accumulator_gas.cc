@@ -51,6 +51,7 @@ struct LoadedByGas {
                               .optional = true,
                               .standard = {"p_3", [](const auto& p) { return p.p_3; }}}},
               .remembers_flow = true,
+              .needs_oil = true,
               // Over the small changes of pressure in most runs it is the same as accumulator.stiffness.
               .on_request = true},
      .make = MakeEffect<Accumulator<LoadedByGas>>});

@@ -23,7 +23,8 @@ struct LoadedBySpring {
                                              .unit = "psi/in^3",
                                              .meaning = "pressure per volume",
                                              .example = 3000}},
-                             .remembers_flow = true},
+                             .remembers_flow = true,
+                             .needs_oil = true},
                     .make = MakeEffect<Accumulator<LoadedBySpring>>});
 
 }  // namespace

@@ -53,7 +53,8 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
                               .max = 1,
                               .meaning = "volume of the air at atmospheric pressure over the fluid's",
                               .starts = {0, 5e-4, 5e-3},
-                              .example = 0.02}}},
+                              .example = 0.02}},
+              .needs_oil = true},
      .make = MakeEffect<EntrainedAir>});
 
 }  // namespace

@@ -21,7 +21,8 @@ class Stiffening : public EffectOf<Stiffening> {
               .equation = "beta + slope p",
               .confused_with = "fluid.entrained_air",
               .parameters =
-                  {{.name = "slope", .unit = "1", .meaning = "bulk modulus per pressure", .example = 20}}},
+                  {{.name = "slope", .unit = "1", .meaning = "bulk modulus per pressure", .example = 20}},
+              .needs_oil = true},
      .make = MakeEffect<Stiffening>});
 
 }  // namespace

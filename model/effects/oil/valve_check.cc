@@ -61,7 +61,8 @@ class Check : public EffectOf<Check> {
                               .meaning = "flow per pressure below that",
                               .starts = {30, 300},
                               .scale = Scale::kFlow,
-                              .example = 0.001}}},
+                              .example = 0.001}},
+              .needs_oil = true},
      .make = MakeEffect<Check>});
 
 }  // namespace

@@ -59,7 +59,8 @@ class Relief : public EffectOf<Relief> {
                                              .example = 0.001}},
                              // Where it regulates, the pressure is constant and the flow is the remainder of
                              // the other flows.
-                             .unseen_by_balances = true},
+                             .unseen_by_balances = true,
+                             .needs_oil = true},
                     .make = MakeEffect<Relief>});
 
 }  // namespace

@@ -30,7 +30,8 @@ class FlowRipple : public EffectOf<FlowRipple> {
                               .meaning = "largest change of D over D; negative: least D at theta = 0",
                               .role = Role::kDisplacementWave,
                               .example = 0.1},
-                             PeriodsPerRevolution(9)}},
+                             PeriodsPerRevolution(9)},
+              .needs_oil = true},
      .make = MakeEffect<FlowRipple>});
 
 }  // namespace

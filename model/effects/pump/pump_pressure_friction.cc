@@ -24,7 +24,8 @@ class PressureFriction : public EffectOf<PressureFriction> {
                               .unit = "in-lbf/psi",
                               .meaning = "Coulomb friction per pressure, added to the base parameter f",
                               .adds_to = &Parameters::f,
-                              .example = 0.001}}},
+                              .example = 0.001}},
+              .needs_oil = true},
      .make = MakeEffect<PressureFriction>});
 
 }  // namespace

@@ -31,7 +31,8 @@ class TurbulentLeakage : public EffectOf<TurbulentLeakage> {
               .equation = "cross-port flow + k sgn(dp) sqrt(abs(dp))",
               .confused_with = "parameter c_I",
               .parameters =
-                  {{.name = "k", .unit = "in^3/s/psi^.5", .meaning = "flow at dp = 1", .example = 0.001}}},
+                  {{.name = "k", .unit = "in^3/s/psi^.5", .meaning = "flow at dp = 1", .example = 0.001}},
+              .needs_oil = true},
      .make = MakeEffect<TurbulentLeakage>});
 
 }  // namespace

@@ -33,6 +33,38 @@ TEST(Hypothesis, UnitsOfTheModel) {
   }
 }
 
+// Tests that a speed by which friction changes is not sought beyond the fastest motion, where it would be
+// another name for the friction that the model has.
+TEST(Hypothesis, SpeedsWithinTheRuns) {
+  Hypothesis hypothesis = WithFree(Table1With({{"pump.stribeck", {{"static_excess", 0.5}, {"speed", 3}}, {}},
+                                               {"motor.speed_torque_limit", {{"no_load_speed", 700}}, {}}}),
+                                   {});
+  hypothesis.highest_speed = 40;
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  ASSERT_EQ(free.size(), 3u);
+  const auto named = [&](const char* name) { return *std::ranges::find(free, name, &FreeParameter::name); };
+  EXPECT_EQ(named("pump.stribeck.speed").high, 40);
+  EXPECT_GT(named("motor.speed_torque_limit.no_load_speed").high, 700);
+}
+
+// Tests that the largest speed is read off an encoder where no speed was recorded, whatever its steps.
+TEST(Sizes, SpeedOfAnAngle) {
+  diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 2, 1, 7);
+  const double recorded = diagnose::SizesOf(Table1With(), {&run}).speed;
+  diagnose::SignalData* speed = nullptr;
+  for (diagnose::SignalData& signal : run.signals) {
+    if (signal.channel == model::Channel::kMotorSpeed) speed = &signal;
+  }
+  ASSERT_NE(speed, nullptr);
+  double angle = 0;
+  speed->channel = model::Channel::kMotorAngle;
+  for (size_t i = 0; i < speed->values.size(); ++i) {
+    if (i > 0) angle += speed->values[i] * (run.stimulus.time[i] - run.stimulus.time[i - 1]);
+    speed->values[i] = 1e-3 * std::round(angle / 1e-3);
+  }
+  EXPECT_NEAR(diagnose::SizesOf(Table1With(), {&run}).speed, recorded, 0.2 * recorded);
+}
+
 // Tests that free parameters can be read, set and moved, positive ones by their logarithms.
 TEST(Hypothesis, FreeNumbers) {
   Hypothesis hypothesis = WithFree(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}), {"b", "T_s"});
