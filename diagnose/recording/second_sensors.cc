@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/number_text.h"
@@ -98,12 +99,13 @@ std::optional<SecondSensor> Compared(const SensorBlocks& blocks) {
   // An offset that is small beside the quantity is none.
   const bool off =
       std::abs(offset) > std::max(fit->half[1], kSensorFactor / 2 * RootMeanSquare(blocks.first));
+  const double late = fit->value[2] / factor, late_half = fit->half[2] / factor;
   return SecondSensor{.factor = factor,
                       .factor_half = fit->half[0],
                       .offset = off ? offset : 0,
                       .offset_half = fit->half[1],
-                      .late = fit->value[2] / factor,
-                      .late_half = fit->half[2] / factor};
+                      .late = std::abs(late) > late_half ? late : 0,
+                      .late_half = late_half};
 }
 
 const runs::SignalName& NameOfSignal(SignalOfRun signal) {
@@ -116,7 +118,8 @@ std::string Text(const SensorPair& pair, const Run& run, const SecondSensor& sec
   std::string text = name.ours;
   if (differ == SensorsDiffer::kInTime)
     return text + " is " + WithHalfWidth(std::abs(second.late), second.late_half) + " s " +
-           (second.late > 0 ? "later" : "earlier") + " than " + pair.first_name + ": " + pair.believed;
+           (second.late > 0 ? "later" : "earlier") + " than " + pair.first_name + ": " + pair.believed +
+           (pair.set_aside ? ", and the speed is moved by that" : "");
   text += " is " + WithHalfWidth(second.factor, second.factor_half) + " times " + pair.what;
   if (second.offset != 0) {
     text += " and " + WithHalfWidth(std::abs(second.offset), second.offset_half) + " " +
@@ -155,6 +158,20 @@ std::vector<SameSensors> SensorsOf(const SensorPair& pair, const std::vector<Run
   return recorders;
 }
 
+// The values that were read `late` after each time, rounded to the nearest sample, so that values and their
+// noise stay as recorded; NaN where the record has ended or not begun.
+std::vector<double> Earlier(const std::vector<double>& time, const std::vector<double>& values, double late) {
+  std::vector<double> moved(values.size(), std::numeric_limits<double>::quiet_NaN());
+  for (size_t k = 0; k < moved.size(); ++k) {
+    const double at = time[k] + late;
+    const auto after = std::upper_bound(time.begin(), time.end(), at);
+    if (after == time.begin() || after == time.end()) continue;
+    const bool nearer = *after - at < at - *(after - 1);
+    moved[k] = values[static_cast<size_t>(after - time.begin()) - (nearer ? 0 : 1)];
+  }
+  return moved;
+}
+
 }  // namespace
 
 SensorsDiffer HowTheyDiffer(const SecondSensor& second, double size, double step) {
@@ -172,13 +189,17 @@ ComparedSensors CompareSensors(const std::vector<Run>& runs) {
       if (!second) continue;
       const double size = RootMeanSquare(recorder.blocks.first);
       const SensorsDiffer differ = HowTheyDiffer(*second, size, recorder.blocks.step);
-      if (differ == SensorsDiffer::kNot) continue;
       std::vector<std::string> names;
       for (const size_t r : recorder.runs) {
         names.push_back(runs[r].name);
-        if (differ == SensorsDiffer::kInSize && pair.set_aside)
+        if (!pair.set_aside) continue;
+        if (differ == SensorsDiffer::kInSize) {
           compared.unbelieved.push_back({r, pair.second, IsKnown(*second) ? second : std::nullopt});
+        } else if (second->late != 0) {
+          compared.unbelieved.push_back({r, pair.second, SecondSensor{.late = second->late}});
+        }
       }
+      if (differ == SensorsDiffer::kNot) continue;
       compared.remarks.push_back(RunsNamed(names, runs.size()) + ": " +
                                  Text(pair, runs[recorder.runs.front()], *second, differ));
     }
@@ -195,6 +216,7 @@ void CorrectOrLeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieve
       continue;
     }
     for (double& value : signal.values) value = (value - one.reads->offset) / one.reads->factor;
+    if (one.reads->late != 0) signal.values = Earlier(runs[one.run]->time, signal.values, one.reads->late);
     if (signal.noise) *signal.noise /= one.reads->factor;
   }
 }

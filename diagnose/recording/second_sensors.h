@@ -29,7 +29,8 @@ struct ComparedSensors {
     size_t run;
     runs::MeasuredSignal runs::MeasuredRun::*signal;
     // How it reads what the first one reads; nothing where the factor is not known as well as two sensors
-    // agree anyway.
+    // agree anyway. Most recorded speeds are filtered, and late by less than is worth a remark: they are here
+    // with their lateness alone, because a millisecond is enough to make a fit move the motor's values.
     std::optional<SecondSensor> reads;
   };
   std::vector<Unbelieved> unbelieved;
@@ -42,8 +43,8 @@ struct ComparedSensors {
 // signs.
 ComparedSensors CompareSensors(const std::vector<runs::MeasuredRun>& runs);
 
-// Takes factor and offset out of the second sensors that are not believed, noise included; without them, a
-// sensor is left out. So a fine speed beside a coarse angle still says how the speed changes.
+// Takes factor, offset and lateness out of the second sensors that are not believed, noise included; without
+// them, a sensor is left out. So a fine speed beside a coarse angle still says how the speed changes.
 void CorrectOrLeaveOut(const std::vector<ComparedSensors::Unbelieved>& unbelieved,
                        const std::vector<runs::MeasuredRun*>& runs);
 

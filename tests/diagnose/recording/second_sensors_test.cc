@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -70,14 +71,24 @@ std::pair<double, double> IntervalAfter(const std::string& text, const std::stri
   return {std::stod(found[1]), std::stod(found[2])};
 }
 
-// Tests that sensors that agree to their noise say nothing, at several rates and with several seeds.
+// Tests that sensors that agree to their noise say nothing, at several rates and with several seeds, and that
+// a speed that is late by less than filters are is moved.
 TEST(SecondSensors, ThatAgreeSayNothing) {
   for (const double step : {5e-4, 2e-3, 1e-2}) {
     for (const uint64_t seed : {1, 2, 3, 4}) {
       TwoSensors how{{1.01, 0.3, 1e-3}, {0.99, 0, 1e-3}, {1.005, 1, 1e-3}, step, seed};
       const ComparedSensors compared = CompareSensors({SwingOf(how)});
       EXPECT_THAT(compared.remarks, IsEmpty()) << step << ", seed " << seed;
-      EXPECT_THAT(compared.unbelieved, IsEmpty());
+      for (const ComparedSensors::Unbelieved& moved : compared.unbelieved) {
+        ASSERT_TRUE(moved.reads.has_value());
+        EXPECT_EQ(moved.reads->factor, 1);
+        EXPECT_EQ(moved.reads->offset, 0);
+        EXPECT_NEAR(moved.reads->late, 1e-3, 5e-4) << step << ", seed " << seed;
+      }
+      const auto speed = [](const ComparedSensors::Unbelieved& one) {
+        return one.signal == &Measured::motor_speed;
+      };
+      EXPECT_EQ(std::ranges::count_if(compared.unbelieved, speed), 1) << step << ", seed " << seed;
     }
   }
 }
@@ -132,16 +143,20 @@ TEST(SecondSensors, CorrectedOnlyWhereItsFactorIsKnown) {
   EXPECT_THAT(compared.remarks[0], HasSubstr("and the speed is left out"));
 }
 
-// Tests that of a late speed the time is said, with its interval, and that both sensors stay: the catalogue
-// has late sensors.
+// Tests that of a late speed the time is said, with its interval, and that the speed is moved by it.
 TEST(SecondSensors, LateSpeed) {
-  const ComparedSensors compared = CompareSensors({SwingOf({{1, 0, 0.012}, {}, {}, 2e-3, 3})});
+  Measured run = SwingOf({{1, 0, 0.012}, {}, {}, 2e-3, 3});
+  const ComparedSensors compared = CompareSensors({run});
   ASSERT_EQ(compared.remarks.size(), 1u);
   EXPECT_THAT(compared.remarks[0], HasSubstr("s later than motor_angle: the angle is believed"));
   const auto [value, half] = IntervalAfter(compared.remarks[0], "motor_speed is ");
   EXPECT_NEAR(value, 0.012, half + 5e-4);
   EXPECT_LT(half, 1e-3);
-  EXPECT_THAT(compared.unbelieved, IsEmpty());
+  const std::vector<double> recorded = run.motor_speed.values;
+  CorrectOrLeaveOut(compared.unbelieved, {&run});
+  EXPECT_NEAR(run.motor_speed.values[1000], recorded[1006], 4) << "noise of 1";
+  EXPECT_TRUE(std::isnan(run.motor_speed.values.back())) << "nothing was read so late";
+  EXPECT_THAT(CompareSensors({run}).remarks, IsEmpty());
 }
 
 // Tests that the arm's angle is believed before its speed.
