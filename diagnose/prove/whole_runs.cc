@@ -24,6 +24,9 @@ constexpr size_t kMostFittedChanges = 6;
 // The part of the squared gap above the noise that a change has to take: most of it.
 constexpr double kMost = 0.5;
 
+// The part of what a run shows of a number below which the other runs show nothing of it.
+constexpr double kNotShown = 1e-6;
+
 // What all runs together say about the free numbers.
 struct Sums {
   Eigen::MatrixXd information;
@@ -42,12 +45,9 @@ Sums SumsOf(const Fitted& fitted) {
 // The fall of the sum of squares in a linear model of the hypothesis' free numbers. It starts at their
 // values, which cost nothing.
 double ExpectedFall(const Fitted& fitted) {
-  Sums sums = SumsOf(fitted);
+  const Sums sums = SumsOf(fitted);
   if (sums.gradient.size() == 0) return 0;
-  const double largest = sums.information.diagonal().cwiseAbs().maxCoeff();
-  if (!(largest > 0)) return 0;
-  sums.information.diagonal().array() += 1e-12 * largest;
-  return sums.gradient.dot(maths::SolveSymmetric(sums.information, sums.gradient).col(0));
+  return sums.gradient.dot(maths::SolveScaled(sums.information, sums.gradient, 1e-12).col(0));
 }
 
 struct Tested {
@@ -109,11 +109,8 @@ std::vector<model::ModelDescription> WithoutEachRun(const Fitted& fitted) {
           all.information - Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
       const Eigen::VectorXd right = all.gradient - Eigen::Map<const Eigen::VectorXd>(run.gradient.data(), p);
       // A number that no other run shows stays where it is.
-      left.diagonal() += 1e-6 * all.information.diagonal();
-      const Eigen::VectorXd scale = (left.diagonal().array() + 1e-300).sqrt().inverse();
-      const Eigen::MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
-      const Eigen::VectorXd move =
-          -(scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * right));
+      left.diagonal() += kNotShown * all.information.diagonal();
+      const Eigen::VectorXd move = -maths::SolveScaled(left, right, 0);
       std::vector<double> values;
       for (size_t i = 0; i < free.size(); ++i) {
         const double moved = free[i].Moved(move(static_cast<Eigen::Index>(i)));
@@ -205,7 +202,8 @@ Proof ProvedOnWholeRuns(const ProofContext& context, const Hypothesis& as_given,
   whole.told = Fit(whole.Found(), context.runs, StartsOf(start), FineFit(context.jobs));
   whole.told_runs = context.runs;
   if (whole.told.ok()) whole.sets[whole.best] = SetOf(context, whole.told);
-  return whole;
+  // What may as well be none is found in the noise.
+  return MayBeNone(context, whole).empty() ? whole : near;
 }
 
 }  // namespace hydro::diagnose

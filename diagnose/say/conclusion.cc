@@ -101,7 +101,7 @@ Diagnosis Conclude(const ProofContext& context, const Proof& proof, const Propos
   DescribeGaps(context, whole, &d);
   d.horizons = HorizonGaps(context, proof);
   d.noise_shown = NoiseShown(context.runs);
-  d.verdict = VerdictOn(d, proof, proposed.scores, ExactSensors(context.runs), SampleInterval(context.runs));
+  d.verdict = VerdictOn(d, proof, proposed.scores, JudgedBy(context.runs));
   if (d.verdict == Verdict::kNothingMissing && proof.best != proof.given) {
     // Other values that are not clearly different stay as given.
     Proof nothing = proof;

@@ -9,6 +9,7 @@
 #include "diagnose/fit/intervals.h"
 #include "diagnose/prove/blind_changes.h"
 #include "diagnose/recording/run_data.h"
+#include "diagnose/recording/sample_interval.h"
 #include "diagnose/say/claims.h"
 
 namespace hydro::diagnose {
@@ -45,29 +46,34 @@ bool IsClosed(const Diagnosis& d, const BeforeAfter& gap, double limit, bool exa
          left <= (exact ? kNearlyNothingOfExact : kNearlyNothing) * before;
 }
 
-// The first horizon that leaves more than noise; null: none. Errors of values grow at most in proportion to
-// time, so over a horizon that is longer by a factor, the remainder beside the noise may be larger by that
-// factor.
+// What may be left over a time that is longer than another by this factor. Errors of values grow at most in
+// proportion to time, so the remainder beside the noise may be larger by that factor.
+double MayBeLeft(double times) { return std::hypot(1, std::sqrt(kNoiseAndAsMuchAgain - 1) * times); }
+
+// The first horizon that leaves more than noise; null: none.
 const HorizonGap* OpenHorizon(const Diagnosis& d, const HorizonGap& near, bool exact) {
-  const double beside = std::sqrt(kNoiseAndAsMuchAgain - 1);
   const auto open = std::find_if(d.horizons.begin(), d.horizons.end(), [&](const HorizonGap& one) {
     if (one.seconds < near.seconds || !std::isfinite(one.typical.after)) return false;
-    return !IsClosed(d, one.typical, std::hypot(1, beside * one.seconds / near.seconds), exact);
+    return !IsClosed(d, one.typical, MayBeLeft(one.seconds / near.seconds), exact);
   });
   return open == d.horizons.end() ? nullptr : &*open;
 }
 
-bool IsGapClosed(const Diagnosis& d, const Proof& proof, bool exact) {
-  const bool whole =
-      IsClosed(d, d.held_out, kWholeRunsAtTheNoise, exact) && IsClosed(d, d.fit, kWholeRunsAtTheNoise, exact);
+bool IsGapClosed(const Diagnosis& d, const Proof& proof, const RunsJudged& runs) {
+  const auto whole = [&](double limit) {
+    return IsClosed(d, d.held_out, limit, runs.exact_sensors) &&
+           IsClosed(d, d.fit, limit, runs.exact_sensors);
+  };
   const HorizonGap* near = proof.OnWindows() ? DecidingHorizon(d) : nullptr;
-  if (near == nullptr) return whole;
+  if (near == nullptr) return whole(kWholeRunsAtTheNoise);
   // "Nothing is missing" has to hold over whole runs too, where the model can follow them, because slow
-  // effects show in no window.
+  // effects show in no window. But an axis that integrates and friction that lets go a little later carry the
+  // smallest error on.
   const bool found = !proof.Found().changes.empty() || !proof.Found().Free().empty();
   const bool follows = std::isfinite(d.held_out.after + d.fit.after);
-  if (!found && follows && !whole) return false;
-  return OpenHorizon(d, *near, exact) == nullptr;
+  const double left = std::max(kWholeRunsAtTheNoise, MayBeLeft(runs.longest / near->seconds));
+  if (!found && follows && !whole(left)) return false;
+  return OpenHorizon(d, *near, runs.exact_sensors) == nullptr;
 }
 
 // How much of a set's score is due to the effect; nothing where the set does not have it, or where the set
@@ -150,6 +156,12 @@ bool IsWorse(const BeforeAfter& gap) {
   return std::isfinite(gap.before) && std::isfinite(gap.after) && gap.after > kNoticeable * gap.before;
 }
 
+RunsJudged JudgedBy(const std::vector<const RunData*>& runs) {
+  RunsJudged judged{ExactSensors(runs), SampleInterval(runs), 0};
+  for (const RunData* run : runs) judged.longest = std::max(judged.longest, run->duration());
+  return judged;
+}
+
 bool ExactSensors(const std::vector<const RunData*>& runs) {
   constexpr double kExact = 1.01 * kNoNoise;  // of a range that may have lost its spikes
   for (const RunData* run : runs) {
@@ -162,7 +174,7 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
 }
 
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
-                  bool exact_sensors, double sample) {
+                  const RunsJudged& runs) {
   const bool one_witness = HasOneWitness(d, scores);
   // If a model leaves only noise, its other values are no finding, unless one of them has clearly changed.
   const bool values = proof.OnWindows() && !proof.Found().Free().empty() &&
@@ -170,11 +182,11 @@ Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<Scor
   const bool something = !d.effects.empty() || !d.parameters.empty() || !d.closures.empty() || values;
   // A curve is no cause, so what it closes stays unexplained.
   if (!d.closures.empty() && d.effects.empty()) return Verdict::kUnexplained;
-  if (!IsGapClosed(d, proof, exact_sensors) || !d.closures.empty())
+  if (!IsGapClosed(d, proof, runs) || !d.closures.empty())
     return something && !one_witness ? Verdict::kPartly : Verdict::kUnexplained;
   if (!something) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
-  if (one_witness && IsTheRecorders(d, sample)) return Verdict::kUnexplained;
+  if (one_witness && IsTheRecorders(d, runs.sample)) return Verdict::kUnexplained;
   const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
                                 [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
   return tied ? Verdict::kTied : Verdict::kNamed;

@@ -20,14 +20,23 @@ bool IsWorse(const BeforeAfter& gap);
 // comes that close.
 bool ExactSensors(const std::vector<const RunData*>& runs);
 
+// What the verdict needs to know of the runs.
+struct RunsJudged {
+  bool exact_sensors = false;  // ExactSensors()
+  double sample = 0;           // s, between samples
+  double longest = 0;          // s, of a run
+};
+RunsJudged JudgedBy(const std::vector<const RunData*>& runs);
+
 // `d` already has the effects, parameters, closures and gaps. All that was found was proved. The verdict is
 // "named" where only noise is left, "tied" where an alternative does as well, and "partly" where more than
 // noise is left or a closure is part of what was found. A remaining gap is "unexplained" where only
 // simulation speaks for the effects although balances could (IsUnseenByBalances()): none of the effects, nor
 // what they are tied with, has a probability of one in twenty, by weight or by `scores` (the balances' scores
 // of sets, best first), unless other values do as well too. The same holds for times of at most two samples
-// (`sample`, s) for which only simulation speaks, because recorders cause such times.
+// for which only simulation speaks, because recorders cause such times. "Nothing missing" allows whole runs
+// to leave more than windows, in proportion to their length.
 Verdict VerdictOn(const Diagnosis& d, const Proof& proof, const std::vector<ScoredSet>& scores,
-                  bool exact_sensors, double sample);
+                  const RunsJudged& runs);
 
 }  // namespace hydro::diagnose

@@ -41,23 +41,23 @@ std::vector<std::string> EffectsOf(const Diagnosis& d) {
   return names;
 }
 
-// What is said where the runs show no value by itself.
-std::string NotShownAlone(const Diagnosis& d) {
-  std::vector<std::string> names = d.unsure;
-  for (const ChangedParameter& changed : d.parameters) names.push_back(changed.fitted.name);
+std::string NoneAlone(const std::vector<std::string>& names) {
   return names.size() == 1
              ? names.front() + ", which these runs do not show by itself (see the remarks)"
              : Enumerated(names) + " together, none of which these runs show alone (see the remarks)";
 }
 
+// Values that the runs show by themselves, then the names of the others: they may do most of the work.
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
-  std::vector<std::string> parameters;
+  std::vector<std::string> parameters, others;
   for (const ChangedParameter& changed : d.parameters) {
     const std::string now = ShortNumber(changed.fitted.value), before = ShortNumber(changed.model);
-    if (!changed.resting && changed.fitted.shown && now != before)
-      parameters.push_back(changed.fitted.name + " = " + now + " instead of " + before);
+    const bool alone = !changed.resting && changed.fitted.shown && now != before;
+    if (alone) parameters.push_back(changed.fitted.name + " = " + now + " instead of " + before);
+    if (!alone && (changed.resting || !changed.fitted.shown)) others.push_back(changed.fitted.name);
   }
-  if (parameters.empty() && d.effects.empty()) parameters.push_back(NotShownAlone(d));
+  if (parameters.empty()) others.insert(others.begin(), d.unsure.begin(), d.unsure.end());
+  if (d.effects.empty() && !others.empty()) parameters.push_back(NoneAlone(others));
   return parameters;
 }
 
@@ -89,6 +89,14 @@ std::string OverWhat(const Diagnosis& d, const ComparedGap& compared) {
 // Where the samples are noisier than is stated, a gap of more than 1 may be their noise alone.
 std::string OfTheSamples(const Diagnosis& d) {
   return d.noise_shown > 1 ? "; the noise that the samples show makes " + ShortNumber(d.noise_shown, 3) : "";
+}
+
+// What a model that explains the windows leaves of whole runs, where that is much more.
+std::string OverWholeRuns(const Diagnosis& d, const ComparedGap& compared) {
+  constexpr double kMuchMore = 2;
+  const double whole = std::max(d.held_out.before, d.fit.before);
+  if (compared.seconds == 0 || !std::isfinite(whole) || whole < kMuchMore * compared.gap.before) return "";
+  return ", and whole runs, over which every small error adds up, to " + ShortNumber(whole, 3);
 }
 
 std::string GapOf(const Diagnosis& d, const ComparedGap& compared) {
@@ -157,7 +165,7 @@ std::string Sentence(const Diagnosis& d, const ComparedGap& compared) {
       return "Nothing is missing: the model as given explains the data to " +
              ShortNumber(compared.gap.before, 3) + " noise units" +
              (compared.seconds > 0 ? " over " + ShortNumber(compared.seconds, 2) + " s" : "") +
-             OfTheSamples(d) + ".";
+             OfTheSamples(d) + OverWholeRuns(d, compared) + ".";
     case Verdict::kParameters:
       if (Falls(compared.gap))
         return "The equations suffice with other values: " + Enumerated(parameters) + gap;

@@ -28,8 +28,8 @@ struct Judged {
     d.effects.emplace_back().id = "amp.lag";
   }
 
-  Verdict Of(const std::vector<diagnose::ScoredSet>& scores = {}) const {
-    return VerdictOn(d, proof, scores, false, kSample);
+  Verdict Of(const std::vector<diagnose::ScoredSet>& scores = {}, double longest = 0) const {
+    return VerdictOn(d, proof, scores, {false, kSample, longest});
   }
   // The model as given, or other values of it, is best.
   void FindNoEffect(const std::vector<std::string>& values) {
@@ -122,7 +122,8 @@ TEST(VerdictOn, ValuesAlone) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
 
-// Tests that nothing is missing only where whole runs say so too, as far as the model can follow them.
+// Tests that nothing is missing only where whole runs say so too, as far as the model can follow them, and
+// that over long runs small errors may add up.
 TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
   Judged one({1.05, 1.05, 1.05}, {1.1, 1.1, 1.1});
   one.FindNoEffect({});
@@ -130,6 +131,9 @@ TEST(VerdictOn, NothingMissingOverWholeRunsToo) {
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
   one.d.fit = one.d.held_out = {3, 3, 3};
   EXPECT_EQ(one.Of(), Verdict::kUnexplained);
+  EXPECT_EQ(one.Of({}, 4), Verdict::kNothingMissing);
+  one.d.fit = one.d.held_out = {12, 12, 12};
+  EXPECT_EQ(one.Of({}, 4), Verdict::kUnexplained) << "more than ten times what is left over 0.4 s";
   one.d.held_out.after = kInfinite;
   EXPECT_EQ(one.Of(), Verdict::kNothingMissing);
 }
@@ -196,8 +200,8 @@ TEST(GapToCompare, OfAnOpenVerdictIsOpen) {
 // Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
 TEST(VerdictOn, NearTheNoiseOrOfExactSensors) {
   Judged one({50, 50, 2}, {50, 50, 2});
-  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, false, kSample), Verdict::kPartly);
-  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, true, kSample), Verdict::kNamed);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, {false, kSample}), Verdict::kPartly);
+  EXPECT_EQ(VerdictOn(one.d, one.proof, {}, {true, kSample}), Verdict::kNamed);
   const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
   EXPECT_FALSE(diagnose::ExactSensors(PointersTo(noisy)));
   NoisyRig exact;

@@ -87,7 +87,8 @@ TEST(Sentence, NoImprovementIsClaimed) {
   EXPECT_THAT(Said(d), HasSubstr("at 0.998 noise units; the noise that the samples show makes 2.9)"));
 }
 
-// Tests that a value which the runs do not show apart from others is left to its remark.
+// Tests that a value which the runs do not show apart from others is left to its remark, and that its name is
+// said where nothing but values was found.
 TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   diagnose::Diagnosis d = With(Verdict::kPartly);
   diagnose::ChangedParameter b, J, beta;
@@ -101,6 +102,22 @@ TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
   beta.fitted.value = 100000.01;
   d.parameters = {b, J, beta};
   EXPECT_THAT(Said(d), AllOf(HasSubstr("b = "), Not(HasSubstr("J = ")), Not(HasSubstr("beta = "))));
+  d.effects.clear();
+  EXPECT_THAT(Said(d), HasSubstr("b = 1 instead of 0 and J, which these runs do not show by itself"));
+}
+
+// Tests that a model that explains windows but not whole runs is said to leave more of these.
+TEST(Sentence, NothingMissingOverWindows) {
+  diagnose::Diagnosis d = With(Verdict::kNothingMissing);
+  d.held_out = d.fit = {2.81, 2.81, 2.81};
+  const diagnose::ComparedGap windows{{0.97, 0.97, 0.97}, 0.4};
+  EXPECT_EQ(
+      diagnose::Sentence(d, windows),
+      "Nothing is missing: the model as given explains the data to 0.97 noise units over 0.4 s, and whole "
+      "runs, over which every small error adds up, to 2.81.");
+  d.held_out = d.fit = {1.1, 1.1, 1.1};
+  EXPECT_EQ(diagnose::Sentence(d, windows),
+            "Nothing is missing: the model as given explains the data to 0.97 noise units over 0.4 s.");
 }
 
 // Tests that a model that cannot follow the runs is said to be that, and no number stands for it.
