@@ -156,8 +156,9 @@ void Invert(const std::string& sensor, Proposal* proposal) {
   for (model::ModelDescription& model : proposal->without) model.effects.push_back(effect);
 }
 
-// Values that a fit may move: those that the runs show, and the yardsticks of the balances that could be
-// formed.
+// Values that a fit may move: those that the balances show, the yardsticks of those that could be formed, and
+// the actuator's displacement wherever the arm moves. A motion at low pressure has no balance of oil, because
+// a valve may pass some, but a simulation shows how far the pump moves the arm.
 std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
                           const std::vector<size_t>& allowed) {
   bool torque = false, arm = false;
@@ -165,12 +166,13 @@ std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
     torque |= block.balance == BalanceKind::kTorque;
     arm |= block.balance == BalanceKind::kArm;
   }
+  using model::Parameters;
   std::vector<size_t> shown;
   for (const size_t place : allowed) {
-    double model::Parameters::*member = model::BaseParameters()[place].member;
-    const bool yardstick =
-        (torque && member == &model::Parameters::k_1) || (arm && member == &model::Parameters::k_2);
-    if (yardstick || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
+    double Parameters::*member = model::BaseParameters()[place].member;
+    const bool beside = (torque && member == &Parameters::k_1) ||
+                        (arm && (member == &Parameters::k_2 || member == &Parameters::c));
+    if (beside || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
       shown.push_back(place);
   }
   return shown;

@@ -39,8 +39,10 @@ size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
     const size_t without = sets->Without(proof.best, change);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
-    const GapFall fall = FallOf((*sets)[without].near, (*sets)[proof.best].near);
-    if (!fall.Exceeds(kPartOfValues)) return without;
+    const bool shown = TypicalGap((*sets)[without].near) > kCloseEnough &&
+                       (FallOf((*sets)[without].near, (*sets)[proof.best].near).Exceeds(kPartOfValues) ||
+                        FallOf(sets->Far(without).far, sets->Far(proof.best).far).Exceeds(kPartOfValues));
+    if (!shown) return without;
   }
   return proof.best;
 }

@@ -104,10 +104,12 @@ ValueByRun Judged(const CutRuns& cut, const model::ModelDescription& model, cons
       [&](size_t run) -> const model::ModelDescription& { return own[run]; }, cut.judging, jobs);
   value.before = std::sqrt(TypicalGap(before));
   value.after = std::sqrt(TypicalGap(after));
-  // Balances and windows are two witnesses, as of effects: where the balances are sure, windows only have to
-  // agree.
+  // Balances and windows are two witnesses, as of effects: where the balances are sure, windows only must not
+  // object.
   const double weight = 1 / (1 + std::exp(-of.gain / kTemperature));
-  value.differs = of.gain > 0 && FallOf(before, after).logarithm > std::max(0.0, PriceOf(weight));
+  const GapFall fall = FallOf(before, after);
+  value.differs =
+      of.gain > 0 && fall.logarithm >= PriceOf(weight) && fall.logarithm >= -std::max(kEqual, fall.error);
   return value;
 }
 
@@ -166,9 +168,12 @@ std::string RemarkOn(const ValueByRun& value) {
     low = std::min(low, run.value);
     high = std::max(high, run.value);
   }
-  return value.name + " differs " + between + " by " + ShortNumber(100 * value.Spread(), 2) + " % (" +
-         ShortNumber(low, 3) + " to " + ShortNumber(high, 3) + " " + value.unit +
-         "): with a value of its own for each, the typical gap of its windows is " +
+  const std::string differs = value.name + " differs " + between + " by " +
+                              ShortNumber(100 * value.Spread(), 2) + " % (" + ShortNumber(low, 3) + " to " +
+                              ShortNumber(high, 3) + " " + value.unit + ")";
+  if (!(value.after < value.before))
+    return differs + ", as the balances show; predictions over its windows neither confirm nor deny it";
+  return differs + ": with a value of its own for each, the typical gap of its windows is " +
          ShortNumber(value.after, 3) + " instead of " + ShortNumber(value.before, 3) + " noise units";
 }
 

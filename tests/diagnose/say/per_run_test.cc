@@ -58,6 +58,9 @@ TEST(ValuesByRun, FrictionOfTheDay) {
       "T_s", "in-lbf", {{"rig", 4, 4, 4, ""}, {"rig, last third", 6, 6, 6, ""}}, 2, 1};
   EXPECT_THAT(diagnose::RemarkOn(parts),
               HasSubstr("T_s differs from one part of the recording to the other by"));
+  diagnose::ValueByRun unconfirmed = parts;
+  unconfirmed.after = 2.1;
+  EXPECT_THAT(diagnose::RemarkOn(unconfirmed), HasSubstr("neither confirm nor deny it"));
 }
 
 // Tests that runs of one rig have no values of their own, unless they are asked for.
