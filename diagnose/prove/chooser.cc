@@ -66,7 +66,7 @@ size_t Chooser::Choice() {
   }
   best = WithFewerNumbers(best);
   const bool has_effects = !sets_[best].Effects().empty();
-  if (!has_effects && best != kGiven && !AreValuesKept(sets_[best], sets_[kGiven])) best = kGiven;
+  if (!has_effects && best != kGiven && !AreValuesKept(sets_.Far(best), sets_.Far(kGiven))) best = kGiven;
   return best;
 }
 

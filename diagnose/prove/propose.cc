@@ -157,21 +157,24 @@ void Invert(const std::string& sensor, Proposal* proposal) {
 }
 
 // Values that a fit may move: those that the balances show, the yardsticks of those that could be formed, and
-// the actuator's displacement wherever the arm moves. A motion at low pressure has no balance of oil, because
-// a valve may pass some, but a simulation shows how far the pump moves the arm.
+// what a simulation shows where balances do not. Oil at low pressure has no balance, because a valve may pass
+// some, but a simulation shows how fast it leaks and how far the pump moves the arm.
 std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
                           const std::vector<size_t>& allowed) {
-  bool torque = false, arm = false;
+  bool torque = false, oil = false, arm = false;
   for (const RowBlock& block : rows.blocks) {
-    torque |= block.balance == BalanceKind::kTorque;
+    const bool is_torque = block.balance == BalanceKind::kTorque;
     arm |= block.balance == BalanceKind::kArm;
+    torque |= is_torque;
+    oil |= !is_torque;
   }
   using model::Parameters;
   std::vector<size_t> shown;
   for (const size_t place : allowed) {
     double Parameters::*member = model::BaseParameters()[place].member;
     const bool beside = (torque && member == &Parameters::k_1) ||
-                        (arm && (member == &Parameters::k_2 || member == &Parameters::c));
+                        (arm && (member == &Parameters::k_2 || member == &Parameters::c)) ||
+                        (oil && (member == &Parameters::c_E || member == &Parameters::c_I));
     if (beside || std::find(values.base.begin(), values.base.end(), place) != values.base.end())
       shown.push_back(place);
   }

@@ -39,9 +39,12 @@ size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
     const size_t without = sets->Without(proof.best, change);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
-    const bool shown = TypicalGap((*sets)[without].near) > kCloseEnough &&
-                       (FallOf((*sets)[without].near, (*sets)[proof.best].near).Exceeds(kPartOfValues) ||
-                        FallOf(sets->Far(without).far, sets->Far(proof.best).far).Exceeds(kPartOfValues));
+    const GapFall near = FallOf((*sets)[without].near, (*sets)[proof.best].near),
+                  far = FallOf(sets->Far(without).far, sets->Far(proof.best).far);
+    // Six far windows scatter more: what they show is surely there.
+    const bool far_shows = far.Exceeds(kPartOfAnEffect) && far.logarithm > 2 * far.error;
+    const bool shown =
+        TypicalGap((*sets)[without].near) > kCloseEnough && (near.Exceeds(kPartOfValues) || far_shows);
     if (!shown) return without;
   }
   return proof.best;

@@ -119,7 +119,8 @@ bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price)
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given) {
   if (!with.tested() || !as_given.tested()) return true;
   const GapFall near = FallOf(as_given.near, with.near);
-  return near.windows == 0 || near.Exceeds(kPartOfValues);
+  return near.windows == 0 ||
+         (near.Exceeds(kPartOfValues) && !FallOf(with.far, as_given.far).Exceeds(kPartOfAnEffect));
 }
 
 size_t LeadingSet(const std::vector<ProvedSet>& sets) {

@@ -70,7 +70,7 @@ inline constexpr double kEqual = 0.01;
 // and does not make the far windows, if they were predicted, worse by kPartOfAnEffect. True where either set
 // cannot be tested: without a simulation there is no veto.
 bool IsEffectKept(const ProvedSet& with, const ProvedSet& without, double price);
-// The same for other values, compared with the model as given.
+// The same for other values, compared with the model as given: worth kPartOfValues.
 bool AreValuesKept(const ProvedSet& with, const ProvedSet& as_given);
 
 // The place of the set that predicts the near windows best after the price of its effects. Of equal sets the

@@ -154,7 +154,8 @@ TEST(Propose, NothingMissing) {
   const auto shown = [&](const char* base) {
     return std::count(proposed.shown.begin(), proposed.shown.end(), model::BasePlace(base)) == 1;
   };
-  for (const char* base : {"k_1", "J", "b", "T_s", "beta", "k_2", "J_a"}) EXPECT_TRUE(shown(base)) << base;
+  for (const char* base : {"k_1", "J", "b", "T_s", "beta", "c_E", "c_I", "c", "k_2", "J_a"})
+    EXPECT_TRUE(shown(base)) << base;
 }
 
 // Tests that an effect that can only add is impossible where all of its amounts are below 0, and that one of

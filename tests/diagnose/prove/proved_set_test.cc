@@ -132,6 +132,16 @@ TEST(EffectIsKept, NoSimulationNoVeto) {
   EXPECT_TRUE(PredictsBetter(tested, untested));
 }
 
+// Tests that other values have to predict near windows better, and far ones not much worse, than the model as
+// given.
+TEST(ValuesAreKept, NearAndFar) {
+  const ProvedSet given = SetOf({}, Windows(5), 10);
+  EXPECT_TRUE(AreValuesKept(SetOf({}, Windows(4.5), 10), given));
+  EXPECT_FALSE(AreValuesKept(SetOf({}, Windows(4.9), 10), given));
+  EXPECT_TRUE(AreValuesKept(SetOf({}, Windows(4.5), 10.5), given));
+  EXPECT_FALSE(AreValuesKept(SetOf({}, Windows(4.5), 15), given));
+}
+
 // Tests that other values take the place of a set's only where they predict better near and no worse far.
 TEST(PredictsBetter, NearAndFar) {
   const ProvedSet set = SetOf({}, Windows(5), 10);
