@@ -75,24 +75,18 @@ std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
   for (const Change& change : effects) {
     const model::EffectInfo* info = model::FindEffect(change.effect);
     if (info == nullptr || IsClosureEffect(change.effect)) continue;
-    size_t amounts = 0, none = 0, sizes = 0, unsure = 0;
+    size_t amounts = 0, none = 0;
     for (const model::ParameterInfo& parameter : info->parameters) {
       const auto is = [&](const FreeParameter& one) { return one.name == info->id + "." + parameter.name; };
       const auto fitted = std::find_if(free.begin(), free.end(), is);
-      if (fitted == free.end()) continue;
-      // An interval that is not known, as that of a number at its bound, excludes nothing.
-      const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
-      const bool holds_0 = !(interval.low > 0 || interval.high < 0);
       // Of a delay or lag, a time of 0 is none.
-      if (IsAmount(parameter) || parameter.role == model::Role::kTime) {
-        ++amounts;
-        none += holds_0 ? 1 : 0;
-      }
-      ++sizes;
-      unsure += holds_0 ? 1 : 0;
+      const bool counts = IsAmount(parameter) || parameter.role == model::Role::kTime;
+      if (!counts || fitted == free.end()) continue;
+      const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
+      ++amounts;
+      // An interval that is not known, as that of a number at its bound, excludes nothing.
+      if (!(interval.low > 0 || interval.high < 0)) ++none;
     }
-    // A valve has no amount: nothing is known of one of which every number may be 0.
-    if (amounts == 0 && sizes > 0 && unsure == sizes) may_be_none.push_back(change);
     if (amounts > 0 && none == amounts) may_be_none.push_back(change);
   }
   return may_be_none;

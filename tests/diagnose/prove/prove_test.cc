@@ -37,16 +37,6 @@ TEST_F(ProveTest, WhatMayBeNoneIsNotSaid) {
               IsEmpty());
 }
 
-// Tests that a valve of which every number may be 0 is not said either: it has no amount.
-TEST_F(ProveTest, AValveThatMayBeNoneIsNotSaid) {
-  Record(Table1With());
-  const Change valve{"valve.relief", {}, ""};
-  const model::EffectDescription never{"valve.relief", {{"set", 5000}, {"conductance", 1e-9}}, {}};
-  diagnose::SaidByBalances sure;
-  sure.weights["valve.relief"] = 0.9999;
-  EXPECT_THAT(Prove({Proposed({}, {}), Proposed({valve}, {never})}, {}, sure).Found().changes, IsEmpty());
-}
-
 // Tests that an estimate far from the truth does not make the refit worse than the model as given.
 TEST_F(ProveTest, RefitIsNeverWorse) {
   Record(Table1With({Drag(5e-5)}));
