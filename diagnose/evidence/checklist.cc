@@ -198,8 +198,8 @@ class RunChecklist {
   void AddShaft() {
     if (!run_.arm_angle.measured() || run_.shaft == model::Shaft::kDriven) return;
     const Range range = RangeOf(run_.arm_angle.values);
-    const double travel = p_.c * (range.high - range.low) / p_.V_ms;
-    if (run_.shaft == model::Shaft::kClamped && travel > 0.02) {
+    const double travel = ArmTravel(run_, p_);
+    if (run_.shaft == model::Shaft::kClamped && travel > kHeldArmMoves) {
       Add(State::kLook, "shaft",
           "clamped, as is said, but the arm moves by " + ShortNumber(range.high - range.low));
     } else if (run_.shaft == model::Shaft::kFree && travel < 1e-4) {

@@ -58,7 +58,7 @@ RunMistakes::RunMistakes(const model::ModelDescription& model, Run run)
     const double step = mistake.time_factor * interval;
     return mistake.time_factor != 1 && (step > runs::kSlowestSamples || step < kFastestSamples);
   });
-  const Mistakes shafts = OtherShafts(run_);
+  const Mistakes shafts = OtherShafts(run_, model_.parameters);
   possible_.insert(possible_.end(), shafts.begin(), shafts.end());
   const RecordingBalances* given = Read({});
   as_recorded_ = given == nullptr ? 0 : given->Evidence({});

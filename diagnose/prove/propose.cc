@@ -73,8 +73,16 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
     const auto best = std::find_if(scores.begin(), scores.end(), is);
     if (best != scores.end()) add(best->set);
   };
-  for (size_t i = 0; i < std::min(kMostExplanations, named.explanations.size()); ++i)
+  const auto is_single = [](const ScoredSet& one) { return one.set.size() == 1; };
+  for (size_t i = 0; i < std::min(kMostExplanations, named.explanations.size()); ++i) {
     add(named.explanations[i].set);
+    // Two effects that no simulation bears out may explain more together than the one that is there.
+    if (i == 0) {
+      add_best([&](const ScoredSet& one) {
+        return is_single(one) && IsMissingTerm(one.set[0]) && !HasCurve(one.set);
+      });
+    }
+  }
   add_best([](const ScoredSet& one) { return !HasCurve(one.set); });
   if (!weights.explanations.empty() && HasCurve(weights.explanations.front().set))
     add(weights.explanations.front().set);
@@ -86,7 +94,6 @@ std::vector<ChangeSet> SetsToPropose(const ExplanationWeights& named, const Expl
       add(less);
     }
   }
-  const auto is_single = [](const ScoredSet& one) { return one.set.size() == 1; };
   // Wrong values are the likeliest cause of all: the best set of values is tried by itself.
   add_best([&](const ScoredSet& one) { return is_single(one) && one.set[0].starts_with("value."); });
   // The best curve without a known effect is also tried. Without it, the nearest effect would take its place.
@@ -183,9 +190,12 @@ std::vector<size_t> Shown(const Rows& rows, const EstimatedModel& values,
 
 std::vector<std::string> RemarksOn(const ScanRuns& runs) {
   std::vector<std::string> remarks;
-  for (const auto& [effect, value] : runs.doubles())
-    remarks.push_back(effect + " does in these runs what another value of " + value +
-                      " does: it is said as the value");
+  for (const auto& [effect, value] : runs.doubles()) {
+    // Once, however many shapes of it do.
+    const std::string remark = std::string(ChangeOf(effect)) + " does in these runs what another value of " +
+                               value + " does: it is said as the value";
+    if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) remarks.push_back(remark);
+  }
   return remarks;
 }
 

@@ -248,11 +248,17 @@ std::vector<RecordingMistake> PossibleMistakes(const Run& run) {
   return list.Take();
 }
 
-std::vector<RecordingMistake> OtherShafts(const Run& run) {
+double ArmTravel(const Run& run, const model::Parameters& model) {
+  if (!run.arm_angle.measured()) return 0;
+  return model.c * maths::RangeOf(run.arm_angle.values).size() / model.V_ms;
+}
+
+std::vector<RecordingMistake> OtherShafts(const Run& run, const model::Parameters& parameters) {
   std::vector<RecordingMistake> others;
   for (const auto& [name, shaft] : runs::kShafts) {
     const bool possible = shaft != model::Shaft::kDriven && run.shaft != model::Shaft::kDriven;
     if (!possible || shaft == run.shaft || run.bypass) continue;
+    if (shaft == model::Shaft::kClamped && ArmTravel(run, parameters) > kHeldArmMoves) continue;
     RecordingMistake mistake;
     mistake.what = "the shaft is " + name + ", not " + ShaftName(run.shaft);
     mistake.shaft = shaft;

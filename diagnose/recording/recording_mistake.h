@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/terms/parameter_info.h"
 #include "runs/measured/measured_run.h"
 
 namespace hydro::diagnose {
@@ -43,7 +44,13 @@ struct RecordingMistake {
 std::vector<RecordingMistake> PossibleMistakes(const runs::MeasuredRun& run);
 
 // The other ways in which the shaft may have been held.
-std::vector<RecordingMistake> OtherShafts(const runs::MeasuredRun& run);
+// An arm that was recorded moving was not held.
+std::vector<RecordingMistake> OtherShafts(const runs::MeasuredRun& run, const model::Parameters& parameters);
+
+// How far the arm went, as a part of the volume at mid-stroke; 0 where it was not recorded. An arm that is
+// held does not move by kHeldArmMoves.
+double ArmTravel(const runs::MeasuredRun& run, const model::Parameters& model);
+inline constexpr double kHeldArmMoves = 0.02;
 
 // A factor that matches no known unit: `factor` converts these signals to the model's units.
 RecordingMistake UnknownUnit(const std::vector<SignalOfRun>& signals, double factor);

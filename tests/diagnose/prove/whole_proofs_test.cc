@@ -79,6 +79,21 @@ TEST_F(ProveTest, BlindEffectIsRaced) {
   EXPECT_NEAR(ValueOf(proved, "valve.relief", "set"), 700, 20);
 }
 
+// Tests that a speed that is late by less than balances care about, as one that a drive computes, is found by
+// racing it; beside a recorded angle it has been moved before.
+TEST_F(ProveTest, ALateSpeedIsRaced) {
+  const Change skew{"sensor.skew", {{"signal", "motor_speed"}}, ""};
+  Record(Table1With({{"sensor.skew", {{"delay", 4e-3}}, {{"signal", "motor_speed"}}}}));
+  context_.changes = {skew, {"sensor.skew", {{"signal", "p1"}}, ""}};
+  EXPECT_THAT(diagnose::BlindChanges(context_), ::testing::IsEmpty()) << "a recorded angle";
+  for (diagnose::RunData& run : runs_) run.measured.motor_angle.values.clear();
+  const std::vector<Change> blind = diagnose::BlindChanges(context_);
+  EXPECT_THAT(blind, ElementsAre(skew));
+  const Proof proved = Prove({}, blind);
+  EXPECT_THAT(proved.Found().changes, ElementsAre(skew));
+  EXPECT_NEAR(ValueOf(proved, "sensor.skew", "delay"), 4e-3, 1e-3);
+}
+
 // Tests that runs are held out in turn where none is named: every other window judges.
 TEST_F(ProveTest, InTurn) {
   Record(Table1With({Drag(2e-4)}));

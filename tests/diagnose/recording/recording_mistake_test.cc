@@ -45,6 +45,26 @@ TEST(RecordingMistake, OfWhatIsMeasured) {
   Mistake("p1 and p2 are exchanged");
 }
 
+// Tests that an arm that was recorded moving was not clamped, whatever else may explain the run; its noise
+// and an arm that nobody recorded rule out nothing.
+TEST(RecordingMistake, AMovingArmIsNotHeld) {
+  model::Parameters model;
+  model.c = 0.002;
+  model.V_ms = 2.5e-4;
+  runs::MeasuredRun run = Bench();
+  run.shaft = model::Shaft::kFree;
+  const auto clamped = [&] {
+    const std::vector<RecordingMistake> others = OtherShafts(run, model);
+    return std::ranges::count_if(
+        others, [](const RecordingMistake& mistake) { return mistake.shaft == model::Shaft::kClamped; });
+  };
+  EXPECT_EQ(clamped(), 1);
+  run.arm_angle.values = {0, 0.025, -0.025};
+  EXPECT_EQ(clamped(), 0);
+  run.arm_angle.values = {0, 1e-5, -1e-5};
+  EXPECT_EQ(clamped(), 1);
+}
+
 std::vector<std::string> Offered(const runs::MeasuredRun& run) {
   std::vector<std::string> what;
   for (const RecordingMistake& mistake : PossibleMistakes(run)) what.push_back(mistake.what);
