@@ -180,6 +180,20 @@ std::vector<size_t> Spikes(const std::vector<double>& all) {
   return spikes.size() * kMostSpikes > values.size() ? std::vector<size_t>() : spikes;
 }
 
+// Whether the angle beside a speed advances at the held value, to the encoder's steps. A speed that is
+// computed from counts repeats itself while they come evenly.
+bool TurnsAtHeldSpeed(const Run& run, const runs::SignalName& sensor, const Stretch& held) {
+  const runs::MeasuredSignal* angle = sensor.signal == &Run::motor_speed ? &run.motor_angle
+                                      : sensor.signal == &Run::arm_speed ? &run.arm_angle
+                                                                         : nullptr;
+  if (angle == nullptr || !angle->measured()) return false;
+  constexpr double kAsFast = 0.02, kSteps = 2;
+  const double turned = angle->values[held.last - 1] - angle->values[held.first];
+  const double said =
+      (run.*sensor.signal).values[held.first] * (run.time[held.last - 1] - run.time[held.first]);
+  return std::abs(turned - said) <= kSteps * EstimateResolution(angle->values) + kAsFast * std::abs(turned);
+}
+
 // Makes held values and spikes missing, and counts for each row how many sensors hold their value there.
 void SetAside(const model::Parameters& model, Run* run, std::vector<size_t>* held_there, size_t* sensors,
               std::vector<std::string>* lines) {
@@ -191,7 +205,8 @@ void SetAside(const model::Parameters& model, Run* run, std::vector<size_t>* hel
     std::vector<size_t> spikes = ImpossibleCells(values, LargestPossible(sensor, model));
     for (const size_t i : spikes) values[i] = runs::kMissing;
     const double noise = MovingNoise(values, run->voltage.values);
-    const std::vector<Stretch> held = HeldStretches(values, noise);
+    std::vector<Stretch> held = HeldStretches(values, noise);
+    std::erase_if(held, [&](const Stretch& one) { return TurnsAtHeldSpeed(*run, sensor, one); });
     const std::vector<size_t> others = Spikes(values);
     spikes.insert(spikes.end(), others.begin(), others.end());
     std::sort(spikes.begin(), spikes.end());

@@ -62,6 +62,25 @@ TEST(RecordingDamage, HeldValues) {
   EXPECT_EQ(Missing(runs[0].p1.values), 0u);
 }
 
+// Tests that a speed that repeats itself while the angle beside it advances as fast is no dropout, as it is
+// where the angle does otherwise.
+TEST(RecordingDamage, ASpeedOfEvenCounts) {
+  for (const double turns : {1.0, 0.0}) {
+    std::vector<runs::MeasuredRun> runs = {Bench()};
+    runs::MeasuredRun& run = runs[0];
+    std::vector<double>& speed = run.motor_speed.values;
+    for (size_t i = 701; i < 712; ++i) speed[i] = speed[700];
+    double angle = 0;
+    for (size_t i = 0; i < speed.size(); ++i) {
+      angle += (i > 700 && i < 712 ? turns : 1) * speed[i] * 1e-3;
+      run.motor_angle.values.push_back(1e-4 * std::round(angle / 1e-4));
+    }
+    const std::vector<std::string> lines = LinesOf(&runs);
+    EXPECT_EQ(lines.empty(), turns == 1) << turns;
+    EXPECT_EQ(Missing(runs[0].motor_speed.values), turns == 1 ? 0u : 11u);
+  }
+}
+
 // Tests that a sensor that is stuck for much of a run is found as well, with its noise or with its steps.
 TEST(RecordingDamage, StuckForMostOfARun) {
   for (const size_t from : {1500, 1000, 400}) {
