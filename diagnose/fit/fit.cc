@@ -54,11 +54,12 @@ void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   MatrixXd information = normal.topLeftCorner(p, p);
   VectorXd gradient = normal.topRightCorner(p, 1);
   if (n > p && p > 0) {
+    const auto cross = normal.block(0, p, p, n - p);
     MatrixXd right(n - p, p + 1);  // the start's products with the free parameters and with the residuals
-    right << normal.block(0, p, p, n - p).transpose(), normal.block(p, n, n - p, 1);
+    right << cross.transpose(), normal.block(p, n, n - p, 1);
     const MatrixXd solved = maths::SolveScaled(normal.block(p, p, n - p, n - p), right, 1e-12);
-    information -= normal.block(0, p, p, n - p) * solved.leftCols(p);
-    gradient -= normal.block(0, p, p, n - p) * solved.rightCols(1);
+    information -= cross * solved.leftCols(p);
+    gradient -= cross * solved.rightCols(1);
   }
   run->information.assign(information.data(), information.data() + information.size());
   run->gradient.assign(gradient.data(), gradient.data() + gradient.size());
