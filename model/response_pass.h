@@ -33,13 +33,19 @@ inline Surroundings OverASample(const Surroundings& from, const Surroundings& to
   return {0.5 * (from.arm_force + to.arm_force), 0.5 * (from.temperature + to.temperature)};
 }
 
+// Steps that a pass may take for each second, however coarse its samples: a hydraulic actuator's own modes
+// lie below some 500 Hz, and one that rings freely takes some 40 steps a period.
+inline constexpr double kStepsPerSecond = 20000;
+
 // The largest number of steps in a pass, so that a far too stiff model does not take hours.
 inline int64_t MostSteps(const Stimulus& stimulus, const ResponseOptions& options) {
   const double duration = stimulus.time.back() - stimulus.time.front();
   // The step of a fourth-order method scales with the fourth root of the error.
   const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
   const double samples = static_cast<double>(stimulus.time.size());
-  return static_cast<int64_t>(finer * (options.most_steps_per_sample * samples + 500 * duration)) + 1000;
+  return static_cast<int64_t>(finer *
+                              (options.most_steps_per_sample * samples + kStepsPerSecond * duration)) +
+         1000;
 }
 
 // Seeds the unknowns [first, first + kJetWidth) as directions, in `numbers` and `base`.

@@ -389,6 +389,18 @@ TEST(Response, TooStiffIsAnError) {
   EXPECT_THROW(Respond(model, LevelsFor(kHoldings[0]), SomeStart(), {}, {}), model::ModelError);
 }
 
+// Tests that a light arm that rings at some 300 Hz can be followed however coarse the samples are.
+TEST(Response, CoarseSamplesDoNotMakeAModelTooStiff) {
+  model::ModelDescription model = Table1Model();
+  model.parameters.J_a *= 0.01;
+  model::Stimulus stimulus = LevelsFor(kHoldings[1]);
+  for (double& time : stimulus.time) time *= 10;
+  model::ResponseOptions options = Exact(1e-7);
+  options.most_steps_per_sample = 12;
+  const model::Response coarse = Respond(model, stimulus, SomeStart(), {}, options);
+  EXPECT_EQ(coarse.values[static_cast<size_t>(model::Channel::kP1)].size(), stimulus.time.size());
+}
+
 // Tests that it is the actuator's own angle that must leave both volumes above 0, even where the arm flexes.
 TEST(Response, TheActuatorsAngleHasToStayWithinItsRange) {
   const model::ModelDescription model =
