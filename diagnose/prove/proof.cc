@@ -66,7 +66,7 @@ std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proo
   return Intervals(proof.told, proof.told_runs, context.jobs, TemperatureAt(gap));
 }
 
-std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
+std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof, double part) {
   const std::vector<Change> effects = proof.Best().Effects();
   if (effects.empty() || !proof.told.ok()) return {};
   std::vector<Change> may_be_none;
@@ -83,9 +83,11 @@ std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof) {
       const bool counts = IsAmount(parameter) || parameter.role == model::Role::kTime;
       if (!counts || fitted == free.end()) continue;
       const Interval& interval = intervals[static_cast<size_t>(fitted - free.begin())];
+      const double value = fitted->value, low = value - part * (value - interval.low),
+                   high = value + part * (interval.high - value);
       ++amounts;
       // An interval that is not known, as that of a number at its bound, excludes nothing.
-      if (!(interval.low > 0 || interval.high < 0)) ++none;
+      if (!(low > 0 || high < 0)) ++none;
     }
     if (amounts > 0 && none == amounts) may_be_none.push_back(change);
   }

@@ -47,8 +47,8 @@ Proof ProofOf(const ProofContext& context, const ProofWindows& windows, std::vec
 // known.
 std::vector<Interval> IntervalsOf(const ProofContext& context, const Proof& proof);
 
-// Those effects of the best set that may be absent: the intervals of all their amounts include 0. Curves are
-// not listed.
-std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof);
+// Those effects of the best set that may be absent: 0 is within this part of the intervals of all their
+// amounts; 0.51 is a standard deviation. Curves are not listed.
+std::vector<Change> MayBeNone(const ProofContext& context, const Proof& proof, double part = 1);
 
 }  // namespace hydro::diagnose

@@ -31,21 +31,34 @@ Proof Reported(ProofSets* sets, const Chooser& chooser, size_t best) {
                  {ProofSets::kGiven, values_alone ? best : chooser.BestValues(), best});
 }
 
+// Squared, in noise units. Up to here, what is left beside the noise is no larger than the noise itself.
+constexpr double kMostlyNoise = 2;
+// A standard deviation, as a part of a 95 % interval's half width.
+constexpr double kOneDeviation = 0.51;
+
+// Whether the windows show what the set `without` lacks of the set `with`.
+bool DoWindowsShow(ProofSets* sets, size_t with, size_t without) {
+  if (TypicalGap((*sets)[without].near) <= kCloseEnough) return false;
+  const GapFall near = FallOf((*sets)[without].near, (*sets)[with].near),
+                far = FallOf(sets->Far(without).far, sets->Far(with).far);
+  // Six far windows scatter more: what they show is surely there.
+  return near.Exceeds(kPartOfValues) || (far.Exceeds(kPartOfAnEffect) && far.logarithm > 2 * far.error);
+}
+
 // The place of the best set without an effect that may be absent and that the windows do not show either; if
 // there is no such effect, the place of the best set. Amounts that can replace each other may each be 0, but
-// not both: then the windows do show the effect.
+// not both: then the windows do show the effect. Where much more than noise is left, something else is
+// missing. Windows then show whatever stands in for it, so an amount has to exceed its own error.
 size_t WithoutWhatIsNotShown(ProofSets* sets, const Proof& proof) {
+  const bool more_is_missing = TypicalGap((*sets)[proof.best].near) > kMostlyNoise;
+  std::vector<Change> stands_in;
+  if (more_is_missing) stands_in = MayBeNone(sets->context(), proof, kOneDeviation);
   for (const Change& change : MayBeNone(sets->context(), proof)) {
     const size_t without = sets->Without(proof.best, change);
     if (without >= sets->size() || without == proof.best) continue;
     sets->RefineForReport(without);  // as well fitted as what it is to replace
-    const GapFall near = FallOf((*sets)[without].near, (*sets)[proof.best].near),
-                  far = FallOf(sets->Far(without).far, sets->Far(proof.best).far);
-    // Six far windows scatter more: what they show is surely there.
-    const bool far_shows = far.Exceeds(kPartOfAnEffect) && far.logarithm > 2 * far.error;
-    const bool shown =
-        TypicalGap((*sets)[without].near) > kCloseEnough && (near.Exceeds(kPartOfValues) || far_shows);
-    if (!shown) return without;
+    const bool in_error = std::find(stands_in.begin(), stands_in.end(), change) != stands_in.end();
+    if (in_error || !DoWindowsShow(sets, proof.best, without)) return without;
   }
   return proof.best;
 }
@@ -79,9 +92,8 @@ Proof ProveProposals(const ProofContext& context, const Hypothesis& as_given,
     best = shown;
     proof = Reported(&sets, chooser, best);
   }
-  // The remainder beside the noise is no larger than the noise itself: windows are too short for what is
-  // left, if anything is.
-  const bool at_the_noise = TypicalGap(proof.Best().near) < 2;
+  // At the noise, windows are too short for what is left, if anything is.
+  const bool at_the_noise = TypicalGap(proof.Best().near) < kMostlyNoise;
   return ProvedOnWholeRuns(context, as_given, std::move(proof), at_the_noise, said.unlikely);
 }
 
