@@ -13,9 +13,8 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/studies/paper_units.h"
 #include "experiments/studies/pump_friction.h"
-#include "runs/measured/sample_times.h"
-#include "settings/model_file.h"
 
 namespace hydro::experiments {
 namespace {
@@ -351,17 +350,13 @@ json Numbers(const RigStudy& study) {
 }
 
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
-  const runs::MeasuredRun run = runs::ReadMeasuredRun(options.measured_run);
-  runs::RequireFastSamples(run);
-  const bool own_model = !run.model_text.empty();
-  const model::ModelDescription model =
-      own_model ? settings::ParseModel(run.model_text, run.file + " (model)") : ShippedModel("table1");
-  const model::Parameters& p = model.parameters;
+  const auto& [run, model] = ReadRunAndModel(options.measured_run);
+  const model::Parameters p = PaperParameters(model);
   const SpeedSource source = SpeedSourceOf(run);
   const PumpFriction friction = FitPumpFriction(run, source, p);
   ExperimentResult result;
   result.conditions = fmt::format(
-      "Measured run {}, bypass open, speed from the motor's {}; k_1 = {} in-lbf/V is that of the model "
+      "Measured run {}, bypass open, speed from the motor's {}; k_1 = {:.6g} in-lbf/V is that of the model "
       "\"{}\".",
       NameWithCaution(run), source == SpeedSource::kSpeed ? "speed" : "angle", p.k_1, model.name);
   result.paper_says =
@@ -379,9 +374,10 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   result.numbers = JsonText(numbers);
   result.table.columns = FitColumns(friction);
   result.pictures = {LinesPicture(friction, result.conditions)};
-  result.comparisons = {
-      {"T_s", "in-lbf", "", page::kAutomatic, friction.T_s.value, maths::PlusMinus(friction.T_s) + ", 95 %"},
-      {"b", "in-lbf-s", "", page::kAutomatic, friction.b.value, maths::PlusMinus(friction.b) + ", 95 %"}};
+  result.comparisons = {{"T_s", "in-lbf", "", page::kAutomatic, friction.T_s.value,
+                         maths::PlusMinus(friction.T_s) + " in-lbf, 95 %"},
+                        {"b", "in-lbf-s", "", page::kAutomatic, friction.b.value,
+                         maths::PlusMinus(friction.b) + " in-lbf-s, 95 %"}};
   return result;
 }
 

@@ -12,8 +12,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/leakage_fit.h"
-#include "runs/measured/sample_times.h"
-#include "settings/model_file.h"
+#include "experiments/studies/paper_units.h"
 
 namespace hydro::experiments {
 namespace {
@@ -221,19 +220,15 @@ constexpr char kNotDescribed[] =
     "that.";
 
 ExperimentResult AnalyseMeasuredLeakage(const ExperimentOptions& options) {
-  const std::vector<runs::MeasuredRun> runs = {runs::ReadMeasuredRun(options.measured_run)};
-  runs::RequireFastSamples(runs.front());
-  const runs::MeasuredRun& run = runs.front();
-  const model::ModelDescription model = run.model_text.empty()
-                                            ? ShippedModel("table1")
-                                            : settings::ParseModel(run.model_text, run.file + " (model)");
+  const auto& [run, model] = ReadRunAndModel(options.measured_run);
+  const std::vector<runs::MeasuredRun> runs = {run};
   const LeakageFit fit = FitLeakage(model, runs);
   const bool described = fit.rms < kDescribed;
   options.progress(0.9);
   ExperimentResult result;
   result.conditions =
-      fmt::format("Measured run {}, clamped at {:.4g} rad; all but c_E and c_I as in the model \"{}\".",
-                  NameWithCaution(run), run.arm_angle_rad, model.name);
+      fmt::format("Measured run {}, clamped at {:.4g} {}; all but c_E and c_I as in the model \"{}\".",
+                  NameWithCaution(run), run.arm_angle_rad, run.units.UnitFor("rad", 1), model.name);
   result.paper_says = kPaperSays;
   result.explanation = fmt::format(
       "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} times the "
@@ -246,11 +241,12 @@ ExperimentResult AnalyseMeasuredLeakage(const ExperimentOptions& options) {
   numbers["source"] = run.file;
   numbers["model"] = model.name;
   result.numbers = JsonText(numbers);
-  result.comparisons = {
-      {"c_E", "in^3/(s psi)", "", page::kAutomatic, fit.c_E.value, maths::PlusMinus(fit.c_E) + ", 95 %"},
-      {"c_I", "in^3/(s psi)", "", page::kAutomatic, fit.c_I.value, maths::PlusMinus(fit.c_I) + ", 95 %"}};
+  result.comparisons = {{"c_E", "in^3/(s psi)", "", page::kAutomatic, fit.c_E.value,
+                         maths::PlusMinus(fit.c_E) + " in^3/(s psi), 95 %"},
+                        {"c_I", "in^3/(s psi)", "", page::kAutomatic, fit.c_I.value,
+                         maths::PlusMinus(fit.c_I) + " in^3/(s psi), 95 %"}};
   result.table = FitTable(runs, fit);
-  result.pictures.push_back(FitPicture(runs, fit, model.parameters.p_3, result.conditions));
+  result.pictures.push_back(FitPicture(runs, fit, PaperParameters(model).p_3, result.conditions));
   return result;
 }
 

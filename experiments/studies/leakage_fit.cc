@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "base/maths/spread.h"
+#include "experiments/studies/paper_units.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {
@@ -20,6 +21,8 @@ constexpr double kMost = 1e-3;
 constexpr double kStep = 1e-4;          // in a logarithm, for derivatives
 constexpr double kIdentifiable = 0.25;  // half an interval, relative
 constexpr double kNormal95 = 1.96;      // there are thousands of degrees of freedom
+// A start at the model's p_3 to the last bit, below which its valves would not let it start.
+constexpr double kAccumulator = std::numeric_limits<double>::quiet_NaN();
 
 // The parameters taken as known that matter most.
 struct KnownParameter {
@@ -33,10 +36,20 @@ constexpr std::array<KnownParameter, 6> kKnown = {{{"k_1", &model::Parameters::k
                                                    {"V_ms", &model::Parameters::V_ms},
                                                    {"p_3", &model::Parameters::p_3}}};
 
+// The model with these leakages, whose logarithms are those of in^3/(s psi).
 model::ModelDescription WithLeakage(model::ModelDescription model, double log_c_E, double log_c_I) {
-  model.parameters.c_E = std::exp(log_c_E);
-  model.parameters.c_I = std::exp(log_c_I);
+  const double unit = PaperUnitIn(model.units, "in^3/(s psi)");
+  model.parameters.c_E = unit * std::exp(log_c_E);
+  model.parameters.c_I = unit * std::exp(log_c_I);
   return model;
+}
+
+// How the model holds the shaft in the run, from rest.
+model::ActuatorOptions Conditions(const model::ModelDescription& model, const runs::MeasuredRun& run,
+                                  double pressure) {
+  return {.shaft = model::Shaft::kClamped,
+          .arm_angle = PaperUnitIn(model.units, "rad", 1) * run.arm_angle_rad,
+          .initial_pressure = PaperUnitIn(model.units, "psi") * pressure};
 }
 
 // Standard deviation of a signal's noise if it is not given: from the differences of neighbours, half of
@@ -68,7 +81,7 @@ double StartOf(const runs::MeasuredSignal& signal, size_t resting) {
 struct Case {
   const runs::MeasuredRun* run;
   double p1_noise, p2_noise;
-  double pressure;  // psi, of both sides at the start
+  double pressure;  // psi, of both sides at the start; NaN: the model's p_3
 
   // Residuals of p1 and p2 in standard deviations, sample by sample; 0 where a value is missing.
   Eigen::VectorXd Residuals(const SimulatedRun& simulated) const {
@@ -104,7 +117,7 @@ void CheckConditions(const runs::MeasuredRun& run, const model::ModelDescription
     }
   }
   try {
-    const model::Actuator possible(model, {.shaft = model::Shaft::kClamped, .arm_angle = run.arm_angle_rad});
+    const model::Actuator possible(model, Conditions(model, run, kAccumulator));
   } catch (const model::ModelError& error) {
     throw InputError(run.file + ": " + error.what());
   }
@@ -150,9 +163,10 @@ void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   }
 }
 
-// psi, both sides at the start. Missing first values say nothing about it; the model comes to rest at p_3.
+// psi, both sides at the start; NaN: at p_3. Missing first values say nothing about it; the model comes to
+// rest at p_3.
 double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, double noise) {
-  if (std::isnan(run.p1.values.front()) || std::isnan(run.p2.values.front())) return p_3;
+  if (std::isnan(run.p1.values.front()) || std::isnan(run.p2.values.front())) return kAccumulator;
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
   if (std::abs(p1 - p2) > 5 * noise) {
     throw InputError(
@@ -160,14 +174,14 @@ double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, d
                     "both sides at the same pressure: wait without voltage before the run",
                     run.file, p1, p2));
   }
-  return (p1 + p2) / 2 > p_3 + 5 * noise ? (p1 + p2) / 2 : p_3;
+  return (p1 + p2) / 2 > p_3 + 5 * noise ? (p1 + p2) / 2 : kAccumulator;
 }
 
 // Throws where the run cannot support the fit.
 Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model) {
   CheckConditions(run, model);
-  const model::Parameters& p = model.parameters;
-  Case result{&run, Noise(run.p1), Noise(run.p2), p.p_3};
+  const model::Parameters p = PaperParameters(model);
+  Case result{&run, Noise(run.p1), Noise(run.p2), kAccumulator};
   const double noise = std::hypot(result.p1_noise, result.p2_noise);
   double largest = 0;  // in-lbf
   size_t resting = run.samples();
@@ -305,9 +319,7 @@ void AddRun(const model::ModelDescription& model, const double* logs, const Case
             Evidence* evidence, LeakageFit* fit) {
   const model::ModelDescription found = WithLeakage(model, logs[0], logs[1]);
   const auto simulate = [&](const model::ModelDescription& with) {
-    return SimulateClamped(
-        with, *run_case.run,
-        run_case.pressure == model.parameters.p_3 ? with.parameters.p_3 : run_case.pressure);
+    return SimulateClamped(with, *run_case.run, run_case.pressure);
   };
   const SimulatedRun simulated = simulate(found);
   const Eigen::VectorXd residuals = run_case.Residuals(simulated);
@@ -320,7 +332,7 @@ void AddRun(const model::ModelDescription& model, const double* logs, const Case
                        run_case.Residuals(simulate(WithLeakage(model, down[0], down[1])))) /
                       (2 * kStep);
   }
-  evidence->sums.Add(run_case, simulated, model.parameters.p_3, jacobian);
+  evidence->sums.Add(run_case, simulated, PaperParameters(model).p_3, jacobian);
   evidence->squares += residuals.squaredNorm();
   for (const double residual : residuals) evidence->count += residual != 0;
   for (size_t i = 0; i < kKnown.size(); ++i) {
@@ -364,16 +376,14 @@ void SetIntervals(const Evidence& evidence, double c_E, double c_I, LeakageFit* 
 
 SimulatedRun SimulateClamped(const model::ModelDescription& model, const runs::MeasuredRun& run,
                              double pressure) {
-  model::Actuator actuator(model, {.shaft = model::Shaft::kClamped,
-                                   .arm_angle = run.arm_angle_rad,
-                                   .bypass = false,
-                                   .initial_pressure = pressure});
+  model::Actuator actuator(model, Conditions(model, run, pressure));
+  const double psi = PaperUnitIn(model.units, "psi");
   SimulatedRun simulated;
   for (size_t i = 0; i < run.samples(); ++i) {
     if (i > 0) actuator.Advance(run.voltage.values[i - 1], run.time[i] - run.time[0]);
     const model::Measurement now = actuator.Measure();
-    simulated.p1.push_back(now.p1);
-    simulated.p2.push_back(now.p2);
+    simulated.p1.push_back(now.p1 / psi);
+    simulated.p2.push_back(now.p2 / psi);
     simulated.motor_speed.push_back(now.motor_speed);
   }
   return simulated;
@@ -388,8 +398,7 @@ LeakageFit FitLeakage(const model::ModelDescription& model, const std::vector<ru
   fit.converged = Solve(model, cases, logs);
   Evidence evidence;
   for (const Case& run_case : cases) AddRun(model, logs, run_case, &evidence, &fit);
-  const model::Parameters found = WithLeakage(model, logs[0], logs[1]).parameters;
-  SetIntervals(evidence, found.c_E, found.c_I, &fit);
+  SetIntervals(evidence, std::exp(logs[0]), std::exp(logs[1]), &fit);
   return fit;
 }
 

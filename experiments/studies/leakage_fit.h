@@ -24,7 +24,7 @@ struct LeakageInformation {
 
 // The model's pressures and motor speed at a run's samples.
 struct SimulatedRun {
-  std::vector<double> p1, p2, motor_speed;
+  std::vector<double> p1, p2, motor_speed;  // psi, psi, rad/s
 };
 
 // A parameter that the fit takes as known: how many percent c_E and c_I change when it is 1 % larger.
@@ -50,7 +50,10 @@ struct LeakageFit {
   std::vector<double> p1_noise, p2_noise;  // psi, of each run; given, or estimated from differences
 };
 
-// The model clamped at the run's angle, under the run's voltage, from rest with both pressures at `pressure`.
+// Here and below, runs are in the paper's units, and the model is in its own (paper_units.h).
+
+// The model clamped at the run's angle, under the run's voltage, from rest with both pressures at `pressure`
+// (psi; NaN: the model's p_3).
 SimulatedRun SimulateClamped(const model::ModelDescription& model, const runs::MeasuredRun& run,
                              double pressure);
 
