@@ -46,8 +46,12 @@ class Descriptor {
 MappedFile::MappedFile(const std::string& file) {
   // Opening a named pipe that has no writer would wait. A pipe that a shell passes (<(...), /dev/stdin) has
   // one.
-  const bool device = file.starts_with("/dev/") && !file.starts_with("/dev/shm/");
-  if (!device && !file.starts_with("/proc/")) CheckIsFile(file);
+  const bool below_dev = file.starts_with("/dev/") && !file.starts_with("/dev/shm/");
+  if (below_dev || file.starts_with("/proc/")) {
+    CheckIsNoDevice(file);
+  } else {
+    CheckIsFile(file);
+  }
   const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor.get() < 0) ThrowCannotRead(file, errno);
   struct stat status;

@@ -10,8 +10,9 @@ namespace hydro {
 
 class MappedFile {
  public:
-  // Maps a regular file at its present length; reads anything else (a pipe) to its end. Throws InputError
-  // with the file's name when it cannot be opened or read. The file must not be truncated while it is mapped.
+  // Maps a regular file at its present length; reads a pipe that a shell passes to its end. Throws InputError
+  // with the file's name when it is a folder or a device, or cannot be opened or read. The file must not be
+  // truncated while it is mapped.
   explicit MappedFile(const std::string& file);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -48,6 +48,14 @@ void CheckIsFile(const std::string& file) {
   if (folder || std::filesystem::is_fifo(status) || std::filesystem::is_socket(status)) {
     throw InputError(file + ": found a " + (folder ? "folder" : "pipe") + ", allowed: a file");
   }
+  CheckIsNoDevice(file);
+}
+
+void CheckIsNoDevice(const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (!std::filesystem::is_character_file(status) && !std::filesystem::is_block_file(status)) return;
+  throw InputError(file + ": found a device, allowed: a file");
 }
 
 std::string PathBeside(const std::string& beside, const std::string& file) {

@@ -12,8 +12,11 @@ namespace hydro {
 // The file's bytes. Throws InputError "file: ..." when it cannot be read or is larger than 64 MiB.
 std::string ReadTextFile(const std::string& file);
 
-// Throws InputError for a folder or a pipe.
+// Throws InputError for a folder, a pipe or a device.
 void CheckIsFile(const std::string& file);
+
+// Throws InputError for a device: /dev/zero has no end, and a terminal waits for somebody who types.
+void CheckIsNoDevice(const std::string& file);
 
 // The path of `file`, which is absolute or relative to the folder of `beside`.
 std::string PathBeside(const std::string& beside, const std::string& file);

@@ -20,10 +20,9 @@
 namespace hydro::batch {
 namespace {
 
-int Jobs(const BatchOptions& options) {
-  if (options.jobs != 0) return options.jobs;
-  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+constexpr int64_t kMostJobs = 4096;
+
+int Jobs(const BatchOptions& options) { return static_cast<int>(options.jobs); }
 
 int64_t CaseNumber(const std::string& text, const std::string& all) {
   const auto number = ParseInteger(text);
@@ -129,6 +128,8 @@ int RunStudy(const BatchOptions& options) {
 
 }  // namespace
 
+int64_t JobsOfThisMachine() { return std::clamp<int64_t>(std::thread::hardware_concurrency(), 1, kMostJobs); }
+
 void AddOptions(settings::CommandLine* line, BatchOptions* options) {
   line->AddPositional("STUDY", &options->study, "FILE the study, TOML", false);
   line->AddOption("-o,--out", &options->out,
@@ -145,8 +146,9 @@ void AddOptions(settings::CommandLine* line, BatchOptions* options) {
 }
 
 int Run(const BatchOptions& options) {
-  if (options.jobs < 0 || options.jobs > 4096)
-    throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to 4096");
+  if (options.jobs < 1 || options.jobs > kMostJobs)
+    throw InputError("--jobs: found " + std::to_string(options.jobs) + ", allowed 1 to " +
+                     std::to_string(kMostJobs));
   CheckSlurmOptions(options.slurm);
   if (!options.cases.empty() && options.worker.empty())
     throw InputError("--cases: found " + Quoted(options.cases) +

@@ -1,6 +1,7 @@
 // The request on the command line of hydro-batch.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "batch/slurm_command.h"
@@ -8,10 +9,13 @@
 
 namespace hydro::batch {
 
+// As many as this machine has processors, or the most that --jobs allows.
+int64_t JobsOfThisMachine();
+
 struct BatchOptions {
   std::string study;  // STUDY.toml
   std::string out;    // the study's folder; empty: out/batch/ and the name of the study's file
-  int jobs = 0;       // cases at the same time; 0: as many as processors
+  int64_t jobs = JobsOfThisMachine();  // cases at the same time
   bool failed_again = false;
   std::string status;  // folder of a study whose status is shown
   std::string finish;  // folder of a study whose table is made

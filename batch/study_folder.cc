@@ -24,6 +24,23 @@ void CheckSame(const Study& study, const std::string& folder) {
                    "; go on with that one, or give another --out");
 }
 
+// Whether hydro-batch has made the folder. A study that its user has written may be called study.toml too: it
+// is not in the form in which WriteStudy() writes, and no case of it has run there. Folders of other
+// versions, which may write in another form, have cases.
+bool IsMade(const Study& study, const std::string& folder) {
+  std::error_code failed;
+  return ReadTextFile(folder + "/study.toml") == study.files.at("study.toml") ||
+         (fs::is_directory(folder + "/cases", failed) && fs::is_directory(folder + "/times", failed));
+}
+
+// Every file that FinishStudy() writes, so that a study that reads one of them is refused before its cases
+// run.
+void CheckKeepsInputs(const std::string& folder) {
+  for (const char* name :
+       {"table.csv", "table.json", "index.html", "distributions.svg", "worst.svg", "surface.svg"})
+    CheckKeeps(folder + "/" + name);
+}
+
 // study.toml is written last, so that its presence means that everything is there.
 void WriteStudy(const Study& study, const std::string& folder) {
   std::error_code failed;
@@ -49,6 +66,7 @@ void WriteStudy(const Study& study, const std::string& folder) {
 
 void PrepareStudy(const Study& study, const std::string& folder) {
   CheckCommands(study);
+  CheckKeepsInputs(folder);
   const std::string file = folder + "/study.toml";
   if (fs::exists(file)) {
     CheckSame(study, folder);
@@ -66,7 +84,12 @@ Study OpenStudy(const std::string& folder) {
   const std::string file = folder + "/study.toml";
   if (!fs::exists(file))
     throw InputError(folder + ": found no study.toml in it, allowed the folder of a study");
-  return ReadStudy(file);
+  Study study = ReadStudy(file);
+  if (!IsMade(study, folder))
+    throw InputError(folder +
+                     ": found \"study.toml\" in it, which hydro-batch has not written, allowed a new " +
+                     "folder, an empty one, or one of hydro-batch");
+  return study;
 }
 
 namespace {

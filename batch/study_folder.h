@@ -15,10 +15,12 @@
 namespace hydro::batch {
 
 // Makes the folder, or finds it already made for the same study. Throws InputError for the folder of another
-// study, naming the first difference, and for a folder that holds something else.
+// study, naming the first difference, for a folder that holds something else, and if FinishStudy() would
+// replace a file that the study reads.
 void PrepareStudy(const Study& study, const std::string& folder);
 
-// Reads the study for which a folder was made. Throws InputError when there is none.
+// Reads the study for which a folder was made. Throws InputError when there is none, or when hydro-batch has
+// not written it.
 Study OpenStudy(const std::string& folder);
 
 // The end of a study: table, pictures and page.

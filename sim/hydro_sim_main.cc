@@ -112,6 +112,8 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
   const hydro::sim::SimulationResult result = simulate(tap);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
+  const bool held = result.exit_code == 0 && !result.faults_left.empty();
+  for (const std::string& line : result.fault_lines) std::printf("%s\n", hydro::Printable(line).c_str());
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
   if (const int signal = hydro::process::StopSignal(); signal != 0) {
     const std::string what = file.empty() ? "the run ends" : "the run and its log " + file + " end";
@@ -121,7 +123,8 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file, 
   std::printf("%lld ticks, %s s of plant time in %s s, %s times real time\n",
               static_cast<long long>(result.ticks), hydro::ShortNumber(result.duration, 6).c_str(),
               hydro::ShortNumber(wall, 3).c_str(), hydro::ShortNumber(result.duration / wall, 3).c_str());
-  return result.exit_code;
+  if (held) std::fprintf(stderr, "hydro-sim: %s\n", result.faults_left.c_str());
+  return held ? 1 : result.exit_code;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "sim/simulation.h"
 
 #include <algorithm>
+#include <hydro/fault_t.hpp>
 #include <memory>
 
 #include "base/host_name.h"
@@ -8,6 +9,7 @@
 #include "base/random.h"
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
+#include "launch/logic/run_summary.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -22,6 +24,23 @@ void CheckEnds(const settings::StackConfig& config) {
   throw InputError(config.file +
                    ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
                    "--duration S)");
+}
+
+// Adds the faults that are heard on `bus` to `summary`. `joint` is empty outside a limb. All participants of
+// a simulation have one session, so that only their names tell the senders apart.
+void HearFaults(bus::Bus& bus, const std::string& suffix, const std::string& joint,
+                launch::RunSummary* summary) {
+  bus.Subscribe<fault_t>(bus::Channels(suffix).Of<fault_t>(), [joint, summary](const fault_t& heard) {
+    fault_t fault = heard;
+    fault.session = 0;
+    if (!joint.empty()) fault.source = joint + " " + heard.source;
+    summary->Add(fault);
+  });
+}
+
+void TellFaults(const launch::RunSummary& summary, SimulationResult* result) {
+  result->fault_lines = summary.Lines();
+  result->faults_left = launch::FaultsLeftText(summary.FaultsLeft());
 }
 
 // Sends the limb's own description; each joint speaks on its own channels.
@@ -47,6 +66,7 @@ struct Stack {
         bus(&clock),
         rig(WithMachine(lockstep, machine)) {
     if (tap) bus.SubscribeAll(tap);
+    HearFaults(bus, lockstep.bus.channel_suffix, "", &faults);
     plant =
         std::make_unique<plant::PlantApp>(bus, clock, lockstep, rig, std::vector<std::string>{}, "hydro-sim");
     pressure = std::make_unique<pressure_ctrl::PressureApp>(bus, clock, lockstep);
@@ -67,6 +87,7 @@ struct Stack {
   const settings::StackConfig lockstep;
   bus::SimulatedClock clock;
   bus::InProcessBus bus;
+  launch::RunSummary faults;
   plant::SimulatedRig rig;
   // A process whose stack cannot grow ends without a message, whereas a failed allocation is reported.
   std::unique_ptr<plant::PlantApp> plant;
@@ -104,17 +125,21 @@ SimulationResult Simulate(const settings::StackConfig& config,
   result.ticks = stack.plant->tick();
   result.duration = static_cast<double>(stack.plant->tick()) / config.plant.rate_hz;
   result.failure = stack.plant->failure();
+  TellFaults(stack.faults, &result);
   return result;
 }
 
 SimulationResult SimulateLimb(const settings::LimbConfig& config,
                               const std::function<void(const bus::RawMessage&)>& tap) {
   CheckEnds(config.common);
+  launch::RunSummary faults;
   limb::Limb limb(config, {.joints = {}, .program = "hydro-sim", .session = SessionOf(config.common)});
   if (tap) {
     DescribeLimb(config, tap);
     for (auto& joint : limb.joints()) joint->bus().SubscribeAll(tap);
   }
+  for (auto& joint : limb.joints())
+    HearFaults(joint->bus(), joint->config().bus.channel_suffix, joint->name(), &faults);
   if (limb.Begin()) {
     while (limb.StepLockstep()) {
     }
@@ -124,6 +149,7 @@ SimulationResult SimulateLimb(const settings::LimbConfig& config,
   result.ticks = limb.tick();
   result.duration = static_cast<double>(limb.tick()) / config.common.plant.rate_hz;
   result.failure = limb.failure();
+  TellFaults(faults, &result);
   return result;
 }
 

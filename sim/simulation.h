@@ -15,10 +15,14 @@
 namespace hydro::sim {
 
 struct SimulationResult {
-  int64_t ticks = 0;    // the last tick
-  double duration = 0;  // s, plant time of that tick
-  int exit_code = 0;    // 0 complete, 1 failed
-  std::string failure;  // why, empty when complete
+  int64_t ticks = 0;                     // the last tick
+  double duration = 0;                   // s, plant time of that tick
+  int exit_code = 0;                     // 0 complete, 1 failed
+  std::string failure;                   // why, empty when complete
+  std::vector<std::string> fault_lines;  // a line for each fault that came, as hydro-launch ends with
+  // launch::FaultsLeftText() of those that held the voltage at zero at the end; empty: none did. Such a run
+  // is complete for whoever only wants its messages; for hydro-sim it has failed, as for hydro-launch.
+  std::string faults_left;
 };
 
 // The session of a simulation of `config`, never 0. It tells the states of a run from those of any other. It

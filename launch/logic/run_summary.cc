@@ -192,9 +192,16 @@ std::string RunSummary::SkippedTicksAdvice(const std::string& config) const {
   return "";
 }
 
-std::vector<std::string> RunSummary::FaultsLeft() const {
+std::string FaultsLeftText(const std::vector<std::string>& left) {
+  if (left.empty()) return "";
+  return fmt::format("the run ended with faults that hold the voltage at zero: {}", fmt::join(left, ", "));
+}
+
+std::vector<std::string> RunSummary::FaultsLeft(
+    const std::function<bool(int64_t session)>& is_foreign) const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
+    if (is_foreign && is_foreign(fault.first.session)) continue;
     const std::string name = bus::ReasonText(fault.first.code, "a fault without a name") + " of " +
                              bus::ReasonText(fault.first.source, "an unnamed process");
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session

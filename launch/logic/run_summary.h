@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <hydro/fault_t.hpp>
 #include <hydro/loop_statistics_t.hpp>
 #include <hydro/output_left_t.hpp>
@@ -24,6 +25,10 @@ struct ProcessStatus {
 // 79 characters.
 std::string StatusLine(const ProcessStatus& status);
 
+// "the run ended with faults that hold the voltage at zero: CODE of SOURCE, ...", of what
+// RunSummary::FaultsLeft() returns; empty when that is. A run that has such a text has failed.
+std::string FaultsLeftText(const std::vector<std::string>& left);
+
 class RunSummary {
  public:
   void Add(const loop_statistics_t& report);
@@ -45,8 +50,9 @@ class RunSummary {
   std::vector<ProcessStatus> Status() const;
 
   // "CODE of SOURCE" for every fault that was still active at the end and is more than a warning, each once,
-  // whatever the session.
-  std::vector<std::string> FaultsLeft() const;
+  // whatever the session. `is_foreign` says which sessions belong to another stack on the same port, whose
+  // faults are left out; empty: none does.
+  std::vector<std::string> FaultsLeft(const std::function<bool(int64_t session)>& is_foreign = {}) const;
 
  private:
   void AppendFaults(std::vector<std::string>* lines) const;

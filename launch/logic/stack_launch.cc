@@ -144,10 +144,9 @@ void StackLaunch::PrintSummary() {
     PrintError("no plant or driver has said what voltage it left: make sure that the output is at zero");
   const std::string advice = watch_.summary().SkippedTicksAdvice(config_.file);
   if (!advice.empty()) PrintError(advice);
-  const std::vector<std::string> left = watch_.summary().FaultsLeft();
+  const std::string left = FaultsLeftText(watch_.FaultsLeft());
   if (left.empty()) return;
-  PrintError(
-      fmt::format("the run ended with faults that hold the voltage at zero: {}", fmt::join(left, ", ")));
+  PrintError(left);
   if (exit_code_ == 0) exit_code_ = 1;
 }
 

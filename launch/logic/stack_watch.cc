@@ -164,6 +164,31 @@ bool StackWatch::IsForThisStack(const stop_t& stop) const {
   });
 }
 
+std::vector<std::string> StackWatch::FaultsLeft() const {
+  return summary_.FaultsLeft([this](int64_t session) { return IsOfAnotherStack(session); });
+}
+
+// Whether a process of that session has a role that a process of this launch has too. A loop that this launch
+// does not start may be started by hand: it belongs to this stack. Joints inside a limb have its process id.
+bool StackWatch::IsOfAnotherStack(int64_t session) const {
+  if (session == 0 || spread_) return false;
+  bool foreign = false;
+  for (const auto& [key, heard] : statuses_) {
+    const process_status_t& status = heard.status;
+    if (status.session != session) continue;
+    const auto is_ours = [&](const Expected& expected) {
+      return status.pid == expected.pid || (expected.own && status.role == expected.role);
+    };
+    const auto has_its_role = [&](const Expected& expected) {
+      return status.role == expected.role ||
+             (process::IsPlant(status.role) && process::IsPlant(expected.role));
+    };
+    if (std::any_of(expected_.begin(), expected_.end(), is_ours)) return false;
+    foreign = foreign || std::any_of(expected_.begin(), expected_.end(), has_its_role);
+  }
+  return foreign;
+}
+
 // The plants, each of which stands for its run; while no plant has been heard, each process by itself.
 std::vector<const StackWatch::Heard*> StackWatch::Addressees() const {
   std::vector<const Heard*> all, plants;

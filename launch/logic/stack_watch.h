@@ -61,6 +61,10 @@ class StackWatch {
 
   const RunSummary& summary() const { return summary_; }
 
+  // RunSummary::FaultsLeft() without the faults of another stack, such as a plant that was started by hand on
+  // this port. A sender that has not said what it is counts as one of this stack.
+  std::vector<std::string> FaultsLeft() const;
+
   // The processes' reports on how well their loops kept time; empty unless they are kept.
   const timing::TimingRecord& timing() const { return timing_; }
 
@@ -96,6 +100,7 @@ class StackWatch {
   bool IsOfAPlant(int64_t session) const;
   bool BelongsHere(const process_status_t& status) const;
   bool IsForThisStack(const stop_t& stop) const;
+  bool IsOfAnotherStack(int64_t session) const;
   std::vector<const Heard*> Addressees() const;
 
   bus::Bus& bus_;

@@ -1,5 +1,6 @@
 #include "base/text_file.h"
 
+#include "base/mapped_file.h"
 #include "base/read_files.h"
 #include "tests/settings/texts.h"
 
@@ -56,6 +57,16 @@ TEST_F(TextFileFolderTest, CheckKeeps) {
   for (const std::string& name :
        {std::string(), other, (folder_ / "none").string(), std::string("/dev/null")}) {
     EXPECT_EQ(settings::InputErrorOf([&] { CheckKeeps(name, {file, "", "/dev/null"}); }), "") << name;
+  }
+}
+
+// Tests that a device is no input, by any name: some have no end.
+TEST_F(TextFileFolderTest, RefusesDevices) {
+  std::filesystem::create_symlink("/dev/zero", folder_ / "link.csv");
+  for (const std::string& name : {std::string("/dev/zero"), (folder_ / "link.csv").string()}) {
+    EXPECT_EQ(settings::InputErrorOf([&] { ReadTextFile(name); }),
+              name + ": found a device, allowed: a file");
+    EXPECT_EQ(settings::InputErrorOf([&] { MappedFile{name}; }), name + ": found a device, allowed: a file");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "batch/batch_command.h"
 #include "batch/run/case_command.h"
 #include "batch/status.h"
 #include "batch/store/case_store.h"
@@ -200,6 +201,55 @@ TEST(PrepareTest, RefusesOtherFolders) {
   EXPECT_THROW(PrepareStudy(study, folder / "other"), InputError);
   EXPECT_THROW(OpenStudy(folder / "other"), InputError);
   EXPECT_FALSE(fs::exists(folder / "other/study.toml"));
+}
+
+// Tests that a folder whose study.toml its user has written is no folder of hydro-batch, whose page and table
+// may be replaced, and that one of hydro-batch can be continued with the study in it.
+TEST(PrepareTest, KeepsTheUsersFolder) {
+  const StudyFolder folder;
+  const Study own = folder.Read(kShellStudy);
+  folder.Write("table.csv", "mine");
+  EXPECT_THROW(PrepareStudy(own, folder / "."), InputError);
+  EXPECT_THROW(OpenStudy(folder / "."), InputError);
+  PrepareStudy(own, folder / "out");
+  PrepareStudy(ReadStudy(folder / "out/study.toml"), folder / "out");
+  RunCases(own, All(own, folder / "out"));
+  folder.Write("out/study.toml", ReadSmallFile(folder / "out/study.toml").value() + "# another version\n");
+  EXPECT_EQ(OpenStudy(folder / "out").cases(), 6);
+}
+
+// Tests that a study that reads what its end would replace is refused before anything is made.
+TEST(PrepareTest, KeepsInputs) {
+  const StudyFolder folder;
+  fs::create_directories(folder / "out");
+  folder.Write("out/table.csv", "k,l\n1,2\n");
+  const std::string text =
+      "[list]\nfile = \"out/table.csv\"\n[[step]]\nrun = [\"true\", \"{value:k}{value:l}\"]\n";
+  const Study study = folder.Read(text);
+  std::string said;
+  try {
+    PrepareStudy(study, folder / "out");
+  } catch (const InputError& error) {
+    said = error.what();
+  }
+  EXPECT_THAT(said, HasSubstr("out/table.csv: found the name of a file that is read"));
+  EXPECT_FALSE(fs::exists(folder / "out/study.toml"));
+}
+
+// Tests that --jobs has one range, and that its default is within it.
+TEST(BatchCommandTest, RangeOfJobs) {
+  for (const int64_t jobs : {int64_t{-1}, int64_t{0}, int64_t{4097}, int64_t{99'999'999'999}}) {
+    BatchOptions options;
+    EXPECT_GE(options.jobs, 1);
+    options.jobs = jobs;
+    std::string said;
+    try {
+      batch::Run(options);
+    } catch (const InputError& error) {
+      said = error.what();
+    }
+    EXPECT_EQ(said, "--jobs: found " + std::to_string(jobs) + ", allowed 1 to 4096");
+  }
 }
 
 // Tests that the report's wishes may change, and hold from then on.

@@ -166,11 +166,30 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   EXPECT_THAT(lines[1],
               HasSubstr("pressure_limit of pressure_ctrl, 2 times, still there at the end: another cause"));
   EXPECT_THAT(summary.FaultsLeft(), testing::ElementsAre("pressure_limit of pressure_ctrl"));
+  EXPECT_EQ(FaultsLeftText(summary.FaultsLeft()),
+            "the run ended with faults that hold the voltage at zero: pressure_limit of pressure_ctrl");
+  EXPECT_EQ(FaultsLeftText({}), "");
   fault.session = 2;  // another stack's pressure loop, say
   summary.Add(fault);
   fault.code = "logger_gone";  // a warning
   summary.Add(fault);
   EXPECT_EQ(summary.FaultsLeft().size(), 1u);
+}
+
+// Tests that a fault of another stack is left out, and that the same fault of this stack is not.
+TEST(RunSummaryTest, FaultsOfAnotherStack) {
+  RunSummary summary;
+  fault_t fault{};
+  fault.session = 7;
+  fault.source = "plant";
+  fault.code = "other_stack";
+  fault.active = 1;
+  summary.Add(fault);
+  const auto is_foreign = [](int64_t session) { return session == 7; };
+  EXPECT_THAT(summary.FaultsLeft(is_foreign), IsEmpty());
+  fault.session = 8;
+  summary.Add(fault);
+  EXPECT_THAT(summary.FaultsLeft(is_foreign), testing::ElementsAre("other_stack of plant"));
 }
 
 // Tests that a limit that the plant and the pressure loop of a joint both see passed is listed once, with

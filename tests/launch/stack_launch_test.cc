@@ -386,6 +386,38 @@ TEST_P(FaultAtTheEndTest, Counts) {
 }
 INSTANTIATE_TEST_SUITE_P(Ends, FaultAtTheEndTest, ::testing::Bool());
 
+struct Sender {
+  std::string role;
+  int32_t pid;  // 0: it does not announce itself
+  bool counts;
+};
+
+class SenderOfAFaultTest : public StackLaunchTest, public ::testing::WithParamInterface<Sender> {};
+
+// Tests that a fault at the end counts when it is of a process of this launch, of a loop that this launch
+// does not start, or of an unknown sender; and not when it is of another stack: of a plant or a loop beside
+// those of this launch.
+TEST_P(SenderOfAFaultTest, Counts) {
+  const auto happens = [&] {
+    if (GetParam().pid != 0) Announce(GetParam().role, GetParam().pid);
+    fault_t fault{};
+    fault.session = 1000 + GetParam().pid;
+    fault.source = GetParam().role;
+    fault.code = "other_stack";
+    fault.active = true;
+    bus_.Publish("HYDRO_FAULT", fault);
+    children_.signals.push_back(SIGINT);
+  };
+  const int exit_code = Run(1s, happens);
+  EXPECT_EQ(exit_code, GetParam().counts ? 1 : 0);
+  EXPECT_EQ(report_.errors.empty(), !GetParam().counts);
+}
+INSTANTIATE_TEST_SUITE_P(Senders, SenderOfAFaultTest,
+                         ::testing::Values(Sender{"plant", 101, true}, Sender{"pressure_ctrl", 102, true},
+                                           Sender{"position_ctrl", 4711, true}, Sender{"plant", 0, true},
+                                           Sender{"plant", 4711, false}, Sender{"driver", 4711, false},
+                                           Sender{"pressure_ctrl", 4711, false}));
+
 // Tests that nothing is started beside a process with one of its roles.
 TEST_F(StackLaunchTest, RefusesASecondStack) {
   Announce("plant", 4711);

@@ -1,8 +1,10 @@
 #include "sim/simulation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <hydro/arm_reference_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -197,6 +199,29 @@ TEST(SimulationTest, TrippedLimitFails) {
   EXPECT_LT(result.ticks, 2000);
 }
 
+// Tests that a fault that holds the voltage at zero to the end is told in the words of hydro-launch, with or
+// without a tap, and that a run without one tells nothing.
+TEST(SimulationTest, TellsFaultsThatAreLeft) {
+  settings::StackConfig config = Step();
+  Recording recording;
+  for (const auto& tap : {std::function<void(const bus::RawMessage&)>(), recording.Tap()}) {
+    config.noise.p1_resolution_psi = 0;
+    const SimulationResult good = Simulate(config, tap);
+    EXPECT_EQ(good.faults_left, "");
+    EXPECT_THAT(good.fault_lines, ::testing::IsEmpty());
+    config.noise.p1_resolution_psi = INFINITY;  // 0 times infinity is what p1 reads
+    const SimulationResult held = Simulate(config, tap);
+    EXPECT_EQ(held.ticks, 2000);
+    EXPECT_THAT(
+        held.faults_left,
+        ::testing::AllOf(::testing::StartsWith("the run ended with faults that hold the voltage at zero: "),
+                         ::testing::HasSubstr("nonfinite_state of pressure_ctrl")));
+    EXPECT_THAT(held.fault_lines,
+                ::testing::Contains(::testing::StartsWith(
+                    "fault nonfinite_state of pressure_ctrl, once, still there at the end: ")));
+  }
+}
+
 // Tests that an endless simulation is refused.
 TEST(SimulationTest, NeedsADuration) {
   settings::StackConfig config = Step();
@@ -223,6 +248,15 @@ TEST(SimulateLimbTest, EachJointAsAlone) {
       EXPECT_FALSE(alone.Bytes(channel).empty());
     }
   }
+}
+
+// Tests that the faults of a limb are told with the joints' names.
+TEST(SimulateLimbTest, TellsFaultsThatAreLeft) {
+  settings::LimbConfig limb = testing::SmallLimb({"hip", "knee"});
+  EXPECT_EQ(SimulateLimb(limb, {}).faults_left, "");
+  limb.joints[0].config.noise.p1_resolution_psi = INFINITY;
+  EXPECT_THAT(SimulateLimb(limb, {}).faults_left,
+              ::testing::HasSubstr("nonfinite_state of hip pressure_ctrl"));
 }
 
 }  // namespace
