@@ -13,6 +13,7 @@
 #include "diagnose/recording/run_data.h"
 #include "diagnose/recording/sample_interval.h"
 #include "diagnose/recording/vacuum.h"
+#include "model/sides.h"
 #include "runs/measured/measured_run.h"
 #include "runs/measured/sample_times.h"
 
@@ -205,10 +206,11 @@ class RunChecklist {
     } else if (run_.shaft == model::Shaft::kFree && travel < 1e-4) {
       Add(State::kLook, "shaft", "free, as is said, but the arm hardly moves");
     }
-    const double reach = p_.c * std::max(std::abs(range.low), std::abs(range.high)) / p_.V_ms;
-    if (reach >= 1)
+    const model::Travel allowed = model::TravelOf(model_);
+    if (range.low <= allowed.least || range.high >= allowed.most)
       Add(State::kLook, "arm's travel",
-          "c times the arm's angle exceeds V_ms: one side would have no volume");
+          "beyond the model's " + ShortNumber(allowed.least) + " to " + ShortNumber(allowed.most) +
+              ": one side would have no volume");
   }
 
   using IsMistake = std::function<bool(const RecordingMistake&)>;

@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "diagnose/recording/block_means.h"
+#include "model/sides.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -121,22 +122,27 @@ std::optional<std::string> RatioOfForces(const model::ModelDescription& model,
   for (const RunBlock& block : blocks)
     speeds.push_back(block.run->arm_force.measured() ? ArmSpeed(block) : 0);
   const double slow = kMoves * Largest(speeds);
+  const double areas = model::DifferencesOf(model).areas;
   std::string unit;
   for (const RunBlock& block : blocks) {
     if (!block.run->arm_force.measured()) continue;
-    const double arm = ArmSpeed(block), dp = Difference(block), cell = block.Mean(block.run->arm_force);
-    if (!(std::abs(arm) > slow) || std::isnan(dp) || std::isnan(cell)) continue;
+    const double arm = ArmSpeed(block), cell = block.Mean(block.run->arm_force);
+    const double load = HasPressures(block)
+                            ? model::LoadPressure(areas, block.Mean(block.run->p1), block.Mean(block.run->p2))
+                            : 0;
+    if (!(std::abs(arm) > slow) || std::isnan(load) || std::isnan(cell)) continue;
     unit = block.run->units.UnitFor("in-lbf", -1);
     force.push_back(cell);
-    pressed.push_back(-model.parameters.k_2 * dp);
+    pressed.push_back(-model.parameters.k_2 * load);
     friction.push_back(arm > 0 ? 1 : -1);
     weight.push_back(1);
   }
   const std::optional<FittedBlocks> found = FitBlocks({pressed, friction, weight}, force);
   if (!found.has_value()) return std::nullopt;
   const double share = found->value[0];
-  std::string text = "arm_force is " + WithHalfWidth(share, found->half[0]) +
-                     " times what k_2 (p2 - p1) holds against it, beside a friction of " +
+  std::string text = "arm_force is " + WithHalfWidth(share, found->half[0]) + " times what " +
+                     (areas == 0 ? "k_2 (p2 - p1)" : "k_2 (c_2 p2 - c_1 p1)/c") +
+                     " holds against it, beside a friction of " +
                      WithHalfWidth(found->value[1], found->half[1]) + " " + unit + " and a constant of " +
                      WithHalfWidth(found->value[2], found->half[2]) + " " + unit;
   if (share < 0) return text + ": it pushes with the pressures, not against them: scale = -1 on its column?";

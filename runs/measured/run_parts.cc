@@ -51,7 +51,7 @@ void ReadChanges(SectionReader& document, const std::string& key, const TomlNode
     if (i > 0 && !(from > before))
       throw document.Error(key, "from = " + ShortestNumber(from), "times that increase from entry to entry");
     before = from;
-    read(section, i == 0 ? kFromTheBeginning : from);
+    read(section, from);
     section.Finish();
   }
 }
@@ -181,11 +181,61 @@ std::string Shown(const RunPlan::Window& window) {
   return "[" + ShortestNumber(window.from) + ", " + ShortestNumber(window.to) + "]";
 }
 
+std::string Range(const MeasuredRun& run) {
+  return "from " + ShortestNumber(run.time.front()) + " to " + ShortestNumber(run.time.back()) + " s";
+}
+
+// The table's times, with the ends that delays have cut off.
+RunPlan::Window TimesOf(const MeasuredRun& run) {
+  double cut = 0;
+  for (const SignalName& name : kSignals) cut = std::max(cut, std::abs((run.*name.signal).source.delay));
+  return {run.time.front() - cut, run.time.back() + cut};
+}
+
+// A window or a time that is of no sample, such as one in ms, would do nothing without a word.
+template <class Change>
+void RequireActing(const std::string& key, const std::vector<Change>& changes, const MeasuredRun& run,
+                   const SectionReader& document) {
+  const RunPlan::Window times = TimesOf(run);
+  for (size_t i = 0; i < changes.size(); ++i) {
+    const bool over = i + 1 < changes.size() && changes[i + 1].from <= times.from;
+    if (changes[i].from <= times.to && !over) continue;
+    const std::string from = changes[i].from == kFromTheBeginning
+                                 ? "an entry without from"
+                                 : "from = " + ShortestNumber(changes[i].from);
+    throw document.Error(key,
+                         from +
+                             (over ? ", which ends at " + ShortestNumber(changes[i + 1].from) + " s" : "") +
+                             ", and no sample of the run for it",
+                         "entries that hold in a part of the run, " + Range(run) + ", with times in s");
+  }
+}
+
+void RequireActing(const std::vector<RunPlan::Window>& skip, const MeasuredRun& run,
+                   const SectionReader& document) {
+  const RunPlan::Window times = TimesOf(run);
+  for (const RunPlan::Window& window : skip) {
+    if (window.from <= times.to && window.to >= times.from) continue;
+    throw document.Error("skip", Shown(window) + ", which holds no sample",
+                         "windows in s of a run " + Range(run));
+  }
+}
+
+// What holds before the first entry would otherwise be a guess.
+template <class Change>
+void RequireFromBegin(const std::string& key, const std::vector<Change>& changes, double begin,
+                      const MeasuredRun& run, const SectionReader& document) {
+  if (changes.empty() || changes.front().from <= begin) return;
+  throw document.Error(key, "a first entry with from = " + ShortestNumber(changes.front().from),
+                       "what holds from the first sample that is read on, at " + ShortestNumber(begin) +
+                           " s: a first entry without from, or with from at or before that, of a run " +
+                           Range(run));
+}
+
 void RequireEnoughIn(const std::vector<Part>& parts, const MeasuredRun& run, const RunPlan& plan,
                      const SectionReader& document) {
-  const std::string allowed = "windows of " + std::to_string(kFewestOfAPart) +
-                              " samples or more, of a run from " + ShortestNumber(run.time.front()) + " to " +
-                              ShortestNumber(run.time.back()) + " s";
+  const std::string allowed =
+      "windows of " + std::to_string(kFewestOfAPart) + " samples or more, of a run " + Range(run);
   for (const RunPlan::Window& window : plan.use) {
     size_t most = 0;
     for (const Part& part : parts)
@@ -228,9 +278,15 @@ std::vector<MeasuredRun> PartsOf(const MeasuredRun& whole, const RunPlan& plan,
                                  const SectionReader& document) {
   if (whole.bypass_valve.measured() && !plan.bypasses.empty())
     throw document.Error("bypass", "it beside columns.bypass", "one of the two");
+  RequireActing(plan.skip, whole, document);
+  RequireActing("shaft", plan.shafts, whole, document);
+  RequireActing("bypass", plan.bypasses, whole, document);
   const std::vector<Part> parts = FindParts(whole, plan);
   const bool is_whole = parts.size() == 1 && parts[0].last - parts[0].first == whole.samples();
   if (!is_whole) RequireEnoughIn(parts, whole, plan, document);
+  const double begin = whole.time[parts.front().first];
+  RequireFromBegin("shaft", plan.shafts, begin, whole, document);
+  RequireFromBegin("bypass", plan.bypasses, begin, whole, document);
   std::vector<MeasuredRun> runs;
   size_t short_ones = 0;
   for (const Part& part : parts) {

@@ -17,7 +17,7 @@ inline constexpr size_t kFewestOfAPart = 100;
 // What a sidecar states over time. Each entry holds from its time to that of the next one.
 struct RunPlan {
   struct ShaftFrom {
-    double from = 0;  // s
+    double from = 0;  // s; -infinity: not stated, from the beginning
     model::Shaft shaft = model::Shaft::kFree;
     double arm_angle = 0;
   };
@@ -40,7 +40,8 @@ RunPlan ReadPlan(settings::SectionReader& document, const UnitSystem& units);
 std::vector<settings::TomlNode*> AnglesIn(settings::TomlNode* sidecar);
 
 // Returns the run, or its parts, each with a name of its own. Throws InputError for a window that holds too
-// little, and for a driven shaft without the arm's angle.
+// little, for one or an entry that is outside the run, for a first entry that leaves unsaid what holds before
+// it, and for a driven shaft without the arm's angle.
 std::vector<MeasuredRun> PartsOf(const MeasuredRun& whole, const RunPlan& plan,
                                  const settings::SectionReader& document);
 

@@ -130,6 +130,37 @@ TEST_F(RunPartsTest, ForceAndTemperature) {
               HasSubstr("no unit of dp"));
 }
 
+// Tests that a window, or an entry, that is outside the run is an error: one in ms would do nothing.
+TEST_F(RunPartsTest, WhatNeverActsIsAnError) {
+  EXPECT_THAT(ErrorOf("shaft = \"free\"\nskip = [[1000, 2000]]"),
+              AllOf(HasSubstr("run.toml"), HasSubstr("skip: found [1000, 2000], which holds no sample"),
+                    HasSubstr("windows in s of a run from 0 to 10 s")));
+  EXPECT_THAT(ErrorOf("shaft = \"free\"\nskip = [[2, 3], [-3, -1]]"), HasSubstr("skip: found [-3, -1]"));
+  EXPECT_THAT(ErrorOf("shaft = [{ from = 0, is = \"free\" }, { from = 1500, is = \"clamped\" }]"),
+              AllOf(HasSubstr("shaft: found from = 1500, and no sample"), HasSubstr("from 0 to 10 s"),
+                    HasSubstr("times in s")));
+  EXPECT_THAT(ErrorOf("shaft = [{ from = -9, is = \"free\" }, { from = -5, is = \"clamped\" }]"),
+              HasSubstr("found from = -9, which ends at -5 s"));
+  EXPECT_THAT(ErrorOf("shaft = \"free\"\nbypass = [{ is = false }, { from = 20, is = true }]"),
+              HasSubstr("bypass: found from = 20"));
+  // The end of the table, which a delay has cut off, is no mistake.
+  EXPECT_EQ(Read("shaft = \"free\"\nskip = [[9.9, 10]]",
+                 "voltage = \"u\"\narm_angle = { column = \"a\", delay = 0.5 }")
+                .size(),
+            1u);
+}
+
+// Tests that what holds before a first entry is not guessed, unless nothing before it is read.
+TEST_F(RunPartsTest, TheFirstEntryHoldsFromTheBegin) {
+  EXPECT_THAT(ErrorOf("shaft = [{ from = 1, is = \"free\" }]"),
+              AllOf(HasSubstr("shaft: found a first entry with from = 1"), HasSubstr("at 0 s"),
+                    HasSubstr("from 0 to 10 s")));
+  EXPECT_THAT(ErrorOf("shaft = \"free\"\nbypass = [{ from = 1, is = true }]"),
+              HasSubstr("bypass: found a first entry"));
+  EXPECT_EQ(Read("shaft = [{ from = 1, is = \"free\" }]\nuse = [[1, 5]]").size(), 1u);
+  EXPECT_EQ(Read("shaft = [{ from = -1, is = \"free\" }]").size(), 1u);
+}
+
 // Tests that each mistake is one line which says what is allowed.
 TEST_F(RunPartsTest, MistakesAreNamed) {
   EXPECT_THAT(ErrorOf("shaft = \"free\"\nuse = [[3, 1]]"),

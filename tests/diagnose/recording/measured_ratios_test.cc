@@ -138,6 +138,19 @@ TEST(MeasuredRatios, OfALoadCell) {
   EXPECT_THAT(RatioRemarks(Cylinder(), {run}), ElementsAre(HasSubstr("scale = -1")));
 }
 
+// Tests that an exact load cell of a cylinder with unequal areas is held against the model's load pressure.
+TEST(MeasuredRatios, OfALoadCellOnUnequalAreas) {
+  model::ModelDescription model = Cylinder();
+  model.effects = {{.id = "actuator.unequal_areas", .parameters = {{"difference", 0.3}}, .names = {}}};
+  runs::MeasuredRun run = Moved(100, 100);
+  for (size_t k = 0; k < run.samples(); ++k)
+    run.arm_force.values.push_back(-1e-3 * (1.3 * run.p2.values[k] - 0.7 * run.p1.values[k]));
+  EXPECT_THAT(
+      RatioRemarks(model, {run}),
+      ::testing::Contains(AllOf(HasSubstr("arm_force is 1"), HasSubstr("k_2 (c_2 p2 - c_1 p1)/c holds"),
+                                ::testing::Not(HasSubstr("is off by as much")))));
+}
+
 // Tests a winding: the voltage at the terminals against current and speed.
 TEST(MeasuredRatios, OfAWinding) {
   runs::MeasuredRun run = Moved(100, 100);
